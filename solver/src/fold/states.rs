@@ -1,0 +1,1 @@
+//! Flat, stowed and erected states.

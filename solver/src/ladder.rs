@@ -1,0 +1,34 @@
+//! Models from cheap to full behind one interface: Scene → Deployment.
+
+use crate::deployment::{Deployment, Observer};
+use crate::fold::FoldError;
+use crate::scene::{ModelKind, Scene};
+
+pub mod piston;
+
+/// Why a scene cannot be run at all (a run that stops short is no error: see
+/// [`crate::deployment::Stop`]).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// The fold design is invalid or infeasible.
+    #[error(transparent)]
+    Fold(#[from] FoldError),
+    /// A key of the scene is out of range, or asks for what the model cannot do.
+    #[error("{key}: {problem}")]
+    Invalid {
+        /// Dotted key, as in the scene's JSON.
+        key: String,
+        /// What is wrong, what is allowed.
+        problem: String,
+    },
+}
+
+/// Runs a scene on the model it names.
+///
+/// # Errors
+/// [`SceneError`] when the scene cannot be started.
+pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, SceneError> {
+    match scene.solver.model {
+        ModelKind::Piston => piston::solve(scene, observer),
+    }
+}

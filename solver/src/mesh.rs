@@ -1,0 +1,1 @@
+//! Nodes and triangles of a fold pattern.

@@ -1,0 +1,131 @@
+//! The command line: one file a command, each with its own arguments and a function that writes its
+//! result to a given `Write`. Results go to stdout, progress and errors to stderr.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+use crate::error::{Error, Result};
+
+mod fold;
+mod plan;
+mod run;
+mod schema;
+mod table;
+
+/// Parameter studies of inflatable capsules: fold, inflate, compare.
+#[derive(Debug, Parser)]
+#[command(name = "billow", version, propagate_version = true, max_term_width = 100)]
+pub struct Cli {
+    /// Options every command takes.
+    #[command(flatten)]
+    pub global: Global,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Options every command takes.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Global {
+    /// Folder of the results [default: results/<study> under the current folder].
+    #[arg(long, global = true, value_name = "DIR")]
+    pub results: Option<PathBuf>,
+    /// Threads [default: one a core].
+    #[arg(long, global = true, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Override a key of the study, as in --set film.thickness="30 um".
+    #[arg(long, global = true, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Same as --format json.
+    #[arg(long, global = true, conflicts_with = "format")]
+    pub json: bool,
+    /// How a table is printed.
+    #[arg(long, global = true, value_enum)]
+    pub format: Option<Format>,
+    /// No progress.
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// More progress.
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+impl Global {
+    /// The format asked for.
+    pub fn format(&self) -> Format {
+        if self.json { Format::Json } else { self.format.unwrap_or(Format::Table) }
+    }
+}
+
+/// How a table is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns.
+    Table,
+    /// Comma-separated values (RFC 4180).
+    Csv,
+    /// A JSON array of rows.
+    Json,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// One fold design: its angles and lengths, and its crease pattern as files.
+    Fold(fold::Args),
+    /// List the jobs of a study; run nothing.
+    Plan(plan::Args),
+    /// Run what is missing of a study.
+    Run(run::Args),
+    /// Print the summary table of a study's results.
+    Table(table::Args),
+    /// Print the JSON Schema of the study file.
+    Schema(schema::Args),
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // --help and --version are answers; everything else is bad input, exit code 2.
+            let code = if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+            let _ = error.print();
+            return code;
+        }
+    };
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    let result = dispatch(&cli, &mut out).and_then(|()| out.flush().map_err(output_error));
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Error::OutputClosed) => ExitCode::SUCCESS,
+        Err(error) => {
+            // What was printed before the error still belongs to the reader.
+            let _ = out.flush();
+            eprintln!("billow: {error}");
+            error.exit_code()
+        }
+    }
+}
+
+fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
+    match &cli.command {
+        Command::Fold(args) => fold::run(args, &cli.global, out),
+        Command::Plan(args) => plan::run(args, &cli.global, out),
+        Command::Run(args) => run::run(args, &cli.global, out),
+        Command::Table(args) => table::run(args, &cli.global, out),
+        Command::Schema(args) => schema::run(args, &cli.global, out),
+    }
+}
+
+/// A failed write to stdout: quiet when the reader went away (`billow … | head`).
+pub fn output_error(error: io::Error) -> Error {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        Error::OutputClosed
+    } else {
+        Error::Disk { path: PathBuf::from("stdout"), problem: error.to_string() }
+    }
+}

@@ -1,0 +1,16 @@
+//! `billow plan`.
+
+use std::io::Write;
+
+use super::Global;
+use crate::error::Result;
+
+/// Arguments of `billow plan`.
+#[derive(Debug, clap::Args)]
+pub struct Args {}
+
+/// Runs `billow plan`.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let _ = (args, global, out);
+    todo!()
+}

@@ -1,0 +1,1 @@
+//! Physics against numbers: analytic cases, properties, conservation.
