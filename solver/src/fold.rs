@@ -32,6 +32,7 @@ mod states;
 pub use angles::PanelAngles;
 pub use nearest::Nearest;
 pub use pattern::{FoldPattern, Lengths};
+pub use states::{Corner, Facet, Polygon};
 
 /// Which of the coupled quantities are given, and which follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -27,4 +27,5 @@ pub mod runner;
 pub mod stop;
 pub mod study;
 pub mod table;
+pub mod units;
 pub mod value;
