@@ -9,6 +9,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::error::{Error, Result};
 
+mod completions;
 mod fold;
 mod plan;
 pub mod print;
@@ -85,6 +86,8 @@ pub enum Command {
     Table(table::Args),
     /// Print the JSON Schema of the study file.
     Schema(schema::Args),
+    /// Print the completions of a shell.
+    Completions(completions::Args),
 }
 
 /// Runs the program.
@@ -119,6 +122,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Run(args) => run::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),
+        Command::Completions(args) => completions::run(args, out),
     }
 }
 

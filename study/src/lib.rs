@@ -20,6 +20,7 @@ pub mod history_file;
 pub mod job;
 pub mod journal;
 pub mod plan;
+pub mod progress;
 pub mod provenance;
 pub mod results;
 pub mod row;

@@ -1,16 +1,129 @@
-//! `billow run`.
+//! `billow run`: runs what is missing of a study.
 
-use std::io::Write;
+use std::io::{self, Write};
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
 
-use super::Global;
-use crate::error::Result;
+use super::{Format, Global, output_error};
+use crate::error::{Error, InputError, Result};
+use crate::executor::Solver;
+use crate::files::{Disk, disk_error};
+use crate::keys;
+use crate::plan;
+use crate::progress::{self, Loudness};
+use crate::results::Results;
+use crate::row;
+use crate::runner::{self, Run, Summary};
+use crate::stop::Stop;
+use crate::study::Study;
+use crate::study_file;
 
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Study file.
+    pub study: PathBuf,
+}
 
-/// Runs `billow run`.
+/// Runs `billow run`: jobs that are finished are kept, the rest is run; stopped at any moment, the
+/// same command goes on. A study whose grid has changed keeps the jobs it still plans.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let _ = (args, global, out);
-    todo!()
+    let study = study_file::load(&args.study, &global.set)?;
+    let root = results_folder(global, &study);
+    let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
+    let loudness = match global {
+        Global { quiet: true, .. } => Loudness::Quiet,
+        Global { verbose: true, .. } => Loudness::Verbose,
+        _ => Loudness::Normal,
+    };
+    let summary = runner::run(
+        &Run {
+            name: &study.name,
+            study: &study.to_json(),
+            planner: &|finished| plan::next_jobs(&study, finished),
+            unit: &parameter_unit,
+            executor: &Solver,
+            results: Results::new(&Disk, &root),
+            threads: threads(global)?,
+            stop,
+        },
+        progress::reporter(loudness).as_mut(),
+    )?;
+    print(&study.name, &root, &summary, global.format(), out).map_err(output_error)?;
+    match (summary.signal, summary.failed()) {
+        (Some(signal), _) => Err(Error::Signal(signal)),
+        (None, 0) => Ok(()),
+        (None, failed) => Err(Error::JobsFailed(format!(
+            "{failed} jobs failed\n  next: billow table {} --columns job,status,reason,stop_time,\
+             stop_place",
+            root.display()
+        ))),
+    }
+}
+
+/// Where the results of a study lie.
+pub fn results_folder(global: &Global, study: &Study) -> PathBuf {
+    global.results.clone().unwrap_or_else(|| Path::new("results").join(&study.name))
+}
+
+/// SI unit of a parameter: "1" for a pure number, empty for words.
+fn parameter_unit(name: &str) -> String {
+    let kind = keys::find(name).map(|at| keys::KEYS[at].kind);
+    match kind {
+        Some(keys::Kind::Quantity(quantity)) => quantity.dimension.si(),
+        Some(keys::Kind::Integer(..)) => "1",
+        Some(keys::Kind::Choice(_) | keys::Kind::Text) | None => "",
+    }
+    .to_owned()
+}
+
+fn threads(global: &Global) -> Result<Option<NonZero<usize>>> {
+    let Some(threads) = global.threads else { return Ok(None) };
+    let refused = || InputError {
+        file: "--threads".to_owned(),
+        key: String::new(),
+        value: threads.to_string(),
+        problem: "no thread would run".to_owned(),
+        allowed: "1 or more; leave it out for one a core".to_owned(),
+        hint: String::new(),
+    };
+    Ok(Some(NonZero::new(threads).ok_or_else(refused)?))
+}
+
+fn print(
+    name: &str,
+    root: &Path,
+    summary: &Summary,
+    format: Format,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    if format == Format::Json {
+        let json = serde_json::json!({
+            "study": name,
+            "results": root.display().to_string(),
+            "ran": summary.ran,
+            "failed": summary.failed(),
+            "status": summary.status,
+            "verdict": summary.verdict,
+        });
+        return writeln!(out, "{json}");
+    }
+    let points: usize = summary.status.values().sum();
+    let without_job = summary.status.get(row::INFEASIBLE).copied().unwrap_or(0);
+    let pending = summary.status.get(row::PENDING).copied().unwrap_or(0);
+    if summary.ran == 0 && pending == 0 {
+        writeln!(out, "{name}: nothing to run, all {} jobs are finished", points - without_job)?;
+    } else {
+        writeln!(out, "{name}: {} jobs run, {points} points", summary.ran)?;
+    }
+    let list = |counts: &std::collections::BTreeMap<String, usize>| {
+        let parts: Vec<String> = counts.iter().map(|(name, n)| format!("{n} {name}")).collect();
+        parts.join(", ")
+    };
+    writeln!(out, "  status   {}", list(&summary.status))?;
+    if !summary.verdict.is_empty() {
+        writeln!(out, "  verdict  {}", list(&summary.verdict))?;
+    }
+    writeln!(out, "  results  {}", root.display())?;
+    writeln!(out, "  next     billow table {}", root.display())
 }

@@ -1,16 +1,210 @@
-//! `billow table`.
+//! `billow table`: prints the summary table of a study's results.
 
+use std::cmp::Ordering;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
-use super::Global;
-use crate::error::Result;
+use super::print::{print_rows, short_number};
+use super::run::results_folder;
+use super::{Format, Global};
+use crate::error::{Error, InputError, Result};
+use crate::files::{Disk, Files};
+use crate::keys;
+use crate::results::Results;
+use crate::study_file;
+use crate::table::{Column, Table};
+use crate::value::Value;
+
+/// Measures shown after the parameters, in this order, as far as they fit.
+const MAIN: [&str; 10] = [
+    "status",
+    "verdict",
+    "t_90_z_rim",
+    "final_pressure",
+    "volume_ratio",
+    "height_ratio",
+    "peak_vz",
+    "overshoot",
+    "final_z_rim",
+    "final_volume",
+];
+/// Characters a line of the default table may have.
+const WIDTH: usize = 120;
 
 /// Arguments of `billow table`.
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Study file, or folder of its results [default: the only one under results].
+    pub study: Option<PathBuf>,
+    /// Columns, comma-separated, or "all" [default: parameters and main measures; all for csv and
+    /// json].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    /// Sort by these columns, comma-separated; ":desc" turns one round. Empty cells come last.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub sort: Vec<String>,
+}
 
 /// Runs `billow table`.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let _ = (args, global, out);
-    todo!()
+    let root = folder(args.study.as_deref(), global)?;
+    let table = Results::new(&Disk, &root).read_table()?;
+    let rows = sorted(&table, (0..table.rows()).collect(), &args.sort)?;
+    let format = global.format();
+    let columns = chosen(&table, &args.columns, format)?;
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let cells: Vec<Vec<Value>> = rows
+        .iter()
+        .map(|row| columns.iter().map(|column| shown(column, *row, format)).collect())
+        .collect();
+    print_rows(&names, &cells, format, out)
+}
+
+/// The results folder meant: a folder, or that of a study file, or the only one there is.
+fn folder(given: Option<&Path>, global: &Global) -> Result<PathBuf> {
+    if let Some(results) = &global.results {
+        return Ok(results.clone());
+    }
+    let Some(given) = given else { return only_folder() };
+    let named = Path::new("results").join(given);
+    if given.is_dir() {
+        Ok(given.to_owned())
+    } else if !given.exists() && named.is_dir() {
+        Ok(named)
+    } else {
+        Ok(results_folder(global, &study_file::load(given, &global.set)?))
+    }
+}
+
+fn only_folder() -> Result<PathBuf> {
+    let results = Path::new("results");
+    let mut folders = Disk.list(results).unwrap_or_default();
+    folders.retain(|path| path.join("summary.parquet").is_file());
+    match folders.as_slice() {
+        [one] => Ok(one.clone()),
+        several => {
+            let names: Vec<String> =
+                several.iter().map(|path| path.display().to_string()).collect();
+            Err(Error::Input(InputError {
+                file: "billow table".to_owned(),
+                key: String::new(),
+                value: String::new(),
+                problem: if names.is_empty() {
+                    "no results under the current folder".to_owned()
+                } else {
+                    "results of several studies under the current folder".to_owned()
+                },
+                allowed: if names.is_empty() {
+                    "a study file, or a folder of results".to_owned()
+                } else {
+                    names.join(", ")
+                },
+                hint: "billow table STUDY".to_owned(),
+            }))
+        }
+    }
+}
+
+fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
+    let names = || table.columns.iter().map(|column| column.name.as_str());
+    table.column(name).ok_or_else(|| {
+        let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        Error::Input(InputError {
+            file: flag.to_owned(),
+            key: String::new(),
+            value: name.to_owned(),
+            problem: "no such column".to_owned(),
+            allowed: names().collect::<Vec<_>>().join(", "),
+            hint: hint.unwrap_or_default(),
+        })
+    })
+}
+
+/// Rows in the order asked for; equal ones stay in plan order.
+fn sorted(table: &Table, mut rows: Vec<usize>, sort: &[String]) -> Result<Vec<usize>> {
+    let mut keys = Vec::with_capacity(sort.len());
+    for key in sort {
+        let (name, down) = match key.split_once(':') {
+            None => (key.as_str(), false),
+            Some((name, "asc")) => (name, false),
+            Some((name, "desc")) => (name, true),
+            Some(_) => {
+                return Err(Error::Input(InputError {
+                    file: "--sort".to_owned(),
+                    key: String::new(),
+                    value: key.clone(),
+                    problem: "unknown direction".to_owned(),
+                    allowed: "NAME, NAME:asc, NAME:desc".to_owned(),
+                    hint: String::new(),
+                }));
+            }
+        };
+        keys.push((find(table, "--sort", name)?, down));
+    }
+    rows.sort_by(|one, other| {
+        let compare = |(column, down): &(&Column, bool)| {
+            compare(&column.cells[*one], &column.cells[*other], *down)
+        };
+        keys.iter().map(compare).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    });
+    Ok(rows)
+}
+
+fn compare(one: &Value, other: &Value, down: bool) -> Ordering {
+    let order = match (one, other) {
+        (Value::Null, Value::Null) => return Ordering::Equal,
+        (Value::Null, _) => return Ordering::Greater,
+        (_, Value::Null) => return Ordering::Less,
+        (Value::Bool(one), Value::Bool(other)) => one.cmp(other),
+        (Value::Integer(one), Value::Integer(other)) => one.cmp(other),
+        (Value::Number(one), Value::Number(other)) => one.total_cmp(other),
+        // Cells of one column are of one type.
+        (one, other) => one.to_string().cmp(&other.to_string()),
+    };
+    if down { order.reverse() } else { order }
+}
+
+fn chosen<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Vec<&'a Column>> {
+    match names {
+        [] if format == Format::Table => Ok(main_columns(table)),
+        [] => Ok(table.columns.iter().collect()),
+        [all] if all == "all" => Ok(table.columns.iter().collect()),
+        names => names.iter().map(|name| find(table, "--columns", name)).collect(),
+    }
+}
+
+/// Job, parameters, and the main measures that fit a line.
+fn main_columns(table: &Table) -> Vec<&Column> {
+    let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
+    columns.extend(table.parameters());
+    let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
+    for column in MAIN.iter().filter_map(|name| table.column(name)) {
+        let answers = column.cells.iter().any(|cell| *cell != Value::Null);
+        // How a job ended is shown however wide the parameters are.
+        if column.name == "status" || (answers && width + self::width(column) <= WIDTH) {
+            width += self::width(column) + 2;
+            columns.push(column);
+        }
+    }
+    columns
+}
+
+/// Characters a column takes.
+fn width(column: &Column) -> usize {
+    let rows = 0..column.cells.len();
+    let widest = rows.map(|row| match shown(column, row, Format::Table) {
+        Value::Number(number) => short_number(number).len(),
+        other => other.to_string().chars().count(),
+    });
+    widest.max().unwrap_or(0).max(column.name.chars().count())
+}
+
+/// A cell as printed: job ids short where people read them.
+fn shown(column: &Column, row: usize, format: Format) -> Value {
+    match &column.cells[row] {
+        Value::Text(id) if format == Format::Table && column.name == "job" => {
+            Value::Text(id.chars().take(8).collect())
+        }
+        value => value.clone(),
+    }
 }

@@ -1,0 +1,23 @@
+//! `billow completions`: what a shell needs to complete commands and flags.
+
+use std::io::Write;
+
+use clap::CommandFactory;
+
+use super::{Cli, output_error};
+use crate::error::Result;
+
+/// Arguments of `billow completions`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The shell.
+    pub shell: clap_complete::Shell,
+}
+
+/// Runs `billow completions`.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    // The generator panics where a write fails; a buffer never does.
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "billow", &mut script);
+    out.write_all(&script).map_err(output_error)
+}
