@@ -85,19 +85,25 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
     for sample in 0..samples {
         let mut values = [0.0; COLUMNS.len()];
         for (column, value) in values.iter_mut().enumerate() {
-            *value = libm::sin(f64::from(number) + 0.1 * column as f64 + 0.01 * sample as f64);
+            *value =
+                2.0 + libm::sin(f64::from(number) + 0.1 * column as f64 + 0.01 * sample as f64);
         }
         values[0] = 0.001 * sample as f64;
         history.push(&values);
     }
+    let last = |name: &str| history.column(name).last().copied();
+    let measures = Measures {
+        verdict: Some(Verdict::Deployed),
+        final_z_rim: last("z_rim"),
+        final_volume: last("volume"),
+        final_pressure: last("pressure"),
+        final_temperature: last("temperature"),
+        t_50_z_rim: Some(0.1 + 0.2),
+        ..Measures::default()
+    };
     Deployment {
         history,
-        measures: Measures {
-            verdict: Some(Verdict::Deployed),
-            final_volume: Some(0.07 + 0.001 * f64::from(number)),
-            t_50_z_rim: Some(0.1 + 0.2),
-            ..Measures::default()
-        },
+        measures,
         audit: Audit { ledger_residual: 1e-12, ..Audit::default() },
         stop: Stop::Done,
         steps: 100,

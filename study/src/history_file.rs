@@ -12,11 +12,11 @@
 //! engine="h5netcdf", group="history")` shows the columns over `time`.
 
 use std::path::Path;
-use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 
 use billow_solver::deployment::{Deployment, Stop};
 use billow_solver::history::{COLUMNS, History};
+use hdf5::dataset::DatasetCreate;
 use hdf5::file::LinkCreationOrder;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, Group, Location};
@@ -26,7 +26,7 @@ use crate::error::{Error, Result};
 use crate::job::{Job, JobId};
 use crate::{provenance, row};
 
-mod scale;
+mod raw;
 
 /// Name of the format, in the attribute `format`.
 const FORMAT: &str = "billow-history";
@@ -99,51 +99,50 @@ fn build(job: &Job, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::R
             (failure.kind.name(), Some(failure.time), Some(failure.place.as_str()))
         }
     };
-    text_attribute(&file, "format", FORMAT)?;
+    let writer = raw::Writer::new()?;
+    writer.text(&file, "format", FORMAT)?;
     number_attribute(&file, "version", VERSION)?;
-    text_attribute(&file, "program_version", provenance::PROGRAM_VERSION)?;
-    text_attribute(&file, "commit", provenance::COMMIT)?;
+    writer.text(&file, "program_version", provenance::PROGRAM_VERSION)?;
+    writer.text(&file, "commit", provenance::COMMIT)?;
     number_attribute(&file, "physics_version", provenance::PHYSICS_VERSION)?;
-    text_attribute(&file, "job", job.id.as_str())?;
-    text_attribute(&file, "scene", scene)?;
-    text_attribute(&file, "status", status)?;
+    writer.text(&file, "job", job.id.as_str())?;
+    writer.text(&file, "scene", scene)?;
+    writer.text(&file, "status", status)?;
     if let Some(time) = stop_time {
         number_attribute(&file, "stop_time", time)?;
     }
     if let Some(place) = stop_place {
-        text_attribute(&file, "stop_place", place)?;
+        writer.text(&file, "stop_place", place)?;
     }
-    text_attribute(&file, "content_hash", hash)?;
+    writer.text(&file, "content_hash", hash)?;
     let group = file
         .create_group_builder()
         .with_gcpl(|creation| creation.link_creation_order(ordered))
         .create("history")?;
-    write_history(&group, &deployment.history)?;
+    write_history(&writer, &group, &deployment.history)?;
     number_attribute(&file, "complete", 1_u8)?;
-    scale::image(&file)
+    raw::image(&file)
 }
 
-fn write_history(group: &Group, history: &History) -> hdf5::Result<()> {
+fn write_history(writer: &raw::Writer, group: &Group, history: &History) -> hdf5::Result<()> {
+    let samples = history.len();
+    let mut create = DatasetCreate::build();
+    create.obj_track_times(false);
+    if samples >= CHUNKED_FROM {
+        create.chunk(samples.min(CHUNK)).shuffle().deflate(DEFLATE);
+    }
+    let columns = raw::Columns::new(samples, create.finish()?)?;
     let mut datasets = Vec::with_capacity(COLUMNS.len());
     for (column, values) in history.iter() {
-        let mut builder = group.new_dataset_builder().obj_track_times(false).no_chunk();
-        if values.len() >= CHUNKED_FROM {
-            builder = builder.chunk(values.len().min(CHUNK)).shuffle().deflate(DEFLATE);
-        }
-        let dataset = builder.with_data(values).create(column.name)?;
-        text_attribute(&dataset, "units", column.unit)?;
-        text_attribute(&dataset, "long_name", column.meaning)?;
-        datasets.push(dataset);
+        let dataset = columns.write(group, column.name, values)?;
+        writer.text(&dataset, "units", column.unit)?;
+        writer.text(&dataset, "long_name", column.meaning)?;
+        datasets.push((column.name, dataset));
     }
-    if let Some((time, others)) = datasets.split_first() {
-        scale::attach(group, time, COLUMNS[0].name, others)?;
+    if let Some(((name, time), others)) = datasets.split_first() {
+        writer.attach(group, (name, time), others)?;
     }
     Ok(())
-}
-
-fn text_attribute(location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
-    let text = VarLenUnicode::from_str(text).map_err(|error| error.to_string())?;
-    location.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)
 }
 
 fn number_attribute<T: hdf5::H5Type>(

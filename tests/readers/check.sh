@@ -1,0 +1,12 @@
+#!/bin/sh
+# Opens a results folder with h5py, xarray, pandas and pyarrow:  tests/readers/check.sh RESULTS
+# The packages go into .venv beside this script, once.
+set -eu
+here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
+venv=${VENV:-$here/.venv}
+if ! cmp -s "$here/requirements.txt" "$venv/installed.txt"; then
+    python3 -m venv "$venv"
+    "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$here/requirements.txt"
+    cp "$here/requirements.txt" "$venv/installed.txt"
+fi
+exec "$venv/bin/python" "$here/check.py" "$@"
