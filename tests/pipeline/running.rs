@@ -1,0 +1,144 @@
+//! `billow run` and `billow table` as a user meets them.
+
+use std::io::{BufRead, BufReader};
+
+use serde_json::json;
+
+use crate::support::{Desk, small_grid, stderr};
+
+#[test]
+fn a_study_runs_and_says_what_came_of_it() {
+    let desk = Desk::new(&small_grid());
+    let output = desk.run(&["run", "grid.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.starts_with("grid: 16 jobs run, 24 points\n"), "{said}");
+    assert!(said.contains("status   16 done, 8 infeasible\n"), "{said}");
+    assert!(said.contains("results  results/grid\n"), "{said}");
+    assert!(said.contains("next     billow table results/grid\n"), "{said}");
+    let progress = stderr(&output);
+    assert!(progress.contains("16 jobs, 0 finished, 16 to run"), "{progress}");
+    assert!(progress.contains("16 of 16 jobs finished, 0 failed"), "{progress}");
+    assert!(!progress.contains('\u{1b}'), "no control characters off a terminal");
+
+    let rows = desk.rows("results/grid");
+    assert_eq!(rows.len(), 24);
+    for row in &rows {
+        let done = row["status"] == "done";
+        assert_eq!(done, row["alpha1_over_phi"].as_f64() != Some(9.0), "{row}");
+        if done {
+            for column in ["final_volume", "final_pressure", "phi", "top_radius", "steps"] {
+                assert!(row[column].as_f64().unwrap() > 0.0, "{column}: {row}");
+            }
+            assert!(["deployed", "partial", "stalled"].contains(&row["verdict"].as_str().unwrap()));
+            assert!(row["passages"].is_null(), "a piston has no film to pass");
+            assert!(row["ledger_residual"].as_f64().unwrap() < 1e-3, "{row}");
+        } else {
+            assert!(!row["reason"].as_str().unwrap().is_empty());
+            assert!(row["final_volume"].is_null() && row["content_hash"].is_null());
+        }
+    }
+    let order: Vec<_> =
+        rows.iter().map(|row| (row["N"].clone(), row["M"].clone())).take(7).collect();
+    assert_eq!(order[0], (json!(5), json!(2)));
+    assert_eq!(order[6], (json!(5), json!(3)), "the last axis runs fastest");
+}
+
+#[test]
+fn a_quiet_run_says_nothing_on_stderr_and_json_is_json() {
+    let desk = Desk::new(&small_grid());
+    let output = desk.run(&["run", "grid.json", "-q", "--json", "--threads", "1"]);
+    assert_eq!(stderr(&output), "");
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["ran"], 16);
+    assert_eq!(summary["status"], json!({ "done": 16, "infeasible": 8 }));
+}
+
+#[test]
+fn failed_jobs_end_in_exit_code_1_and_stay_rows() {
+    let mut study = small_grid();
+    study["solver"]["step_limit"] = json!(3);
+    let desk = Desk::new(&study);
+    for _ in 0..2 {
+        let output = desk.run(&["run", "grid.json", "-q"]);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stderr(&output).contains("16 jobs failed\n  next: billow table results/grid"));
+    }
+    let rows = desk.rows("results/grid");
+    let failed: Vec<_> = rows.iter().filter(|row| row["status"] == "step_limit").collect();
+    assert_eq!(failed.len(), 16);
+    assert!(
+        failed.iter().all(|row| row["stop_time"].is_number() && row["content_hash"].is_string())
+    );
+    assert!(failed.iter().all(|row| row["verdict"].is_null()));
+}
+
+#[test]
+fn the_table_is_picked_sorted_and_filtered() {
+    let desk = Desk::new(&small_grid());
+    desk.run(&["run", "grid.json", "-q"]);
+    let csv = |more: &[&str]| desk.stdout(&[&["table", "--format", "csv"], more].concat());
+    let picked =
+        csv(&["--columns", "N,M,status", "--where", "N == 6 and residual_gas_mass > '0.01 g'"]);
+    assert_eq!(picked.lines().count(), 7, "{picked}");
+    assert_eq!(picked.lines().next(), Some("N,M,status"));
+    assert!(picked.lines().skip(1).all(|line| line.starts_with("6,")));
+    let sorted = csv(&["--columns", "status,N", "--sort", "N:desc,status"]);
+    let lines: Vec<&str> = sorted.lines().skip(1).collect();
+    assert_eq!((lines[0], lines[8], lines[23]), ("done,6", "infeasible,6", "infeasible,5"));
+    let nulls_last = csv(&["--columns", "status", "--sort", "final_volume:desc"]);
+    assert!(nulls_last.trim_end().ends_with("infeasible"));
+
+    for table in [desk.stdout(&["table"]), desk.stdout(&["table", "grid.json"])] {
+        assert_eq!(table.lines().count(), 25);
+        assert!(table.lines().all(|line| line.chars().count() <= 120), "{table}");
+        let header = table.lines().next().unwrap();
+        assert!(header.starts_with("job ") && header.contains("  status "), "{header}");
+    }
+    let all = desk.stdout(&["table", "results/grid", "--columns", "all", "--format", "csv"]);
+    assert_eq!(all, csv(&[]));
+}
+
+#[test]
+fn wrong_columns_conditions_and_folders_are_refused_with_exit_code_2() {
+    let desk = Desk::new(&small_grid());
+    desk.run(&["run", "grid.json", "-q"]);
+    for (arguments, expected) in [
+        (&["table", "--columns", "final_volum"][..], "did you mean final_volume?"),
+        (&["table", "--sort", "N:up"], "unknown direction"),
+        (&["table", "--where", "final_volum > 1"], "^"),
+        (&["table", "nowhere"], "nowhere"),
+        (&["table", "--results", "empty"], "no table here"),
+        (&["run", "grid.json", "--threads", "0"], "no thread would run"),
+        (&["run", "missing.json"], "missing.json"),
+        (&["completions", "cobol"], "possible values"),
+    ] {
+        let output = desk.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let desk = Desk::new(&small_grid());
+    desk.run(&["run", "grid.json", "-q"]);
+    let mut child =
+        desk.billow(&["table", "--columns", "all", "--format", "json"]).spawn().unwrap();
+    let mut line = String::new();
+    BufReader::with_capacity(1, child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    assert_eq!(line, "[\n");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stderr(&output), "");
+}
+
+#[test]
+fn every_shell_gets_its_completions() {
+    let desk = Desk::new(&small_grid());
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = desk.stdout(&["completions", shell]);
+        assert!(script.contains("billow") && script.contains("completions"), "{shell}");
+    }
+}
