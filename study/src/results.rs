@@ -1,7 +1,7 @@
 //! A results folder: where everything of a study lies, and whether it is sound.
 //!
 //! ```text
-//! results/<study>/study.json        the study as last run, defaults filled
+//! results/<study>/study.json        the study as last run, all spelled out: a study file itself
 //!                 journal/*.jsonl   which jobs ended, and how (crate::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::history_file)
 //!                 summary.parquet   the table, rebuilt from plan and journal (crate::table)
@@ -15,7 +15,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use crate::error::{Error, Result};
 use crate::files::{self, Files, Lock, disk_error};
@@ -24,17 +24,17 @@ use crate::job::JobId;
 use crate::journal::{self, Journal, Record};
 use crate::table::{Table, parquet};
 
-/// Name of the format of study.json.
+/// Name of the format of study.json: it is a study file, with everything spelled out.
 const FORMAT: &str = "billow-study";
 /// Version of study.json this program writes, and the newest it reads.
 const VERSION: u64 = 1;
 
-#[derive(Serialize, Deserialize)]
-struct StudyFile {
+/// What tells whose folder it is.
+#[derive(Deserialize)]
+struct Owner {
     format: String,
     version: u64,
     name: String,
-    study: serde_json::Value,
 }
 
 /// A results folder on some disk.
@@ -108,7 +108,8 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    /// Notes which study the folder belongs to, unless it says so already.
+    /// Notes which study the folder belongs to, unless it says so already: `study` is the resolved
+    /// study, an object.
     ///
     /// # Errors
     /// [`Error::Disk`] when it belongs to another study, or to a newer program.
@@ -122,7 +123,7 @@ impl<'a> Results<'a> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(disk_error(&path, &error)),
             Ok(bytes) => {
-                let there: StudyFile = serde_json::from_slice(&bytes)
+                let there: Owner = serde_json::from_slice(&bytes)
                     .map_err(|error| refused(format!("not a study.json of billow: {error}")))?;
                 if there.format != FORMAT {
                     return Err(refused(format!("format {:?} is not {FORMAT:?}", there.format)));
@@ -141,13 +142,11 @@ impl<'a> Results<'a> {
                 }
             }
         }
-        let file = StudyFile {
-            format: FORMAT.to_owned(),
-            version: VERSION,
-            name: name.to_owned(),
-            study: study.clone(),
-        };
-        let mut bytes = serde_json::to_vec_pretty(&file)
+        let mut study = study.clone();
+        study["format"] = FORMAT.into();
+        study["version"] = VERSION.into();
+        study["name"] = name.into();
+        let mut bytes = serde_json::to_vec_pretty(&study)
             .map_err(|error| disk_error(&path, &io::Error::other(error)))?;
         bytes.push(b'\n');
         files::write_if_changed(self.files, &path, &bytes)

@@ -8,11 +8,14 @@ use super::print::{print_rows, short_number};
 use super::run::results_folder;
 use super::{Format, Global};
 use crate::error::{Error, InputError, Result};
+use crate::expression::{Expression, Type, Variable};
 use crate::files::{Disk, Files};
 use crate::keys;
 use crate::results::Results;
+use crate::row::Kind;
 use crate::study_file;
 use crate::table::{Column, Table};
+use crate::units::Dimension;
 use crate::value::Value;
 
 /// Measures shown after the parameters, in this order, as far as they fit.
@@ -36,6 +39,9 @@ const WIDTH: usize = 120;
 pub struct Args {
     /// Study file, or folder of its results [default: the only one under results].
     pub study: Option<PathBuf>,
+    /// Only rows of which this holds, as in `N == 6 and final_pressure > '40 Pa'`.
+    #[arg(long = "where", value_name = "CONDITION")]
+    pub condition: Option<String>,
     /// Columns, comma-separated, or "all" [default: parameters and main measures; all for csv and
     /// json].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -49,7 +55,7 @@ pub struct Args {
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let root = folder(args.study.as_deref(), global)?;
     let table = Results::new(&Disk, &root).read_table()?;
-    let rows = sorted(&table, (0..table.rows()).collect(), &args.sort)?;
+    let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = global.format();
     let columns = chosen(&table, &args.columns, format)?;
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
@@ -85,7 +91,7 @@ fn only_folder() -> Result<PathBuf> {
         several => {
             let names: Vec<String> =
                 several.iter().map(|path| path.display().to_string()).collect();
-            Err(Error::Input(InputError {
+            Err(InputError {
                 file: "billow table".to_owned(),
                 key: String::new(),
                 value: String::new(),
@@ -100,7 +106,8 @@ fn only_folder() -> Result<PathBuf> {
                     names.join(", ")
                 },
                 hint: "billow table STUDY".to_owned(),
-            }))
+            }
+            .into())
         }
     }
 }
@@ -109,7 +116,7 @@ fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
     let names = || table.columns.iter().map(|column| column.name.as_str());
     table.column(name).ok_or_else(|| {
         let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
-        Error::Input(InputError {
+        Error::from(InputError {
             file: flag.to_owned(),
             key: String::new(),
             value: name.to_owned(),
@@ -118,6 +125,42 @@ fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
             hint: hint.unwrap_or_default(),
         })
     })
+}
+
+/// Rows of which the condition holds, in plan order.
+fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
+    let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
+    let variables: Vec<Variable> = table
+        .columns
+        .iter()
+        .map(|column| Variable { name: column.name.clone(), kind: kind(column) })
+        .collect();
+    let condition = Expression::condition(text, &variables).map_err(|error| InputError {
+        file: "--where".to_owned(),
+        key: String::new(),
+        value: String::new(),
+        problem: error.to_string(),
+        allowed: error.allowed,
+        hint: String::new(),
+    })?;
+    let holds = |row: &usize| {
+        let values: Vec<Value> =
+            table.columns.iter().map(|column| column.cells[*row].clone()).collect();
+        condition.holds(&values)
+    };
+    Ok((0..table.rows()).filter(holds).collect())
+}
+
+/// What a column is to an expression.
+fn kind(column: &Column) -> Type {
+    match column.kind {
+        Kind::Bool => Type::Bool,
+        Kind::Text => Type::Text(None),
+        Kind::Integer | Kind::Number => {
+            let known = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
+            Type::Quantity(known.unwrap_or(Dimension::Number), &[])
+        }
+    }
 }
 
 /// Rows in the order asked for; equal ones stay in plan order.
@@ -129,14 +172,15 @@ fn sorted(table: &Table, mut rows: Vec<usize>, sort: &[String]) -> Result<Vec<us
             Some((name, "asc")) => (name, false),
             Some((name, "desc")) => (name, true),
             Some(_) => {
-                return Err(Error::Input(InputError {
+                return Err(InputError {
                     file: "--sort".to_owned(),
                     key: String::new(),
                     value: key.clone(),
                     problem: "unknown direction".to_owned(),
                     allowed: "NAME, NAME:asc, NAME:desc".to_owned(),
                     hint: String::new(),
-                }));
+                }
+                .into());
             }
         };
         keys.push((find(table, "--sort", name)?, down));

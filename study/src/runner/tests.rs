@@ -266,7 +266,7 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
     let executor = Scripted::new(script);
     let study = Run {
         name: "test",
-        study: &serde_json::json!(1),
+        study: &serde_json::json!({}),
         planner: &generation_zero(12),
         unit: &|_| String::new(),
         executor: &executor,
@@ -301,7 +301,7 @@ fn generations_are_replayed_on_resume() {
         let executor = Scripted::new(ran);
         let study = Run {
             name: "test",
-            study: &serde_json::json!(1),
+            study: &serde_json::json!({}),
             planner: &planner,
             unit: &|_| String::new(),
             executor: &executor,
