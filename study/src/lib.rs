@@ -11,8 +11,12 @@
 
 pub mod cli;
 pub mod error;
+pub mod expression;
 pub mod job;
+pub mod keys;
 pub mod plan;
+pub mod schema;
 pub mod study;
+pub mod study_file;
 pub mod units;
 pub mod value;
