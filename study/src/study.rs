@@ -1,4 +1,44 @@
-//! What a study file means: defaults filled, units converted, axes expanded.
+//! What a study file means: defaults filled, units converted, axes expanded to points, every point
+//! resolved to the scene it runs.
+//!
+//! ```text
+//! text → Json → (--set) → Base + Grid → points: parameters, Scene, feasible or why not
+//! ```
+//! Everything that can be wrong with a study is found here, before anything runs.
+
+mod base;
+mod expand;
+mod grid;
+mod overrides;
+mod resolve;
+mod source;
+
+use serde_json::{Map, json};
+
+use crate::cli::print::json_value;
+use crate::error::InputError;
+use crate::job::Parameters;
+use crate::plan::Infeasible;
+use crate::study_file::{self, Json};
+use billow_solver::scene::Scene;
+
+use base::Base;
+pub(crate) use base::PLACES;
+use grid::Grid;
+use source::Source;
+
+/// What a study may not exceed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Most points of a grid, before its filter.
+    pub points: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { points: 250_000 }
+    }
+}
 
 /// A validated study.
 #[derive(Debug, Clone, PartialEq)]
@@ -7,4 +47,142 @@ pub struct Study {
     pub name: String,
     /// The question it answers, in words.
     pub question: String,
+    base: Base,
+    grid: Grid,
+    points: Vec<StudyPoint>,
 }
+
+/// One point of the grid, in plan order.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StudyPoint {
+    /// The varied parameters.
+    pub parameters: Parameters,
+    /// What it runs.
+    pub scene: Scene,
+    /// Why it runs not.
+    pub infeasible: Option<Infeasible>,
+}
+
+impl Study {
+    /// Reads a study from its text. `file` is what errors call it, `stem` its name when it gives
+    /// none, `sets` the `--set key=value` overrides.
+    ///
+    /// # Errors
+    /// The first thing found wrong, with its key, its value and what is allowed.
+    pub fn from_text(
+        text: &str,
+        file: &str,
+        stem: &str,
+        sets: &[String],
+        limits: Limits,
+    ) -> Result<Self, InputError> {
+        let tree = study_file::parse(text, file)?;
+        Self::from_tree(tree, file, stem, sets, limits)
+    }
+
+    /// The same, from the tree of the text.
+    ///
+    /// # Errors
+    /// As [`Study::from_text`].
+    pub fn from_tree(
+        mut tree: Json,
+        file: &str,
+        stem: &str,
+        sets: &[String],
+        limits: Limits,
+    ) -> Result<Self, InputError> {
+        let mut source = Source::new(file);
+        if !matches!(tree, Json::Object(_)) {
+            let problem = format!("is {}, not an object", tree.kind());
+            return Err(source.error("", "", problem, "one JSON object: {\"design\": …}"));
+        }
+        overrides::apply(&mut tree, sets, &mut source)?;
+        let base = Base::read(&tree, &source)?;
+        let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
+        overrides::refuse_varied(&grid, &source)?;
+        let points = expand::points(&base, &grid, &source, limits)?;
+        let name = study_name(&base, stem, &source)?;
+        let question = base.settings.text("question").to_owned();
+        Ok(Self { name, question, base, grid, points })
+    }
+
+    /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
+    pub fn parameter_names(&self) -> Vec<String> {
+        self.grid.columns.iter().map(|column| column.name.clone()).collect()
+    }
+
+    /// The resolved study: units converted, defaults spelled out, axes as lists. A study file
+    /// itself: read back, it plans the same jobs in the same order.
+    pub fn to_json(&self) -> serde_json::Value {
+        let mut json = self.base.to_json();
+        json["name"] = self.name.as_str().into();
+        if !self.grid.is_empty() {
+            json["grid"] = self.grid.to_json();
+        }
+        json
+    }
+
+    pub(crate) fn points(&self) -> &[StudyPoint] {
+        &self.points
+    }
+}
+
+impl Grid {
+    /// Each axis a group of `zip`: a list keeps the order of the axes, an object would not.
+    fn to_json(&self) -> serde_json::Value {
+        let mut grid = Map::new();
+        let groups: Vec<serde_json::Value> = self
+            .axes
+            .iter()
+            .map(|axis| {
+                let columns = axis.columns.iter().enumerate().map(|(at, column)| {
+                    let values: Vec<_> = axis.rows.iter().map(|row| json_value(&row[at])).collect();
+                    (self.columns[*column].name.clone(), values.into())
+                });
+                columns.collect::<Map<_, _>>().into()
+            })
+            .collect();
+        if !groups.is_empty() {
+            grid.insert("zip".to_owned(), groups.into());
+        }
+        if !self.points.is_empty() {
+            let points = self.points.iter().map(|point| {
+                let members = point
+                    .iter()
+                    .map(|(column, value)| (self.columns[*column].name.clone(), json_value(value)));
+                members.collect::<Map<_, _>>().into()
+            });
+            grid.insert("points".to_owned(), points.collect::<Vec<serde_json::Value>>().into());
+        }
+        if let Some(filter) = &self.filter {
+            grid.insert("filter".to_owned(), json!(filter.text()));
+        }
+        grid.into()
+    }
+}
+
+/// The study's name: given, or that of its file; always one that a folder can have.
+fn study_name(base: &Base, stem: &str, source: &Source) -> Result<String, InputError> {
+    let given = base.settings.maybe_text("name");
+    let name = given.unwrap_or(stem);
+    let sound = !name.is_empty()
+        && name.len() <= 100
+        && !name.starts_with(['.', '-'])
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
+    if sound {
+        return Ok(name.to_owned());
+    }
+    let mut error = source.error(
+        "name",
+        &Json::Text(name.to_owned()).brief(),
+        "cannot name a results folder",
+        "up to 100 letters, digits, - _ and dots, not starting with a dot or -",
+    );
+    if given.is_none() {
+        error.hint = "the file's name is the study's name; give the study a `name`".to_owned();
+    }
+    Err(error)
+}
+
+#[cfg(test)]
+mod tests;

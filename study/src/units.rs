@@ -3,8 +3,8 @@
 //! A unit is a product of base units m, kg, s, K, rad to whole powers, times a scale. Scales that are
 //! decimal (`mm`, `g`, `bar`, `%`, and also `atm`, `in`, `h` over the line) are applied to the decimal
 //! digits as written and the result is rounded once, so "40 mm" is 0.04 and "25.4 um" is 25.4e-6 bit
-//! for bit. Only `deg` (× π / 180) and units under the line that are no powers of ten add floating
-//! point operations.
+//! for bit. `deg` is converted in twice the working precision; only units under the line that are no
+//! powers of ten cost a rounding more.
 //!
 //! ```text
 //! quantity = number unit            unit = product [ "/" product { "/" product } ]
@@ -16,7 +16,7 @@ mod decimal;
 mod dimension;
 mod symbol;
 
-pub use dimension::{Dimension, Powers};
+pub use dimension::{Dimension, Powers, describe};
 
 /// Why a text is no quantity of the dimension wanted.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,16 +1,134 @@
 //! `billow plan`.
 
 use std::io::Write;
+use std::path::PathBuf;
 
-use super::Global;
+use billow_solver::fold::{FoldPattern, Nearest};
+
+use super::print::{print_rows, short_number};
+use super::{Format, Global};
 use crate::error::Result;
+use crate::job::Parameters;
+use crate::plan::{Generation, Point, next_jobs};
+use crate::study_file;
+use crate::value::Value;
 
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// The study file.
+    #[arg(value_name = "STUDY")]
+    pub study: PathBuf,
+}
 
-/// Runs `billow plan`.
+/// Runs `billow plan`: one row a point on `out`, a closing line on stderr.
+///
+/// # Errors
+/// When the study is not sound or the output cannot be written.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let _ = (args, global, out);
-    todo!()
+    let study = study_file::load(&args.study, &global.set)?;
+    let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
+    let format = global.format();
+    let names = study.parameter_names();
+    let rows: Vec<Vec<Value>> =
+        generation.points.iter().map(|point| row(point, format == Format::Table)).collect();
+    print_rows(&columns(&names), &rows, format, out)?;
+    if !global.quiet {
+        eprintln!("{}: {}", study.name, summary(&generation));
+    }
+    Ok(())
+}
+
+/// What the fold solves; a parameter of the same name is what was asked for, so it keeps its column
+/// and the solved one is told apart.
+const SOLVED: [&str; 4] = ["phi", "half_angle", "top_radius", "height"];
+
+fn columns(parameters: &[String]) -> Vec<String> {
+    let mut columns = vec!["id".to_owned()];
+    columns.extend(parameters.iter().cloned());
+    columns.push("status".to_owned());
+    columns.extend(SOLVED.iter().map(|name| {
+        let taken = parameters.iter().any(|parameter| parameter == name);
+        if taken { format!("solved_{name}") } else { (*name).to_owned() }
+    }));
+    columns.extend(["reason", "nearest", "note"].map(str::to_owned));
+    columns
+}
+
+fn row(point: &Point, short: bool) -> Vec<Value> {
+    let id = if short { point.job.id.short() } else { point.job.id.as_str() };
+    let mut row = vec![Value::Text(id.to_owned())];
+    row.extend(point.job.parameters.iter().map(|(_, value)| value.clone()));
+    let text = |text: &str| Value::Text(text.to_owned());
+    match &point.infeasible {
+        None => {
+            row.push(text("job"));
+            match FoldPattern::new(&point.job.scene.design) {
+                Ok(pattern) => row.extend(
+                    [pattern.angles.phi, pattern.half_angle, pattern.top_radius, pattern.height]
+                        .map(Value::Number),
+                ),
+                // Planned as feasible a moment ago, so this is not reached; an empty cell is true.
+                Err(_) => row.extend([const { Value::Null }; SOLVED.len()]),
+            }
+            row.extend([Value::Null, Value::Null]);
+        }
+        Some(infeasible) => {
+            row.push(text("infeasible"));
+            row.extend([const { Value::Null }; SOLVED.len()]);
+            row.push(text(&infeasible.reason));
+            row.push(match infeasible.nearest.as_slice() {
+                [] => Value::Null,
+                nearest => Value::Text(nearest_text(nearest)),
+            });
+        }
+    }
+    row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(&point.merged)) });
+    row
+}
+
+fn nearest_text(nearest: &[Nearest]) -> String {
+    let texts: Vec<String> =
+        nearest.iter().map(|near| format!("{} = {}", near.key, near.value)).collect();
+    texts.join(", ")
+}
+
+/// Which points are the same job as this one; beyond a few, how many.
+fn note(merged: &[Parameters]) -> String {
+    const SHOWN: usize = 3;
+    let mut texts: Vec<String> = merged
+        .iter()
+        .take(SHOWN)
+        .map(|parameters| {
+            let values: Vec<String> = parameters
+                .iter()
+                .map(|(name, value)| match value {
+                    Value::Number(number) => format!("{name} = {}", short_number(*number)),
+                    other => format!("{name} = {other}"),
+                })
+                .collect();
+            if values.is_empty() { "the same point".to_owned() } else { values.join(", ") }
+        })
+        .collect();
+    if merged.len() > SHOWN {
+        texts.push(format!("and {} more", merged.len() - SHOWN));
+    }
+    format!("same job as {}", texts.join("; "))
+}
+
+fn summary(generation: &Generation) -> String {
+    let count = |number: usize, one: &str, many: &str| {
+        format!("{number} {}", if number == 1 { one } else { many })
+    };
+    let points = &generation.points;
+    let infeasible = points.iter().filter(|point| point.infeasible.is_some()).count();
+    let merged: usize = points.iter().map(|point| point.merged.len()).sum();
+    let mut text = count(points.len() - infeasible, "job", "jobs");
+    if infeasible > 0 {
+        text.push_str(&format!(", {}", count(infeasible, "infeasible point", "infeasible points")));
+    }
+    if merged > 0 {
+        text.push_str(&format!(", {}", count(merged, "point merged", "points merged")));
+    }
+    text
 }

@@ -1,5 +1,7 @@
 //! Unit symbols: known units, prefixes, and products of them.
 
+use std::f64::consts::PI;
+
 use super::dimension::Powers;
 
 /// What a unit is worth: base units × `factor` × 10^`exponent` / `divisor` × (π/180)^`degrees`.
@@ -17,13 +19,8 @@ impl Scale {
 
     /// `value` × (π/180)^degrees.
     pub fn turned(&self, value: f64) -> f64 {
-        // Multiply first: 30 × π / 180 rounds to π/6, 30 × (π/180) does not.
         (0..self.degrees.abs()).fold(value, |value, _| {
-            if self.degrees > 0 {
-                value * std::f64::consts::PI / 180.0
-            } else {
-                value * 180.0 / std::f64::consts::PI
-            }
+            if self.degrees > 0 { radians(value) } else { value * 180.0 / PI }
         })
     }
 
@@ -194,4 +191,32 @@ fn plain(c: char) -> char {
         '\u{a0}' | '\u{202f}' | '\t' => ' ',
         other => other,
     }
+}
+
+/// `degrees` × π / 180 in twice the working precision, rounded at the end, so that 30° is π/6 to the
+/// last bit.
+fn radians(degrees: f64) -> f64 {
+    /// π less its nearest double.
+    const PI_REST: f64 = 1.224_646_799_147_353_2e-16;
+    if !(1e-200..1e200).contains(&degrees.abs()) {
+        // The error terms would leave the range of doubles; nobody means such an angle.
+        return degrees * (PI / 180.0);
+    }
+    let (product, error) = exact_product(degrees, PI);
+    let error = error + degrees * PI_REST;
+    let quotient = product / 180.0;
+    let (back, back_error) = exact_product(quotient, 180.0);
+    quotient + ((product - back) - back_error + error) / 180.0
+}
+
+/// a × b as a rounded product and its exact error (Dekker 1971, splitting after Veltkamp).
+fn exact_product(a: f64, b: f64) -> (f64, f64) {
+    let halves = |x: f64| {
+        let scaled = 134_217_729.0 * x;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    };
+    let product = a * b;
+    let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
+    (product, a2 * b2 - (((product - a1 * b1) - a2 * b1) - a1 * b2))
 }
