@@ -25,6 +25,7 @@ pub mod deployment;
 pub mod fold;
 pub mod gas;
 pub mod history;
+pub mod integrate;
 pub mod ladder;
 pub mod ledger;
 pub mod measures;
