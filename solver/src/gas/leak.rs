@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn slow_outflow_is_bernoullis() {
-        let (p, density) = (100_000.01, 1.2);
+        let (p, density) = (100_000.01_f64, 1.2_f64);
         let orifice = Orifice::new(1.4, 1e-4);
         let bernoulli = 1e-4 * (2.0 * density * (p - 1e5)).sqrt();
         assert!((orifice.mass_flow(p, density, 1e5) / bernoulli - 1.0).abs() < 1e-6);
