@@ -24,14 +24,17 @@
 use serde::{Deserialize, Serialize};
 
 mod angles;
+mod creases;
 mod fit;
 mod nearest;
 mod pattern;
 mod states;
 
 pub use angles::PanelAngles;
+pub use creases::{Assignment, Crease};
 pub use nearest::Nearest;
 pub use pattern::{FoldPattern, Lengths};
+pub use states::{Corner, Facet, Polygon};
 
 /// Which of the coupled quantities are given, and which follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -1,6 +1,9 @@
-//! A solved fold pattern.
+//! A solved fold pattern: the design with every angle and length.
 
-use super::{FoldDesign, FoldError, PanelAngles};
+use core::f64::consts::PI;
+
+use super::fit::{self, geometric_sum};
+use super::{FoldDesign, FoldError, PanelAngles, states};
 
 /// A fold design that closes: every angle and length of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +35,9 @@ pub struct Lengths {
     pub ae: f64,
 }
 
+/// Largest strain of a folded edge that a stowed height may ask for.
+const STOWED_STRAIN: f64 = 0.01;
+
 impl FoldPattern {
     /// Solves a design.
     ///
@@ -39,62 +45,179 @@ impl FoldPattern {
     /// [`FoldError::Invalid`] for a request out of range or contradicting itself,
     /// [`FoldError::Infeasible`] for one no pattern meets.
     pub fn new(design: &FoldDesign) -> Result<Self, FoldError> {
-        todo!("{design:?}")
+        fit::check(design)?;
+        let fit::Solved { phi, half_angle } = fit::solve(design)?;
+        let angles = PanelAngles::closing(design.panels, phi, half_angle);
+        if !angles.is_panel() {
+            return Err(FoldError::Infeasible {
+                reason: format!(
+                    "the panel degenerates (phi {phi:e} rad, alpha1 {:e} rad)",
+                    angles.alpha1
+                ),
+                nearest: Vec::new(),
+            });
+        }
+        let slant = angles.unit_slant * geometric_sum(angles.ring_ratio, design.storeys);
+        let follows = (
+            design.bottom_radius * power(angles.ring_ratio, design.storeys),
+            design.bottom_radius * libm::cos(half_angle) * slant,
+        );
+        // What a fit is given it keeps to the digit; only what follows is computed.
+        let (top_radius, height) = match design.fit {
+            super::Fit::Cone => (design.top_radius, design.height),
+            super::Fit::Angles => (None, None),
+            super::Fit::Height => (None, design.height),
+        };
+        let pattern = Self {
+            design: design.clone(),
+            half_angle,
+            angles,
+            bottom_radius: design.bottom_radius,
+            top_radius: top_radius.unwrap_or(follows.0),
+            height: height.unwrap_or(follows.1),
+        };
+        pattern.check_stowed_height()?;
+        Ok(pattern)
+    }
+
+    fn check_stowed_height(&self) -> Result<(), FoldError> {
+        let stowed = self.design.stowed_height;
+        let invalid = |problem| Err(FoldError::Invalid { key: "stowed_height", problem });
+        if stowed >= self.height {
+            return invalid(format!("{stowed} m is not below the height of {} m", self.height));
+        }
+        let strain = self.stowed_strain(stowed);
+        if strain > STOWED_STRAIN {
+            return invalid(format!(
+                "{stowed} m strains folded edges by {:.2} %; allowed: up to {} %, so a lower stack",
+                100.0 * strain,
+                100.0 * STOWED_STRAIN
+            ));
+        }
+        Ok(())
+    }
+
+    /// Radius of ring `ring` of the cone, m (0 is the bottom ring, M the top ring).
+    pub fn ring_radius(&self, ring: u32) -> f64 {
+        self.bottom_radius * power(self.angles.ring_ratio, ring)
+    }
+
+    /// Circumradius of ring `ring` folded to its regular N-gon, m: the perimeter is kept, so it is
+    /// larger than the cone's radius.
+    pub fn polygon_radius(&self, ring: u32) -> f64 {
+        0.5 * self.ring_radius(ring) * self.angles.unit_lengths.ab
+            / libm::sin(PI / f64::from(self.design.panels))
     }
 
     /// Edge lengths of the panels of storey `storey` (0 is the lowest).
     pub fn lengths(&self, storey: u32) -> Lengths {
-        todo!("{storey}")
+        let radius = self.ring_radius(storey);
+        let unit = &self.angles.unit_lengths;
+        Lengths {
+            ab: radius * unit.ab,
+            de: radius * unit.de,
+            ad: radius * unit.ad,
+            ae: radius * unit.ae,
+        }
     }
 
-    /// How far the flat-folded ring misses closing on itself, relative to |AB| (a pure number).
+    /// How far the flat-folded storey misses closing on itself, relative to |AB|, from edge lengths
+    /// alone: the two facets of a panel are laid out from their sides and folded over AE; the motion
+    /// that carries (A, D) to (B, E), done N times, must be the identity (Eq. 14 says the same in
+    /// angles).
     pub fn closure_defect(&self) -> f64 {
-        todo!()
+        states::closure_defect(&self.angles.unit_lengths, self.design.panels)
     }
 
     /// Fraction of the capsule's height at which ring `ring` sits when erected: 0 at the bottom
     /// ring, 1 at the top ring.
     pub fn height_fraction(&self, ring: u32) -> f64 {
-        todo!("{ring}")
+        let ratio = self.angles.ring_ratio;
+        geometric_sum(ratio, ring) / geometric_sum(ratio, self.design.storeys)
     }
 
-    /// Turn of ring `storey + 1` against ring `storey` when flat folded, rad, counter-clockwise.
+    /// Turn of ring `storey + 1` against ring `storey` when flat folded, rad, counter-clockwise in a
+    /// storey of the first chirality.
     pub fn flat_twist(&self) -> f64 {
-        todo!()
+        let angles = &self.angles;
+        let outer = 0.5 * angles.unit_lengths.ab / libm::sin(PI / f64::from(self.design.panels));
+        // In the triangle of centre, A and D the angle at A is ϕ + β1.
+        let (side, at_a) = (angles.unit_lengths.ad, angles.phi + angles.beta1);
+        libm::atan2(side * libm::sin(at_a), outer - side * libm::cos(at_a))
     }
 
     /// The same, erected.
     pub fn erected_twist(&self) -> f64 {
-        todo!()
+        self.angles.erected_twist
     }
 
-    /// Radius of the clear opening of a flat-folded storey, m.
+    /// Radius of the clear opening of a flat-folded storey, m: the distance of the diagonals from
+    /// the axis, or the inner corners where the foot of that distance lies beyond E.
     pub fn opening_radius(&self, storey: u32) -> f64 {
-        todo!("{storey}")
+        let radius = self.polygon_radius(storey);
+        let foot = radius * libm::cos(self.angles.phi);
+        if foot <= self.lengths(storey).ae {
+            radius * libm::sin(self.angles.phi)
+        } else {
+            self.polygon_radius(storey + 1)
+        }
     }
 
     /// Area of the two facets (ABE, AED) of one panel of a storey, m².
     pub fn facet_areas(&self, storey: u32) -> [f64; 2] {
-        todo!("{storey}")
+        let Lengths { ab, ad, ae, .. } = self.lengths(storey);
+        [
+            0.5 * ab * ae * libm::sin(self.angles.alpha1),
+            0.5 * ae * ad * libm::sin(self.angles.beta1),
+        ]
     }
 
     /// Developed area of the lateral film, m².
     pub fn lateral_area(&self) -> f64 {
-        todo!()
+        if self.design.caps == super::Caps::Circular {
+            // The full sector between the arcs, not the N-gons inscribed.
+            let slant = self.slant(self.design.storeys);
+            return PI * (self.ring_radius(0) + self.ring_radius(self.design.storeys)) * slant;
+        }
+        (0..self.design.storeys)
+            .map(|storey| {
+                let [abe, aed] = self.facet_areas(storey);
+                f64::from(self.design.panels) * (abe + aed)
+            })
+            .sum()
     }
 
-    /// Area of the N-gon spanned by ring `ring`, m².
+    /// Area of the cap on ring `ring`, m²: its N-gon, or the disc of its cone radius for circular
+    /// caps.
     pub fn cap_area(&self, ring: u32) -> f64 {
-        todo!("{ring}")
+        match self.design.caps {
+            super::Caps::Polygon => self.polygon_area(ring),
+            super::Caps::Circular => {
+                let radius = self.ring_radius(ring);
+                PI * radius * radius
+            }
+        }
     }
 
-    /// Volume enclosed by the stowed shape at stack height `height`, m³.
-    pub fn stowed_volume(&self, height: f64) -> f64 {
-        todo!("{height}")
+    /// Area of the N-gon that ring `ring` folds to, m².
+    pub fn polygon_area(&self, ring: u32) -> f64 {
+        let (n, radius) = (f64::from(self.design.panels), self.polygon_radius(ring));
+        0.5 * n * radius * radius * libm::sin(2.0 * PI / n)
+    }
+
+    /// Area of all the film, m²: lateral film and both caps.
+    pub fn film_area(&self) -> f64 {
+        self.lateral_area() + self.cap_area(0) + self.cap_area(self.design.storeys)
     }
 
     /// Volume of the erected cone, m³.
     pub fn erected_volume(&self) -> f64 {
-        todo!()
+        let (r2, r1) = (self.bottom_radius, self.top_radius);
+        PI / 3.0 * self.height * (r2 * r2 + r2 * r1 + r1 * r1)
     }
+}
+
+/// x^exponent by multiplication.
+pub(super) fn power(x: f64, exponent: u32) -> f64 {
+    (0..exponent).fold(1.0, |product, _| product * x)
 }

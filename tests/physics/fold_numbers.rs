@@ -1,0 +1,186 @@
+//! The paper's capsule and its neighbours, to every digit known (physics of the fold, section 1).
+
+use billow_solver::fold::{FoldDesign, FoldError, FoldPattern};
+use billow_solver::mesh::{Mesh, Shape};
+
+use crate::geometry::{crossings, paper_angles, paper_design, paper_height, solved};
+
+/// Asserts that a value rounds to the printed one: within half a unit of its last digit.
+#[track_caller]
+fn prints(value: f64, printed: &str) {
+    let decimals = printed.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+    assert_eq!(format!("{value:.decimals$}"), printed);
+}
+
+#[test]
+fn the_papers_capsule_on_its_cone() {
+    let pattern = solved(&paper_design());
+    let angles = &pattern.angles;
+    prints(pattern.half_angle.tan(), "0.135");
+    prints(angles.phi.to_degrees(), "31.5137");
+    prints(angles.alpha1.to_degrees(), "28.4863");
+    prints(angles.theta2.to_degrees(), "3.97308");
+    prints(angles.beta2.to_degrees(), "34.0136");
+    prints(angles.alpha2.to_degrees(), "24.5133");
+    prints(angles.ring_ratio, "0.900411");
+    assert!((angles.ring_ratio - 0.73_f64.cbrt()).abs() < 1e-15);
+    let lengths = pattern.lengths(0);
+    prints(1e3 * lengths.ab, "523.171");
+    prints(1e3 * lengths.de, "471.069");
+    prints(1e3 * lengths.ad, "446.068");
+    prints(1e3 * lengths.ae, "829.579");
+    prints(1e3 * pattern.polygon_radius(0), "523.17");
+    prints(pattern.flat_twist().to_degrees(), "53.00");
+    prints(pattern.erected_twist().to_degrees(), "29.70");
+    prints(1e3 * pattern.opening_radius(0), "273.5");
+    prints(1e3 * pattern.opening_radius(2), "221.7");
+    // The top turns by about 70° during deployment.
+    let turn = 3.0 * (pattern.flat_twist() - pattern.erected_twist()).to_degrees();
+    assert!((turn - 70.0).abs() < 0.5, "{turn}");
+}
+
+#[test]
+fn the_papers_capsule_by_its_angles() {
+    let pattern = solved(&paper_angles());
+    prints(pattern.angles.phi.to_degrees(), "30.000000000");
+    prints(pattern.angles.ring_ratio, "0.893832");
+    prints(1e3 * pattern.top_radius, "357.06");
+    prints(1e3 * pattern.height, "1058.84");
+    let by_half_angle = FoldDesign {
+        half_angle: Some(0.135_f64.atan()),
+        top_radius: None,
+        height: None,
+        ..paper_angles()
+    };
+    let same = solved(&by_half_angle);
+    assert!((same.height - pattern.height).abs() < 1e-15);
+}
+
+#[test]
+fn the_papers_height_and_ratio() {
+    let three = solved(&paper_height(3));
+    prints(three.half_angle.to_degrees(), "9.547");
+    prints(1e3 * three.top_radius, "332");
+    let four = solved(&paper_height(4));
+    prints(four.half_angle.to_degrees(), "16.094");
+    prints(1e3 * four.top_radius, "211");
+    let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(&paper_height(2)) else {
+        panic!("M 2 has no pattern at this height and ratio");
+    };
+    assert_eq!(nearest.iter().find(|n| n.key == "M").expect("a nearest M").value, 3.0);
+    for near in &nearest {
+        let mut design = paper_height(2);
+        match near.key {
+            "height" => design.height = Some(near.value),
+            "bottom_radius" => design.bottom_radius = near.value,
+            "alpha1_over_phi" => design.alpha1_over_phi = Some(near.value),
+            _ => continue,
+        }
+        solved(&design);
+    }
+}
+
+#[test]
+fn feasible_phi_on_the_papers_cone() {
+    let table = [
+        (6, 2, "20.896"),
+        (6, 3, "31.514"),
+        (6, 4, "37.133"),
+        (6, 5, "40.739"),
+        (6, 6, "43.288"),
+        (6, 8, "46.698"),
+        (4, 3, "21.43"),
+        (5, 3, "27.62"),
+        (8, 3, "36.09"),
+        (10, 3, "38.67"),
+        (12, 3, "40.31"),
+    ];
+    for (panels, storeys, phi) in table {
+        let pattern = solved(&FoldDesign { panels, storeys, ..paper_design() });
+        prints(pattern.angles.phi.to_degrees(), phi);
+        let top = pattern.ring_radius(storeys);
+        assert!((top / 0.365 - 1.0).abs() < 1e-13, "N {panels} M {storeys}: {top}");
+    }
+    for panels in 4..=12 {
+        let design = FoldDesign { panels, storeys: 1, ..paper_design() };
+        let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(&design) else {
+            panic!("N {panels}, M 1 has no pattern on this cone");
+        };
+        assert!(nearest.iter().any(|near| near.key == "M" && near.value >= 2.0));
+    }
+}
+
+#[test]
+fn stowed_at_forty_millimetres() {
+    let pattern = solved(&paper_design());
+    let strain = pattern.stowed_strain(0.04);
+    assert!(strain < 2.8e-5, "{strain:e}");
+    prints(pattern.stowed_volume(0.04), "0.01512");
+    // 0.135954 kg of developed film; 0.13596 measures the stowed shape, slightly strained.
+    let mass = pattern.film_area() * 1400.0 * 25.4e-6;
+    prints(mass, "0.13595");
+    for (subdivisions, elements) in [(5, 1200), (8, 3072), (16, 12_288)] {
+        let mesh = Mesh::new(&pattern, subdivisions, Shape::Stowed(0.04)).expect("foldable");
+        assert_eq!(mesh.triangles.len(), elements);
+        prints(mesh.volume(), "0.01512");
+    }
+    for height in [0.04, 0.01, 0.001] {
+        let mesh = Mesh::new(&pattern, 3, Shape::Stowed(height)).expect("foldable");
+        assert_eq!(crossings(&mesh), 0, "stowed at {height} m");
+    }
+}
+
+#[test]
+fn a_tangled_mesh_is_seen() {
+    // The judge itself: push one node of the stowed shape through its neighbours.
+    let pattern = solved(&paper_design());
+    let mut mesh = Mesh::new(&pattern, 3, Shape::Stowed(0.04)).expect("foldable");
+    let top = mesh.top_centre as usize;
+    mesh.positions[top].z = 0.01;
+    mesh.positions[top].x = 0.35;
+    assert!(crossings(&mesh) > 0);
+}
+
+#[test]
+fn erected_on_the_cone() {
+    let pattern = solved(&paper_design());
+    let frustum = pattern.erected_volume();
+    let mut last = f64::INFINITY;
+    for n in [4, 8, 16] {
+        let design = FoldDesign { caps: billow_solver::fold::Caps::Circular, ..paper_design() };
+        let round = Mesh::new(&solved(&design), n, Shape::Erected).expect("a mesh");
+        let error = 1.0 - round.volume() / frustum;
+        assert!(error > 0.0 && error < 0.3 * last, "inscribed, second order: {error}");
+        last = error;
+    }
+    assert!(last < 2e-3, "{last:e}");
+    let mesh = Mesh::new(&pattern, 8, Shape::Erected).expect("a mesh");
+    let corner = mesh.positions[mesh.top_ring[0] as usize];
+    assert!((corner.z - 1.0).abs() < 1e-14 && (corner.xy().norm() - 0.365).abs() < 1e-14);
+}
+
+#[test]
+fn requests_that_are_none() {
+    let broken: [(&str, FoldDesign); 14] = [
+        ("N", FoldDesign { panels: 3, ..paper_design() }),
+        ("M", FoldDesign { storeys: 0, ..paper_design() }),
+        ("subdivisions", FoldDesign { subdivisions: 0, ..paper_design() }),
+        ("bottom_radius", FoldDesign { bottom_radius: -1.0, ..paper_design() }),
+        ("bottom_radius", FoldDesign { bottom_radius: f64::NAN, ..paper_design() }),
+        ("top_radius", FoldDesign { top_radius: Some(0.0), ..paper_design() }),
+        ("top_radius", FoldDesign { top_radius: None, ..paper_design() }),
+        ("height", FoldDesign { height: Some(f64::INFINITY), ..paper_design() }),
+        ("alpha1_over_phi", FoldDesign { alpha1_over_phi: Some(1.0), ..paper_design() }),
+        ("half_angle", FoldDesign { half_angle: Some(0.1), ..paper_design() }),
+        ("alpha1_over_phi", FoldDesign { alpha1_over_phi: None, ..paper_angles() }),
+        ("top_radius", FoldDesign { half_angle: Some(0.1), ..paper_angles() }),
+        ("top_radius", FoldDesign { top_radius: Some(0.3), ..paper_height(3) }),
+        ("stowed_height", FoldDesign { stowed_height: 2.0, ..paper_design() }),
+    ];
+    for (expected, design) in broken {
+        match FoldPattern::new(&design) {
+            Err(FoldError::Invalid { key, .. }) => assert_eq!(key, expected),
+            other => panic!("{expected}: {other:?}"),
+        }
+    }
+}
