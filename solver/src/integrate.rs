@@ -192,7 +192,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                         return Ok(trial);
                     }
                     rejected = true;
-                    wish = length * growth(error, true);
+                    // From the wish: rounding to representable times could undo a shrunken length.
+                    wish = wish.min(length) * growth(error, true);
                 }
             }
         }
