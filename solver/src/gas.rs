@@ -125,6 +125,20 @@ impl Gas {
         (self.gamma() - 1.0) * internal_energy / volume
     }
 
+    /// T, K, of the first gas to enter an empty volume, the limit of both balances for m → 0, so
+    /// that the rates are continuous there: m cv T = (ṁ cp `T_in` + Q̇) t with m = ṁ t gives
+    /// T = (ṁ cp `T_in` + h A `T_film`)/(ṁ cv + h A), γ `T_in` when adiabatic.
+    fn first_temperature(&self, inflow: Inflow) -> f64 {
+        match self.heat_transfer {
+            HeatTransfer::Coefficient(coefficient) if inflow.mass > 0.0 => {
+                let exchange = coefficient * self.film_area;
+                (self.cp * inflow.mass_temperature + exchange * self.film_temperature)
+                    / (self.cv * inflow.mass + exchange)
+            }
+            _ => self.film_temperature,
+        }
+    }
+
     /// Both balances, for the volume V (m³) growing at dV/dt (m³/s).
     pub fn rates(
         &self,
@@ -133,7 +147,11 @@ impl Gas {
         volume_rate: f64,
         inflow: Inflow,
     ) -> GasRates {
-        let temperature = self.temperature(state);
+        let temperature = if state.mass > 0.0 {
+            self.temperature(state)
+        } else {
+            self.first_temperature(inflow)
+        };
         let pressure = self.pressure(state, volume);
         let mass_out =
             self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);

@@ -82,6 +82,8 @@ pub struct Integrator<const N: usize, B> {
 const FIRST_STEP: f64 = 1e-3;
 /// A remaining way this close to one step is taken in one, that no sliver is left.
 const LANDING_SLACK: f64 = 1.0 + 1e-9;
+/// Share of the target time below which a step does not advance it, even from time 0.
+const SMALLEST_STEP: f64 = 1e-18;
 /// Part of a step, relative, to which the edge of a branch is located.
 const EDGE_TOLERANCE: f64 = 1e-14;
 
@@ -174,7 +176,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                 let mut rejected = false;
                 loop {
                     let length = self.representable(wish, rest);
-                    if self.time + length <= self.time {
+                    if self.time + length <= self.time || length < SMALLEST_STEP * target.abs() {
                         let (kind, place) = if take(wish).is_finite() {
                             (FailureKind::StepLimit, "step too small to advance time")
                         } else {
