@@ -47,13 +47,14 @@ pub fn first_drift(history: &History) -> Option<f64> {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
     use crate::history::Sample;
     use crate::ledger::Ledger;
 
     fn sample(time: f64, kinetic: f64, viscous_work: f64, gas_work: f64) -> Sample {
-        let ledger = Ledger { kinetic, viscous_work, gas_work, ..Ledger::default() };
+        let ledger = Ledger { kinetic, gas_work, viscous_work, ..Ledger::default() };
         Sample { time, ledger, ..Sample::default() }
     }
 

@@ -282,3 +282,6 @@ impl Observer for Unobserved {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -147,14 +147,10 @@ impl Gas {
         volume_rate: f64,
         inflow: Inflow,
     ) -> GasRates {
-        let temperature = if state.mass > 0.0 {
-            self.temperature(state)
-        } else {
-            self.first_temperature(inflow)
-        };
+        let temperature =
+            if state.mass > 0.0 { self.temperature(state) } else { self.first_temperature(inflow) };
         let pressure = self.pressure(state, volume);
-        let mass_out =
-            self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
+        let mass_out = self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
         let enthalpy_out = mass_out * self.cp * temperature;
         let enthalpy_in = self.cp * inflow.mass_temperature;
         let work = pressure * volume_rate;
@@ -175,11 +171,12 @@ impl Gas {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
     use crate::scene::Species;
 
-    const NITROGEN: Species = Species { gas_constant: 296.803_052, cp: 1038.810_68 };
+    const NITROGEN: Species = Species { gas_constant: 296.803_052, cp: 1_038.810_68 };
 
     fn gas(heat_transfer: HeatTransfer, leak_area: f64) -> Gas {
         let supply = GasSupply {

@@ -138,9 +138,7 @@ impl History {
         for column in &mut history.columns {
             column.reserve_exact(samples.len());
         }
-        for ((sample, residual), gas_residual) in
-            samples.iter().zip(residuals).zip(gas_residuals)
-        {
+        for ((sample, residual), gas_residual) in samples.iter().zip(residuals).zip(gas_residuals) {
             history.push(&sample.row(residual, gas_residual));
         }
         history

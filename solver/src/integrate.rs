@@ -46,7 +46,10 @@ pub trait System<const N: usize> {
     /// The branch entered by leaving `branch` at `state`.
     fn next_branch(&self, branch: Self::Branch, state: &[f64; N]) -> Self::Branch;
 
-    /// Whether a state is one the system can be in; if not, kind and place of the failure.
+    /// Whether a state is one the system can be in.
+    ///
+    /// # Errors
+    /// Kind and place of the failure, if not.
     fn check(&self, state: &[f64; N]) -> Result<(), (FailureKind, &'static str)>;
 }
 
@@ -90,15 +93,7 @@ const EDGE_TOLERANCE: f64 = 1e-14;
 impl<const N: usize, B: Copy> Integrator<N, B> {
     /// Starts at a time (s), a state and the branch that state is in.
     pub fn new(time: f64, state: [f64; N], branch: B) -> Self {
-        Self {
-            time,
-            state,
-            branch,
-            steps: 0,
-            carry: [0.0; N],
-            scales: [0.0; N],
-            next_step: 0.0,
-        }
+        Self { time, state, branch, steps: 0, carry: [0.0; N], scales: [0.0; N], next_step: 0.0 }
     }
 
     /// Integrates to `target` (s) exactly, calling `accepted` with the state after every step.
@@ -172,7 +167,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                 }
             }
             Stepping::Adaptive(tolerance) => {
-                let mut wish = if self.next_step > 0.0 { self.next_step } else { FIRST_STEP * rest };
+                let mut wish =
+                    if self.next_step > 0.0 { self.next_step } else { FIRST_STEP * rest };
                 let mut rejected = false;
                 loop {
                     let length = self.representable(wish, rest);
@@ -189,8 +185,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                     if error <= 1.0 {
                         let grown = length * growth(error, rejected);
                         // A step cut short to land says little of the next one.
-                        self.next_step =
-                            if length < wish { grown.max(wish) } else { grown };
+                        self.next_step = if length < wish { grown.max(wish) } else { grown };
                         return Ok(trial);
                     }
                     rejected = true;
@@ -240,7 +235,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
             if outer - inner <= EDGE_TOLERANCE * full {
                 break;
             }
-            let guess = (inner * outer_margin - outer * inner_margin) / (outer_margin - inner_margin);
+            let guess =
+                (inner * outer_margin - outer * inner_margin) / (outer_margin - inner_margin);
             let inside_bracket = guess > inner && guess < outer;
             let length = if inside_bracket { guess } else { 0.5 * (inner + outer) };
             let trial = step(|y| system.rates(self.branch, y), &self.state, rates, length);
@@ -299,4 +295,5 @@ fn growth(error: f64, rejected: bool) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests;

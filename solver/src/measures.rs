@@ -155,7 +155,11 @@ pub fn measure(
 
 /// Index and value of the first largest value.
 fn peak(values: &[f64]) -> Option<(usize, f64)> {
-    values.iter().copied().enumerate().reduce(|best, next| if next.1 > best.1 { next } else { best })
+    values
+        .iter()
+        .copied()
+        .enumerate()
+        .reduce(|best, next| if next.1 > best.1 { next } else { best })
 }
 
 /// First time from which both deployed thresholds hold.

@@ -50,12 +50,14 @@ fn scenes() -> impl Strategy<Value = Scene> {
     })
 }
 
+/// Never falls, but for the error of its own integration: a billionth of all of it.
 fn rises(values: &[f64]) -> bool {
-    values.windows(2).all(|pair| pair[1] >= pair[0])
+    let slack = 1e-9 * values.iter().copied().fold(0.0, f64::max);
+    values.windows(2).all(|pair| pair[1] >= pair[0] - slack)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
 
     #[test]
     fn energy_and_gas_add_up(scene in scenes()) {

@@ -10,8 +10,7 @@ use crate::rig::{adaptive, fixed, nitrogen, number, paper_scene, rows, run, supp
 
 /// A rigid tank of `volume` m³: a packed piston.
 fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64, control: Control) -> PistonRun {
-    let start =
-        PistonState { height: 1.0, speed: 0.0, gas: gas.at_temperature(mass, temperature) };
+    let start = PistonState { height: 1.0, speed: 0.0, gas: gas.at_temperature(mass, temperature) };
     PistonRun::new(tube(0.0, volume, 1.0, gas), 0.0, start, control)
 }
 
@@ -91,7 +90,7 @@ fn cooling_of_a_rigid_tank() {
 }
 
 /// Time for a rigid adiabatic tank to fall from p0 to p1 through a subsonic orifice, by Simpson's
-/// rule on dt = −dm/ṁ along the isentrope; in s = √(1 − p_ambient/p), which removes the root at the
+/// rule on dt = −dm/ṁ along the isentrope; in s = √(1 − `p_ambient`/p), which removes the root at the
 /// end of the outflow.
 fn subsonic_time(p0: f64, p1: f64, ambient: f64, volume: f64, mass: f64, area: f64) -> f64 {
     let species = nitrogen();

@@ -70,9 +70,7 @@ fn extrapolated_position(offset: f64, area: f64, end: f64) -> f64 {
     let cp = number("nitrogen/cp");
     let gas_constant = number("nitrogen/gas_constant");
     let excess = cp / (cp - gas_constant) - 1.0;
-    let power = number("injected_piston/rate")
-        * cp
-        * number("injected_piston/inflow_temperature");
+    let power = number("injected_piston/rate") * cp * number("injected_piston/inflow_temperature");
     let mass = number("injected_piston/mass");
     // U follows from the energy let in: U = Ḣ t − M ẋ²/2.
     let acceleration = |t: f64, x: f64, v: f64| {
@@ -92,8 +90,7 @@ fn extrapolated_position(offset: f64, area: f64, end: f64) -> f64 {
                 v + 0.5 * h * k2v,
                 acceleration(t + 0.5 * h, x + 0.5 * h * k2x, v + 0.5 * h * k2v),
             );
-            let (k4x, k4v) =
-                (v + h * k3v, acceleration(t + h, x + h * k3x, v + h * k3v));
+            let (k4x, k4v) = (v + h * k3v, acceleration(t + h, x + h * k3x, v + h * k3v));
             x += h / 6.0 * (k1x + 2.0 * k2x + 2.0 * k3x + k4x);
             v += h / 6.0 * (k1v + 2.0 * k2v + 2.0 * k3v + k4v);
         }
@@ -132,9 +129,7 @@ fn gas_spring_periods() {
     let species = Species { gas_constant: 296.8, cp: 296.8 * gamma / (gamma - 1.0) };
     let gas = Gas::new(&GasSupply { species, ..supply() }, 293.0, 1.0);
     let (mass, length, area, pressure) = (0.4, 0.3, 0.02, 2000.0);
-    let linear = 2.0
-        * std::f64::consts::PI
-        * (mass * length / (gamma * pressure * area)).sqrt();
+    let linear = 2.0 * std::f64::consts::PI * (mass * length / (gamma * pressure * area)).sqrt();
     let energy_at_rest = pressure * area * length / (gamma - 1.0);
     for row in rows("gas_spring") {
         let (amplitude, ratio) = (row[0], row[1]);
@@ -177,7 +172,10 @@ fn the_kink_at_full_height_costs_no_accuracy() {
     println!("end film: errors at tolerance 1e-6, 1e-8, 1e-10: {tolerances:?}");
     assert!(tolerances[1] < 1e-7 && tolerances[2] < 1e-9, "{tolerances:?}");
     let (coarse, fine) = (error(fixed(1e-4)), error(fixed(5e-5)));
-    println!("end film: fixed-step errors {coarse:e} {fine:e}, order {:.2}", (coarse / fine).log2());
+    println!(
+        "end film: fixed-step errors {coarse:e} {fine:e}, order {:.2}",
+        (coarse / fine).log2()
+    );
     assert!((coarse / fine).log2() > 4.0, "{coarse:e} {fine:e}");
 }
 

@@ -20,7 +20,7 @@ pub static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../reference/gas.json")).expect("JSON in tests/reference")
 });
 
-/// A reference number by its path, as "tank_filling/band".
+/// A reference number by its path, as `tank_filling/band`.
 pub fn number(path: &str) -> f64 {
     let pointer = format!("/{path}");
     REFERENCE.pointer(&pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {path}"))
@@ -30,7 +30,8 @@ pub fn number(path: &str) -> f64 {
 pub fn rows(path: &str) -> Vec<Vec<f64>> {
     let pointer = format!("/{path}/rows");
     let rows = REFERENCE.pointer(&pointer).and_then(Value::as_array).expect("rows");
-    let numbers = |row: &Value| -> Option<Vec<f64>> { row.as_array()?.iter().map(Value::as_f64).collect() };
+    let numbers =
+        |row: &Value| -> Option<Vec<f64>> { row.as_array()?.iter().map(Value::as_f64).collect() };
     rows.iter().map(|row| numbers(row).expect("numbers")).collect()
 }
 

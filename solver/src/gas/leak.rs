@@ -6,7 +6,7 @@ pub(super) struct Orifice {
     gamma: f64,
     /// `C_d` A, m².
     effective_area: f64,
-    /// (2/(γ+1))^(γ/(γ−1)): p_ambient/p at and below which the flow is choked.
+    /// (2/(γ+1))^(γ/(γ−1)): `p_ambient`/p at and below which the flow is choked.
     critical_ratio: f64,
     /// √γ (2/(γ+1))^((γ+1)/(2(γ−1))).
     choked_factor: f64,
@@ -45,6 +45,7 @@ impl Orifice {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
 

@@ -50,6 +50,7 @@ impl Schedule {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
 
@@ -59,8 +60,7 @@ mod tests {
 
     #[test]
     fn overlapping_windows_add() {
-        let schedule =
-            Schedule::new(&[window(0.0, 2.0, 1.0, 300.0), window(1.0, 3.0, 2.0, 200.0)]);
+        let schedule = Schedule::new(&[window(0.0, 2.0, 1.0, 300.0), window(1.0, 3.0, 2.0, 200.0)]);
         assert_eq!(schedule.edges(), [0.0, 1.0, 2.0, 3.0]);
         let both = schedule.between(1.0, 2.0);
         assert_eq!((both.mass, both.mass_temperature), (3.0, 700.0));

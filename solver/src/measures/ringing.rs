@@ -5,7 +5,7 @@
 //! X_k = Σ w_j (v_j − v̄) e^(−2πi jk/n),   w_j = ½(1 − cos(2πj/n))  (Hann),   f_k = k/(n Δt)
 //! ```
 //!
-//! The line is the f_k of the largest |X_k|, k ≥ 1, up to half the sampling rate and at most
+//! The line is the `f_k` of the largest |`X_k`|, k ≥ 1, up to half the sampling rate and at most
 //! [`HIGHEST_LINE`]; it is as fine as 1/(n Δt): 5 Hz.
 
 use std::f64::consts::TAU;

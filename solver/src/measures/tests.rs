@@ -26,7 +26,8 @@ fn history(volume: impl Fn(f64) -> f64, height: impl Fn(f64) -> f64) -> History 
         let time = f64::from(k) * 1e-3;
         let (z, before) = (height(time), height(time - 1e-3));
         let vz = (z - before) / 1e-3;
-        let ledger = Ledger { kinetic: 0.5 * vz * vz, gas_work: 0.5 * vz * vz, ..Ledger::default() };
+        let ledger =
+            Ledger { kinetic: 0.5 * vz * vz, gas_work: 0.5 * vz * vz, ..Ledger::default() };
         Sample {
             time,
             volume: 2.0 * volume(time),
@@ -85,9 +86,7 @@ fn a_plain_deployment() {
 
 #[test]
 fn a_visit_under_five_milliseconds_is_no_arrival() {
-    let peak = |width: f64| {
-        move |t: f64| if (t - 0.2).abs() < 0.5 * width { 0.6 } else { 0.1 }
-    };
+    let peak = |width: f64| move |t: f64| if (t - 0.2).abs() < 0.5 * width { 0.6 } else { 0.1 };
     assert_eq!(measured(peak(0.003), peak(0.003)).t_50_z_rim, None);
     assert!(measured(peak(0.007), peak(0.007)).t_50_z_rim.is_some());
 }

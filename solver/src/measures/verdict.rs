@@ -56,11 +56,13 @@ fn mean(time: &[f64], values: &[f64]) -> f64 {
     if span <= 0.0 {
         return values[values.len() - 1];
     }
-    let areas = time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
+    let areas =
+        time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
     areas.sum::<f64>() / span
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
 

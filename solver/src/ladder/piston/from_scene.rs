@@ -9,9 +9,8 @@ use crate::scene::{Scene, SupportPlace};
 
 /// A piston's bottom is held along z and its top is free along it.
 pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
-    let invalid = |key: String, problem: &str| {
-        Err(SceneError::Invalid { key, problem: problem.to_owned() })
-    };
+    let invalid =
+        |key: String, problem: &str| Err(SceneError::Invalid { key, problem: problem.to_owned() });
     let mut bottom_held = false;
     for (index, support) in scene.supports.iter().enumerate() {
         let along_z = support.fix.contains('z');
@@ -68,9 +67,6 @@ pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, S
         end,
         gas,
     };
-    let control = Control {
-        stepping: scene.solver.stepping,
-        step_limit: scene.solver.step_limit,
-    };
+    let control = Control { stepping: scene.solver.stepping, step_limit: scene.solver.step_limit };
     Ok(PistonRun::new(piston, 0.0, start, control))
 }

@@ -7,7 +7,7 @@
 //!
 //! ξ is a film point's share of the erected height: that of its ring at ring vertices
 //! ([`FoldPattern::height_fraction`]), linear over each facet, 1 on the top cap, 0 on the bottom
-//! cap. With velocities ξ ż the kinetic energy is m_eff ż²/2 and gravity's force g m_1.
+//! cap. With velocities ξ ż the kinetic energy is `m_eff` ż²/2 and gravity's force g `m_1`.
 
 use crate::fold::FoldPattern;
 

@@ -47,7 +47,7 @@ pub struct Stroke {
     erected_height: f64,
     stowed_slope: f64,
     erected_slope: f64,
-    /// V − V_s in x = (z − z_s)/(H − z_s): b x + c x² + d x³.
+    /// V − `V_s` in x = (z − `z_s`)/(H − `z_s`): b x + c x² + d x³.
     cubic: [f64; 3],
 }
 
