@@ -14,4 +14,5 @@ pub mod error;
 pub mod job;
 pub mod plan;
 pub mod study;
+pub mod units;
 pub mod value;
