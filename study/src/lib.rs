@@ -21,6 +21,7 @@ pub mod job;
 pub mod journal;
 pub mod plan;
 pub mod provenance;
+pub mod render;
 pub mod results;
 pub mod row;
 pub mod runner;

@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use super::print::print_rows;
 use super::{Format, Global, output_error};
 use crate::error::{Error, InputError, Result};
-use crate::files::{Disk, Files};
+use crate::files::{Disk, Files, disk_error, write_atomic};
 use crate::render::crease_pattern;
 use crate::units::{self, Dimension};
 use crate::value::Value;
@@ -88,7 +88,8 @@ enum CapsArg {
 /// Runs `billow fold`.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let design = design(args)?;
-    let flap = args.glue_flaps.as_deref().map(|text| quantity("--glue-flaps", text, Dimension::Length));
+    let flap =
+        args.glue_flaps.as_deref().map(|text| quantity("--glue-flaps", text, Dimension::Length));
     let flap = flap.transpose()?;
     if let Some(width) = flap
         && width <= 0.0
@@ -107,9 +108,16 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         (Format::Json, Err((reason, nearest))) => {
             print_json(&infeasible_json(&design, reason, nearest), out)?;
         }
-        (format, Ok(pattern)) => print_rows(&["quantity", "value", "unit"], &rows(pattern), format, out)?,
+        (format, Ok(pattern)) => {
+            print_rows(&["quantity", "value", "unit"], &rows(pattern), format, out)?;
+        }
         (format, Err((reason, nearest))) => {
-            print_rows(&["quantity", "value", "unit"], &infeasible_rows(reason, nearest), format, out)?;
+            print_rows(
+                &["quantity", "value", "unit"],
+                &infeasible_rows(reason, nearest),
+                format,
+                out,
+            )?;
         }
     }
     match (&args.out, solved) {
@@ -165,7 +173,7 @@ fn quantity(flag: &str, text: &str, dimension: Dimension) -> Result<f64> {
 
 fn bad(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
     Error::Input(InputError {
-        file: "billow fold".to_owned(),
+        file: "fold".to_owned(),
         key: flag.to_owned(),
         value: value.to_owned(),
         problem: problem.to_owned(),
@@ -247,8 +255,21 @@ fn infeasible_json(design: &FoldDesign, reason: &str, nearest: &[Nearest]) -> Js
     });
     // What no pattern defines is there, and null.
     for key in [
-        "phi", "alpha1", "alpha2", "beta1", "beta2", "gamma1", "gamma2", "theta1", "theta2",
-        "ring_ratio", "half_angle", "top_radius", "height", "closure_defect", "lengths",
+        "phi",
+        "alpha1",
+        "alpha2",
+        "beta1",
+        "beta2",
+        "gamma1",
+        "gamma2",
+        "theta1",
+        "theta2",
+        "ring_ratio",
+        "half_angle",
+        "top_radius",
+        "height",
+        "closure_defect",
+        "lengths",
     ] {
         answer[key] = Json::Null;
     }
@@ -258,7 +279,7 @@ fn infeasible_json(design: &FoldDesign, reason: &str, nearest: &[Nearest]) -> Js
 /// A whole number without its ".0".
 fn whole(value: f64) -> Json {
     #[expect(clippy::cast_possible_truncation, reason = "whole and small, just checked")]
-    if libm::trunc(value) == value && value.abs() < 1e9 { json!(value as i64) } else { json!(value) }
+    if value.fract().abs() > 0.0 || value.abs() >= 1e9 { json!(value) } else { json!(value as i64) }
 }
 
 fn print_json(answer: &Json, out: &mut dyn Write) -> Result<()> {
@@ -354,8 +375,10 @@ fn write_files(
             ("developed.obj", obj::developed(pattern, &format!("{title}, developed"))),
         ]);
     }
+    files.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
     for (name, text) in &texts {
-        files.write_atomic(&folder.join(name), text.as_bytes())?;
+        let path = folder.join(name);
+        write_atomic(files, &path, text.as_bytes()).map_err(|error| disk_error(&path, &error))?;
     }
     if !global.quiet {
         let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();

@@ -118,8 +118,8 @@ impl<'a> Drawing<'a> {
         let _ = writeln!(svg, "<g id=\"glue_flaps\" {style}>");
         let design = &self.pattern.design;
         for ring in 0..design.storeys {
-            let side = [ring, ring + 1]
-                .map(|ring| self.corner(Corner { ring, corner: design.panels }));
+            let side =
+                [ring, ring + 1].map(|ring| self.corner(Corner { ring, corner: design.panels }));
             self.flap(svg, side, width);
         }
         for cap in &self.sheet.caps {
@@ -165,10 +165,14 @@ impl<'a> Drawing<'a> {
         let lateral = |pick: fn(f64, f64) -> f64, start: f64, of: fn(&Vector2<f64>) -> f64| {
             self.sheet.corners.iter().fold(start, |best, place| pick(best, of(place)))
         };
-        let (left, right) =
-            (lateral(f64::min, f64::INFINITY, |p| p.x), lateral(f64::max, f64::NEG_INFINITY, |p| p.x));
-        let (low, high) =
-            (lateral(f64::min, f64::INFINITY, |p| p.y), lateral(f64::max, f64::NEG_INFINITY, |p| p.y));
+        let (left, right) = (
+            lateral(f64::min, f64::INFINITY, |p| p.x),
+            lateral(f64::max, f64::NEG_INFINITY, |p| p.x),
+        );
+        let (low, high) = (
+            lateral(f64::min, f64::INFINITY, |p| p.y),
+            lateral(f64::max, f64::NEG_INFINITY, |p| p.y),
+        );
         let below = low - 1.5 * self.letter;
         let beside = left - 1.5 * self.letter;
         for ends in [
@@ -246,4 +250,81 @@ fn stroke(colour: &str, width: f64, dashes: &str) -> String {
     let dashes =
         if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dashes}\"") };
     format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width:.3}\"{dashes}")
+}
+
+#[cfg(test)]
+mod tests {
+    use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign};
+
+    use super::*;
+
+    fn paper() -> FoldPattern {
+        FoldPattern::new(&FoldDesign {
+            fit: Fit::Cone,
+            panels: 6,
+            storeys: 3,
+            bottom_radius: 0.5,
+            top_radius: Some(0.365),
+            height: Some(1.0),
+            half_angle: None,
+            alpha1_over_phi: None,
+            chirality: Chirality::Same,
+            stowed_height: 0.04,
+            subdivisions: 1,
+            caps: Caps::Polygon,
+        })
+        .expect("the paper's capsule")
+    }
+
+    /// The lines of one layer, by their lengths.
+    fn layer(svg: &str, id: &str) -> Vec<f64> {
+        let (_, rest) = svg.split_once(&format!("<g id=\"{id}\"")).expect(id);
+        let (layer, _) = rest.split_once("</g>").expect("a closed layer");
+        layer
+            .lines()
+            .filter(|line| line.starts_with("<line"))
+            .map(|line| {
+                let at = |name: &str| -> f64 {
+                    let (_, rest) = line.split_once(&format!("{name}=\"")).expect(name);
+                    rest.split('"').next().expect("a value").parse().expect("a number")
+                };
+                Vector2::new(at("x2") - at("x1"), at("y2") - at("y1")).norm()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn is_drawn_one_to_one_in_millimetres() {
+        let pattern = paper();
+        let svg = svg(&pattern, None);
+        let valleys = layer(&svg, "valley");
+        assert_eq!(valleys.len(), 18);
+        for storey in 0..3 {
+            let diagonal = 1e3 * pattern.lengths(storey).ae;
+            assert_eq!(valleys.iter().filter(|l| (*l - diagonal).abs() < 1e-3).count(), 6);
+        }
+        assert_eq!(layer(&svg, "cut").len(), 2 * 6 + 2 * 3);
+        assert_eq!(layer(&svg, "mountain").len(), 2 * 6 + 3 * 5);
+        assert!(!svg.contains("glue_flaps"));
+        // The page says millimetres, and its user unit is one.
+        let (_, size) = svg.split_once("width=\"").expect("a width");
+        let width = size.split("mm").next().expect("millimetres");
+        assert!(svg.contains(&format!("viewBox=\"0 0 {width} ")));
+    }
+
+    #[test]
+    fn glue_flaps_stand_on_the_seam_and_round_the_caps() {
+        let svg = svg(&paper(), Some(0.015));
+        let (_, rest) = svg.split_once("glue_flaps").expect("the layer");
+        let (flaps, _) = rest.split_once("</g>").expect("a closed layer");
+        assert_eq!(flaps.matches("<polyline").count(), 3 + 2 * 6);
+    }
+
+    #[test]
+    fn lengths_are_written_on_the_drawing() {
+        let svg = svg(&paper(), None);
+        for length in ["523.17", "446.07", "829.58", "381.91"] {
+            assert!(svg.contains(&format!(">{length}</text>")), "{length}");
+        }
+    }
 }
