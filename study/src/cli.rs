@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 
 mod fold;
 mod plan;
+pub mod print;
 mod run;
 mod schema;
 mod table;

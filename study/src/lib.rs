@@ -11,7 +11,22 @@
 
 pub mod cli;
 pub mod error;
+pub mod event;
+pub mod executor;
+pub mod files;
+#[cfg(test)]
+mod fixture;
+pub mod history_file;
 pub mod job;
+pub mod journal;
 pub mod plan;
+pub mod provenance;
+pub mod render;
+pub mod results;
+pub mod row;
+pub mod runner;
+pub mod stop;
 pub mod study;
+pub mod table;
+pub mod units;
 pub mod value;

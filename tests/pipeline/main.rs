@@ -1,1 +1,3 @@
 //! The binary end to end.
+
+mod folding;

@@ -1,0 +1,251 @@
+//! Printing a table of rows: aligned for the eye, CSV, or JSON. Every command that lists something
+//! prints through here, so that columns, rounding and empty cells look the same everywhere.
+
+use std::io::{self, IsTerminal, Write};
+
+use super::{Format, output_error};
+use crate::error::Result;
+use crate::value::Value;
+
+/// Prints rows under their columns.
+///
+/// - `table`: aligned columns, numbers to six significant digits and to the right, an empty cell
+///   as `-`; the header is bold on a terminal, unless `NO_COLOR` is set.
+/// - `csv`: quoted as RFC 4180 has it, lines ended by a line feed, numbers in full, nothing as an
+///   empty field (and an empty text as `""`).
+/// - `json`: an array of objects, keys in column order, numbers in full, nothing as `null`.
+///
+/// A row shorter than the columns is filled with empty cells.
+///
+/// # Errors
+/// When the output cannot be written.
+pub fn print_rows<C: AsRef<str>>(
+    columns: &[C],
+    rows: &[Vec<Value>],
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let columns: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
+    let written = match format {
+        Format::Table => aligned(&columns, rows, bold_headers(), out),
+        Format::Csv => csv(&columns, rows, out),
+        Format::Json => json(&columns, rows, out),
+    };
+    written.map_err(output_error)
+}
+
+/// Whether stdout is a terminal whose reader has not asked for plain text (<https://no-color.org>).
+fn bold_headers() -> bool {
+    io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+fn aligned(
+    columns: &[&str],
+    rows: &[Vec<Value>],
+    bold: bool,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let cells: Vec<Vec<String>> = rows
+        .iter()
+        .map(|row| (0..columns.len()).map(|at| cell(row.get(at).unwrap_or(&Value::Null))).collect())
+        .collect();
+    let widths: Vec<usize> = columns
+        .iter()
+        .enumerate()
+        .map(|(at, name)| {
+            let widest = cells.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
+            widest.max(name.chars().count())
+        })
+        .collect();
+    // A column of numbers stands to the right, header and all.
+    let right: Vec<bool> = (0..columns.len())
+        .map(|at| {
+            rows.iter().any(|row| matches!(row.get(at), Some(Value::Integer(_) | Value::Number(_))))
+        })
+        .collect();
+    let line = |texts: &mut dyn Iterator<Item = &str>| {
+        let mut line = String::new();
+        for (at, text) in texts.enumerate() {
+            if at > 0 {
+                line.push_str("  ");
+            }
+            let padding = " ".repeat(widths[at].saturating_sub(text.chars().count()));
+            if right[at] {
+                line.push_str(&padding);
+                line.push_str(text);
+            } else {
+                line.push_str(text);
+                line.push_str(&padding);
+            }
+        }
+        line.truncate(line.trim_end().len());
+        line
+    };
+    let header = line(&mut columns.iter().copied());
+    if bold {
+        writeln!(out, "\x1b[1m{header}\x1b[0m")?;
+    } else {
+        writeln!(out, "{header}")?;
+    }
+    for row in &cells {
+        writeln!(out, "{}", line(&mut row.iter().map(String::as_str)))?;
+    }
+    Ok(())
+}
+
+/// A cell of the aligned table.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => "-".to_owned(),
+        Value::Number(number) => short_number(*number),
+        Value::Text(text) => {
+            text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>()
+        }
+        other => other.to_string(),
+    }
+}
+
+/// A number to six significant digits, without trailing zeros; powers of ten where plain digits
+/// would be long.
+pub fn short_number(number: f64) -> String {
+    if !number.is_finite() {
+        return number.to_string();
+    }
+    if number == 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{number:.5e}");
+    let Some((mantissa, Ok(exponent))) =
+        scientific.split_once('e').map(|(mantissa, exponent)| (mantissa, exponent.parse::<i32>()))
+    else {
+        return scientific;
+    };
+    if (-4..7).contains(&exponent) {
+        let decimals = usize::try_from(5 - exponent).unwrap_or(0);
+        trim_zeros(&format!("{number:.decimals$}")).to_owned()
+    } else {
+        format!("{}e{exponent}", trim_zeros(mantissa))
+    }
+}
+
+fn trim_zeros(digits: &str) -> &str {
+    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
+}
+
+fn csv(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Result<()> {
+    let header: Vec<String> = columns.iter().map(|name| quoted(name)).collect();
+    writeln!(out, "{}", header.join(","))?;
+    for row in rows {
+        let fields: Vec<String> = (0..columns.len())
+            .map(|at| match row.get(at) {
+                None | Some(Value::Null) => String::new(),
+                Some(Value::Text(text)) => quoted(text),
+                Some(other) => other.to_string(),
+            })
+            .collect();
+        writeln!(out, "{}", fields.join(","))?;
+    }
+    Ok(())
+}
+
+/// A CSV field, in quotes where the text would otherwise break its row or read as nothing.
+fn quoted(text: &str) -> String {
+    if text.is_empty() || text.contains(['"', ',', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "[")?;
+    for (number, row) in rows.iter().enumerate() {
+        write!(out, "{}\n  {{", if number > 0 { "," } else { "" })?;
+        for (at, name) in columns.iter().enumerate() {
+            if at > 0 {
+                write!(out, ", ")?;
+            }
+            let value = json_value(row.get(at).unwrap_or(&Value::Null));
+            write!(out, "{}: {value}", serde_json::Value::from(*name))?;
+        }
+        write!(out, "}}")?;
+    }
+    writeln!(out, "{}]", if rows.is_empty() { "" } else { "\n" })
+}
+
+/// A value as JSON; a number JSON cannot hold is `null`.
+pub fn json_value(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Null => serde_json::Value::Null,
+        Value::Bool(value) => (*value).into(),
+        Value::Integer(value) => (*value).into(),
+        Value::Number(value) => (*value).into(),
+        Value::Text(value) => value.as_str().into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Vec<Vec<Value>> {
+        vec![
+            vec![Value::Integer(6), Value::Text("a, \"b\"".to_owned()), Value::Number(0.1 + 0.2)],
+            vec![Value::Integer(12), Value::Null, Value::Number(f64::NAN)],
+        ]
+    }
+
+    fn printed(format: Format) -> String {
+        let mut out = Vec::new();
+        print_rows(&["N", "note", "x"], &rows(), format, &mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let mut out = Vec::new();
+        aligned(&["N", "note", "x"], &rows(), false, &mut out).unwrap();
+        let expected = " N  note      x\n 6  a, \"b\"  0.3\n12  -       NaN\n";
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+
+    #[test]
+    fn csv_quotes_what_would_break_a_row() {
+        assert_eq!(
+            printed(Format::Csv),
+            "N,note,x\n6,\"a, \"\"b\"\"\",0.30000000000000004\n12,,NaN\n"
+        );
+        assert_eq!(quoted(""), "\"\"");
+    }
+
+    #[test]
+    fn json_is_an_array_of_rows_in_column_order() {
+        let text = printed(Format::Json);
+        let parsed: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(parsed[0]["x"].as_f64(), Some(0.1 + 0.2));
+        assert_eq!(parsed[0]["note"], "a, \"b\"");
+        assert!(parsed[1]["x"].is_null() && parsed[1]["note"].is_null());
+        assert!(text.find("\"N\"") < text.find("\"note\""));
+
+        let mut empty = Vec::new();
+        print_rows(&["N"], &[], Format::Json, &mut empty).unwrap();
+        assert_eq!(empty, b"[]\n");
+    }
+
+    #[test]
+    fn numbers_are_short_and_true() {
+        for (number, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1"),
+            (0.005, "0.005"),
+            (1_000_000.0, "1000000"),
+            (123_456_789.0, "1.23457e8"),
+            (25.4e-6, "2.54e-5"),
+            (std::f64::consts::PI, "3.14159"),
+            (-0.999_999_96, "-1"),
+        ] {
+            assert_eq!(short_number(number), text);
+        }
+    }
+}

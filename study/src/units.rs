@@ -1,0 +1,109 @@
+//! Quantities with units: a number is SI, a text carries its unit ("5 g/s", "40 mm", "30 deg").
+//!
+//! A unit is a product of base units m, kg, s, K, rad to whole powers, times a scale. Scales that are
+//! decimal (`mm`, `g`, `bar`, `%`, and also `atm`, `in`, `h` over the line) are applied to the decimal
+//! digits as written and the result is rounded once, so "40 mm" is 0.04 and "25.4 um" is 25.4e-6 bit
+//! for bit. Only `deg` (× π / 180) and units under the line that are no powers of ten add floating
+//! point operations.
+//!
+//! ```text
+//! quantity = number unit            unit = product [ "/" product { "/" product } ]
+//! product  = "(" product ")" | symbol [ ["^"] power ] { ["·" | "*"] symbol [ ["^"] power ] }
+//! ```
+//! Everything after the first `/` is under the line: W/m2K, W/m2 K and W/(m2 K) are the same.
+
+mod decimal;
+mod dimension;
+mod symbol;
+
+pub use dimension::{Dimension, Powers};
+
+/// Why a text is no quantity of the dimension wanted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitError {
+    /// What is wrong.
+    pub problem: String,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+/// Reads a quantity with its unit, to SI.
+///
+/// # Errors
+/// When the text is no number with a unit, the unit is unknown or of another dimension, or the
+/// number overflows; the error names the dimension wanted and its units.
+pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
+    parse_powers(text, dimension.powers()).map_err(|problem| UnitError {
+        problem,
+        allowed: format!("{}, with a unit: {}", dimension.name(), dimension.units().join(", ")),
+    })
+}
+
+/// Reads a quantity of any dimension, given as powers of the base units.
+///
+/// # Errors
+/// The problem in words.
+pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
+    let text = text.trim();
+    let (number, unit) =
+        split(text).ok_or_else(|| "not a number followed by a unit, as in \"5 g/s\"".to_owned())?;
+    if unit.is_empty() {
+        return Err("has no unit; write the number without quotes if it is SI".to_owned());
+    }
+    if wanted == Dimension::Temperature.powers() && matches!(unit, "degC" | "°C" | "celsius") {
+        return finite(decimal::shifted(number, ZERO_CELSIUS), text);
+    }
+    let scale = symbol::unit(unit)?;
+    if scale.powers != wanted {
+        return Err(format!(
+            "is {}, not {}",
+            dimension::describe(scale.powers),
+            dimension::describe(wanted)
+        ));
+    }
+    finite(decimal::scaled(number, &scale), text)
+}
+
+/// 0 °C is 273.15 K: 27315 hundredths.
+const ZERO_CELSIUS: (i128, i32) = (27_315, -2);
+
+fn finite(value: Option<f64>, text: &str) -> Result<f64, String> {
+    match value {
+        Some(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("{text:?} is too large a number")),
+    }
+}
+
+/// Splits "5 g/s" into number and unit; `None` when it does not start with a number.
+fn split(text: &str) -> Option<(&str, &str)> {
+    let bytes = text.as_bytes();
+    let mut at = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let digits = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let whole = digits(at);
+    let mut count = whole - at;
+    at = whole;
+    if bytes.get(at) == Some(&b'.') {
+        let fraction = digits(at + 1);
+        count += fraction - at - 1;
+        at = fraction;
+    }
+    if count == 0 {
+        return None;
+    }
+    if matches!(bytes.get(at), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(at + 1), Some(b'+' | b'-')));
+        let exponent = digits(at + 1 + sign);
+        if exponent > at + 1 + sign {
+            at = exponent;
+        }
+    }
+    Some((&text[..at], text[at..].trim()))
+}
+
+#[cfg(test)]
+mod tests;

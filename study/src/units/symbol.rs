@@ -1,0 +1,197 @@
+//! Unit symbols: known units, prefixes, and products of them.
+
+use super::dimension::Powers;
+
+/// What a unit is worth: base units × `factor` × 10^`exponent` / `divisor` × (π/180)^`degrees`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Scale {
+    pub powers: Powers,
+    pub exponent: i32,
+    pub factor: u64,
+    pub divisor: u64,
+    pub degrees: i32,
+}
+
+impl Scale {
+    const ONE: Self = Self { powers: [0; 5], exponent: 0, factor: 1, divisor: 1, degrees: 0 };
+
+    /// `value` × (π/180)^degrees.
+    pub fn turned(&self, value: f64) -> f64 {
+        // Multiply first: 30 × π / 180 rounds to π/6, 30 × (π/180) does not.
+        (0..self.degrees.abs()).fold(value, |value, _| {
+            if self.degrees > 0 {
+                value * std::f64::consts::PI / 180.0
+            } else {
+                value * 180.0 / std::f64::consts::PI
+            }
+        })
+    }
+
+    /// Multiplies by `other` to the power `power`; `None` on overflow.
+    fn times(mut self, other: &Self, power: i32) -> Option<Self> {
+        for (mine, theirs) in self.powers.iter_mut().zip(other.powers) {
+            let sum = i32::from(*mine) + i32::from(theirs) * power;
+            *mine = i8::try_from(sum).ok()?;
+        }
+        self.exponent = self.exponent.checked_add(other.exponent.checked_mul(power)?)?;
+        self.degrees += other.degrees * power;
+        for _ in 0..power.abs() {
+            let (over, under) = if power > 0 {
+                (other.factor, other.divisor)
+            } else {
+                (other.divisor, other.factor)
+            };
+            self.factor = self.factor.checked_mul(over)?;
+            self.divisor = self.divisor.checked_mul(under)?;
+        }
+        Some(self)
+    }
+}
+
+/// Symbol, powers of m kg s K rad, factor, power of ten, whether it takes SI prefixes.
+type Known = (&'static str, Powers, u64, i32, bool);
+
+const KNOWN: &[Known] = &[
+    ("m", [1, 0, 0, 0, 0], 1, 0, true),
+    ("g", [0, 1, 0, 0, 0], 1, -3, true),
+    ("s", [0, 0, 1, 0, 0], 1, 0, true),
+    ("K", [0, 0, 0, 1, 0], 1, 0, true),
+    ("rad", [0, 0, 0, 0, 1], 1, 0, true),
+    ("Pa", [-1, 1, -2, 0, 0], 1, 0, true),
+    ("N", [1, 1, -2, 0, 0], 1, 0, true),
+    ("J", [2, 1, -2, 0, 0], 1, 0, true),
+    ("W", [2, 1, -3, 0, 0], 1, 0, true),
+    ("Hz", [0, 0, -1, 0, 0], 1, 0, true),
+    ("bar", [-1, 1, -2, 0, 0], 1, 5, true),
+    ("l", [3, 0, 0, 0, 0], 1, -3, true),
+    ("L", [3, 0, 0, 0, 0], 1, -3, true),
+    ("t", [0, 1, 0, 0, 0], 1, 3, false),
+    ("min", [0, 0, 1, 0, 0], 60, 0, false),
+    ("h", [0, 0, 1, 0, 0], 3600, 0, false),
+    ("atm", [-1, 1, -2, 0, 0], 101_325, 0, false),
+    ("in", [1, 0, 0, 0, 0], 254, -4, false),
+    ("mil", [1, 0, 0, 0, 0], 254, -7, false),
+    ("ft", [1, 0, 0, 0, 0], 3048, -4, false),
+    ("%", [0, 0, 0, 0, 0], 1, -2, false),
+    ("1", [0, 0, 0, 0, 0], 1, 0, false),
+];
+
+const PREFIXES: &[(&str, i32)] = &[
+    ("T", 12),
+    ("G", 9),
+    ("M", 6),
+    ("k", 3),
+    ("h", 2),
+    ("d", -1),
+    ("c", -2),
+    ("m", -3),
+    ("u", -6),
+    ("µ", -6),
+    ("μ", -6),
+    ("n", -9),
+    ("p", -12),
+];
+
+/// One symbol, with its prefix.
+fn symbol(name: &str) -> Option<Scale> {
+    if matches!(name, "deg" | "°") {
+        return Some(Scale { powers: [0, 0, 0, 0, 1], degrees: 1, ..Scale::ONE });
+    }
+    let found = |&(_, powers, factor, exponent, _): &Known, prefix: i32| Scale {
+        powers,
+        exponent: exponent + prefix,
+        factor,
+        ..Scale::ONE
+    };
+    if let Some(known) = KNOWN.iter().find(|known| known.0 == name) {
+        return Some(found(known, 0));
+    }
+    if name == "kgK" {
+        // The one product commonly written without a space.
+        return symbol("kg")?.times(&symbol("K")?, 1);
+    }
+    PREFIXES.iter().find_map(|&(prefix, exponent)| {
+        let base = name.strip_prefix(prefix)?;
+        let known = KNOWN.iter().find(|known| known.0 == base && known.4)?;
+        Some(found(known, exponent))
+    })
+}
+
+/// Reads a unit.
+///
+/// # Errors
+/// The problem in words.
+pub(super) fn unit(text: &str) -> Result<Scale, String> {
+    let unknown = || format!("has an unknown unit {text:?}");
+    // A unit is a few symbols; a long text is something else, not worth an attempt.
+    if text.len() > 64 {
+        return Err("is not a number followed by a unit".to_owned());
+    }
+    let mut scale = Scale::ONE;
+    let mut parts = text.split('/');
+    let over = parts.next().unwrap_or_default();
+    scale = product(scale, over, 1).ok_or_else(unknown)?;
+    for under in parts {
+        scale = product(scale, under, -1).ok_or_else(unknown)?;
+    }
+    Ok(scale)
+}
+
+/// Multiplies `scale` by a product of symbols, all to the power `sign`.
+fn product(mut scale: Scale, text: &str, sign: i32) -> Option<Scale> {
+    let text = text.trim();
+    let text = match text.strip_prefix('(') {
+        Some(inner) => inner.strip_suffix(')')?,
+        None => text,
+    };
+    if text.trim().is_empty() {
+        return None;
+    }
+    let chars: Vec<char> = text.chars().map(plain).collect();
+    let mut at = 0;
+    while at < chars.len() {
+        if matches!(chars[at], ' ' | '·' | '⋅' | '*') {
+            at += 1;
+            continue;
+        }
+        let start = at;
+        if chars[at] == '1' {
+            at += 1;
+        } else {
+            while at < chars.len() && (chars[at].is_alphabetic() || matches!(chars[at], '%' | '°'))
+            {
+                at += 1;
+            }
+        }
+        let name: String = chars[start..at].iter().collect();
+        let known = symbol(&name)?;
+        let mut power = String::new();
+        if chars.get(at) == Some(&'^') {
+            at += 1;
+            if chars.get(at) == Some(&'-') {
+                power.push('-');
+                at += 1;
+            }
+        }
+        while chars.get(at).is_some_and(char::is_ascii_digit) {
+            power.push(chars[at]);
+            at += 1;
+        }
+        let power: i32 = match power.as_str() {
+            "" if chars.get(at.wrapping_sub(1)) != Some(&'^') => 1,
+            digits => digits.parse().ok().filter(|power: &i32| (-9..=9).contains(power))?,
+        };
+        scale = scale.times(&known, sign * power)?;
+    }
+    Some(scale)
+}
+
+/// Superscript digits as plain ones.
+fn plain(c: char) -> char {
+    match c {
+        '²' => '2',
+        '³' => '3',
+        '\u{a0}' | '\u{202f}' | '\t' => ' ',
+        other => other,
+    }
+}
