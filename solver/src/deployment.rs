@@ -1,8 +1,182 @@
-//! What a run gives back, whatever model computed it.
+//! The course of a run, whatever model computes it: step, sample, audit, stop; and what it gives
+//! back.
 
-use crate::audit::Audit;
-use crate::history::History;
-use crate::measures::Measures;
+use crate::audit::{self, Audit};
+use crate::gas::{Inflow, Schedule};
+use crate::history::{History, Sample};
+use crate::measures::{self, Measures, Reference};
+use crate::scene::{Scene, Thresholds};
+
+/// A model in the middle of a run. [`run`] asks it for nothing else, so every rung of the ladder
+/// has the same windows, samples, ledger, measures and verdict.
+pub trait Model {
+    /// Advances to the time `target` (s) exactly, during which the phase does not change.
+    ///
+    /// # Errors
+    /// [`Failure`] when the run stops short; the state is that of the last accepted step.
+    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure>;
+
+    /// Itself now. The mass let in ([`crate::ledger::GasBooks::mass_in`]) is left to the loop,
+    /// which takes it from the schedule.
+    fn sample(&self, phase: &Phase) -> Sample;
+
+    /// Static states of its design.
+    fn reference(&self) -> Reference;
+
+    /// Largest principal second Piola-Kirchhoff film stress so far, Pa.
+    fn film_stress(&self) -> f64;
+
+    /// Accepted steps so far.
+    fn steps(&self) -> u64;
+
+    /// Elements of its mesh.
+    fn elements(&self) -> usize;
+
+    /// Whether it has film that can pass and intersect itself.
+    fn has_film(&self) -> bool;
+}
+
+/// What acts from outside, constant between two breaks of a course.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Phase {
+    /// Held at its stowed height by the packing lid.
+    pub packed: bool,
+    /// Gas let in.
+    pub inflow: Inflow,
+}
+
+/// What happens when, and what is looked at: the part of a scene that is no model's own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// Simulated time, s.
+    pub end_time: f64,
+    /// Time between samples, s.
+    pub sample_interval: f64,
+    /// Until when the lid holds, s.
+    pub release_time: f64,
+    /// Gas let in.
+    pub schedule: Schedule,
+    /// Pressure outside, Pa.
+    pub ambient_pressure: f64,
+    /// Thresholds of the verdict.
+    pub thresholds: Thresholds,
+}
+
+impl Course {
+    /// The course of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            end_time: scene.solver.end_time,
+            sample_interval: scene.outputs.sample_interval,
+            release_time: scene.release_time,
+            schedule: Schedule::new(&scene.gas.windows),
+            ambient_pressure: scene.gas.ambient_pressure,
+            thresholds: scene.outputs.thresholds,
+        }
+    }
+
+    /// Times at which the phase changes, rising, s.
+    fn breaks(&self) -> Vec<f64> {
+        let mut breaks = self.schedule.edges().to_vec();
+        breaks.push(self.release_time);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+
+    /// The phase between two times (s) without a break between them.
+    fn phase(&self, from: f64, to: f64) -> Phase {
+        let packed = 0.5 * (from + to) < self.release_time;
+        Phase { packed, inflow: self.schedule.between(from, to) }
+    }
+
+    /// Time of sample `index`, s; the last is the end.
+    fn sample_time(&self, index: u64) -> f64 {
+        let time = index as f64 * self.sample_interval;
+        // A sample this near to the end is the end.
+        if time > self.end_time - 1e-6 * self.sample_interval { self.end_time } else { time }
+    }
+}
+
+/// Runs a model through a course, from time 0.
+///
+/// A run whose energy ledger leaves [`audit::RESIDUAL_BOUND`] at any sample has
+/// [failed](FailureKind::Drifted) at that sample, whatever it computed afterwards: the divisor of
+/// the residual is known only at the end. Its history is kept whole for whoever looks for the
+/// cause; it has no verdict.
+pub fn run(model: &mut dyn Model, course: &Course, observer: &mut dyn Observer) -> Deployment {
+    let breaks = course.breaks();
+    let mut samples = Vec::new();
+    let mut stop = Stop::Done;
+    let mut time = 0.0;
+    let mut phase = course.phase(0.0, next_break(&breaks, 0.0, course.end_time));
+    for index in 0.. {
+        let target = course.sample_time(index);
+        if let Err(failure) = advance(model, course, &breaks, &mut time, target, &mut phase) {
+            stop = Stop::Failed(failure);
+            break;
+        }
+        let mut sample = model.sample(&phase);
+        sample.gas.mass_in = course.schedule.mass_until(target);
+        samples.push(sample);
+        let progress = Progress {
+            time: target,
+            end_time: course.end_time,
+            z_centre: sample.z_centre,
+            pressure: sample.pressure,
+        };
+        if !observer.sample(progress) {
+            stop = Stop::Cancelled;
+            break;
+        }
+        if target >= course.end_time {
+            break;
+        }
+    }
+    finish(model, course, &samples, stop)
+}
+
+fn next_break(breaks: &[f64], time: f64, end: f64) -> f64 {
+    breaks.iter().copied().find(|at| *at > time).unwrap_or(end)
+}
+
+/// Advances from break to break up to `target`; leaves the phase the model was last in.
+fn advance(
+    model: &mut dyn Model,
+    course: &Course,
+    breaks: &[f64],
+    time: &mut f64,
+    target: f64,
+    phase: &mut Phase,
+) -> Result<(), Failure> {
+    while *time < target {
+        let to = next_break(breaks, *time, target).min(target);
+        *phase = course.phase(*time, to);
+        model.advance(to, phase)?;
+        *time = to;
+    }
+    Ok(())
+}
+
+fn finish(model: &dyn Model, course: &Course, samples: &[Sample], mut stop: Stop) -> Deployment {
+    let history = History::of(samples);
+    let audit = Audit::of(&history, model.has_film());
+    if stop == Stop::Done
+        && let Some(time) = audit::first_drift(&history)
+    {
+        let place = format!("energy ledger, residual above {}", audit::RESIDUAL_BOUND);
+        stop = Stop::Failed(Failure { kind: FailureKind::Drifted, time, place });
+    }
+    let measures = match stop {
+        Stop::Cancelled => Measures::default(),
+        Stop::Done | Stop::Failed(_) => {
+            let stress = model.film_stress();
+            let done = stop == Stop::Done;
+            measures::measure(&history, &model.reference(), course, stress, done)
+        }
+    };
+    Deployment { history, measures, audit, stop, steps: model.steps(), elements: model.elements() }
+}
 
 /// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,3 +282,6 @@ impl Observer for Unobserved {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,72 @@
 //! Time histories: one column a quantity, one row a sample.
 
+use crate::ledger::{GasBooks, Ledger};
+
+/// What a model shows of itself at one moment.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sample {
+    /// Time since the start of the run, s.
+    pub time: f64,
+    /// Height of the top centre node, m.
+    pub z_centre: f64,
+    /// Mean height of the top ring, m.
+    pub z_rim: f64,
+    /// Largest height of any node, m.
+    pub z_max: f64,
+    /// Velocity of the top centre node along z, m/s.
+    pub vz: f64,
+    /// Enclosed volume, m³.
+    pub volume: f64,
+    /// Gas pressure, Pa.
+    pub pressure: f64,
+    /// Gas temperature, K.
+    pub temperature: f64,
+    /// Force on the packing lid, N.
+    pub lid_force: f64,
+    /// Film's side of the ledger.
+    pub ledger: Ledger,
+    /// Gas's side of the ledger.
+    pub gas: GasBooks,
+    /// Film through film counted so far.
+    pub passages: u64,
+    /// Intersections of the mesh now.
+    pub intersections: u64,
+}
+
+impl Sample {
+    /// Values in the order of [`COLUMNS`].
+    fn row(&self, ledger_residual: f64, gas_residual: f64) -> [f64; COLUMNS.len()] {
+        [
+            self.time,
+            self.z_centre,
+            self.z_rim,
+            self.z_max,
+            self.vz,
+            self.volume,
+            self.pressure,
+            self.temperature,
+            self.gas.mass,
+            self.lid_force,
+            self.ledger.kinetic,
+            self.ledger.strain,
+            self.ledger.contact,
+            self.ledger.gas_work,
+            self.ledger.ambient_work,
+            self.ledger.gravity_work,
+            self.ledger.support_work,
+            self.ledger.viscous_work,
+            self.ledger.friction_work,
+            self.gas.heat,
+            self.gas.enthalpy_in,
+            self.gas.enthalpy_out,
+            ledger_residual,
+            gas_residual,
+            self.passages as f64,
+            self.intersections as f64,
+        ]
+    }
+}
+
 /// The series a run leaves, sampled at [`crate::scene::Outputs::sample_interval`]. Every column
 /// has the length of `time`.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -59,6 +126,22 @@ impl History {
     /// An empty history.
     pub fn new() -> Self {
         Self { columns: vec![Vec::new(); COLUMNS.len()] }
+    }
+
+    /// The history of a series of samples, with both residuals judged over the whole of it.
+    pub fn of(samples: &[Sample]) -> Self {
+        let ledgers: Vec<Ledger> = samples.iter().map(|sample| sample.ledger).collect();
+        let books: Vec<GasBooks> = samples.iter().map(|sample| sample.gas).collect();
+        let residuals = crate::ledger::residuals(&ledgers);
+        let gas_residuals = crate::ledger::gas_residuals(&books);
+        let mut history = Self::new();
+        for column in &mut history.columns {
+            column.reserve_exact(samples.len());
+        }
+        for ((sample, residual), gas_residual) in samples.iter().zip(residuals).zip(gas_residuals) {
+            history.push(&sample.row(residual, gas_residual));
+        }
+        history
     }
 
     /// Appends one sample: values in the order of [`COLUMNS`].

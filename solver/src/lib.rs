@@ -25,10 +25,12 @@ pub mod deployment;
 pub mod fold;
 pub mod gas;
 pub mod history;
+pub mod integrate;
 pub mod ladder;
 pub mod ledger;
 pub mod measures;
 pub mod mesh;
+pub mod mesh_io;
 pub mod scene;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes

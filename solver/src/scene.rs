@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::fold::FoldDesign;
 
+mod validate;
+
 /// Everything one run needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -24,6 +24,7 @@ pub mod keys;
 pub mod plan;
 pub mod progress;
 pub mod provenance;
+pub mod render;
 pub mod results;
 pub mod row;
 pub mod runner;

@@ -8,6 +8,12 @@
     reason = "judges by tolerances, not by bits; counts are small"
 )]
 
+mod capsule;
+mod conservation;
+mod exports;
 mod fold_numbers;
 mod fold_properties;
+mod gas_cases;
 mod geometry;
+mod piston_cases;
+mod rig;

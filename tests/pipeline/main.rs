@@ -1,6 +1,7 @@
 //! The binary end to end.
 
 mod determinism;
+mod folding;
 mod resume;
 mod running;
 mod storage;

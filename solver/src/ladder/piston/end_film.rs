@@ -1,0 +1,213 @@
+//! The film at full height: it stops the top as a spring that only pulls.
+//!
+//! ```text
+//! k = 2π E t cos³φh (r2 − r1)/(H ln(r2/r1))         cylinder: 2π r E t/H
+//! F = k (z − H) + c ż,  never below 0               c = 2ζ √(k m_eff)
+//! S = k (z − H)/(2π t cosφh min(r1, r2))            meridional, largest at the smaller ring
+//! S = (p − p_ambient) max(r1, r2)/(t cosφh)         hoop, while z ≥ H
+//! ```
+//!
+//! k is that of a uniaxial conical membrane, the strips between its rings in series: an axial force
+//! F puts F/(2π r cosφh) on a strip, whose energies add to F²/(2k). The hoop stress is the
+//! membrane resultant of a cone under pressure. Where the damper would push (c ż < −k (z − H)) the
+//! film goes slack and its strain energy is dissipated: the end force never pushes, and viscosity
+//! never gives.
+
+use std::f64::consts::PI;
+
+/// The end film's constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndFilm {
+    /// H, m: height at which it is taut.
+    pub free_length: f64,
+    /// k, N/m.
+    pub stiffness: f64,
+    /// c, N s/m.
+    pub damping: f64,
+    /// Meridional stress a newton of tension makes, Pa/N.
+    pub meridional_stress: f64,
+    /// Hoop stress a pascal of overpressure makes, Pa/Pa.
+    pub hoop_stress: f64,
+}
+
+/// What the end film does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EndState {
+    /// z below H: nothing.
+    Slack,
+    /// Pulls as spring and damper.
+    Taut,
+    /// Still stretched, but shortening faster than it could pull: no force.
+    Recoiling,
+}
+
+impl EndFilm {
+    /// The end film of a cone: `radii` bottom and top (m), height (m), film modulus (Pa), thickness
+    /// (m) and damping ratio, on an effective mass (kg).
+    pub fn of_cone(
+        (bottom, top): (f64, f64),
+        height: f64,
+        (youngs_modulus, thickness): (f64, f64),
+        damping_ratio: f64,
+        mass: f64,
+    ) -> Self {
+        let taper = (bottom - top) / height;
+        let cos = 1.0 / (1.0 + taper * taper).sqrt();
+        let stiffness =
+            2.0 * PI * youngs_modulus * thickness * cos * cos * cos * log_mean(bottom, top)
+                / height;
+        Self {
+            free_length: height,
+            stiffness,
+            damping: 2.0 * damping_ratio * (stiffness * mass).sqrt(),
+            meridional_stress: 1.0 / (2.0 * PI * thickness * cos * bottom.min(top)),
+            hoop_stress: bottom.max(top) / (thickness * cos),
+        }
+    }
+
+    /// No end film: a piston that runs on for ever.
+    pub fn none() -> Self {
+        Self {
+            free_length: f64::INFINITY,
+            stiffness: 0.0,
+            damping: 0.0,
+            meridional_stress: 0.0,
+            hoop_stress: 0.0,
+        }
+    }
+
+    /// Elastic and viscous part of the pull towards H, N, at height z (m) and speed ż (m/s).
+    pub fn pull(&self, state: EndState, z: f64, speed: f64) -> (f64, f64) {
+        let elastic = self.stiffness * (z - self.free_length);
+        match state {
+            EndState::Slack => (0.0, 0.0),
+            EndState::Taut => (elastic, self.damping * speed),
+            EndState::Recoiling => (elastic, -elastic),
+        }
+    }
+
+    /// Positive while the state lasts, N.
+    pub fn margin(&self, state: EndState, z: f64, speed: f64) -> f64 {
+        if self.stiffness == 0.0 {
+            return f64::INFINITY;
+        }
+        let elastic = self.stiffness * (z - self.free_length);
+        let pull = elastic + self.damping * speed;
+        match state {
+            EndState::Slack => -elastic,
+            EndState::Taut => pull,
+            EndState::Recoiling => elastic.min(-pull),
+        }
+    }
+
+    /// The state entered by leaving `state`.
+    pub fn next(&self, state: EndState, z: f64, speed: f64) -> EndState {
+        let stretched = z > self.free_length;
+        match state {
+            EndState::Slack => EndState::Taut,
+            EndState::Taut if stretched && self.damping * speed < 0.0 => EndState::Recoiling,
+            EndState::Recoiling if stretched => EndState::Taut,
+            EndState::Taut | EndState::Recoiling => EndState::Slack,
+        }
+    }
+
+    /// The state of a top at height z (m) with speed ż (m/s) that nothing is known of.
+    pub fn state_at(&self, z: f64, speed: f64) -> EndState {
+        if z <= self.free_length {
+            EndState::Slack
+        } else if self.margin(EndState::Taut, z, speed) >= 0.0 {
+            EndState::Taut
+        } else {
+            EndState::Recoiling
+        }
+    }
+
+    /// Elastic energy, J.
+    pub fn strain_energy(&self, z: f64) -> f64 {
+        let stretch = self.stretch(z);
+        0.5 * self.stiffness * stretch * stretch
+    }
+
+    /// Largest principal stress at height z (m) and overpressure (Pa), Pa.
+    pub fn stress(&self, z: f64, overpressure: f64) -> f64 {
+        let meridional = self.meridional_stress * self.stiffness * self.stretch(z);
+        let hoop = if z >= self.free_length { self.hoop_stress * overpressure } else { 0.0 };
+        meridional.max(hoop).max(0.0)
+    }
+
+    /// z − H, m, where it is above 0.
+    fn stretch(&self, z: f64) -> f64 {
+        (z - self.free_length).max(0.0)
+    }
+}
+
+/// Logarithmic mean (a − b)/ln(a/b), accurate as a → b, where it is their common value.
+fn log_mean(a: f64, b: f64) -> f64 {
+    let excess = (a - b) / b;
+    if excess == 0.0 { b } else { b * (excess / libm::log1p(excess)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn film(bottom: f64, top: f64) -> EndFilm {
+        EndFilm::of_cone((bottom, top), 1.0, (3.45e9, 25.4e-6), 0.1, 0.07)
+    }
+
+    #[test]
+    fn the_cylinder_is_the_limit() {
+        let cylinder = 2.0 * PI * 0.5 * 3.45e9 * 25.4e-6;
+        assert!((film(0.5, 0.5).stiffness / cylinder - 1.0).abs() < 1e-15);
+        for gap in [1e-15, 1e-12, 1e-9, 1e-6] {
+            let stiffness = film(0.5, 0.5 * (1.0 - gap)).stiffness;
+            assert!((stiffness / cylinder - 1.0).abs() < gap, "{gap:e}: {stiffness}");
+        }
+    }
+
+    #[test]
+    fn the_cone_is_its_strips_in_series() {
+        // Energy of a unit axial force, by the midpoint rule over the height.
+        let (bottom, top, modulus) = (0.5, 0.2, 3.45e9 * 25.4e-6);
+        let cos = 1.0 / (1.0 + 0.3 * 0.3_f64).sqrt();
+        let n = 20_000;
+        let compliance: f64 = (0..n)
+            .map(|i| {
+                let r = bottom + (top - bottom) * (f64::from(i) + 0.5) / f64::from(n);
+                let resultant = 1.0 / (2.0 * PI * r * cos);
+                resultant * resultant / modulus * 2.0 * PI * r / cos / f64::from(n)
+            })
+            .sum();
+        assert!((film(bottom, top).stiffness * compliance - 1.0).abs() < 1e-8);
+        assert!((film(top, bottom).stiffness / film(bottom, top).stiffness - 1.0).abs() < 1e-14);
+    }
+
+    proptest! {
+        #[test]
+        fn the_elastic_pull_is_the_derivative_of_the_energy(
+            top in 0.1..0.9_f64,
+            z in 0.9..1.1_f64,
+        ) {
+            let film = film(0.5, top);
+            let gap = 1e-7;
+            prop_assume!((z - 1.0_f64).abs() > gap);
+            let slope = (film.strain_energy(z + gap) - film.strain_energy(z - gap)) / (2.0 * gap);
+            let (elastic, _) = film.pull(film.state_at(z, 0.0), z, 0.0);
+            prop_assert!((slope - elastic).abs() <= 1e-6 * film.stiffness * 0.1);
+        }
+
+        #[test]
+        fn the_end_never_pushes_and_viscosity_never_gives(
+            z in 0.9..1.1_f64,
+            speed in -50.0..50.0_f64,
+        ) {
+            let film = film(0.5, 0.365);
+            let state = film.state_at(z, speed);
+            let (elastic, viscous) = film.pull(state, z, speed);
+            prop_assert!(elastic + viscous >= 0.0);
+            prop_assert!(viscous * speed >= 0.0);
+            prop_assert!(film.margin(state, z, speed) >= 0.0);
+        }
+    }
+}

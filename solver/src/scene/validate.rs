@@ -1,0 +1,139 @@
+//! What a scene must be before any model may run it.
+
+use super::{HeatTransfer, Scene, Stepping, Support};
+use crate::ladder::SceneError;
+
+/// Samples a history may hold; more do not fit a table, a file or a machine.
+const MOST_SAMPLES: f64 = 1e7;
+
+impl Scene {
+    /// Checks every key but those of the design, which [`crate::fold::FoldPattern::new`] checks.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] with the dotted key of the first value out of range.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        self.validate_film()?;
+        self.validate_gas()?;
+        for (index, support) in self.supports.iter().enumerate() {
+            validate_support(index, support)?;
+        }
+        self.validate_contact()?;
+        let any = |value: f64| value.is_finite();
+        number("gravity", self.gravity, any, "a finite number, m/s²")?;
+        not_negative("release_time", self.release_time, "s")?;
+        self.validate_solver()?;
+        self.validate_outputs()
+    }
+
+    fn validate_film(&self) -> Result<(), SceneError> {
+        let film = &self.film;
+        positive("film.youngs_modulus", film.youngs_modulus, "Pa")?;
+        let poisson = |ratio: f64| ratio > -1.0 && ratio <= 0.5;
+        number("film.poisson_ratio", film.poisson_ratio, poisson, "above -1, at most 0.5")?;
+        positive("film.density", film.density, "kg/m³")?;
+        positive("film.thickness", film.thickness, "m")?;
+        let share = |value: f64| (0.0..=1.0).contains(&value);
+        number("film.compression", film.compression, share, "from 0 to 1")?;
+        not_negative("film.viscosity", film.viscosity, "a damping ratio")?;
+        positive("film.temperature", film.temperature, "K")
+    }
+
+    fn validate_gas(&self) -> Result<(), SceneError> {
+        let gas = &self.gas;
+        positive("gas.species.gas_constant", gas.species.gas_constant, "J/(kg K)")?;
+        let least = gas.species.gas_constant;
+        let above = |cp: f64| cp > least && cp.is_finite();
+        number("gas.species.cp", gas.species.cp, above, "above gas_constant: cv = cp - R > 0")?;
+        not_negative("gas.initial_mass", gas.initial_mass, "kg")?;
+        for (index, window) in gas.windows.iter().enumerate() {
+            let key = |name: &str| format!("gas.windows[{index}].{name}");
+            not_negative(&key("from"), window.from, "s")?;
+            let later = |to: f64| to > window.from && to.is_finite();
+            number(&key("to"), window.to, later, "later than `from`")?;
+            not_negative(&key("rate"), window.rate, "kg/s")?;
+            positive(&key("temperature"), window.temperature, "K")?;
+        }
+        not_negative("gas.ambient_pressure", gas.ambient_pressure, "Pa")?;
+        if let HeatTransfer::Coefficient(coefficient) = gas.heat_transfer {
+            not_negative("gas.heat_transfer.coefficient", coefficient, "W/(m² K)")?;
+        }
+        not_negative("gas.leak_area", gas.leak_area, "m²")?;
+        let coefficient = |value: f64| value > 0.0 && value <= 1.0;
+        let key = "gas.discharge_coefficient";
+        number(key, gas.discharge_coefficient, coefficient, "above 0, at most 1")
+    }
+
+    fn validate_contact(&self) -> Result<(), SceneError> {
+        if let Some(distance) = self.contact.distance {
+            positive("contact.distance", distance, "m")?;
+        }
+        not_negative("contact.friction", self.contact.friction, "a coefficient")?;
+        not_negative("contact.adhesion", self.contact.adhesion, "Pa")
+    }
+
+    fn validate_solver(&self) -> Result<(), SceneError> {
+        let solver = &self.solver;
+        positive("solver.end_time", solver.end_time, "s")?;
+        if solver.step_limit == 0 {
+            return Err(invalid("solver.step_limit", "0 is not allowed; at least 1".to_owned()));
+        }
+        match solver.stepping {
+            Stepping::Adaptive(tolerance) => {
+                let sound = |value: f64| (1e-14..=0.1).contains(&value);
+                number("solver.stepping.adaptive", tolerance, sound, "from 1e-14 to 0.1")
+            }
+            Stepping::Fixed(step) => positive("solver.stepping.fixed", step, "s"),
+        }
+    }
+
+    fn validate_outputs(&self) -> Result<(), SceneError> {
+        let key = "outputs.sample_interval";
+        let interval = self.outputs.sample_interval;
+        positive(key, interval, "s")?;
+        let few = |interval: f64| self.solver.end_time / interval <= MOST_SAMPLES;
+        number(key, interval, few, "at least a ten-millionth of solver.end_time")?;
+        let thresholds = &self.outputs.thresholds;
+        positive("outputs.thresholds.deployed_volume", thresholds.deployed_volume, "a ratio")?;
+        positive("outputs.thresholds.deployed_height", thresholds.deployed_height, "a ratio")?;
+        positive("outputs.thresholds.stalled_volume", thresholds.stalled_volume, "a ratio")?;
+        not_negative("outputs.thresholds.close_margin", thresholds.close_margin, "a ratio")
+    }
+}
+
+fn validate_support(index: usize, support: &Support) -> Result<(), SceneError> {
+    let allowed = ["x", "y", "z", "xy", "xz", "yz", "xyz"];
+    if allowed.contains(&support.fix.as_str()) {
+        return Ok(());
+    }
+    let problem = format!(
+        "{:?} names no displacement components; allowed: letters of \"xyz\" in that order",
+        support.fix
+    );
+    Err(invalid(&format!("supports[{index}].fix"), problem))
+}
+
+fn positive(key: &str, value: f64, unit: &str) -> Result<(), SceneError> {
+    let sound = |value: f64| value > 0.0 && value.is_finite();
+    number(key, value, sound, &format!("a number above 0 ({unit})"))
+}
+
+fn not_negative(key: &str, value: f64, unit: &str) -> Result<(), SceneError> {
+    let sound = |value: f64| value >= 0.0 && value.is_finite();
+    number(key, value, sound, &format!("0 or a number above it ({unit})"))
+}
+
+fn number(
+    key: &str,
+    value: f64,
+    sound: impl Fn(f64) -> bool,
+    allowed: &str,
+) -> Result<(), SceneError> {
+    if sound(value) {
+        return Ok(());
+    }
+    Err(invalid(key, format!("{value} is not allowed; {allowed}")))
+}
+
+fn invalid(key: &str, problem: String) -> SceneError {
+    SceneError::Invalid { key: key.to_owned(), problem }
+}

@@ -1,0 +1,231 @@
+//! The paper's capsule as a piston: against what finer models say of it, and its typed ends.
+
+use std::time::Instant;
+
+use billow_solver::deployment::{FailureKind, Observer, Progress, Stop};
+use billow_solver::ladder::{self, SceneError, piston::PistonRun};
+use billow_solver::measures::Verdict;
+use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportPlace};
+
+use crate::geometry::solved;
+use crate::rig::{PAPER_FILM, paper_scene, run, window};
+
+fn injected() -> Scene {
+    let mut scene = paper_scene();
+    scene.gas.windows = vec![window(0.0, 1.5, 0.005)];
+    scene
+}
+
+fn burst() -> Scene {
+    let mut scene = paper_scene();
+    scene.gas.windows = vec![window(0.0, 0.01, 0.005)];
+    scene.solver.end_time = 1.5;
+    scene
+}
+
+/// The top cap and the lateral film by the closed form of a cone with ξ linear in height:
+/// ∫ξ² r dz over ∫ r dz. The developed film is the cone's own surface, a facet's ξ is linear in the
+/// developed plane rather than in height, so they agree to a few per cent only.
+#[test]
+fn moving_mass_is_that_of_the_cap_and_a_third_of_the_side() {
+    let run = PistonRun::from_scene(&paper_scene()).unwrap();
+    let pattern = solved(&paper_scene().design);
+    let (r2, r1) = (0.5, 0.365);
+    let share = (r2 / 3.0 + (r1 - r2) / 4.0) / (0.5 * (r1 + r2));
+    let expected =
+        PAPER_FILM.area_density() * (pattern.cap_area(3) + share * pattern.lateral_area());
+    let mass = run.piston().mass;
+    println!("moving mass {mass}, cone {expected}");
+    assert!((mass / expected - 1.0).abs() < 0.05, "{mass} {expected}");
+}
+
+/// Physics notes, section 6: full model, 5 g/s from 0: 0.5 m at 0.03-0.035 s, 0.9 m at 0.055 s,
+/// peak 21-22 m/s, 18-20 J. The rung's promise: times within 25 %. A lone mass cannot spend energy
+/// on twist, folds and film viscosity, so its speed and kinetic energy are upper bounds: at most
+/// 75 % and 60 % above the film's (measured 65-73 % and 42-58 %).
+#[test]
+fn five_grams_a_second_within_the_rungs_bands() {
+    let start = Instant::now();
+    let deployment = run(&injected());
+    let wall = start.elapsed();
+    assert_eq!(deployment.stop, Stop::Done);
+    let (time, z) = (deployment.history.column("time"), deployment.history.column("z_rim"));
+    let reaches = |height: f64| time[z.iter().position(|z| *z >= height).expect("reached")];
+    let m = &deployment.measures;
+    let (half, high) = (reaches(0.5), reaches(0.9));
+    let (speed, kinetic) = (m.peak_vz.unwrap(), m.peak_kinetic_energy.unwrap());
+    println!("5 g/s: z 0.5 m at {half} s, 0.9 m at {high} s; {speed} m/s, {kinetic} J; {wall:?}");
+    assert!((0.03 * 0.75..0.035 * 1.25).contains(&half), "{half}");
+    assert!((0.055 * 0.75..0.055 * 1.25).contains(&high), "{high}");
+    assert!((22.0..21.0 * 1.75).contains(&speed), "{speed}");
+    assert!((20.0..18.0 * 1.60).contains(&kinetic), "{kinetic}");
+    assert_eq!((m.verdict, m.close), (Some(Verdict::Deployed), false));
+    assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
+    assert!(deployment.audit.gas_residual < 1e-6, "{:?}", deployment.audit);
+}
+
+#[test]
+fn residual_gas_deploys_and_warms() {
+    let start = Instant::now();
+    let deployment = run(&burst());
+    println!("burst: {:?}, steps {}", start.elapsed(), deployment.steps);
+    assert_eq!(deployment.stop, Stop::Done);
+    let m = &deployment.measures;
+    // 0.05 g at film temperature in V: p = m R T/V.
+    let pressure = 5e-5 * 296.803_052 * m.final_temperature.unwrap() / m.final_volume.unwrap();
+    assert!((m.final_pressure.unwrap() / pressure - 1.0).abs() < 1e-12);
+    // h A/(m cv) = 31 1/s: at film temperature long before the end.
+    assert!((m.final_temperature.unwrap() - 293.0).abs() < 1.0, "{:?}", m.final_temperature);
+    assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
+}
+
+#[test]
+fn without_gas_nothing_moves() {
+    let deployment = run(&paper_scene());
+    assert_eq!(deployment.stop, Stop::Done);
+    let m = &deployment.measures;
+    assert_eq!((m.verdict, m.close), (Some(Verdict::Stalled), false));
+    assert_eq!(m.final_z_rim, Some(0.04));
+    assert_eq!((m.final_pressure, m.final_temperature), (Some(0.0), Some(293.0)));
+    assert_eq!((m.peak_kinetic_energy, m.t_settled, m.t_deployed), (Some(0.0), None, None));
+    assert_eq!((deployment.audit.ledger_residual, deployment.audit.gas_residual), (0.0, 0.0));
+    for (column, values) in deployment.history.iter() {
+        assert!(values.iter().all(|value| value.is_finite()), "{}", column.name);
+    }
+}
+
+#[test]
+fn the_lid_holds_until_release() {
+    let mut scene = paper_scene();
+    scene.gas.initial_mass = 5e-5;
+    scene.release_time = 0.1003;
+    let deployment = run(&scene);
+    let history = &deployment.history;
+    let (time, z) = (history.column("time"), history.column("z_rim"));
+    let lid = history.column("lid_force");
+    for ((time, z), lid) in time.iter().zip(z).zip(lid) {
+        if *time <= 0.1003 {
+            assert!((*z - 0.04).abs() == 0.0 && *lid > 50.0, "{time} {z} {lid}");
+        } else {
+            assert!(*z > 0.04 && *lid == 0.0, "{time} {z} {lid}");
+        }
+    }
+    // Section 3: 0.05 g in 0.0151 m³ press with 288 Pa.
+    let pressure = history.column("pressure")[0];
+    assert!((pressure - 288.0).abs() < 2.0, "{pressure}");
+    let peak = deployment.measures.peak_lid_force.unwrap();
+    assert!((peak / (pressure * 0.0151 / 0.04) - 1.0).abs() < 0.01, "{peak}");
+}
+
+#[test]
+fn on_the_ground_gravity_and_air_are_in_the_ledger() {
+    let mut scene = injected();
+    scene.gravity = -9.806_65;
+    scene.gas.ambient_pressure = 1e5;
+    // Air inside at the pressure outside.
+    scene.gas.initial_mass = 1e5 * 0.015_12 / (296.803_052 * 293.0);
+    scene.gas.windows = vec![window(0.0, 1.0, 0.5)];
+    scene.gas.heat_transfer = HeatTransfer::Isothermal;
+    scene.solver.end_time = 2.0;
+    let deployment = run(&scene);
+    assert_eq!(deployment.stop, Stop::Done, "{:?}", deployment.audit);
+    let last = |name: &str| *deployment.history.column(name).last().unwrap();
+    println!("ground: z {} p {} {:?}", last("z_rim"), last("pressure"), deployment.audit);
+    assert!(last("ambient_work") < -100.0 && last("gravity_work") < 0.0);
+    assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
+}
+
+#[test]
+fn stops_are_typed() {
+    let kind = |scene: &Scene| match run(scene).stop {
+        Stop::Failed(failure) => failure,
+        other => panic!("{other:?}"),
+    };
+    let mut few = injected();
+    few.solver.step_limit = 20;
+    assert_eq!(kind(&few).kind, FailureKind::StepLimit);
+    assert_eq!(run(&few).measures.verdict, None);
+
+    // Nothing inside and weight on top: it falls through its own stack.
+    let mut falls = paper_scene();
+    falls.gravity = -9.806_65;
+    let failure = kind(&falls);
+    assert_eq!(failure.kind, FailureKind::InvertedVolume);
+    assert!((0.05..0.15).contains(&failure.time), "{failure:?}");
+
+    let mut coarse = injected();
+    coarse.solver.stepping = Stepping::Fixed(5e-4);
+    coarse.film.youngs_modulus *= 300.0;
+    let failure = kind(&coarse);
+    let unsound = [FailureKind::Unstable, FailureKind::Drifted, FailureKind::InvertedVolume];
+    assert!(unsound.contains(&failure.kind), "{failure:?}");
+}
+
+#[test]
+fn an_observer_can_stop_a_run() {
+    struct Until(f64);
+    impl Observer for Until {
+        fn sample(&mut self, progress: Progress) -> bool {
+            progress.time < self.0
+        }
+    }
+    let deployment = ladder::solve(&injected(), &mut Until(0.02)).unwrap();
+    assert_eq!(deployment.stop, Stop::Cancelled);
+    assert_eq!(*deployment.history.column("time").last().unwrap(), 0.02);
+    assert_eq!(deployment.measures.verdict, None);
+}
+
+#[test]
+fn what_a_piston_cannot_do_is_refused_by_key() {
+    let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
+        let mut scene = injected();
+        change(&mut scene);
+        match ladder::solve(&scene, &mut billow_solver::deployment::Unobserved) {
+            Err(SceneError::Invalid { key, problem }) => {
+                assert_eq!(key, expected, "{problem}");
+                assert!(!problem.is_empty());
+            }
+            other => panic!("{expected}: {other:?}"),
+        }
+    };
+    refused(&|s| s.supports.clear(), "supports");
+    refused(
+        &|s| s.supports.push(Support { on: SupportPlace::TopRing, fix: "z".to_owned() }),
+        "supports[1].fix",
+    );
+    refused(&|s| s.supports[0].fix = "zx".to_owned(), "supports[0].fix");
+    refused(&|s| s.film.thickness = 0.0, "film.thickness");
+    refused(&|s| s.film.youngs_modulus = f64::NAN, "film.youngs_modulus");
+    refused(&|s| s.film.poisson_ratio = 0.6, "film.poisson_ratio");
+    refused(&|s| s.film.compression = 1.5, "film.compression");
+    refused(&|s| s.film.viscosity = -0.1, "film.viscosity");
+    refused(&|s| s.gas.species.cp = 200.0, "gas.species.cp");
+    refused(&|s| s.gas.initial_mass = -1.0, "gas.initial_mass");
+    refused(&|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to");
+    refused(&|s| s.gas.windows[0].rate = -1.0, "gas.windows[0].rate");
+    refused(&|s| s.gas.windows[0].temperature = 0.0, "gas.windows[0].temperature");
+    refused(
+        &|s| s.gas.heat_transfer = HeatTransfer::Coefficient(-1.0),
+        "gas.heat_transfer.coefficient",
+    );
+    refused(&|s| s.gas.discharge_coefficient = 0.0, "gas.discharge_coefficient");
+    refused(&|s| s.gravity = f64::INFINITY, "gravity");
+    refused(&|s| s.release_time = -1.0, "release_time");
+    refused(&|s| s.solver.end_time = 0.0, "solver.end_time");
+    refused(&|s| s.solver.step_limit = 0, "solver.step_limit");
+    refused(&|s| s.solver.stepping = Stepping::Adaptive(1.0), "solver.stepping.adaptive");
+    refused(&|s| s.solver.stepping = Stepping::Fixed(0.0), "solver.stepping.fixed");
+    refused(&|s| s.outputs.sample_interval = 1e-12, "outputs.sample_interval");
+    refused(&|s| s.outputs.thresholds.deployed_volume = 0.0, "outputs.thresholds.deployed_volume");
+}
+
+#[test]
+fn the_reference_stretches_a_little_with_pressure() {
+    use billow_solver::deployment::Model;
+    let run = PistonRun::from_scene(&paper_scene()).unwrap();
+    let reference = run.reference();
+    let height = |pressure: f64| reference.at(pressure).1;
+    assert!(height(1.0) > 1.0 && height(1000.0) > height(100.0));
+    // z = H + p V_e/(H k), k about 2π E t r/H.
+    assert!((height(1000.0) - 1.0 - 0.0026).abs() < 0.0006, "{}", height(1000.0));
+}
