@@ -1,1 +1,5 @@
 //! The binary end to end.
+
+mod broken_studies;
+mod planning;
+mod study_files;
