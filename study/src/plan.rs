@@ -90,6 +90,3 @@ fn first_generation(study: &Study) -> Generation {
     }
     Generation { number: 0, points }
 }
-
-#[cfg(test)]
-mod tests;

@@ -12,6 +12,8 @@ mod grid;
 mod overrides;
 mod resolve;
 mod source;
+mod strategy;
+mod supports;
 
 use serde_json::{Map, json};
 
@@ -23,9 +25,9 @@ use crate::study_file::{self, Json};
 use billow_solver::scene::Scene;
 
 use base::Base;
-pub(crate) use base::PLACES;
 use grid::Grid;
 use source::Source;
+pub(crate) use supports::PLACES;
 
 /// What a study may not exceed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -183,6 +185,3 @@ fn study_name(base: &Base, stem: &str, source: &Source) -> Result<String, InputE
     }
     Err(error)
 }
-
-#[cfg(test)]
-mod tests;

@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 use serde_json::{Map, json};
 
 use super::source::Source;
+use super::strategy::{Strategy, read_strategy};
+use super::supports;
 use crate::cli::print::json_value;
 use crate::error::InputError;
-use crate::keys::{self, KEYS, Key, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::keys::{self, KEYS, Key, SECTIONS};
 use crate::study_file::Json;
 use crate::value::Value;
-use billow_solver::scene::{Support, SupportPlace};
+use billow_solver::scene::Support;
 
 /// Everything a point starts from.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,25 +26,6 @@ pub(super) struct Base {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Settings {
     values: Vec<Value>,
-}
-
-/// A named inflation schedule.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Strategy {
-    /// Values of [`STRATEGY_KEYS`].
-    pub values: Vec<Value>,
-    /// Inflow windows: values of [`WINDOW_KEYS`].
-    pub inflow: Vec<Vec<Value>>,
-}
-
-impl Strategy {
-    /// Released at once, inflow from release to the end.
-    fn direct() -> Self {
-        Self {
-            values: STRATEGY_KEYS.iter().map(Key::default_value).collect(),
-            inflow: vec![WINDOW_KEYS.iter().map(Key::default_value).collect()],
-        }
-    }
 }
 
 impl Settings {
@@ -108,11 +91,11 @@ impl Base {
         base.check_version(tree, source)?;
         base.section("", tree, source)?;
         base.check_pairs(tree, source)?;
-        base.supports = supports(tree.get("supports"), source)?;
+        base.supports = supports::read(tree.get("supports"), source)?;
         base.strategies.insert("direct".to_owned(), Strategy::direct());
         if let Some(json) = tree.get("strategies") {
             for (name, value) in object(json, "strategies", source)? {
-                let strategy = strategy(name, value, source)?;
+                let strategy = read_strategy(name, value, source)?;
                 base.strategies.insert(name.clone(), strategy);
             }
         }
@@ -219,24 +202,13 @@ impl Base {
             let place = key.path.split('.').fold(&mut json, |place, part| &mut place[part]);
             *place = json_value(value);
         }
-        let members = |keys: &[Key], values: &[Value]| {
-            let given = keys.iter().zip(values).filter(|(_, value)| **value != Value::Null);
-            given
-                .map(|(key, value)| (key.path.to_owned(), json_value(value)))
-                .collect::<Map<_, _>>()
-        };
-        let strategies = self.strategies.iter().map(|(name, strategy)| {
-            let mut json = members(STRATEGY_KEYS, &strategy.values);
-            let inflow: Vec<serde_json::Value> =
-                strategy.inflow.iter().map(|window| members(WINDOW_KEYS, window).into()).collect();
-            json.insert("inflow".to_owned(), inflow.into());
-            (name.clone(), json.into())
-        });
+        let strategies = self.strategies.iter();
+        let strategies = strategies.map(|(name, strategy)| (name.clone(), strategy.to_json()));
         json["strategies"] = strategies.collect::<Map<_, _>>().into();
         let supports = self
             .supports
             .iter()
-            .map(|support| json!({"on": place_name(support.on), "fix": support.fix}));
+            .map(|support| json!({"on": supports::place_name(support.on), "fix": support.fix}));
         json["supports"] = supports.collect::<Vec<_>>().into();
         json
     }
@@ -260,7 +232,10 @@ pub(super) fn object<'a>(
             at,
             &other.brief(),
             format!("is {}, not an object", other.kind()),
-            children(at).join(", "),
+            match children(at) {
+                names if names.is_empty() => "an object".to_owned(),
+                names => names.join(", "),
+            },
         )),
     }
 }
@@ -309,142 +284,4 @@ fn unknown(prefix: &str, path: &str, name: &str, value: &Json, source: &Source) 
         problem.push_str(&format!("; did you mean {}?", KEYS[elsewhere].path));
     }
     source.error(path, &value.brief(), problem, known.join(", "))
-}
-
-/// Names of the places a support acts on.
-pub(crate) const PLACES: [(&str, SupportPlace); 4] = [
-    ("bottom_ring", SupportPlace::BottomRing),
-    ("top_ring", SupportPlace::TopRing),
-    ("bottom_cap", SupportPlace::BottomCap),
-    ("top_cap", SupportPlace::TopCap),
-];
-
-fn place_name(place: SupportPlace) -> &'static str {
-    PLACES.iter().find(|(_, known)| *known == place).map_or("", |(name, _)| name)
-}
-
-/// Supports in the order of [`PLACES`], one a place, components in the order x y z: the same
-/// supports are the same job.
-fn supports(json: Option<&Json>, source: &Source) -> Result<Vec<Support>, InputError> {
-    let Some(json) = json else {
-        return Ok(vec![Support { on: SupportPlace::BottomRing, fix: "xyz".to_owned() }]);
-    };
-    let allowed = "a list of {\"on\": \"bottom_ring\", \"fix\": \"xyz\"}";
-    let mut fixed = [""; 4].map(str::to_owned);
-    for (at, item) in list(json, "supports", source, allowed)?.iter().enumerate() {
-        let key = format!("supports[{at}]");
-        let (mut on, mut fix) = (None, None);
-        let Json::Object(members) = item else {
-            let problem = format!("is {}, not an object", item.kind());
-            return Err(source.error(&key, &item.brief(), problem, allowed));
-        };
-        for (name, value) in members {
-            let key = format!("{key}.{name}");
-            match (name.as_str(), value) {
-                ("on", Json::Text(word)) => {
-                    on = PLACES.iter().position(|(known, _)| known == word);
-                    if on.is_none() {
-                        let known = PLACES.map(|(known, _)| known).join(", ");
-                        let problem = "is no place of a capsule";
-                        return Err(source.error(&key, &value.brief(), problem, known));
-                    }
-                }
-                ("fix", Json::Text(axes)) => {
-                    let sound = !axes.is_empty()
-                        && axes.chars().all(|c| matches!(c, 'x' | 'y' | 'z'))
-                        && "xyz".chars().all(|c| axes.matches(c).count() <= 1);
-                    if !sound {
-                        let problem = "names no displacement components";
-                        let allowed = "letters of \"xyz\", each once";
-                        return Err(source.error(&key, &value.brief(), problem, allowed));
-                    }
-                    fix = Some(axes);
-                }
-                ("on" | "fix", other) => {
-                    let problem = format!("is {}, not a text", other.kind());
-                    return Err(source.error(&key, &other.brief(), problem, allowed));
-                }
-                _ => {
-                    let problem = "is no key of a support";
-                    return Err(source.error(&key, &value.brief(), problem, "on, fix"));
-                }
-            }
-        }
-        match (on, fix) {
-            (Some(on), Some(fix)) => fixed[on].push_str(fix),
-            (None, _) => return Err(source.error(&key, &item.brief(), "has no `on`", allowed)),
-            (_, None) => return Err(source.error(&key, &item.brief(), "has no `fix`", allowed)),
-        }
-    }
-    let support = |(&(_, on), axes): (&(&str, SupportPlace), String)| {
-        let fix: String = "xyz".chars().filter(|c| axes.contains(*c)).collect();
-        (!fix.is_empty()).then_some(Support { on, fix })
-    };
-    Ok(PLACES.iter().zip(fixed).filter_map(support).collect())
-}
-
-/// Names a strategy may have: they stand in paths and expressions.
-pub(super) fn is_name(name: &str) -> bool {
-    let mut chars = name.chars();
-    chars.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
-        && chars.all(|c| c.is_ascii_alphanumeric() || c == '_')
-        && name.len() <= 64
-}
-
-fn strategy(name: &str, json: &Json, source: &Source) -> Result<Strategy, InputError> {
-    let at = format!("strategies.{name}");
-    if !is_name(name) {
-        let allowed = "a letter, then letters, digits and _";
-        return Err(source.error(&at, "", "is no name for a strategy", allowed));
-    }
-    let allowed = "release_time, preinflation_mass, inflow";
-    let Json::Object(members) = json else {
-        let problem = format!("is {}, not an object", json.kind());
-        return Err(source.error(&at, &json.brief(), problem, allowed));
-    };
-    let mut strategy = Strategy::direct();
-    for (name, value) in members {
-        let at = format!("{at}.{name}");
-        if name == "inflow" {
-            let allowed = "a list of {\"from\": \"5 s\", \"to\": \"12 s\", \"rate\": \"1 g/s\"}";
-            strategy.inflow = list(value, &at, source, allowed)?
-                .iter()
-                .enumerate()
-                .map(|(number, value)| window(value, &format!("{at}[{number}]"), source))
-                .collect::<Result<_, _>>()?;
-        } else if let Some(key) = STRATEGY_KEYS.iter().position(|key| key.path == name) {
-            strategy.values[key] = read(&STRATEGY_KEYS[key], value, &at, source)?;
-        } else {
-            let problem = near("a strategy", name, allowed);
-            return Err(source.error(&at, &value.brief(), problem, allowed));
-        }
-    }
-    Ok(strategy)
-}
-
-fn window(json: &Json, at: &str, source: &Source) -> Result<Vec<Value>, InputError> {
-    let allowed = "from, to, rate, temperature";
-    let Json::Object(members) = json else {
-        let problem = format!("is {}, not an object", json.kind());
-        return Err(source.error(at, &json.brief(), problem, allowed));
-    };
-    let mut values: Vec<Value> = WINDOW_KEYS.iter().map(Key::default_value).collect();
-    for (name, value) in members {
-        let at = format!("{at}.{name}");
-        match WINDOW_KEYS.iter().position(|key| key.path == name) {
-            Some(key) => values[key] = read(&WINDOW_KEYS[key], value, &at, source)?,
-            None => {
-                let problem = near("an inflow window", name, allowed);
-                return Err(source.error(&at, &value.brief(), problem, allowed));
-            }
-        }
-    }
-    Ok(values)
-}
-
-fn near(what: &str, name: &str, allowed: &str) -> String {
-    match keys::nearest(name, allowed.split(", ")) {
-        Some(near) => format!("is no key of {what}; did you mean {near}?"),
-        None => format!("is no key of {what}"),
-    }
 }

@@ -8,6 +8,7 @@ use super::grid::{Axis, Column, Grid, Target};
 use super::resolve::{self, Fold};
 use super::source::Source;
 use super::{Limits, StudyPoint};
+use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::expression::{Type, Variable};
 use crate::keys::{self, KEYS, Key, Kind};
@@ -354,7 +355,7 @@ impl Expansion<'_> {
                 let key = format!("design.{key}");
                 let value = keys::index(&key).map(|at| point.settings.at(at));
                 let value = value.filter(|value| **value != Value::Null);
-                let value = value.map(ToString::to_string).unwrap_or_default();
+                let value = value.map(|value| json_value(value).to_string()).unwrap_or_default();
                 let allowed = keys::index(&key).map_or_else(String::new, |at| KEYS[at].allowed());
                 return Err(place(self.source.error(&key, &value, problem.as_str(), allowed)));
             }

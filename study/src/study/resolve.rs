@@ -6,8 +6,9 @@ use billow_solver::scene::{
     Species, Stepping, Thresholds,
 };
 
-use super::base::{Base, Settings, Strategy};
-use super::source::Source;
+use super::base::{Base, Settings};
+use super::source::{Source, shown};
+use super::strategy::Strategy;
 use crate::error::InputError;
 use crate::keys::{self, KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::plan::Infeasible;
@@ -124,9 +125,9 @@ pub(super) fn scene(
     if end_time / sample_interval > MOST_SAMPLES {
         return Err(source.error(
             "outputs.sample_interval",
-            &sample_interval.to_string(),
+            &shown(sample_interval),
             format!("samples a run of {end_time} s more than {MOST_SAMPLES:.0} times"),
-            format!("at least {} s for this end_time", end_time / MOST_SAMPLES),
+            format!("at least {} s for this end_time", shown(end_time / MOST_SAMPLES)),
         ));
     }
     let name = settings.text("strategy");
@@ -138,7 +139,7 @@ pub(super) fn scene(
     if release_time >= end_time {
         return Err(source.error(
             &format!("strategies.{name}.release_time"),
-            &release_time.to_string(),
+            &shown(release_time),
             "the run ends before the capsule is released",
             format!("below solver.end_time, {end_time} s"),
         ));
@@ -250,7 +251,7 @@ fn windows(
         if to < from || (to == from && get("to").is_some()) {
             return Err(source.error(
                 &format!("strategies.{name}.inflow[{index}].to"),
-                &to.to_string(),
+                &shown(to),
                 "the window ends before it begins",
                 format!("above its `from`, {from} s"),
             ));
@@ -303,7 +304,7 @@ fn species(settings: &Settings, source: &Source) -> Result<Species, InputError> 
     if cp <= gas_constant {
         return Err(source.error(
             "gas.species.cp",
-            &cp.to_string(),
+            &shown(cp),
             "leaves no heat capacity at constant volume",
             format!("above the gas constant, {gas_constant} J/(kg K)"),
         ));

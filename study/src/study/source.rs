@@ -38,3 +38,9 @@ impl Source {
         }
     }
 }
+
+/// A number as a study file would have it: in shortest digits, small ones with an exponent.
+pub(super) fn shown(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}

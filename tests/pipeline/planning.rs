@@ -1,0 +1,356 @@
+//! From study text to jobs: ids, grids, filters, overrides, generations.
+
+use std::time::{Duration, Instant};
+
+use billow_study::error::InputError;
+use billow_study::job::JobId;
+use billow_study::plan::{FinishedRow, Generation, next_jobs};
+use billow_study::study::{Limits, Study};
+use billow_study::value::Value;
+use proptest::prelude::*;
+use serde_json::{Value as Json, json};
+
+fn try_study(json: &Json, sets: &[&str]) -> Result<Study, InputError> {
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    Study::from_text(&json.to_string(), "test.json", "test", &sets, Limits::default())
+}
+
+fn plan(json: &Json, sets: &[&str]) -> Generation {
+    let study = try_study(json, sets).unwrap_or_else(|error| panic!("{error}"));
+    next_jobs(&study, &[]).unwrap()
+}
+
+fn id(json: &Json) -> JobId {
+    let generation = plan(json, &[]);
+    assert_eq!(generation.points.len(), 1);
+    generation.points[0].job.id.clone()
+}
+
+/// The paper's capsule, as short as a study can be.
+fn capsule() -> Json {
+    json!({
+        "design": {"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
+        "gas": {"mass_flow_rate": 0.005},
+        "solver": {"end_time": 0.5},
+    })
+}
+
+fn with_grid(grid: Json) -> Json {
+    let mut study = capsule();
+    study["grid"] = grid;
+    study
+}
+
+fn column(generation: &Generation, name: &str) -> Vec<Value> {
+    let value = |point: &billow_study::plan::Point| {
+        let parameters = &point.job.parameters;
+        parameters.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone()).unwrap()
+    };
+    generation.points.iter().map(value).collect()
+}
+
+fn integers(values: &[i64]) -> Vec<Value> {
+    values.iter().map(|value| Value::Integer(*value)).collect()
+}
+
+fn numbers(values: &[f64]) -> Vec<Value> {
+    values.iter().map(|value| Value::Number(*value)).collect()
+}
+
+#[test]
+fn spelling_does_not_change_a_job() {
+    let expected = id(&capsule());
+    for (pointer, value) in [
+        ("/design/N", json!(6.0)),
+        ("/design/height", json!(1.0)),
+        ("/design/height", json!("1000 mm")),
+        ("/design/bottom_radius", json!("50 cm")),
+        ("/design/stowed_height", json!(0.04)),
+        ("/design/stowed_height", json!("40 mm")),
+        ("/design/fit", json!("cone")),
+        ("/film", json!({"thickness": "25.4 um", "temperature": "293 K", "compression": -0.0})),
+        ("/gas/mass_flow_rate", json!("5 g/s")),
+        ("/gas/residual_gas_mass", json!(0)),
+        ("/gas/species", json!("nitrogen")),
+        ("/gas/species", json!({"cp": 1038.81068, "gas_constant": 296.803052})),
+        ("/gas/residual_gas", json!("stored")),
+        ("/gravity", json!(-0.0)),
+        ("/strategy", json!("direct")),
+        ("/strategies", json!({"direct": {"inflow": [{"from": 0, "to": 0.5}]}})),
+        ("/strategies", json!({"direct": {"inflow": [{"to": "9 s"}, {"rate": 0}]}})),
+        ("/supports", json!([{"on": "bottom_ring", "fix": "zyx"}])),
+        (
+            "/supports",
+            json!([{"on": "bottom_ring", "fix": "z"}, {"fix": "xy", "on": "bottom_ring"}]),
+        ),
+        ("/solver/stepping", json!({"adaptive": 1e-6})),
+        ("/seed", json!(0)),
+        ("/question", json!("Another question?")),
+        ("/version", json!(1)),
+    ] {
+        let mut study = capsule();
+        let (parent, leaf) = pointer.rsplit_once('/').unwrap();
+        study.pointer_mut(parent).unwrap()[leaf] = value.clone();
+        assert_eq!(id(&study), expected, "{pointer} = {value}");
+    }
+    // And what is another job has another id.
+    for (pointer, value) in [
+        ("/design/N", json!(5)),
+        ("/design/height", json!("1001 mm")),
+        ("/gas/mass_flow_rate", json!("5.000001 g/s")),
+        ("/gas/heat_transfer", json!("adiabatic")),
+        ("/seed", json!(1)),
+        ("/solver/stepping", json!({"fixed": "10 us"})),
+        ("/supports", json!([{"on": "bottom_ring", "fix": "z"}])),
+    ] {
+        let mut study = capsule();
+        let (parent, leaf) = pointer.rsplit_once('/').unwrap();
+        study.pointer_mut(parent).unwrap()[leaf] = value.clone();
+        assert_ne!(id(&study), expected, "{pointer} = {value}");
+    }
+}
+
+/// Reverses every object: the same study in another order of keys. Written as text, since a map of
+/// `serde_json` sorts its keys.
+fn reversed(json: &Json) -> String {
+    match json {
+        Json::Object(members) => {
+            let parts: Vec<String> =
+                members.iter().rev().map(|(k, v)| format!("{k:?}: {}", reversed(v))).collect();
+            format!("{{{}}}", parts.join(", "))
+        }
+        Json::Array(items) => {
+            format!("[{}]", items.iter().map(reversed).collect::<Vec<_>>().join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn ids_are_stable_under_rewriting(
+        panels in 5_u32..9,
+        storeys in 3_u32..6,
+        millimetres in 20_u32..60,
+        micrograms in 0_u32..100_000,
+        tenths in 1_u32..100,
+    ) {
+        let mut study = capsule();
+        study["design"]["N"] = panels.into();
+        study["design"]["M"] = storeys.into();
+        study["design"]["stowed_height"] = (f64::from(millimetres) / 1000.0).into();
+        study["gas"]["residual_gas_mass"] = format!("{micrograms}e-9").parse::<f64>().unwrap().into();
+        study["gas"]["mass_flow_rate"] = format!("{tenths}e-4").parse::<f64>().unwrap().into();
+        let expected = id(&study);
+
+        let mut rewritten = study.clone();
+        rewritten["design"]["N"] = f64::from(panels).into();
+        rewritten["design"]["M"] = f64::from(storeys).into();
+        rewritten["design"]["stowed_height"] = format!("{millimetres} mm").into();
+        rewritten["gas"]["residual_gas_mass"] = format!("{micrograms} ug").into();
+        rewritten["gas"]["mass_flow_rate"] = format!("0.{tenths:04} kg/s").into();
+        prop_assert_eq!(&id(&rewritten), &expected);
+
+        let text = reversed(&rewritten);
+        let other = Study::from_text(&text, "f", "x", &[], Limits::default()).unwrap();
+        prop_assert_eq!(&next_jobs(&other, &[]).unwrap().points[0].job.id, &expected);
+
+        // Defaults spelled out.
+        let resolved = other.to_json();
+        prop_assert_eq!(&id(&resolved), &expected);
+    }
+}
+
+#[test]
+fn a_grid_is_the_product_in_the_order_of_the_file() {
+    let text = r#"{"design": {"bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
+        "gas": {"mass_flow_rate": 0.005}, "solver": {"end_time": 0.5},
+        "grid": {"N": [5, 6], "M": [4, 3], "film.thickness": ["25.4 um", "12.7 um"]}}"#;
+    let study = Study::from_text(text, "f", "x", &[], Limits::default()).unwrap();
+    assert_eq!(study.parameter_names(), ["N", "M", "thickness"]);
+    let generation = next_jobs(&study, &[]).unwrap();
+    assert_eq!(generation.number, 0);
+    assert_eq!(column(&generation, "N"), integers(&[5, 5, 5, 5, 6, 6, 6, 6]));
+    assert_eq!(column(&generation, "M"), integers(&[4, 4, 3, 3, 4, 4, 3, 3]));
+    let thin = [25.4e-6, 12.7e-6];
+    assert_eq!(column(&generation, "thickness"), numbers(&thin.repeat(4)));
+    assert_eq!(generation.points[1].job.scene.film.thickness.to_bits(), 12.7e-6_f64.to_bits());
+}
+
+#[test]
+fn ranges_give_the_values_a_list_would() {
+    for (key, range, values) in [
+        (
+            "mass_flow_rate",
+            json!({"from": 0.001, "to": 0.005, "step": 0.001}),
+            vec![0.001, 0.002, 0.003, 0.004, 0.005],
+        ),
+        (
+            "mass_flow_rate",
+            json!({"from": "1 g/s", "to": "5 g/s", "step": "2 g/s"}),
+            vec![0.001, 0.003, 0.005],
+        ),
+        (
+            "mass_flow_rate",
+            json!({"from": 0.001, "to": 0.1, "steps": 3, "spacing": "log"}),
+            vec![0.001, 0.01, 0.1],
+        ),
+        (
+            "compression",
+            json!({"from": 0, "to": 1, "steps": 11}),
+            vec![0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0],
+        ),
+        ("compression", json!({"from": 0.1, "to": 0.75, "step": 0.2}), vec![0.1, 0.3, 0.5, 0.7]),
+    ] {
+        let generation = plan(&with_grid(json!({key: range})), &[]);
+        assert_eq!(column(&generation, key), numbers(&values), "{range}");
+    }
+    let whole = plan(&with_grid(json!({"N": {"from": 5, "to": 8, "step": 1}})), &[]);
+    assert_eq!(column(&whole, "N"), integers(&[5, 6, 7, 8]));
+    let error = try_study(&with_grid(json!({"N": {"from": 5, "to": 8, "steps": 3}})), &[]);
+    assert!(error.unwrap_err().to_string().contains("is not a whole number"));
+}
+
+#[test]
+fn zip_points_and_filter() {
+    let generation = plan(
+        &with_grid(json!({
+            "zip": [{"N": [5, 6, 8], "M": [3, 3, 4]}],
+            "seed": [1, 2],
+            "points": [{"M": 5}, {"N": 7, "seed": 9}],
+            "filter": "not (N == 8 and seed == 2) and M < 6",
+        })),
+        &[],
+    );
+    assert_eq!(column(&generation, "N"), integers(&[5, 6, 8, 5, 6, 6, 7]));
+    assert_eq!(column(&generation, "M"), integers(&[3, 3, 4, 3, 3, 5, 3]));
+    assert_eq!(column(&generation, "seed"), integers(&[1, 1, 1, 2, 2, 0, 9]));
+
+    let only = plan(&with_grid(json!({"points": [{"N": 5}, {"N": 6}]})), &[]);
+    assert_eq!(column(&only, "N"), integers(&[5, 6]));
+
+    let solved = with_grid(json!({"M": [1, 2, 3, 4, 5], "filter": "feasible and phi > '30 deg'"}));
+    assert_eq!(column(&plan(&solved, &[]), "M"), integers(&[3, 4, 5]));
+    let answers = plan(&with_grid(json!({"M": [1, 2]})), &[]);
+    let reason = answers.points[0].infeasible.as_ref().unwrap();
+    assert!(reason.nearest.iter().any(|near| near.key == "M" && near.value == 2.0), "{reason:?}");
+    assert_eq!(answers.points[1].infeasible, None);
+}
+
+#[test]
+fn strategies_resolve_to_windows() {
+    let mut study = capsule();
+    study["gas"]["residual_gas_mass"] = "0.05 g".into();
+    study["strategies"] = json!({
+        "delayed": {"release_time": 0.1, "inflow": [{"from": 0.3, "to": 0.4, "rate": "1 g/s"}]},
+        "preinflate": {"preinflation_mass": "0.15 g", "inflow": []},
+    });
+    study["strategy"] = "delayed".into();
+    study["grid"] = json!({"residual_gas": ["burst", "stored"]});
+    let generation = plan(&study, &[]);
+    let burst = &generation.points[0].job.scene;
+    let windows: Vec<[f64; 3]> =
+        burst.gas.windows.iter().map(|window| [window.from, window.to, window.rate]).collect();
+    assert_eq!(windows.len(), 2);
+    assert_eq!(windows[0][0], 0.1);
+    assert!((windows[0][1] - 0.11).abs() < 1e-15 && windows[0][2] == 0.005);
+    assert_eq!(windows[1], [0.3, 0.4, 0.001]);
+    assert_eq!((burst.gas.initial_mass, burst.release_time), (0.0, 0.1));
+    let stored = &generation.points[1].job.scene;
+    assert_eq!((stored.gas.initial_mass, stored.gas.windows.len()), (5e-5, 1));
+
+    study["grid"] = json!({"strategies.delayed.inflow[0].rate": ["1 g/s", "2 g/s"],
+        "strategies.delayed.release_time": [0, 0.1]});
+    let generation = plan(&study, &[]);
+    assert_eq!(generation.points.len(), 4);
+    let names: Vec<&str> =
+        generation.points[0].job.parameters.iter().map(|(name, _)| name.as_str()).collect();
+    assert!(names.contains(&"strategies.delayed.inflow[0].rate"), "{names:?}");
+
+    study["grid"] = json!({"strategy": ["preinflate"], "residual_gas": ["stored"]});
+    let mass = plan(&study, &[]).points[0].job.scene.gas.initial_mass;
+    assert!((mass - 2e-4).abs() < 1e-18);
+}
+
+#[test]
+fn overrides_come_before_expansion() {
+    let study = with_grid(json!({"N": [5, 6], "M": [3]}));
+    let generation = plan(&study, &["grid.N=[8]", "thickness=12.7 um", "gas.species=helium"]);
+    assert_eq!(column(&generation, "N"), integers(&[8]));
+    let scene = &generation.points[0].job.scene;
+    assert_eq!(scene.film.thickness, 12.7e-6);
+    assert!(scene.gas.species.gas_constant > 2000.0);
+
+    for (set, problem) in [
+        ("film.thickness=thick", "--set film.thickness=thick: film.thickness = \"thick\""),
+        ("N=7", "the grid varies this key"),
+        ("nonsense", "has no `=`"),
+        ("film.thicknes=1", "did you mean thickness?"),
+        ("=1", "names no place"),
+        ("grid.filter=N >", "something is missing here"),
+        ("supports[3]=1", "names no place"),
+    ] {
+        let error = try_study(&study, &[set]).unwrap_err().to_string();
+        assert!(error.contains(problem) && error.contains("--set"), "{set}: {error}");
+    }
+}
+
+#[test]
+fn duplicates_are_merged_with_a_note() {
+    let generation = plan(&with_grid(json!({"N": [6, 6.0, 5], "points": [{"N": 6}]})), &[]);
+    assert_eq!(column(&generation, "N"), integers(&[6, 5]));
+    assert_eq!(generation.points[0].merged.len(), 2);
+    assert_eq!(generation.points[0].merged[0], vec![("N".to_owned(), Value::Integer(6))]);
+}
+
+#[test]
+fn generations_are_a_pure_function_of_what_is_finished() {
+    let study = try_study(&with_grid(json!({"M": [1, 3, 4]})), &[]).unwrap();
+    let all = next_jobs(&study, &[]).unwrap();
+    assert_eq!(all.points.len(), 3);
+    let finished: Vec<FinishedRow> = all
+        .points
+        .iter()
+        .map(|point| FinishedRow {
+            id: point.job.id.clone(),
+            status: "done".to_owned(),
+            verdict: None,
+        })
+        .collect();
+    assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));
+    let mut other_order = finished[1..].to_vec();
+    other_order.reverse();
+    // The first is infeasible: its row is written, but nothing waits for it.
+    assert_eq!(next_jobs(&study, &other_order), None);
+    assert_eq!(next_jobs(&study, &finished), None);
+}
+
+#[test]
+fn ten_thousand_jobs_are_planned_in_two_seconds() {
+    let study = with_grid(json!({
+        "N": {"from": 4, "to": 13, "step": 1},
+        "M": {"from": 1, "to": 10, "step": 1},
+        "mass_flow_rate": {"from": "1 g/s", "to": "10 g/s", "steps": 10},
+        "residual_gas_mass": {"from": 0, "to": "0.1 g", "steps": 10},
+        "filter": "N >= 4 and mass_flow_rate > '0.1 g/s'",
+    }));
+    let start = Instant::now();
+    let generation = plan(&study, &[]);
+    let elapsed = start.elapsed();
+    println!("10,000 points planned in {elapsed:?}");
+    assert_eq!(generation.points.len(), 10_000);
+    assert!(elapsed < Duration::from_secs(2), "{elapsed:?}");
+
+    // Grids beyond any plan are refused before they are built.
+    for axis in
+        [json!({"from": 0, "to": 1e9, "step": 1}), json!({"from": 0, "to": 9, "steps": 1e9 as i64})]
+    {
+        let error = try_study(&with_grid(json!({"seed": axis})), &[]).unwrap_err();
+        assert!(error.problem.contains("a grid may have 250000 points"), "{error}");
+    }
+    let many: Vec<i64> = (0..1000).collect();
+    let huge = with_grid(json!({"seed": many, "step_limit": (1..1000).collect::<Vec<i64>>()}));
+    assert!(try_study(&huge, &[]).unwrap_err().problem.contains("999000 points"));
+}

@@ -1,0 +1,149 @@
+//! The study files that ship: each is sound by the schema, plans, and is listed with its question.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use billow_study::job::JobId;
+use billow_study::plan::next_jobs;
+use billow_study::schema::study_schema;
+use billow_study::study::{Limits, Study};
+use billow_study::study_file;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies")
+}
+
+fn shipped() -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .collect();
+    files.sort();
+    assert!(files.len() >= 3, "{files:?}");
+    files
+}
+
+fn ids(study: &Study) -> Vec<JobId> {
+    let generation = next_jobs(study, &[]).unwrap();
+    generation.points.into_iter().map(|point| point.job.id).collect()
+}
+
+#[test]
+fn every_file_is_sound_by_the_schema_and_plans() {
+    let schema = study_schema();
+    jsonschema::meta::validate(&schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let readme = fs::read_to_string(folder().join("README.md")).unwrap();
+    for path in shipped() {
+        let text = fs::read_to_string(&path).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let errors: Vec<String> =
+            validator.iter_errors(&json).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", path.display());
+
+        let study = study_file::load(&path, &[]).unwrap();
+        assert!(study.question.ends_with('?'), "{}", path.display());
+        let generation = next_jobs(&study, &[]).unwrap();
+        assert!(generation.points.iter().any(|point| point.infeasible.is_none()));
+
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert!(readme.contains(&format!("`{name}`")), "{name} is not listed in README.md");
+    }
+}
+
+#[test]
+fn a_resolved_study_is_a_study_of_the_same_jobs() {
+    let validator = jsonschema::validator_for(&study_schema()).unwrap();
+    for path in shipped() {
+        let study = study_file::load(&path, &[]).unwrap();
+        let resolved = study.to_json();
+        assert!(validator.is_valid(&resolved), "{}", path.display());
+        let again =
+            Study::from_text(&resolved.to_string(), "study.json", "x", &[], Limits::default());
+        let again = again.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert_eq!(ids(&again), ids(&study), "{}", path.display());
+        assert_eq!(again.to_json(), resolved);
+        assert_eq!((&again.name, &again.question), (&study.name, &study.question));
+    }
+}
+
+/// What the schema refuses, the program refuses; so an editor that knows the schema never lies.
+#[test]
+fn the_schema_refuses_what_the_program_refuses() {
+    let validator = jsonschema::validator_for(&study_schema()).unwrap();
+    let sound = serde_json::json!({
+        "design": {"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
+        "gas": {"mass_flow_rate": "5 g/s"},
+        "solver": {"end_time": 0.5},
+    });
+    assert!(validator.is_valid(&sound));
+    for (pointer, value) in [
+        ("/design/N", serde_json::json!(3)),
+        ("/design/N", serde_json::json!("6")),
+        ("/design/height", serde_json::json!("1")),
+        ("/design/height", serde_json::json!(-1)),
+        ("/design", serde_json::json!({"panels": 6})),
+        ("/gas", serde_json::json!({"species": {"cp": 1000}})),
+        ("/gas/mass_flow_rate", serde_json::json!([0.005])),
+        ("/solver/model", serde_json::json!("pistons")),
+        ("/grid", serde_json::json!({"N": []})),
+        ("/grid", serde_json::json!({"bogus": [1]})),
+        ("/grid", serde_json::json!({"N": {"from": 4, "to": 6, "step": 1, "steps": 3}})),
+        ("/supports", serde_json::json!([{"on": "bottom_ring", "fix": "xx"}])),
+        ("/strategies", serde_json::json!({"two words": {}})),
+        ("/version", serde_json::json!(2)),
+    ] {
+        let mut broken = sound.clone();
+        match broken.pointer_mut(pointer) {
+            Some(place) => *place = value.clone(),
+            None => broken[&pointer[1..]] = value.clone(),
+        }
+        assert!(!validator.is_valid(&broken), "the schema takes {pointer} = {value}");
+        let read =
+            Study::from_text(&broken.to_string(), "broken.json", "x", &[], Limits::default());
+        assert!(read.is_err(), "the program takes {pointer} = {value}");
+    }
+}
+
+#[test]
+fn schema_and_plan_print_json() {
+    let billow = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_billow"))
+            .args(arguments)
+            .current_dir(folder())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (serde_json::from_slice(&output.stdout).unwrap(), output.stderr)
+    };
+    let (schema, _): (serde_json::Value, _) = billow(&["schema"]);
+    assert_eq!(schema, study_schema());
+
+    let (plan, stderr): (serde_json::Value, _) = billow(&["plan", "first.json", "--json"]);
+    let rows = plan.as_array().unwrap();
+    assert_eq!(rows.len(), 108);
+    for row in rows {
+        assert_eq!(row["id"].as_str().unwrap().len(), 32);
+        match row["status"].as_str().unwrap() {
+            "job" => assert!(row["reason"].is_null() && row["phi"].as_f64().unwrap() > 0.0),
+            "infeasible" => {
+                assert!(!row["reason"].as_str().unwrap().is_empty() && row["phi"].is_null());
+                assert!(row["nearest"].as_str().unwrap().contains("M = 3"), "{row}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+    // The paper's ratio: two storeys of six panels reach no metre, three do.
+    let feasible = |panels: u64, storeys: u64| {
+        rows.iter().any(|row| {
+            row["N"] == panels
+                && row["M"] == storeys
+                && row["alpha1_over_phi"] == 1.0
+                && row["status"] == "job"
+        })
+    };
+    assert!(!feasible(6, 2) && feasible(6, 3) && feasible(6, 4));
+    assert!(String::from_utf8(stderr).unwrap().contains("78 jobs, 30 infeasible points"));
+}
