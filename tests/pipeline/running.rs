@@ -11,7 +11,7 @@ fn a_study_runs_and_says_what_came_of_it() {
     let desk = Desk::new(&small_grid());
     let output = desk.run(&["run", "grid.json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let said = String::from_utf8(output.stdout).unwrap();
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
     assert!(said.starts_with("grid: 16 jobs run, 24 points\n"), "{said}");
     assert!(said.contains("status   16 done, 8 infeasible\n"), "{said}");
     assert!(said.contains("results  results/grid\n"), "{said}");
