@@ -145,7 +145,7 @@ fn write_history(writer: &raw::Writer, group: &Group, history: &History) -> hdf5
     Ok(())
 }
 
-fn number_attribute<T: hdf5::H5Type>(
+fn number_attribute<T: hdf5::H5Type + Copy>(
     location: &Location,
     name: &str,
     number: T,
@@ -176,11 +176,7 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
     let broken = |problem: String| Error::Disk { path: path.to_owned(), problem };
     let _door = DOOR.lock().unwrap_or_else(PoisonError::into_inner);
     let file = File::open(path).map_err(|error| broken(format!("no HDF5 file: {error}")))?;
-    let damaged = |error: hdf5::Error| {
-        broken(format!(
-            "damaged history file: {error}\n  next: `billow run` of its study runs the job again"
-        ))
-    };
+    let damaged = |error| damaged(path, &error);
     let format = read_text(&file, "format").unwrap_or_default();
     if format != FORMAT {
         return Err(broken("an HDF5 file, but no billow history".to_owned()));
@@ -204,6 +200,15 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
         content_hash: read_text(&file, "content_hash").map_err(damaged)?,
         history: read_history(&file).map_err(damaged)?,
     })
+}
+
+fn damaged(path: &Path, error: &hdf5::Error) -> Error {
+    Error::Disk {
+        path: path.to_owned(),
+        problem: format!(
+            "damaged history file: {error}\n  next: `billow run` of its study runs the job again"
+        ),
+    }
 }
 
 fn read_history(file: &File) -> hdf5::Result<History> {

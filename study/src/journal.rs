@@ -86,14 +86,14 @@ fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal) -> Result<()> {
     };
     let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
     if whole < bytes.len() {
-        let line = bytes[..whole].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = line_after(&bytes[..whole]);
         journal.notes.push(format!(
             "{}: line {line} is torn (the program was stopped while writing it); its job is run again",
             path.display()
         ));
     }
     let text = std::str::from_utf8(&bytes[..whole]).map_err(|error| {
-        let line = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = line_after(&bytes[..error.valid_up_to()]);
         foreign(line, "not UTF-8 text")
     })?;
     let mut lines = text.lines();
@@ -118,6 +118,11 @@ fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal) -> Result<()> {
         journal.records.insert(record.job.clone(), record);
     }
     Ok(())
+}
+
+/// Number of the line that follows these bytes.
+fn line_after(bytes: &[u8]) -> usize {
+    bytes.split(|byte| *byte == b'\n').count()
 }
 
 fn parse(line: &str) -> std::result::Result<Record, String> {

@@ -243,7 +243,9 @@ mod tests {
     #[test]
     fn lines_say_where_the_study_stands() {
         let mut lines = Lines::new(Vec::new(), true);
-        events().iter().for_each(|event| lines.event(event));
+        for event in events() {
+            lines.event(&event);
+        }
         lines.event(&Event::Ended);
         let expected = "4 jobs, 3 finished, 1 to run\nnote: a line is torn\nabababab unstable\n\
                         4 of 4 jobs finished, 1 failed\n";
@@ -306,7 +308,9 @@ mod tests {
         let screen = Screen::default();
         let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
         let mut bars = Bars::new(target, false, false);
-        events().iter().for_each(|event| bars.event(event));
+        for event in events() {
+            bars.event(&event);
+        }
         bars.study.force_draw();
         bars.jobs[1].force_draw();
         let text = screen.0.lock().unwrap().clone();

@@ -229,7 +229,9 @@ impl State<'_> {
             self.table_stale = true;
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
-        events.iter().for_each(|event| reporter.event(event));
+        for event in &events {
+            reporter.event(event);
+        }
         if Instant::now() >= self.table_due {
             self.write_table()?;
         }

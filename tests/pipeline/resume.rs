@@ -13,7 +13,7 @@ use crate::support::{Desk, grid, histories, small_grid, stderr, without_costs};
 fn long_grid() -> serde_json::Value {
     let flows: Vec<f64> = (1..=30).map(|flow| 0.0002 * f64::from(flow)).collect();
     let mut study = grid(&serde_json::json!({
-        "N": [5, 6], "M": 3, "alpha1_over_phi": [0.6, 9.0], "mass_flow_rate": flows
+        "N": [5, 6], "M": [2, 3], "alpha1_over_phi": [0.8], "mass_flow_rate": flows
     }));
     study["outputs"] = serde_json::json!({ "sample_interval": "0.1 ms" });
     study

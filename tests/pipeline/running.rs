@@ -25,7 +25,8 @@ fn a_study_runs_and_says_what_came_of_it() {
     assert_eq!(rows.len(), 24);
     for row in &rows {
         let done = row["status"] == "done";
-        assert_eq!(done, row["alpha1_over_phi"].as_f64() != Some(9.0), "{row}");
+        let tall = row["M"] == 3 || row["alpha1_over_phi"].as_f64() == Some(9.0);
+        assert_eq!(done, tall, "two storeys reach 1 m only at a large ratio: {row}");
         if done {
             for column in ["final_volume", "final_pressure", "phi", "top_radius", "steps"] {
                 assert!(row[column].as_f64().unwrap() > 0.0, "{column}: {row}");
@@ -41,7 +42,11 @@ fn a_study_runs_and_says_what_came_of_it() {
     let order: Vec<_> =
         rows.iter().map(|row| (row["N"].clone(), row["M"].clone())).take(7).collect();
     assert_eq!(order[0], (json!(5), json!(2)));
-    assert_eq!(order[6], (json!(5), json!(3)), "the last axis runs fastest");
+    assert_eq!(
+        order[6],
+        (json!(6), json!(2)),
+        "axes in the order of the file, the last one fastest"
+    );
 }
 
 #[test]

@@ -65,7 +65,7 @@ pub fn stderr(output: &Output) -> String {
 /// The user's main grid, small: N × M × flow × residual gas, with points no pattern meets.
 pub fn small_grid() -> Value {
     grid(&serde_json::json!({
-        "N": [5, 6], "M": [2, 3], "alpha1_over_phi": [0.6, 1.2, 9.0],
+        "N": [5, 6], "M": [2, 3], "alpha1_over_phi": [0.8, 1, 9.0],
         "mass_flow_rate": ["2 g/s"], "residual_gas_mass": [0, "0.05 g"]
     }))
 }
@@ -73,7 +73,7 @@ pub fn small_grid() -> Value {
 /// A study of that grid on the piston.
 pub fn grid(axes: &Value) -> Value {
     serde_json::json!({
-        "design": { "fit": "height", "bottom_radius": "250 mm", "height": "700 mm" },
+        "design": { "fit": "height", "bottom_radius": "500 mm", "height": "1 m" },
         "gas": { "species": "nitrogen" },
         "solver": { "end_time": "0.6 s" },
         "grid": axes

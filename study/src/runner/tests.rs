@@ -30,9 +30,13 @@ impl Reporter for Heard {
 
 impl Heard {
     fn notes(&self) -> Vec<&str> {
-        let note =
-            |event| if let &Event::Note(ref text) = event { Some(text.as_str()) } else { None };
-        self.0.iter().filter_map(note).collect()
+        let mut notes = Vec::new();
+        for event in &self.0 {
+            if let Event::Note(text) = event {
+                notes.push(text.as_str());
+            }
+        }
+        notes
     }
 }
 
