@@ -27,7 +27,7 @@ use dormand_prince::{Trial, step};
 
 /// Tolerance of [`Stepping::Adaptive`] to use where nobody asks for another: ledger residuals stay
 /// below 1e-6.
-pub const DEFAULT_TOLERANCE: f64 = 1e-8;
+pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// A piecewise smooth, autonomous system of N equations.
 pub trait System<const N: usize> {

@@ -90,7 +90,7 @@ fn hard_starts_and_bounces_add_up() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(4000) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
 
     #[test]
     fn energy_and_gas_add_up(scene in scenes()) {
