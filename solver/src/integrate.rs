@@ -12,7 +12,7 @@
 //!   margin vanishes, so a kink of the force costs no order of accuracy.
 //! - [`Stepping::Adaptive`]: the largest component error of a step, over tolerance times the scale
 //!   of its group (the largest value any component of the group has had so far), is kept at or
-//!   below 1. Purely relative: no absolute tolerance to choose. The controller sees numbers of the
+//!   below 1. The scales begin with the least ones given at the start. The controller sees numbers of the
 //!   run alone, so it is deterministic.
 //! - [`Stepping::Fixed`]: the same formulas, every step as given, shortened only to land.
 //! - Sums are compensated (Kahan), so a constant rate integrates to rounding whatever the number of
@@ -27,7 +27,7 @@ use dormand_prince::{Trial, step};
 
 /// Tolerance of [`Stepping::Adaptive`] to use where nobody asks for another: ledger residuals stay
 /// below 1e-6.
-pub const DEFAULT_TOLERANCE: f64 = 1e-8;
+pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// A piecewise smooth, autonomous system of N equations.
 pub trait System<const N: usize> {
@@ -91,9 +91,10 @@ const SMALLEST_STEP: f64 = 1e-18;
 const EDGE_TOLERANCE: f64 = 1e-14;
 
 impl<const N: usize, B: Copy> Integrator<N, B> {
-    /// Starts at a time (s), a state and the branch that state is in.
-    pub fn new(time: f64, state: [f64; N], branch: B) -> Self {
-        Self { time, state, branch, steps: 0, carry: [0.0; N], scales: [0.0; N], next_step: 0.0 }
+    /// Starts at a time (s), a state and the branch that state is in. `scales` by group: the error
+    /// scales a run that starts from nothing begins with; 0 for none.
+    pub fn new(time: f64, state: [f64; N], branch: B, scales: [f64; N]) -> Self {
+        Self { time, state, branch, steps: 0, carry: [0.0; N], scales, next_step: 0.0 }
     }
 
     /// Integrates to `target` (s) exactly, calling `accepted` with the state after every step.
@@ -218,8 +219,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         largest
     }
 
-    /// Cuts a trial that leaves the branch to where its margin vanishes (Illinois false position;
-    /// ends on the outer side of the edge).
+    /// Cuts a trial that leaves the branch to where its margin vanishes (secant, safeguarded by
+    /// bisection; ends on the outer side of the edge).
     fn to_edge<S: System<N, Branch = B>>(
         &self,
         system: &S,
@@ -230,34 +231,27 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         let (mut inner, mut inner_margin) = (0.0, system.margin(self.branch, &self.state));
         let (mut outer, mut outer_margin) = (full, system.margin(self.branch, &outside.state));
         let mut best = outside;
-        let mut last_side = 0;
-        for _ in 0..60 {
-            if outer - inner <= EDGE_TOLERANCE * full {
+        let mut bisect = false;
+        while outer - inner > EDGE_TOLERANCE * full && outer_margin < 0.0 {
+            let width = outer - inner;
+            let secant =
+                (inner * outer_margin - outer * inner_margin) / (outer_margin - inner_margin);
+            let middle = inner + 0.5 * width;
+            if middle <= inner || middle >= outer {
                 break;
             }
-            let guess =
-                (inner * outer_margin - outer * inner_margin) / (outer_margin - inner_margin);
-            let inside_bracket = guess > inner && guess < outer;
-            let length = if inside_bracket { guess } else { 0.5 * (inner + outer) };
+            let sound = !bisect && secant > inner && secant < outer;
+            let length = if sound { secant } else { middle };
             let trial = step(|y| system.rates(self.branch, y), &self.state, rates, length);
             let margin = system.margin(self.branch, &trial.state);
             if margin > 0.0 {
                 (inner, inner_margin) = (length, margin);
-                if last_side == 1 {
-                    outer_margin *= 0.5;
-                }
-                last_side = 1;
             } else {
                 best = trial;
                 (outer, outer_margin) = (length, margin);
-                if last_side == -1 {
-                    inner_margin *= 0.5;
-                }
-                last_side = -1;
-                if margin == 0.0 {
-                    break;
-                }
             }
+            // A margin that starts near zero, rises and falls fools the secant again and again.
+            bisect = !bisect && outer - inner > 0.5 * width;
         }
         best
     }

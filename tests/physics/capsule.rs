@@ -3,11 +3,12 @@
 use std::time::Instant;
 
 use billow_solver::deployment::{FailureKind, Observer, Progress, Stop};
+use billow_solver::fold::{FoldDesign, FoldPattern};
 use billow_solver::ladder::{self, SceneError, piston::PistonRun};
 use billow_solver::measures::Verdict;
 use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportPlace};
 
-use crate::geometry::solved;
+use crate::geometry::{paper_height, solved};
 use crate::rig::{PAPER_FILM, paper_scene, run, window};
 
 fn injected() -> Scene {
@@ -228,4 +229,30 @@ fn the_reference_stretches_a_little_with_pressure() {
     assert!(height(1.0) > 1.0 && height(1000.0) > height(100.0));
     // z = H + p V_e/(H k), k about 2π E t r/H.
     assert!((height(1000.0) - 1.0 - 0.0026).abs() < 0.0006, "{}", height(1000.0));
+}
+
+/// Every feasible design of a folds grid has a stroke, and deploys on 5 g/s.
+#[test]
+fn every_feasible_design_of_a_grid_runs() {
+    let mut feasible = 0;
+    for panels in [4, 5, 6, 8, 12] {
+        for storeys in [1, 2, 3, 4, 6] {
+            for ratio in [0.6, 0.8, 1.0, 1.2] {
+                let mut scene = injected();
+                scene.design = FoldDesign { panels, ..paper_height(storeys) };
+                scene.design.alpha1_over_phi = Some(ratio);
+                if FoldPattern::new(&scene.design).is_err() {
+                    continue;
+                }
+                feasible += 1;
+                let deployment = run(&scene);
+                let name = format!("N {panels} M {storeys} ratio {ratio}");
+                assert_eq!(deployment.stop, Stop::Done, "{name}");
+                assert_eq!(deployment.measures.verdict, Some(Verdict::Deployed), "{name}");
+                assert!(deployment.audit.ledger_residual < 1e-6, "{name}: {:?}", deployment.audit);
+            }
+        }
+    }
+    println!("{feasible} feasible designs");
+    assert!(feasible >= 20, "{feasible}");
 }

@@ -56,6 +56,39 @@ fn rises(values: &[f64]) -> bool {
     values.windows(2).all(|pair| pair[1] >= pair[0] - slack)
 }
 
+/// Fast heat exchange into an empty capsule that barely fills, and a bounce whose recoil ends as
+/// the film goes slack: both found by the properties below.
+#[test]
+fn hard_starts_and_bounces_add_up() {
+    let mut barely = paper_scene();
+    barely.film.thickness = 1e-5;
+    barely.film.viscosity = 0.0;
+    barely.gas.windows = vec![window(0.0, 0.005, 1.09e-4)];
+    barely.gas.heat_transfer = HeatTransfer::Coefficient(6.17);
+    let mut bounces = paper_scene();
+    bounces.design = crate::geometry::paper_height(4);
+    bounces.film.youngs_modulus = 4.78e9;
+    bounces.film.thickness = 9.575e-5;
+    bounces.film.viscosity = 0.0273;
+    bounces.gas.initial_mass = 5.844e-5;
+    bounces.gas.windows = vec![
+        window(0.0677, 0.256, 0.00845),
+        window(0.1232, 0.173, 0.00555),
+        window(0.069, 0.137, 0.00742),
+    ];
+    bounces.gas.heat_transfer = HeatTransfer::Isothermal;
+    bounces.gas.leak_area = 8.0e-5;
+    bounces.gravity = -3.126;
+    bounces.release_time = 0.0528;
+    for scene in [barely, bounces] {
+        let deployment = run(&scene);
+        assert_eq!(deployment.stop, Stop::Done);
+        assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
+        assert!(deployment.audit.gas_residual < 1e-6, "{:?}", deployment.audit);
+        assert!(deployment.steps < 20_000, "{}", deployment.steps);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
 

@@ -34,7 +34,7 @@ fn energy(system: &Bouncer, y: &[f64; 2]) -> f64 {
 
 fn run(stepping: Stepping, end: f64) -> (Integrator<2, bool>, Bouncer) {
     let system = Bouncer { stiffness: 1e4 };
-    let mut integrator = Integrator::new(0.0, [0.5, 1.0], false);
+    let mut integrator = Integrator::new(0.0, [0.5, 1.0], false, [0.0; 2]);
     let control = Control { stepping, step_limit: 1_000_000 };
     integrator.advance(&system, end, &control, &mut |_| ()).unwrap();
     assert_eq!(integrator.time, end);
@@ -72,7 +72,7 @@ fn tolerance_rules_the_error() {
 }
 
 fn stop(system: &Bouncer, start: [f64; 2], stepping: Stepping, step_limit: u64) -> Failure {
-    let mut integrator = Integrator::new(0.0, start, false);
+    let mut integrator = Integrator::new(0.0, start, false, [0.0; 2]);
     let control = Control { stepping, step_limit };
     integrator.advance(system, 10.0, &control, &mut |_| ()).unwrap_err()
 }
@@ -115,7 +115,7 @@ impl System<1> for Runaway {
 
 #[test]
 fn a_runaway_ends_typed_at_its_pole() {
-    let mut integrator = Integrator::new(0.0, [1.0], ());
+    let mut integrator = Integrator::new(0.0, [1.0], (), [0.0]);
     let control = Control { stepping: Stepping::Adaptive(1e-6), step_limit: 1_000_000 };
     let failure = integrator.advance(&Runaway, 2.0, &control, &mut |_| ()).unwrap_err();
     assert!(matches!(failure.kind, FailureKind::StepLimit | FailureKind::Unstable));
@@ -148,7 +148,7 @@ fn a_constant_rate_integrates_to_rounding_whatever_the_step() {
         Stepping::Fixed(7.0),
         Stepping::Adaptive(1e-6),
     ] {
-        let mut integrator = Integrator::new(0.0, [0.0], ());
+        let mut integrator = Integrator::new(0.0, [0.0], (), [0.0]);
         let control = Control { stepping, step_limit: 1_000_000 };
         for target in [0.1, 0.337, 1.5] {
             integrator.advance(&Constant, target, &control, &mut |_| ()).unwrap();

@@ -106,7 +106,8 @@ impl EndFilm {
         match state {
             EndState::Slack => EndState::Taut,
             EndState::Taut if stretched && self.damping * speed < 0.0 => EndState::Recoiling,
-            EndState::Recoiling if stretched => EndState::Taut,
+            // Not by z > H, which rounding can leave true at the very end of the recoil.
+            EndState::Recoiling if self.margin(EndState::Taut, z, speed) > 0.0 => EndState::Taut,
             EndState::Taut | EndState::Recoiling => EndState::Slack,
         }
     }
