@@ -24,12 +24,14 @@
 use serde::{Deserialize, Serialize};
 
 mod angles;
+mod creases;
 mod fit;
 mod nearest;
 mod pattern;
 mod states;
 
 pub use angles::PanelAngles;
+pub use creases::{Assignment, Crease};
 pub use nearest::Nearest;
 pub use pattern::{FoldPattern, Lengths};
 pub use states::{Corner, Facet, Polygon};

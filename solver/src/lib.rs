@@ -29,6 +29,7 @@ pub mod ladder;
 pub mod ledger;
 pub mod measures;
 pub mod mesh;
+pub mod mesh_io;
 pub mod scene;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes

@@ -11,12 +11,26 @@
 
 pub mod cli;
 pub mod error;
+pub mod event;
+pub mod executor;
 pub mod expression;
+pub mod files;
+#[cfg(test)]
+mod fixture;
+pub mod history_file;
 pub mod job;
+pub mod journal;
 pub mod keys;
 pub mod plan;
+pub mod provenance;
+pub mod render;
+pub mod results;
+pub mod row;
+pub mod runner;
 pub mod schema;
+pub mod stop;
 pub mod study;
 pub mod study_file;
+pub mod table;
 pub mod units;
 pub mod value;

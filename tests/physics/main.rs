@@ -8,6 +8,7 @@
     reason = "judges by tolerances, not by bits; counts are small"
 )]
 
+mod exports;
 mod fold_numbers;
 mod fold_properties;
 mod geometry;

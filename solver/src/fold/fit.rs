@@ -50,16 +50,21 @@ pub(super) fn solve(design: &FoldDesign) -> Result<Solved, FoldError> {
 
 /// Why no pattern meets a design, or `None` when one does. Costs no root search.
 pub(super) fn obstacle(design: &FoldDesign) -> Option<String> {
-    let (panels, storeys) = (design.panels, design.storeys);
+    let stack = format!(
+        "{} {} of {} panels",
+        design.storeys,
+        if design.storeys == 1 { "storey" } else { "storeys" },
+        design.panels
+    );
     match design.fit {
         Fit::Cone => {
             let (half_angle, height) = nominal_cone(design);
-            let (slant, ratio) = PanelAngles::tallest(panels, half_angle);
+            let (slant, ratio) = PanelAngles::tallest(design.panels, half_angle);
             let tallest = stack_height(design, half_angle, slant, ratio);
             (tallest <= height).then(|| {
                 format!(
-                    "{storeys} storeys of {panels} panels on this cone are at most {tallest:.4} m \
-                     high (phi towards 0), the cone is {height:.4} m: no phi closes on the top radius"
+                    "{stack} on this cone reach at most {tallest:.4} m (phi towards 0), the cone is \
+                     {height:.4} m high: no phi closes on the top radius"
                 )
             })
         }
@@ -69,9 +74,8 @@ pub(super) fn obstacle(design: &FoldDesign) -> Option<String> {
             let height = given(design.height);
             (tallest < height).then(|| {
                 format!(
-                    "{storeys} storeys of {panels} panels at this alpha1_over_phi are at most \
-                     {tallest:.4} m high (as a cylinder), {height:.4} m are asked for: no half angle \
-                     of 0 or more closes"
+                    "{stack} at this alpha1_over_phi reach at most {tallest:.4} m (as a cylinder), \
+                     {height:.4} m are asked for: no half angle of 0 or more closes"
                 )
             })
         }

@@ -1,0 +1,59 @@
+# make study    install what is missing, build, run studies/first.json, print its table
+# make test     the quick tier of the tests (what CI runs)
+# make test-all the quick tier, the long ones, and the Python readers
+# make check    formatting, lints, docs
+# make bench    benchmarks
+# make fresh-check  both README commands in a bare Debian 12 root (root only)
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+
+# One profile and one feature set for everything, so that every dependency is compiled once.
+CARGO := cargo
+FLAGS := --release --workspace --locked
+BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
+
+PACKAGES := libhdf5-dev pkg-config
+READER_PACKAGES := python3 python3-venv
+
+.PHONY: study test test-all test-long readers build check bench deps reader-deps fresh-check
+
+study: build
+	$(BILLOW) run studies/first.json
+	$(BILLOW) table studies/first.json
+
+test: deps
+	$(CARGO) test $(FLAGS)
+
+test-all: test test-long readers
+
+# Tests marked `#[ignore]` are the long tier.
+test-long: deps
+	$(CARGO) test $(FLAGS) -- --ignored
+
+# Opens a fresh study with h5py, xarray, pandas and pyarrow.
+readers: build reader-deps
+	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
+	$(BILLOW) run studies/first.json --results "$$results/first" --quiet > /dev/null; \
+	tests/readers/check.sh "$$results/first"
+
+build: deps
+	$(CARGO) build $(FLAGS)
+
+check: deps
+	$(CARGO) fmt --check
+	$(CARGO) clippy $(FLAGS) --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc $(FLAGS) --no-deps
+	if command -v cargo-deny > /dev/null; then cargo deny check; fi
+
+bench: deps
+	$(CARGO) bench $(FLAGS)
+
+deps:
+	@.ci/install.sh $(PACKAGES)
+
+reader-deps:
+	@.ci/install.sh $(READER_PACKAGES)
+
+fresh-check:
+	.ci/fresh-check.sh

@@ -1,0 +1,108 @@
+//! A disk that fails when told to: the fake beside the real one.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::{Append, Disk, Files, Lock};
+
+/// The real disk until its n-th changing operation (write, rename, sync, append, new folder, lock),
+/// which fails, as does every one after it. A failing write or append leaves the first half of its
+/// bytes behind, as a full disk does.
+#[derive(Debug, Clone)]
+pub struct FailingFiles {
+    failing_from: u64,
+    kind: io::ErrorKind,
+    operations: Arc<AtomicU64>,
+}
+
+impl FailingFiles {
+    /// Fails from operation `failing_from` on (1 is the first).
+    pub fn new(failing_from: u64, kind: io::ErrorKind) -> Self {
+        Self { failing_from, kind, operations: Arc::default() }
+    }
+
+    /// Never fails, only counts.
+    pub fn counting() -> Self {
+        Self::new(u64::MAX, io::ErrorKind::Other)
+    }
+
+    /// Changing operations asked for so far.
+    pub fn operations(&self) -> u64 {
+        self.operations.load(Ordering::SeqCst)
+    }
+
+    fn step(&self) -> io::Result<()> {
+        let number = self.operations.fetch_add(1, Ordering::SeqCst) + 1;
+        if number >= self.failing_from { Err(self.kind.into()) } else { Ok(()) }
+    }
+}
+
+impl Files for FailingFiles {
+    fn create_folder(&self, path: &Path) -> io::Result<bool> {
+        if path.is_dir() {
+            return Ok(false);
+        }
+        self.step()?;
+        Disk.create_folder(path)
+    }
+
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        Disk.read(path)
+    }
+
+    fn list(&self, path: &Path) -> io::Result<Vec<PathBuf>> {
+        Disk.list(path)
+    }
+
+    fn write_new(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.step().inspect_err(|_| {
+            let _ = Disk.write_new(path, &bytes[..bytes.len() / 2]);
+        })?;
+        Disk.write_new(path, bytes)
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.step()?;
+        Disk.rename(from, to)
+    }
+
+    fn sync_folder(&self, path: &Path) -> io::Result<()> {
+        self.step()?;
+        Disk.sync_folder(path)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        // Removing frees space: it works on a full disk, and on no other failing one.
+        if self.operations() >= self.failing_from && self.kind != io::ErrorKind::StorageFull {
+            return Err(self.kind.into());
+        }
+        Disk.remove(path)
+    }
+
+    fn create_append(&self, path: &Path) -> io::Result<Box<dyn Append>> {
+        self.step()?;
+        let real = Disk.create_append(path)?;
+        Ok(Box::new(FailingAppend { real, files: self.clone() }))
+    }
+
+    fn try_lock(&self, path: &Path) -> io::Result<Option<Lock>> {
+        self.step()?;
+        Disk.try_lock(path)
+    }
+}
+
+struct FailingAppend {
+    real: Box<dyn Append>,
+    files: FailingFiles,
+}
+
+impl Append for FailingAppend {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.files.step().inspect_err(|_| {
+            let _ = self.real.append(&bytes[..bytes.len() / 2]);
+        })?;
+        self.real.append(bytes)
+    }
+}

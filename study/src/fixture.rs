@@ -1,0 +1,161 @@
+//! Jobs and deployments made up for tests: sound scenes, invented series.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use billow_solver::audit::Audit;
+use billow_solver::deployment::{Deployment, Progress, Stop};
+use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign};
+use billow_solver::history::{COLUMNS, History};
+use billow_solver::measures::{Measures, Verdict};
+use billow_solver::scene::{
+    Contact, Film, GasSupply, HeatTransfer, ModelKind, Outputs, Scene, Solver, Species, Stepping,
+    Thresholds,
+};
+
+use crate::executor::{Executor, Outcome, Watch};
+use crate::job::{Job, JobId};
+use crate::plan::{Generation, Infeasible, Point};
+use crate::value::Value;
+
+/// A job whose seed is `number`.
+pub fn job(number: u32) -> Job {
+    let id = JobId::from_digits(&crate::history_file::bytes_hash(&number.to_le_bytes())[..32]);
+    Job {
+        id: id.unwrap(),
+        parameters: vec![
+            ("N".to_owned(), Value::Integer(6)),
+            ("mass_flow_rate".to_owned(), Value::Number(0.001 * f64::from(number))),
+        ],
+        scene: scene(number),
+    }
+}
+
+fn scene(number: u32) -> Scene {
+    Scene {
+        design: FoldDesign {
+            fit: Fit::Height,
+            panels: 6,
+            storeys: 3,
+            bottom_radius: 0.25,
+            top_radius: None,
+            height: Some(0.7),
+            half_angle: None,
+            alpha1_over_phi: Some(1.0),
+            chirality: Chirality::Same,
+            stowed_height: 0.04,
+            subdivisions: 4,
+            caps: Caps::Polygon,
+        },
+        film: Film {
+            youngs_modulus: 3.5e9,
+            poisson_ratio: 0.3,
+            density: 1390.0,
+            thickness: 25e-6,
+            compression: 0.01,
+            viscosity: 0.0,
+            temperature: 293.15,
+        },
+        gas: GasSupply {
+            species: Species { gas_constant: 296.8, cp: 1039.0 },
+            initial_mass: 0.0,
+            windows: Vec::new(),
+            ambient_pressure: 0.0,
+            heat_transfer: HeatTransfer::Coefficient(0.0),
+            leak_area: 0.0,
+            discharge_coefficient: 0.6,
+        },
+        supports: Vec::new(),
+        contact: Contact { distance: None, friction: 0.0, adhesion: 0.0 },
+        gravity: 0.0,
+        release_time: 0.0,
+        solver: Solver {
+            model: ModelKind::Piston,
+            end_time: 1.0,
+            stepping: Stepping::Adaptive(1e-9),
+            step_limit: 1_000_000,
+        },
+        outputs: Outputs { sample_interval: 0.001, thresholds: Thresholds::default() },
+        seed: u64::from(number),
+    }
+}
+
+/// A deployment of that many samples; its series depend on `number` alone.
+pub fn deployment(number: u32, samples: usize) -> Deployment {
+    let mut history = History::new();
+    for sample in 0..samples {
+        let mut values = [0.0; COLUMNS.len()];
+        for (column, value) in values.iter_mut().enumerate() {
+            *value = libm::sin(f64::from(number) + 0.1 * column as f64 + 0.01 * sample as f64);
+        }
+        values[0] = 0.001 * sample as f64;
+        history.push(&values);
+    }
+    Deployment {
+        history,
+        measures: Measures {
+            verdict: Some(Verdict::Deployed),
+            final_volume: Some(0.07 + 0.001 * f64::from(number)),
+            t_50_z_rim: Some(0.1 + 0.2),
+            ..Measures::default()
+        },
+        audit: Audit { ledger_residual: 1e-12, ..Audit::default() },
+        stop: Stop::Done,
+        steps: 100,
+        elements: 0,
+    }
+}
+
+/// A plan of `jobs` jobs, whose third point is infeasible.
+pub fn generation(jobs: u32) -> Generation {
+    let points = (0..jobs)
+        .map(|number| Point {
+            job: job(number),
+            infeasible: (number == 2).then(|| Infeasible {
+                reason: "alpha1 would exceed pi/2 - pi/N".to_owned(),
+                nearest: Vec::new(),
+            }),
+            merged: Vec::new(),
+        })
+        .collect();
+    Generation { number: 0, points }
+}
+
+/// An executor that makes its deployments up and does as `script` says.
+pub struct Scripted<S> {
+    /// What becomes of the job with that seed; it may panic.
+    pub script: S,
+    /// Jobs asked for so far.
+    pub asked: AtomicUsize,
+    /// Size of a batch.
+    pub batch: usize,
+}
+
+impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
+    /// Of one job a batch.
+    pub fn new(script: S) -> Self {
+        Self { script, asked: AtomicUsize::new(0), batch: 1 }
+    }
+}
+
+/// A job that ran, with seven samples.
+pub fn ran(number: u32) -> Outcome {
+    Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5 }
+}
+
+impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
+    fn batch(&self) -> usize {
+        self.batch
+    }
+
+    fn execute(&self, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome> {
+        let run = |(position, job): (usize, &&Job)| {
+            self.asked.fetch_add(1, Ordering::SeqCst);
+            let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
+            if !watch(position, progress) {
+                return Outcome::Cancelled;
+            }
+            (self.script)(u32::try_from(job.scene.seed).unwrap())
+        };
+        jobs.iter().enumerate().map(run).collect()
+    }
+}

@@ -1,0 +1,3 @@
+//! Pictures, as SVG text.
+
+pub mod crease_pattern;

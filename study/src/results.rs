@@ -1,0 +1,235 @@
+//! A results folder: where everything of a study lies, and whether it is sound.
+//!
+//! ```text
+//! results/<study>/study.json        the study as last run, defaults filled
+//!                 journal/*.jsonl   which jobs ended, and how (crate::journal)
+//!                 jobs/<ab>/<id>.h5 histories (crate::history_file)
+//!                 summary.parquet   the table, rebuilt from plan and journal (crate::table)
+//!                 lock              held while a command changes the folder
+//! ```
+//!
+//! Job ids are hashes of what decides a result, so a study may grow or change its grid and keep the
+//! folder: finished jobs that are still planned are kept, the others lie there unused, and the table
+//! follows the plan.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::files::{self, Files, Lock, disk_error};
+use crate::history_file;
+use crate::job::JobId;
+use crate::journal::{self, Journal, Record};
+use crate::table::{Table, parquet};
+
+/// Name of the format of study.json.
+const FORMAT: &str = "billow-study";
+/// Version of study.json this program writes, and the newest it reads.
+const VERSION: u64 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct StudyFile {
+    format: String,
+    version: u64,
+    name: String,
+    study: serde_json::Value,
+}
+
+/// A results folder on some disk.
+#[derive(Clone)]
+pub struct Results<'a> {
+    files: &'a dyn Files,
+    root: PathBuf,
+}
+
+impl<'a> Results<'a> {
+    /// The folder at `root`; nothing is read or written yet.
+    pub fn new(files: &'a dyn Files, root: &Path) -> Self {
+        Self { files, root: root.to_owned() }
+    }
+
+    /// The disk it lies on.
+    pub fn files(&self) -> &'a dyn Files {
+        self.files
+    }
+
+    /// Path of the folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Path of the journals.
+    pub fn journal_path(&self) -> PathBuf {
+        self.root.join("journal")
+    }
+
+    /// Path of a job's history file.
+    pub fn job_path(&self, id: &JobId) -> PathBuf {
+        self.root.join("jobs").join(&id.as_str()[..2]).join(format!("{id}.h5"))
+    }
+
+    /// Path of the summary table.
+    pub fn table_path(&self) -> PathBuf {
+        self.root.join("summary.parquet")
+    }
+
+    /// Creates the folder if need be, and takes its lock.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when it cannot be created, or when another command holds the lock.
+    pub fn lock(&self) -> Result<Lock> {
+        let at_root = |error: io::Error| disk_error(&self.root, &error);
+        self.files.create_folder(&self.root).map_err(at_root)?;
+        let path = self.root.join("lock");
+        let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
+        lock.ok_or_else(|| Error::Disk {
+            path: self.root.clone(),
+            problem: "another billow command is running this study\n  next: wait until it has \
+                      ended, or choose another folder with --results DIR"
+                .to_owned(),
+        })
+    }
+
+    /// Removes what a killed process left half written. Only with the lock held.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn sweep(&self) -> Result<()> {
+        let jobs = self.root.join("jobs");
+        let mut folders = self.files.list(&jobs).map_err(|error| disk_error(&jobs, &error))?;
+        // Job folders are named by two digits; anything else in there is not ours.
+        folders.retain(|path| path.file_name().is_some_and(|name| name.len() == 2));
+        folders.push(self.root.clone());
+        for folder in folders {
+            files::sweep(self.files, &folder).map_err(|error| disk_error(&folder, &error))?;
+        }
+        Ok(())
+    }
+
+    /// Notes which study the folder belongs to, unless it says so already.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when it belongs to another study, or to a newer program.
+    pub fn write_study(&self, name: &str, study: &serde_json::Value) -> Result<()> {
+        let path = self.root.join("study.json");
+        let refused = |problem: String| Error::Disk {
+            path: path.clone(),
+            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
+        };
+        match self.files.read(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(error) => return Err(disk_error(&path, &error)),
+            Ok(bytes) => {
+                let there: StudyFile = serde_json::from_slice(&bytes)
+                    .map_err(|error| refused(format!("not a study.json of billow: {error}")))?;
+                if there.format != FORMAT {
+                    return Err(refused(format!("format {:?} is not {FORMAT:?}", there.format)));
+                }
+                if there.version > VERSION {
+                    return Err(refused(format!(
+                        "version {}, this program reads up to {VERSION}: written by a newer billow",
+                        there.version
+                    )));
+                }
+                if there.name != name {
+                    return Err(refused(format!(
+                        "the folder holds results of the study {:?}, not of {name:?}",
+                        there.name
+                    )));
+                }
+            }
+        }
+        let file = StudyFile {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            name: name.to_owned(),
+            study: study.clone(),
+        };
+        let mut bytes = serde_json::to_vec_pretty(&file)
+            .map_err(|error| disk_error(&path, &io::Error::other(error)))?;
+        bytes.push(b'\n');
+        files::write_if_changed(self.files, &path, &bytes)
+            .map_err(|error| disk_error(&path, &error))?;
+        Ok(())
+    }
+
+    /// What the journals say.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] as [`journal::read`].
+    pub fn journal(&self) -> Result<Journal> {
+        journal::read(self.files, &self.journal_path())
+    }
+
+    /// Why a recorded job has to run again after all: its history file is missing or not the one
+    /// recorded. `None` when all is well.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when the file is there but cannot be read.
+    pub fn damage(&self, record: &Record) -> Result<Option<String>> {
+        let Some(hash) = &record.file_hash else { return Ok(None) };
+        let path = self.job_path(&record.job);
+        match self.files.read(&path) {
+            Ok(bytes) if history_file::bytes_hash(&bytes) == *hash => Ok(None),
+            Ok(_) => Ok(Some(format!(
+                "{}: not the file that was written; its job is run again",
+                path.display()
+            ))),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                Ok(Some(format!("{}: missing; its job is run again", path.display())))
+            }
+            Err(error) => Err(disk_error(&path, &error)),
+        }
+    }
+
+    /// Stores a history file.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn write_job(&self, id: &JobId, bytes: &[u8]) -> Result<()> {
+        let path = self.job_path(id);
+        let jobs = self.root.join("jobs");
+        let folder = path.parent().unwrap_or(&jobs);
+        let written = || -> io::Result<()> {
+            if self.files.create_folder(folder)? {
+                self.files.sync_folder(&jobs)?;
+                self.files.sync_folder(&self.root)?;
+            }
+            files::write_atomic(self.files, &path, bytes)
+        };
+        written().map_err(|error| disk_error(&path, &error))
+    }
+
+    /// Stores the summary table, unless it is there already.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn write_table(&self, table: &Table) -> Result<()> {
+        let path = self.table_path();
+        let bytes = parquet::encode(table)
+            .map_err(|problem| Error::Disk { path: path.clone(), problem })?;
+        files::write_if_changed(self.files, &path, &bytes)
+            .map_err(|error| disk_error(&path, &error))?;
+        Ok(())
+    }
+
+    /// The summary table.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when there is none, or as [`parquet::decode`].
+    pub fn read_table(&self) -> Result<Table> {
+        let path = self.table_path();
+        match self.files.read(&path) {
+            Ok(bytes) => parquet::decode(&path, &bytes),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Err(Error::Disk {
+                path,
+                problem: "no table here\n  next: `billow run STUDY` first, or name the folder of \
+                          its results"
+                    .to_owned(),
+            }),
+            Err(error) => Err(disk_error(&path, &error)),
+        }
+    }
+}

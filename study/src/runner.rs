@@ -1,0 +1,305 @@
+//! Running a study: plan, skip what is finished, run the rest, store every job as it ends.
+//!
+//! Workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. This
+//! thread alone touches the disk: it stores what comes in, history file first, journal record
+//! second, so that a record always has its file; whatever happens in between is run again and gives
+//! the same bits.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use crate::error::{Error, Result};
+use crate::event::{Event, Reporter};
+use crate::executor::Executor;
+use crate::history_file;
+use crate::job::{Job, JobId};
+use crate::journal::{Record, Writer};
+use crate::plan::{FinishedRow, Generation, Point};
+use crate::results::Results;
+use crate::row::{self, Cells};
+use crate::stop::Stop;
+use crate::table::Table;
+
+mod workers;
+
+use workers::{Ended, Message};
+
+/// Least time between two writings of the table while jobs run.
+const TABLE_INTERVAL: Duration = Duration::from_secs(10);
+/// Longest time without a look at the stop flag.
+const TICK: Duration = Duration::from_millis(100);
+/// Most jobs stored under one sync of the journal.
+const GROUP: usize = 64;
+
+/// What to run, and with what.
+pub struct Run<'a> {
+    /// Name of the study.
+    pub name: &'a str,
+    /// The study, for study.json.
+    pub study: &'a serde_json::Value,
+    /// [`crate::plan::next_jobs`] of that study.
+    pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
+    /// SI unit of a parameter.
+    pub unit: &'a dyn Fn(&str) -> String,
+    /// Computes the jobs.
+    pub executor: &'a dyn Executor,
+    /// Where results go.
+    pub results: Results<'a>,
+    /// Threads; `None` is one a core.
+    pub threads: Option<NonZero<usize>>,
+    /// Asks to end early.
+    pub stop: Stop,
+}
+
+/// What a run left.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Summary {
+    /// Rows by status.
+    pub status: BTreeMap<String, usize>,
+    /// Done rows by verdict.
+    pub verdict: BTreeMap<String, usize>,
+    /// Jobs this run has computed and stored.
+    pub ran: usize,
+    /// The signal that ended it early.
+    pub signal: Option<i32>,
+}
+
+impl Summary {
+    /// Rows of failed jobs.
+    pub fn failed(&self) -> usize {
+        self.status.iter().filter(|(status, _)| row::is_failure(status)).map(|(_, n)| n).sum()
+    }
+}
+
+/// Runs what is missing of a study.
+///
+/// # Errors
+/// [`Error::Disk`] when results cannot be read or stored; what was stored until then is kept.
+pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
+    let _lock = run.results.lock()?;
+    run.results.sweep()?;
+    run.results.write_study(run.name, run.study)?;
+    let journal = run.results.journal()?;
+    for note in journal.notes {
+        reporter.event(&Event::Note(note));
+    }
+    let mut state = State {
+        run,
+        writer: Writer::new(run.results.files(), run.results.journal_path()),
+        recorded: journal.records,
+        records: BTreeMap::new(),
+        points: Vec::new(),
+        ran: 0,
+        table_due: Instant::now() + TABLE_INTERVAL,
+        table_stale: true,
+    };
+    let mut finished = Vec::new();
+    let mut last = None;
+    while run.stop.requested().is_none()
+        && let Some(generation) = (run.planner)(&finished)
+        && last.is_none_or(|last| generation.number > last)
+    {
+        last = Some(generation.number);
+        let missing = state.begin(generation, reporter)?;
+        state.run_jobs(&missing, reporter)?;
+        finished = state.finished();
+    }
+    state.write_table()?;
+    reporter.event(&Event::Ended);
+    Ok(state.summary())
+}
+
+struct State<'a> {
+    run: &'a Run<'a>,
+    writer: Writer<'a>,
+    /// What the journals held at the start, not yet checked.
+    recorded: BTreeMap<JobId, Record>,
+    /// Sound records of planned jobs.
+    records: BTreeMap<JobId, Record>,
+    /// Every point planned so far.
+    points: Vec<Point>,
+    ran: usize,
+    table_due: Instant,
+    table_stale: bool,
+}
+
+impl State<'_> {
+    /// Takes in a generation; gives the jobs that are missing, in plan order.
+    fn begin(&mut self, generation: Generation, reporter: &mut dyn Reporter) -> Result<Vec<Job>> {
+        let mut missing = Vec::new();
+        let mut seen = BTreeSet::new();
+        for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
+            let id = &point.job.id;
+            if !seen.insert(id.clone()) || self.records.contains_key(id) {
+                continue;
+            }
+            match self.recorded.remove(id) {
+                None => missing.push(point.job.clone()),
+                Some(record) => match self.run.results.damage(&record)? {
+                    None => {
+                        self.records.insert(id.clone(), record);
+                    }
+                    Some(note) => {
+                        reporter.event(&Event::Note(note));
+                        missing.push(point.job.clone());
+                    }
+                },
+            }
+        }
+        reporter.event(&Event::GenerationStarted {
+            number: generation.number,
+            jobs: seen.len(),
+            finished: seen.len() - missing.len(),
+        });
+        self.points.extend(generation.points);
+        self.table_stale = true;
+        Ok(missing)
+    }
+
+    fn run_jobs(&mut self, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
+        if jobs.is_empty() {
+            return Ok(());
+        }
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.run.threads.map_or(0, NonZero::get))
+            .thread_name(|thread| format!("billow-{thread}"))
+            .build()
+            .map_err(|error| Error::Disk {
+                path: "threads".into(),
+                problem: format!("cannot start: {error}\n  next: ask for fewer with --threads N"),
+            })?;
+        // Bounded, so that results wait with the workers and not in memory when the disk is slow.
+        let (sender, receiver) = mpsc::sync_channel(4 * pool.current_num_threads());
+        let abort = AtomicBool::new(false);
+        let stop = &self.run.stop;
+        let ending = || abort.load(Ordering::Relaxed) || stop.requested().is_some();
+        let executor = self.run.executor;
+        std::thread::scope(|scope| {
+            scope.spawn(|| workers::work(&pool, executor, jobs, &ending, sender));
+            let mut stored = Ok(());
+            while let Some((messages, ended)) = receive(&receiver) {
+                for message in &messages {
+                    if let Some(event) = workers::event(message, jobs) {
+                        reporter.event(&event);
+                    }
+                }
+                if stored.is_ok() {
+                    stored = self.store(jobs, ended, reporter);
+                    // The workers stop; what they still send is dropped, and run again next time.
+                    abort.store(stored.is_err(), Ordering::Relaxed);
+                }
+            }
+            stored
+        })
+    }
+
+    /// Stores jobs that ended: history files, then their records under one sync.
+    fn store(
+        &mut self,
+        jobs: &[Job],
+        ended: Vec<Ended>,
+        reporter: &mut dyn Reporter,
+    ) -> Result<()> {
+        let mut events = Vec::with_capacity(ended.len());
+        let mut records = Vec::with_capacity(ended.len());
+        for Ended { index, thread, cells, deployment } in ended {
+            let job = &jobs[index];
+            let mut file_hash = None;
+            if let Some(deployment) = deployment {
+                let path = self.run.results.job_path(&job.id);
+                let bytes = history_file::encode(job, &deployment, cells.text("content_hash"))
+                    .map_err(|problem| Error::Disk { path, problem })?;
+                self.run.results.write_job(&job.id, &bytes)?;
+                file_hash = Some(history_file::bytes_hash(&bytes));
+            }
+            events.push(Event::JobFinished {
+                id: job.id.clone(),
+                thread,
+                status: cells.status().to_owned(),
+                verdict: Some(cells.text("verdict").to_owned()).filter(|text| !text.is_empty()),
+            });
+            records.push(Record { job: job.id.clone(), cells, file_hash });
+        }
+        if !records.is_empty() {
+            self.writer.append(&records)?;
+            self.ran += records.len();
+            self.table_stale = true;
+            self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
+        }
+        events.iter().for_each(|event| reporter.event(event));
+        if Instant::now() >= self.table_due {
+            self.write_table()?;
+        }
+        Ok(())
+    }
+
+    fn write_table(&mut self) -> Result<()> {
+        if self.table_stale {
+            let table = Table::build(&self.points, &self.records, self.run.unit);
+            self.run.results.write_table(&table)?;
+            self.table_stale = false;
+        }
+        self.table_due = Instant::now() + TABLE_INTERVAL;
+        Ok(())
+    }
+
+    fn cells(&self, point: &Point) -> Option<Cells> {
+        match &point.infeasible {
+            Some(infeasible) => Some(Cells::infeasible(infeasible)),
+            None => self.records.get(&point.job.id).map(|record| record.cells.clone()),
+        }
+    }
+
+    /// What planning may know, in plan order.
+    fn finished(&self) -> Vec<FinishedRow> {
+        let row = |point: &Point| {
+            let cells = self.cells(point)?;
+            let verdict = cells.text("verdict");
+            Some(FinishedRow {
+                id: point.job.id.clone(),
+                status: cells.status().to_owned(),
+                verdict: (!verdict.is_empty()).then(|| verdict.to_owned()),
+            })
+        };
+        self.points.iter().filter_map(row).collect()
+    }
+
+    fn summary(&self) -> Summary {
+        let mut summary =
+            Summary { ran: self.ran, signal: self.run.stop.requested(), ..Summary::default() };
+        for point in &self.points {
+            let cells = self.cells(point).unwrap_or_else(|| Cells::new(row::PENDING));
+            *summary.status.entry(cells.status().to_owned()).or_default() += 1;
+            let verdict = cells.text("verdict");
+            if !verdict.is_empty() {
+                *summary.verdict.entry(verdict.to_owned()).or_default() += 1;
+            }
+        }
+        summary
+    }
+}
+
+/// What came in since the last look, ended jobs apart; `None` when no worker is left.
+fn receive(receiver: &Receiver<Message>) -> Option<(Vec<Message>, Vec<Ended>)> {
+    let mut messages = Vec::new();
+    let mut ended = Vec::new();
+    let mut next = match receiver.recv_timeout(TICK) {
+        Ok(message) => Some(message),
+        Err(RecvTimeoutError::Timeout) => None,
+        Err(RecvTimeoutError::Disconnected) => return None,
+    };
+    while let Some(message) = next {
+        match message {
+            Message::Ended(job) => ended.push(*job),
+            other => messages.push(other),
+        }
+        next = if ended.len() < GROUP { receiver.try_recv().ok() } else { None };
+    }
+    Some((messages, ended))
+}
+
+#[cfg(test)]
+mod tests;

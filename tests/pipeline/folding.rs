@@ -1,0 +1,143 @@
+//! `billow fold`: numbers, answers for infeasible designs, files.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const PAPER: [&str; 10] = [
+    "--panels",
+    "6",
+    "--storeys",
+    "3",
+    "--bottom-radius",
+    "0.5",
+    "--top-radius",
+    "365 mm",
+    "--height",
+    "1",
+];
+
+fn fold(flags: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_billow"))
+        .arg("fold")
+        .args(flags)
+        .output()
+        .expect("the binary runs")
+}
+
+fn json(flags: &[&str]) -> Value {
+    let output = fold(&[flags, &["--json"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn prints_the_papers_capsule_in_si() {
+    let answer = json(&PAPER);
+    let number = |key: &str| answer[key].as_f64().expect(key);
+    assert_eq!(answer["feasible"], true);
+    assert!((number("phi").to_degrees() - 31.5137).abs() < 5e-5);
+    assert!((number("alpha1").to_degrees() - 28.4863).abs() < 5e-5);
+    assert!((number("ring_ratio") - 0.900_411).abs() < 5e-7);
+    assert!((answer["lengths"]["AE"].as_f64().expect("AE") - 0.829_579).abs() < 5e-7);
+    assert!(number("closure_defect") < 1e-12);
+    assert_eq!(number("top_radius"), 0.365);
+    for key in [
+        "alpha2",
+        "beta1",
+        "beta2",
+        "gamma1",
+        "gamma2",
+        "theta1",
+        "theta2",
+        "half_angle",
+        "bottom_radius",
+        "height",
+    ] {
+        assert!(answer[key].is_number(), "{key}");
+    }
+}
+
+#[test]
+fn units_and_numbers_are_the_same() {
+    let mut other = PAPER;
+    other[5] = "500 mm";
+    other[9] = "100 cm";
+    assert_eq!(json(&PAPER), json(&other));
+}
+
+#[test]
+fn infeasible_is_an_answer() {
+    let mut flags = PAPER;
+    flags[3] = "1";
+    let answer = json(&flags);
+    assert_eq!(answer["feasible"], false);
+    assert!(answer["reason"].as_str().expect("a reason").contains("no phi closes"));
+    assert_eq!(answer["nearest"]["M"], 2);
+    assert!(answer["phi"].is_null());
+    // Without --json too, and nothing is written.
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let output = fold(&[&flags[..], &["--out", out.to_str().expect("a path")]].concat());
+    assert!(output.status.success());
+    assert!(!out.exists());
+}
+
+#[test]
+fn bad_designs_are_refused_in_one_line() {
+    let cases: [(&[&str], &str, &str); 8] = [
+        (&["--panels", "3"], "--panels", "4 to 1000"),
+        (&["--storeys", "0"], "--storeys", "1 to 1000"),
+        (&["--top-radius", "0"], "--top-radius", "no top ring"),
+        (&["--top-radius", "3 s"], "--top-radius", "a time, not a length"),
+        (&["--alpha1-over-phi", "1"], "--alpha1-over-phi", "cone"),
+        (&["--half-angle", "95 deg"], "--half-angle", "between"),
+        (&["--height", "-1"], "--height", "not a positive number"),
+        (&["--stowed-height", "2"], "--stowed-height", "below the height"),
+    ];
+    for (changed, flag, allowed) in cases {
+        let mut flags: Vec<&str> = PAPER.to_vec();
+        match flags.iter().position(|f| f == &changed[0]) {
+            Some(at) => flags[at + 1] = changed[1],
+            None => flags.extend(changed),
+        }
+        let output = fold(&flags);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{changed:?}: {error}");
+        assert!(output.stdout.is_empty(), "{changed:?}");
+        assert!(error.contains(flag) && error.contains(allowed), "{changed:?}: {error}");
+    }
+}
+
+#[test]
+fn writes_the_pattern_and_its_shapes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("new/folder");
+    let flags = ["--out", out.to_str().expect("a path"), "--glue-flaps", "15 mm"];
+    let output = fold(&[&PAPER[..], &flags].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |name: &str| std::fs::read_to_string(out.join(Path::new(name))).expect(name);
+    let file: Value = serde_json::from_str(&read("crease_pattern.fold")).expect("JSON");
+    assert_eq!(file["faces_vertices"].as_array().expect("faces").len(), 36);
+    assert!(read("crease_pattern.svg").contains("glue_flaps"));
+    for name in ["flat.obj", "stowed.obj", "developed.obj", "erected.obj"] {
+        assert!(read(name).lines().any(|line| line.starts_with("f ")), "{name}");
+    }
+    let names = std::fs::read_dir(&out).expect("the folder").count();
+    assert_eq!(names, 6, "no temporary file is left");
+}
+
+#[test]
+fn circular_caps_have_an_erected_shape_only() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let flags = ["--caps", "circular", "--out", folder.path().to_str().expect("a path")];
+    let output = fold(&[&PAPER[..], &flags].concat());
+    assert!(output.status.success());
+    let names: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .map(|entry| entry.expect("an entry").file_name())
+        .collect();
+    assert_eq!(names, ["erected.obj"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot be folded"));
+}
