@@ -112,25 +112,15 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         accepted: &mut dyn FnMut(&[f64; N]),
     ) -> Result<(), Failure> {
         let mut rates = system.rates(self.branch, &self.state);
-        let mut switched_in_place = false;
         while self.time < target {
             if self.steps >= control.step_limit {
                 let place = format!("after {} accepted steps", self.steps);
                 return Err(self.failure(FailureKind::StepLimit, place));
             }
             let mut trial = self.trial(system, &rates, target, control)?;
-            let mut leaves = system.margin(self.branch, &trial.state) < 0.0;
-            if leaves && system.margin(self.branch, &self.state) <= 0.0 && !switched_in_place {
-                // Rounding left the start on the far side of the edge: no step needed.
-                self.branch = system.next_branch(self.branch, &self.state);
-                rates = system.rates(self.branch, &self.state);
-                switched_in_place = true;
-                continue;
-            }
-            switched_in_place = false;
-            if leaves && system.margin(self.branch, &self.state) > 0.0 {
+            let leaves = system.margin(self.branch, &trial.state) < 0.0;
+            if leaves {
                 trial = self.to_edge(system, &rates, trial);
-                leaves = true;
             }
             let landed = !leaves && trial.length >= target - self.time;
             self.accept::<S>(&trial, if landed { Some(target) } else { None });
@@ -228,7 +218,10 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         outside: Trial<N>,
     ) -> Trial<N> {
         let full = outside.length;
-        let (mut inner, mut inner_margin) = (0.0, system.margin(self.branch, &self.state));
+        // A step that begins on an edge may lie beyond it by rounding: it counts as inside, so that
+        // a branch just entered is left where it ends, and one wrongly entered at once.
+        let start_margin = system.margin(self.branch, &self.state).max(0.0);
+        let (mut inner, mut inner_margin) = (0.0, start_margin);
         let (mut outer, mut outer_margin) = (full, system.margin(self.branch, &outside.state));
         let mut best = outside;
         let mut bisect = false;

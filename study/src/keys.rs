@@ -4,6 +4,7 @@
 mod table;
 
 use std::collections::HashMap;
+use std::fmt::Write as _;
 use std::sync::LazyLock;
 
 use crate::study_file::Json;
@@ -165,20 +166,22 @@ impl Quantity {
         let unit = if self.dimension == Dimension::Number { "" } else { self.dimension.si() };
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let from = if self.above { "above " } else { "from " };
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             " {from}{} to {}{unit}",
             crate::cli::print::short_number(self.min),
             crate::cli::print::short_number(self.max)
-        ));
+        );
         if self.dimension != Dimension::Number {
-            text.push_str(&format!(
+            let _ = write!(
+                text,
                 ", as a number in {} or a text with a unit ({})",
                 self.dimension.si(),
                 self.dimension.units().join(", ")
-            ));
+            );
         }
         for (word, _) in self.words {
-            text.push_str(&format!(", or {word:?}"));
+            let _ = write!(text, ", or {word:?}");
         }
         text
     }

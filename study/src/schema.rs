@@ -3,6 +3,8 @@
 //! It says what one value may be; what values may stand together (a fit and what it needs, a key
 //! given or varied) the program itself checks.
 
+use std::fmt::Write as _;
+
 use serde_json::{Map, Value as Json, json};
 
 use crate::cli::print::json_value;
@@ -98,7 +100,9 @@ fn property(key: &Key) -> Json {
     schema.insert("title".to_owned(), json!(title(key.path)));
     let mut description = key.doc.to_owned();
     match key.default {
-        Default::Absent(meaning) => description.push_str(&format!(" Default: {meaning}.")),
+        Default::Absent(meaning) => {
+            let _ = write!(description, " Default: {meaning}.");
+        }
         Default::Required => description.push_str(" Required, here or under grid."),
         _ => {}
     }
@@ -106,11 +110,8 @@ fn property(key: &Key) -> Json {
         && quantity.dimension != Dimension::Number
     {
         let units = quantity.dimension.units();
-        description.push_str(&format!(
-            " A number in {}, or with a unit: {}.",
-            units[0],
-            units.join(", ")
-        ));
+        let _ =
+            write!(description, " A number in {}, or with a unit: {}.", units[0], units.join(", "));
     }
     schema.insert("description".to_owned(), json!(description));
     let default = key.default_value();

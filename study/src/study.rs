@@ -20,6 +20,7 @@ use serde_json::{Map, json};
 use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::job::Parameters;
+use crate::keys::Kind;
 use crate::plan::Infeasible;
 use crate::study_file::{self, Json};
 use billow_solver::scene::Scene;
@@ -113,6 +114,16 @@ impl Study {
         self.grid.columns.iter().map(|column| column.name.clone()).collect()
     }
 
+    /// SI unit of a varied parameter: "1" for a pure number, empty for a word.
+    pub fn unit(&self, parameter: &str) -> &'static str {
+        let column = self.grid.columns.iter().find(|column| column.name == parameter);
+        match column.map(|column| column.target.key().kind) {
+            Some(Kind::Quantity(quantity)) => quantity.dimension.si(),
+            Some(Kind::Integer(..)) => "1",
+            Some(Kind::Choice(_) | Kind::Text) | None => "",
+        }
+    }
+
     /// The resolved study: units converted, defaults spelled out, axes as lists. A study file
     /// itself: read back, it plans the same jobs in the same order.
     pub fn to_json(&self) -> serde_json::Value {
@@ -181,7 +192,7 @@ fn study_name(base: &Base, stem: &str, source: &Source) -> Result<String, InputE
         "up to 100 letters, digits, - _ and dots, not starting with a dot or -",
     );
     if given.is_none() {
-        error.hint = "the file's name is the study's name; give the study a `name`".to_owned();
+        "the file's name is the study's name; give the study a `name`".clone_into(&mut error.hint);
     }
     Err(error)
 }

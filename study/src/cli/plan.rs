@@ -1,5 +1,6 @@
 //! `billow plan`.
 
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -125,10 +126,10 @@ fn summary(generation: &Generation) -> String {
     let merged: usize = points.iter().map(|point| point.merged.len()).sum();
     let mut text = count(points.len() - infeasible, "job", "jobs");
     if infeasible > 0 {
-        text.push_str(&format!(", {}", count(infeasible, "infeasible point", "infeasible points")));
+        let _ = write!(text, ", {}", count(infeasible, "infeasible point", "infeasible points"));
     }
     if merged > 0 {
-        text.push_str(&format!(", {}", count(merged, "point merged", "points merged")));
+        let _ = write!(text, ", {}", count(merged, "point merged", "points merged"));
     }
     text
 }

@@ -4,6 +4,7 @@ use super::{Kind, Node, Operator};
 use crate::value::Value;
 
 /// Truth of a node of type bool.
+#[expect(clippy::float_cmp, reason = "an expression asks for equality, and means it")]
 pub(super) fn truth(node: &Node, row: &[Value]) -> Option<bool> {
     match node {
         Node::Bool(value) => Some(*value),

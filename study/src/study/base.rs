@@ -1,6 +1,7 @@
 //! The study without its grid: every key read or defaulted, strategies, supports.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use serde_json::{Map, json};
 
@@ -88,7 +89,7 @@ impl Base {
     pub fn read(tree: &Json, source: &Source) -> Result<Self, InputError> {
         let settings = Settings { values: KEYS.iter().map(Key::default_value).collect() };
         let mut base = Self { settings, strategies: BTreeMap::new(), supports: Vec::new() };
-        base.check_version(tree, source)?;
+        check_version(tree, source)?;
         base.section("", tree, source)?;
         base.check_pairs(tree, source)?;
         base.supports = supports::read(tree.get("supports"), source)?;
@@ -102,19 +103,6 @@ impl Base {
         let name = base.settings.text("strategy");
         base.check_strategy(name, "strategy", source)?;
         Ok(base)
-    }
-
-    /// First of all: a newer format may mean anything by its other keys.
-    fn check_version(&self, tree: &Json, source: &Source) -> Result<(), InputError> {
-        match tree.get("version") {
-            Some(Json::Integer(version)) if *version > 1 => Err(source.error(
-                "version",
-                &version.to_string(),
-                "is a newer format than this program reads",
-                "1; or use a newer billow",
-            )),
-            _ => Ok(()),
-        }
     }
 
     /// Reads the keys below `prefix`.
@@ -214,6 +202,19 @@ impl Base {
     }
 }
 
+/// First of all: a newer format may mean anything by its other keys.
+fn check_version(tree: &Json, source: &Source) -> Result<(), InputError> {
+    match tree.get("version") {
+        Some(Json::Integer(version)) if *version > 1 => Err(source.error(
+            "version",
+            &version.to_string(),
+            "is a newer format than this program reads",
+            "1; or use a newer billow",
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Reads one value of a key at a place.
 pub(super) fn read(key: &Key, json: &Json, at: &str, source: &Source) -> Result<Value, InputError> {
     key.read(json)
@@ -279,9 +280,9 @@ fn unknown(prefix: &str, path: &str, name: &str, value: &Json, source: &Source) 
     let known = children(prefix);
     let mut problem = "is no key of a study".to_owned();
     if let Some(near) = keys::nearest(name, known.iter().copied()) {
-        problem.push_str(&format!("; did you mean {near}?"));
+        let _ = write!(problem, "; did you mean {near}?");
     } else if let Some(elsewhere) = keys::find(name) {
-        problem.push_str(&format!("; did you mean {}?", KEYS[elsewhere].path));
+        let _ = write!(problem, "; did you mean {}?", KEYS[elsewhere].path);
     }
     source.error(path, &value.brief(), problem, known.join(", "))
 }

@@ -280,7 +280,7 @@ pub(super) fn points(
         let problem = format!("has {size} points");
         let mut error =
             source.error("grid", "", problem, format!("up to {} points", limits.points));
-        error.hint = "fewer values an axis, or several studies".to_owned();
+        "fewer values an axis, or several studies".clone_into(&mut error.hint);
         return Err(error);
     }
     let mut expansion = Expansion { base, grid, source, folds: HashMap::new(), points: vec![] };

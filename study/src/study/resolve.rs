@@ -10,7 +10,7 @@ use super::base::{Base, Settings};
 use super::source::{Source, shown};
 use super::strategy::Strategy;
 use crate::error::InputError;
-use crate::keys::{self, KEYS, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::plan::Infeasible;
 use crate::value::Value;
 
@@ -69,7 +69,7 @@ pub(super) fn design_key(design: &FoldDesign) -> DesignKey {
 fn missing(path: &str, source: &Source) -> InputError {
     let key = keys::index(path).map(|at| &KEYS[at]);
     let leaf = key.map_or(path, |key| key.leaf());
-    let allowed = key.map_or_else(String::new, |key| key.allowed());
+    let allowed = key.map_or_else(String::new, Key::allowed);
     let mut error = source.error(path, "", "missing", allowed);
     error.hint = format!("give it here, or vary {leaf} under grid");
     error
@@ -248,7 +248,7 @@ fn windows(
         };
         let from = get("from").unwrap_or(release_time);
         let to = get("to").unwrap_or(end_time.max(from));
-        if to < from || (to == from && get("to").is_some()) {
+        if to <= from && (to < from || get("to").is_some()) {
             return Err(source.error(
                 &format!("strategies.{name}.inflow[{index}].to"),
                 &shown(to),

@@ -96,13 +96,11 @@ fn window(json: &Json, at: &str, source: &Source) -> Result<Vec<Value>, InputErr
     let mut values: Vec<Value> = WINDOW_KEYS.iter().map(Key::default_value).collect();
     for (name, value) in members {
         let at = format!("{at}.{name}");
-        match WINDOW_KEYS.iter().position(|key| key.path == name) {
-            Some(key) => values[key] = read(&WINDOW_KEYS[key], value, &at, source)?,
-            None => {
-                let problem = near("an inflow window", name, allowed);
-                return Err(source.error(&at, &value.brief(), problem, allowed));
-            }
-        }
+        let Some(key) = WINDOW_KEYS.iter().position(|key| key.path == name) else {
+            let problem = near("an inflow window", name, allowed);
+            return Err(source.error(&at, &value.brief(), problem, allowed));
+        };
+        values[key] = read(&WINDOW_KEYS[key], value, &at, source)?;
     }
     Ok(values)
 }

@@ -46,13 +46,12 @@ pub(super) fn scaled(number: &str, scale: &Scale) -> Option<f64> {
     let product = exact(number).and_then(|(whole, exponent)| {
         float(whole.checked_mul(i128::from(scale.factor))?, exponent.checked_add(scale.exponent)?)
     });
-    let product = match product {
-        Some(product) => product,
-        None => {
-            let value: f64 = number.parse().ok()?;
-            let shift: f64 = format!("1e{}", scale.exponent).parse().ok()?;
-            value * scale.factor as f64 * shift
-        }
+    let product = if let Some(product) = product {
+        product
+    } else {
+        let value: f64 = number.parse().ok()?;
+        let shift: f64 = format!("1e{}", scale.exponent).parse().ok()?;
+        value * scale.factor as f64 * shift
     };
     let quotient = if scale.divisor == 1 { product } else { product / scale.divisor as f64 };
     Some(scale.turned(quotient))

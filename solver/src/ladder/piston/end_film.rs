@@ -106,10 +106,16 @@ impl EndFilm {
         match state {
             EndState::Slack => EndState::Taut,
             EndState::Taut if stretched && self.damping * speed < 0.0 => EndState::Recoiling,
-            // Not by z > H, which rounding can leave true at the very end of the recoil.
-            EndState::Recoiling if self.margin(EndState::Taut, z, speed) > 0.0 => EndState::Taut,
+            // By which of its two edges is nearer, for rounding leaves neither exactly at 0.
+            EndState::Recoiling if self.recoil_ends_taut(z, speed) => EndState::Taut,
             EndState::Taut | EndState::Recoiling => EndState::Slack,
         }
+    }
+
+    /// Whether a recoil that ends here ends because the film pulls again, not because it is slack.
+    fn recoil_ends_taut(&self, z: f64, speed: f64) -> bool {
+        let elastic = self.stiffness * (z - self.free_length);
+        -self.margin(EndState::Taut, z, speed) < elastic
     }
 
     /// The state of a top at height z (m) with speed ż (m/s) that nothing is known of.
