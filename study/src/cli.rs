@@ -104,8 +104,7 @@ pub fn main() -> ExitCode {
     let mut out = io::BufWriter::new(io::stdout().lock());
     let result = dispatch(&cli, &mut out).and_then(|()| out.flush().map_err(output_error));
     match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Error::OutputClosed) => ExitCode::SUCCESS,
+        Ok(()) | Err(Error::OutputClosed) => ExitCode::SUCCESS,
         Err(error) => {
             // What was printed before the error still belongs to the reader.
             let _ = out.flush();
@@ -127,6 +126,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
 }
 
 /// A failed write to stdout: quiet when the reader went away (`billow … | head`).
+#[expect(clippy::needless_pass_by_value, reason = "the shape map_err takes")]
 pub fn output_error(error: io::Error) -> Error {
     if error.kind() == io::ErrorKind::BrokenPipe {
         Error::OutputClosed

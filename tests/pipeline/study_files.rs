@@ -125,7 +125,7 @@ fn schema_and_plan_print_json() {
     let rows = plan.as_array().unwrap();
     assert_eq!(rows.len(), 108);
     for row in rows {
-        assert_eq!(row["id"].as_str().unwrap().len(), 32);
+        assert_eq!(row["job"].as_str().unwrap().len(), 32);
         match row["status"].as_str().unwrap() {
             "job" => assert!(row["reason"].is_null() && row["phi"].as_f64().unwrap() > 0.0),
             "infeasible" => {

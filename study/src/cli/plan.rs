@@ -45,12 +45,12 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 const SOLVED: [&str; 4] = ["phi", "half_angle", "top_radius", "height"];
 
 fn columns(parameters: &[String]) -> Vec<String> {
-    let mut columns = vec!["id".to_owned()];
+    let mut columns = vec!["job".to_owned()];
     columns.extend(parameters.iter().cloned());
     columns.push("status".to_owned());
     columns.extend(SOLVED.iter().map(|name| {
         let taken = parameters.iter().any(|parameter| parameter == name);
-        if taken { format!("solved_{name}") } else { (*name).to_owned() }
+        if taken { format!("{name}_resolved") } else { (*name).to_owned() }
     }));
     columns.extend(["reason", "nearest", "note"].map(str::to_owned));
     columns

@@ -1,6 +1,8 @@
 //! The table itself. Ranges are what a capsule can plausibly be made of: wide enough for any study,
 //! narrow enough to catch millimetres given as metres.
 
+use billow_solver::integrate::DEFAULT_TOLERANCE;
+
 use super::{Default, Key, Kind, Quantity};
 use crate::units::Dimension;
 
@@ -151,7 +153,7 @@ pub static KEYS: &[Key] = &[
         "Which model computes the job."),
     key("solver.end_time", above(Dimension::Time, 0.0, 1e6), Required, "\"0.5 s\"",
         "Simulated time."),
-    key("solver.stepping.adaptive", above(Dimension::Number, 0.0, 0.1), Number(1e-6), "1e-6",
+    key("solver.stepping.adaptive", above(Dimension::Number, 0.0, 0.1), Number(DEFAULT_TOLERANCE), "1e-9",
         "Relative error tolerance a step of an error-controlled step."),
     key("solver.stepping.fixed", above(Dimension::Time, 0.0, 1.0),
         Absent("the step is error-controlled"), "\"10 us\"", "A fixed step."),
