@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 
 mod completions;
 mod fold;
+mod notes;
 mod plan;
 pub mod print;
 mod run;

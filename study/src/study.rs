@@ -114,6 +114,11 @@ impl Study {
         self.grid.columns.iter().map(|column| column.name.clone()).collect()
     }
 
+    /// Dotted paths of the varied parameters, in the same order.
+    pub fn parameter_paths(&self) -> impl Iterator<Item = &'static str> {
+        self.grid.columns.iter().map(|column| column.target.key().path)
+    }
+
     /// SI unit of a varied parameter: "1" for a pure number, empty for a word.
     pub fn unit(&self, parameter: &str) -> &'static str {
         let column = self.grid.columns.iter().find(|column| column.name == parameter);

@@ -80,6 +80,7 @@ fn infeasible_is_an_answer() {
     assert!(answer["reason"].as_str().expect("a reason").contains("no phi closes"));
     assert_eq!(answer["nearest"]["M"], 2);
     assert!(answer["phi"].is_null());
+    assert_eq!(answer["height"], 1.0, "what was asked stands");
     // Without --json too, and nothing is written.
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
@@ -90,14 +91,16 @@ fn infeasible_is_an_answer() {
 
 #[test]
 fn bad_designs_are_refused_in_one_line() {
-    let cases: [(&[&str], &str, &str); 8] = [
+    let cases: [(&[&str], &str, &str); 10] = [
         (&["--panels", "3"], "--panels", "4 to 1000"),
+        (&["--bottom-radius", "500"], "--bottom-radius", "a length"),
+        (&["--bottom-radius", "nan"], "--bottom-radius", "a length"),
         (&["--storeys", "0"], "--storeys", "1 to 1000"),
-        (&["--top-radius", "0"], "--top-radius", "no top ring"),
+        (&["--top-radius", "0"], "--top-radius", "above 0"),
         (&["--top-radius", "3 s"], "--top-radius", "a time, not a length"),
         (&["--alpha1-over-phi", "1"], "--alpha1-over-phi", "cone"),
-        (&["--half-angle", "95 deg"], "--half-angle", "between"),
-        (&["--height", "-1"], "--height", "not a positive number"),
+        (&["--half-angle", "95 deg"], "--half-angle", "out of range"),
+        (&["--height", "-1"], "--height", "out of range"),
         (&["--stowed-height", "2"], "--stowed-height", "below the height"),
     ];
     for (changed, flag, allowed) in cases {
@@ -130,6 +133,11 @@ fn writes_the_pattern_and_its_shapes() {
     }
     let names = std::fs::read_dir(&out).expect("the folder").count();
     assert_eq!(names, 6, "no temporary file is left");
+
+    let flags = ["--out", out.to_str().expect("a path"), "--glue-flaps", "1 m"];
+    let output = fold(&[&PAPER[..], &flags].concat());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--glue-flaps = 1 m: is too wide"));
 }
 
 #[test]

@@ -203,7 +203,7 @@ fn ranges_give_the_values_a_list_would() {
             json!({"from": 0, "to": 1, "steps": 11}),
             vec![0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0],
         ),
-        ("compression", json!({"from": 0.1, "to": 0.75, "step": 0.2}), vec![0.1, 0.3, 0.5, 0.7]),
+        ("compression", json!({"from": 0.1, "to": 0.7, "step": 0.2}), vec![0.1, 0.3, 0.5, 0.7]),
     ] {
         let generation = plan(&with_grid(json!({key: range})), &[]);
         assert_eq!(column(&generation, key), numbers(&values), "{range}");
@@ -212,6 +212,9 @@ fn ranges_give_the_values_a_list_would() {
     assert_eq!(column(&whole, "N"), integers(&[5, 6, 7, 8]));
     let error = try_study(&with_grid(json!({"N": {"from": 5, "to": 8, "steps": 3}})), &[]);
     assert!(error.unwrap_err().to_string().contains("is not a whole number"));
+    let range = json!({"compression": {"from": 0.1, "to": 0.75, "step": 0.2}});
+    let error = try_study(&with_grid(range), &[]).unwrap_err().to_string();
+    assert!(error.contains("does not end at `to`: its last step is 0.7"), "{error}");
 }
 
 #[test]

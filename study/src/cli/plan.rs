@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use billow_solver::fold::{FoldPattern, Nearest};
 
 use super::print::{print_rows, short_number};
-use super::{Format, Global};
+use super::{Format, Global, notes};
 use crate::error::Result;
 use crate::job::Parameters;
 use crate::plan::{Generation, Point, next_jobs};
@@ -36,6 +36,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     print_rows(&columns(&names), &rows, format, out)?;
     if !global.quiet {
         eprintln!("{}: {}", study.name, summary(&generation));
+        notes::print(&study);
     }
     Ok(())
 }

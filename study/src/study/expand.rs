@@ -113,7 +113,12 @@ pub(super) fn range(
         (None, Some(_)) if log => return refuse("has logarithmic spacing, so it needs `steps`"),
         (None, Some(step)) => {
             // A last value that rounding alone keeps above `to` belongs to the range.
-            let count = ((to - from) / step * (1.0 + 1e-12)).floor() + 1.0;
+            let widths = (to - from) / step * (1.0 + 1e-12);
+            let count = widths.floor() + 1.0;
+            if widths - widths.floor() > 2e-12 * widths {
+                let last = tidy(from + step * widths.floor());
+                return refuse(&format!("does not end at `to`: its last step is {last}"));
+            }
             if count > limits.points as f64 {
                 return too_many(count);
             }
