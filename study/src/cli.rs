@@ -32,7 +32,7 @@ pub struct Cli {
 /// Options every command takes.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Global {
-    /// Folder of the results [default: results/<study> under the current folder].
+    /// Folder of the results [default: `results/<study>` under the current folder].
     #[arg(long, global = true, value_name = "DIR")]
     pub results: Option<PathBuf>,
     /// Threads [default: one a core].
