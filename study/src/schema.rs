@@ -7,10 +7,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::cli::print::json_value;
 use crate::keys::{self, Default, KEYS, Key, Kind, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, json_value};
 
 /// A number with a unit after it, as JSON Schema can say it; which units is the program's to check.
 const QUANTITY: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^\s0-9].*$";

@@ -17,12 +17,12 @@ mod supports;
 
 use serde_json::{Map, json};
 
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::job::Parameters;
 use crate::keys::Kind;
 use crate::plan::Infeasible;
 use crate::study_file::{self, Json};
+use crate::value::json_value;
 use billow_solver::scene::Scene;
 
 use base::Base;

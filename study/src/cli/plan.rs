@@ -6,13 +6,13 @@ use std::path::PathBuf;
 
 use billow_solver::fold::{FoldPattern, Nearest};
 
-use super::print::{print_rows, short_number};
+use super::print::print_rows;
 use super::{Format, Global};
 use crate::error::Result;
 use crate::job::Parameters;
 use crate::plan::{Generation, Point, next_jobs};
 use crate::study_file;
-use crate::value::Value;
+use crate::value::{Value, short_number};
 
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]

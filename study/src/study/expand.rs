@@ -8,13 +8,12 @@ use super::grid::{Axis, Column, Grid, Target};
 use super::resolve::{self, Fold};
 use super::source::Source;
 use super::{Limits, StudyPoint};
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::expression::{Type, Variable};
 use crate::keys::{self, KEYS, Key, Kind};
 use crate::study_file::Json;
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, json_value};
 
 /// Derived quantities an expression may use, before the keys of the same name.
 const DERIVED: [(&str, Dimension); 6] = [
