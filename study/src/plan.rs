@@ -40,6 +40,16 @@ pub struct Infeasible {
     pub nearest: Vec<Nearest>,
 }
 
+impl Infeasible {
+    /// The nearest feasible values in words, as a table cell has them; empty where there are none.
+    pub fn nearest_text(&self) -> String {
+        let nearest = self.nearest.iter();
+        let texts: Vec<String> =
+            nearest.map(|near| format!("{} = {}", near.key, near.value)).collect();
+        texts.join(" or ")
+    }
+}
+
 /// What planning may know of a finished job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRow {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::fold::{FoldPattern, Nearest};
+use billow_solver::fold::FoldPattern;
 
 use super::print::print_rows;
 use super::{Format, Global};
@@ -80,18 +80,12 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
             row.push(text(&infeasible.reason));
             row.push(match infeasible.nearest.as_slice() {
                 [] => Value::Null,
-                nearest => Value::Text(nearest_text(nearest)),
+                _ => Value::Text(infeasible.nearest_text()),
             });
         }
     }
     row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(&point.merged)) });
     row
-}
-
-fn nearest_text(nearest: &[Nearest]) -> String {
-    let texts: Vec<String> =
-        nearest.iter().map(|near| format!("{} = {}", near.key, near.value)).collect();
-    texts.join(", ")
 }
 
 /// Which points are the same job as this one; beyond a few, how many.
