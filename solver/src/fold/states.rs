@@ -102,9 +102,22 @@ impl FoldPattern {
 
     /// Largest Green strain of a folded edge, in magnitude, at stack height `height`, m.
     pub fn stowed_strain(&self, height: f64) -> f64 {
+        let strains = (0..self.design.storeys).map(|storey| self.storey_strain(storey, height));
+        strains.fold(0.0, f64::max)
+    }
+
+    /// The same of the smallest storey alone, as a rule the largest: storeys are alike but for their
+    /// size and equally high.
+    pub(super) fn smallest_storey_strain(&self, height: f64) -> f64 {
+        let last = self.design.storeys - 1;
+        self.storey_strain(if self.angles.ring_ratio < 1.0 { last } else { 0 }, height)
+    }
+
+    /// Largest Green strain of the folded edges of one storey, in magnitude.
+    fn storey_strain(&self, storey: u32, height: f64) -> f64 {
         let rise = height / f64::from(self.design.storeys);
-        (0..self.design.storeys)
-            .flat_map(|storey| self.edge_strains(storey, rise, self.stowed_twist(storey, rise)))
+        self.edge_strains(storey, rise, self.stowed_twist(storey, rise))
+            .iter()
             .fold(0.0, |largest: f64, (strain, _)| largest.max(strain.abs()))
     }
 

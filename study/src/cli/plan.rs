@@ -4,8 +4,6 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::fold::FoldPattern;
-
 use super::print::print_rows;
 use super::{Format, Global};
 use crate::error::Result;
@@ -64,19 +62,12 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
     match &point.infeasible {
         None => {
             row.push(text("job"));
-            match FoldPattern::new(&point.job.scene.design) {
-                Ok(pattern) => row.extend(
-                    [pattern.angles.phi, pattern.half_angle, pattern.top_radius, pattern.height]
-                        .map(Value::Number),
-                ),
-                // Planned as feasible a moment ago, so this is not reached; an empty cell is true.
-                Err(_) => row.extend([const { Value::Null }; SOLVED.len()]),
-            }
+            row.extend(solved(point));
             row.extend([Value::Null, Value::Null]);
         }
         Some(infeasible) => {
             row.push(text("infeasible"));
-            row.extend([const { Value::Null }; SOLVED.len()]);
+            row.extend(solved(point));
             row.push(text(&infeasible.reason));
             row.push(match infeasible.nearest.as_slice() {
                 [] => Value::Null,
@@ -86,6 +77,13 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
     }
     row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(&point.merged)) });
     row
+}
+
+/// The cells of [`SOLVED`].
+fn solved(point: &Point) -> [Value; SOLVED.len()] {
+    point.solved.map_or([const { Value::Null }; SOLVED.len()], |solved| {
+        [solved.phi, solved.half_angle, solved.top_radius, solved.height].map(Value::Number)
+    })
 }
 
 /// Which points are the same job as this one; beyond a few, how many.
