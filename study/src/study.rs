@@ -17,12 +17,12 @@ mod supports;
 
 use serde_json::{Map, json};
 
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::job::Parameters;
 use crate::keys::Kind;
-use crate::plan::Infeasible;
+use crate::plan::{Infeasible, Solved};
 use crate::study_file::{self, Json};
+use crate::value::json_value;
 use billow_solver::scene::Scene;
 
 use base::Base;
@@ -64,6 +64,8 @@ pub(crate) struct StudyPoint {
     pub scene: Scene,
     /// Why it runs not.
     pub infeasible: Option<Infeasible>,
+    /// What the fold solves; `None` where it is infeasible.
+    pub solved: Option<Solved>,
 }
 
 impl Study {

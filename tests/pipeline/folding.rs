@@ -101,7 +101,7 @@ fn bad_designs_are_refused_in_one_line() {
         (&["--alpha1-over-phi", "1"], "--alpha1-over-phi", "cone"),
         (&["--half-angle", "95 deg"], "--half-angle", "out of range"),
         (&["--height", "-1"], "--height", "out of range"),
-        (&["--stowed-height", "2"], "--stowed-height", "below the height"),
+        (&["--stowed-height", "0"], "--stowed-height", "out of range"),
     ];
     for (changed, flag, allowed) in cases {
         let mut flags: Vec<&str> = PAPER.to_vec();
@@ -115,6 +115,47 @@ fn bad_designs_are_refused_in_one_line() {
         assert!(output.stdout.is_empty(), "{changed:?}");
         assert!(error.contains(flag) && error.contains(allowed), "{changed:?}: {error}");
     }
+}
+
+#[test]
+fn a_stack_too_high_is_an_answer_and_by_default_never_asked_for() {
+    let small = [
+        "--panels",
+        "6",
+        "--storeys",
+        "3",
+        "--bottom-radius",
+        "20 mm",
+        "--top-radius",
+        "14.6 mm",
+        "--height",
+        "40 mm",
+        "--json",
+    ];
+    let answer = |flags: &[&str]| -> Value {
+        let output = fold(flags);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let folded = answer(&small);
+    assert_eq!(folded["feasible"], true);
+    let stowed = folded["stowed_height"].as_f64().expect("a height");
+    assert!(stowed > 0.001 && stowed < 0.03, "{stowed}");
+    let asked = answer(&[&small[..], &["--stowed-height", "40 mm"]].concat());
+    assert_eq!(asked["feasible"], false);
+    assert!(asked["reason"].as_str().expect("a reason").starts_with("stowed_height"));
+    assert_eq!(asked["nearest"]["stowed_height"], stowed);
+}
+
+#[test]
+fn shapes_beyond_any_memory_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("shapes");
+    let flags = ["--subdivisions", "1000", "--out", out.to_str().expect("a path")];
+    let output = fold(&[&PAPER[..], &flags].concat());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("elements"));
+    assert!(output.stdout.is_empty() && !out.exists());
 }
 
 #[test]

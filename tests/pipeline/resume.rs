@@ -68,7 +68,7 @@ fn kill_9_at_any_moment_costs_nothing() {
         }
         child.wait().unwrap();
     }
-    assert!(killed >= 4, "only {killed} runs were caught in the middle");
+    assert!(killed >= 2, "only {killed} runs were caught in the middle");
     let kept = finished(&desk);
     let output = desk.run(&["run", "grid.json", "-q", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

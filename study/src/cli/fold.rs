@@ -51,9 +51,9 @@ pub struct Args {
     /// Turn of successive storeys.
     #[arg(long, value_enum, default_value = "same")]
     chirality: ChiralityArg,
-    /// Height of the stowed stack.
-    #[arg(long, value_name = "LENGTH", default_value = "40 mm", allow_hyphen_values = true)]
-    stowed_height: String,
+    /// Height of the stowed stack [default: 40 mm, or the highest this design can be packed to].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    stowed_height: Option<String>,
     /// n, mesh subdivisions of every facet edge in the .obj shapes.
     #[arg(long, value_name = "n", default_value_t = 8)]
     subdivisions: u32,
@@ -91,7 +91,10 @@ enum CapsArg {
 /// Runs `billow fold`.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let design = design(args)?;
-    let solved = match FoldPattern::new(&design) {
+    if args.out.is_some() {
+        check_size(&design)?;
+    }
+    let solved = match solve(&design, args.stowed_height.is_none()) {
         Ok(pattern) => Ok(pattern),
         Err(FoldError::Infeasible { reason, nearest }) => Err((reason, nearest)),
         Err(FoldError::Invalid { key, problem }) => {
@@ -149,13 +152,32 @@ fn design(args: &Args) -> Result<FoldDesign> {
             ChiralityArg::Same => Chirality::Same,
             ChiralityArg::Alternate => Chirality::Alternate,
         },
-        stowed_height: value("stowed_height", &args.stowed_height)?,
+        stowed_height: given("stowed_height", &args.stowed_height)?.unwrap_or(STOWED_HEIGHT),
         subdivisions: args.subdivisions,
         caps: match args.caps {
             CapsArg::Polygon => Caps::Polygon,
             CapsArg::Circular => Caps::Circular,
         },
     })
+}
+
+/// Height of the stowed stack where none is asked for, m.
+const STOWED_HEIGHT: f64 = 0.04;
+
+/// Solves a design; `lower` allows a stack lower than the design's, where that one cannot be packed.
+fn solve(design: &FoldDesign, lower: bool) -> std::result::Result<FoldPattern, FoldError> {
+    let stowed_at =
+        |stowed_height| FoldPattern::new(&FoldDesign { stowed_height, ..design.clone() });
+    match FoldPattern::new(design) {
+        Err(FoldError::Infeasible { nearest, .. }) if lower => {
+            match nearest.iter().find(|near| near.key == "stowed_height") {
+                Some(near) => stowed_at(near.value),
+                // No height will do, so that of the stack shall keep no nearest value back.
+                None => stowed_at(1e-6 * design.bottom_radius),
+            }
+        }
+        solved => solved,
+    }
 }
 
 /// A key of the design, read from its flag as from a study file: a plain number is SI, a text
@@ -214,6 +236,20 @@ fn print_json(answer: &Json, out: &mut dyn Write) -> Result<()> {
         .map_err(std::io::Error::from)
         .and_then(|()| writeln!(out))
         .map_err(output_error)
+}
+
+/// Most elements of a shape written as .obj: more would fill the memory and no program opens it.
+const MOST_ELEMENTS: u64 = 4_000_000;
+
+fn check_size(design: &FoldDesign) -> Result<()> {
+    let [panels, storeys, n] = [design.panels, design.storeys, design.subdivisions].map(u64::from);
+    let elements = 2 * panels * (storeys + 1) * n * n;
+    if elements <= MOST_ELEMENTS {
+        return Ok(());
+    }
+    let problem = format!("makes shapes of {elements} elements");
+    let allowed = format!("fewer: 2 N (M + 1) n² up to {MOST_ELEMENTS}");
+    Err(bad("--subdivisions", &n.to_string(), &problem, &allowed))
 }
 
 fn write_files(

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::print::{print_rows, short_number};
+use super::print::print_rows;
 use super::run::results_folder;
 use super::{Format, Global};
 use crate::error::{Error, InputError, Result};
@@ -16,7 +16,7 @@ use crate::row::Kind;
 use crate::study_file;
 use crate::table::{Column, Table};
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, short_number};
 
 /// Measures shown after the parameters, in this order, as far as they fit.
 const MAIN: [&str; 10] = [

@@ -8,13 +8,14 @@ use super::grid::{Axis, Column, Grid, Target};
 use super::resolve::{self, Fold};
 use super::source::Source;
 use super::{Limits, StudyPoint};
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::expression::{Type, Variable};
 use crate::keys::{self, KEYS, Key, Kind};
+use crate::plan::Solved;
 use crate::study_file::Json;
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, json_value};
+use billow_solver::ladder::{self, SceneError};
 
 /// Derived quantities an expression may use, before the keys of the same name.
 const DERIVED: [(&str, Dimension); 6] = [
@@ -353,9 +354,9 @@ impl Expansion<'_> {
         {
             return Ok(());
         }
-        let infeasible = match &*fold {
-            Fold::Solved(_) => None,
-            Fold::Infeasible(infeasible) => Some(infeasible.clone()),
+        let (infeasible, solved) = match &*fold {
+            Fold::Solved(pattern) => (None, Some(Solved::of(pattern))),
+            Fold::Infeasible(infeasible) => (Some(infeasible.clone()), None),
             Fold::Invalid { key, problem } => {
                 let key = format!("design.{key}");
                 let value = keys::index(&key).map(|at| point.settings.at(at));
@@ -366,7 +367,17 @@ impl Expansion<'_> {
             }
         };
         let scene = resolve::scene(point, design, self.source).map_err(place)?;
-        self.points.push(StudyPoint { parameters: parameters(), scene, infeasible });
+        ladder::check(&scene).map_err(|error| place(self.refused(&error)))?;
+        self.points.push(StudyPoint { parameters: parameters(), scene, infeasible, solved });
         Ok(())
+    }
+    /// What the model says against a scene.
+    fn refused(&self, error: &SceneError) -> InputError {
+        let SceneError::Invalid { key, problem } = error else {
+            return self.source.error("design", "", error.to_string(), "a design that folds");
+        };
+        let (problem, allowed) = problem.rsplit_once("; ").unwrap_or((problem, ""));
+        let allowed = allowed.strip_prefix("allowed: ").unwrap_or(allowed);
+        self.source.error(key, "", problem, allowed)
     }
 }
