@@ -27,6 +27,7 @@ mod angles;
 mod creases;
 mod fit;
 mod nearest;
+mod packed;
 mod pattern;
 mod scan;
 mod states;

@@ -2,9 +2,7 @@
 //!
 //! Flat folded, ring k is a regular N-gon of its own side |AB| ρ^k, turned against the ring below
 //! by the flat twist. Stowed at height h, the same N-gons stand h/M apart and each storey turns a
-//! little less, so that its folded edges AD and AE keep their lengths in the least-squares sense:
-//! with the squared distances d²(τ) = P² (1 + ρ² − 2 ρ cos τ) + (h/M)² of AD (turn τ) and AE (turn
-//! τ + 2π/N), the sum of squared Green strains (d² − L²)/(2 L²) is least.
+//! little less (`packed`).
 
 use core::f64::consts::PI;
 
@@ -12,6 +10,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::angles::{angle_over, sine_over};
 use super::fit::geometric_sum;
+use super::packed::PackedStorey;
 use super::{Chirality, FoldPattern, Lengths, PanelAngles};
 
 /// A ring folded to a regular N-gon.
@@ -97,28 +96,17 @@ impl FoldPattern {
     /// The rings stowed at stack height `height`, m, storeys equally high.
     pub fn stowed_polygons(&self, height: f64) -> Vec<Polygon> {
         let rise = height / f64::from(self.design.storeys);
-        self.stack(|storey| (rise, self.stowed_twist(storey, rise)))
+        let packed = PackedStorey::of(self);
+        self.stack(|storey| (rise, packed.twist(rise / self.polygon_radius(storey))))
     }
 
-    /// Largest Green strain of a folded edge, in magnitude, at stack height `height`, m.
+    /// Largest Green strain of a folded edge, in magnitude, at stack height `height`, m: that of the
+    /// smallest storey, since storeys are alike but for their size and equally high.
     pub fn stowed_strain(&self, height: f64) -> f64 {
-        let strains = (0..self.design.storeys).map(|storey| self.storey_strain(storey, height));
-        strains.fold(0.0, f64::max)
-    }
-
-    /// The same of the smallest storey alone, as a rule the largest: storeys are alike but for their
-    /// size and equally high.
-    pub(super) fn smallest_storey_strain(&self, height: f64) -> f64 {
-        let last = self.design.storeys - 1;
-        self.storey_strain(if self.angles.ring_ratio < 1.0 { last } else { 0 }, height)
-    }
-
-    /// Largest Green strain of the folded edges of one storey, in magnitude.
-    fn storey_strain(&self, storey: u32, height: f64) -> f64 {
         let rise = height / f64::from(self.design.storeys);
-        self.edge_strains(storey, rise, self.stowed_twist(storey, rise))
-            .iter()
-            .fold(0.0, |largest: f64, (strain, _)| largest.max(strain.abs()))
+        let last = self.design.storeys - 1;
+        let smallest = self.polygon_radius(0).min(self.polygon_radius(last));
+        PackedStorey::of(self).strain(rise / smallest)
     }
 
     /// Volume enclosed by the stowed shape at stack height `height`, m³, with flat facets and caps.
@@ -150,48 +138,6 @@ impl FoldPattern {
             });
         }
         polygons
-    }
-
-    /// Green strain of AD and AE, and its derivative by the twist, for a storey `rise` high turned
-    /// by `twist`.
-    fn edge_strains(&self, storey: u32, rise: f64, twist: f64) -> [(f64, f64); 2] {
-        let (outer, inner) = (self.polygon_radius(storey), self.polygon_radius(storey + 1));
-        let Lengths { ad, ae, .. } = self.lengths(storey);
-        let panel = 2.0 * PI / f64::from(self.design.panels);
-        [(ad, twist), (ae, twist + panel)].map(|(length, turn)| {
-            let (sin, cos) = libm::sincos(turn);
-            let square = outer * outer + inner * inner - 2.0 * outer * inner * cos + rise * rise;
-            let length_squared = length * length;
-            (
-                (square - length_squared) / (2.0 * length_squared),
-                outer * inner * sin / length_squared,
-            )
-        })
-    }
-
-    /// Least-squares twist of a stowed storey: the root, next below the flat twist, of the
-    /// derivative of the summed squared strains.
-    fn stowed_twist(&self, storey: u32, rise: f64) -> f64 {
-        let slope = |twist| -> f64 {
-            self.edge_strains(storey, rise, twist).iter().map(|(strain, by)| strain * by).sum()
-        };
-        let flat = self.flat_twist();
-        let mut high = flat;
-        let mut low = flat;
-        // Edges are too long at the flat twist, so less twist shortens them; at half a panel's turn
-        // backwards AD and AE would be alike, and no stowed height gets there.
-        let stride = 1e-3 * (flat + PI / f64::from(self.design.panels));
-        while slope(low) > 0.0 && low > -PI / f64::from(self.design.panels) {
-            high = low;
-            low -= stride;
-        }
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                return middle;
-            }
-            if slope(middle) > 0.0 { high = middle } else { low = middle }
-        }
     }
 
     /// Polar angle on the erected cone, rad, of a corner of the pattern.
