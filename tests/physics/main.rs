@@ -11,9 +11,11 @@
 mod capsule;
 mod conservation;
 mod exports;
+mod film_rig;
 mod fold_numbers;
 mod fold_properties;
 mod gas_cases;
 mod geometry;
+mod membrane_cases;
 mod piston_cases;
 mod rig;
