@@ -36,6 +36,7 @@ pub mod mesh_io;
 pub mod model;
 pub mod scene;
 pub mod state;
+pub mod supports;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

@@ -10,7 +10,9 @@
 
 mod capsule;
 mod conservation;
+mod explicit_cases;
 mod exports;
+mod film_capsule;
 mod film_rig;
 mod fold_numbers;
 mod fold_properties;

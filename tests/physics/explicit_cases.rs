@@ -1,0 +1,344 @@
+//! Film in motion and at rest, through the step a capsule takes, against closed forms.
+
+use std::sync::LazyLock;
+
+use billow_solver::deployment::{FailureKind, Phase};
+use billow_solver::gas::{Gas, GasState};
+use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
+use billow_solver::ladder::film::Relaxation;
+use billow_solver::scene::Film;
+use billow_solver::state::Field;
+use billow_solver::supports::Supports;
+use nalgebra::Vector3;
+use serde_json::Value;
+
+use crate::film_rig::{ELASTIC, Piece, film_forces, icosphere, mapped, pattern, sheet};
+use crate::rig::{PAPER_FILM, supply};
+
+static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
+    serde_json::from_str(include_str!("../reference/film.json")).expect("JSON in tests/reference")
+});
+
+fn number(path: &str) -> f64 {
+    REFERENCE.pointer(&format!("/{path}")).and_then(Value::as_f64).expect("a number")
+}
+
+fn rows(case: &str) -> Vec<[f64; 2]> {
+    let rows = REFERENCE[case]["rows"].as_array().expect("rows");
+    rows.iter().map(|row| [0, 1].map(|k| row[k].as_f64().expect("a number"))).collect()
+}
+
+/// A piece of film at rest where it is stress free.
+fn at_rest(piece: &Piece, film: &Film, interior: Interior, gas: GasState) -> Explicit {
+    let setting = Setting {
+        interior,
+        supports: Supports::none(piece.nodes.len()),
+        gravity: 0.0,
+        viscosity: film.viscosity,
+        mass_damping: 0.0,
+        cfl: 0.45,
+        step_limit: u64::MAX,
+    };
+    let still = Field::zeros(piece.nodes.len());
+    Explicit::new(piece.model(film), setting, Field::of(&piece.nodes), still, gas)
+}
+
+fn free() -> Phase {
+    Phase::default()
+}
+
+fn nitrogen() -> Gas {
+    Gas::new(&supply(), 293.0, 1.0)
+}
+
+/// Order of convergence of three errors on meshes halved each time.
+fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).abs().log2()).collect()
+}
+
+#[test]
+fn momentum_and_moment_are_kept_over_a_hundred_thousand_steps() {
+    let piece = icosphere(1, 0.5);
+    let gas = nitrogen();
+    let mut film =
+        at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), gas.at_temperature(5e-3, 293.0));
+    let spin = Vector3::new(2.0, -3.0, 5.0);
+    let kicks = pattern(piece.nodes.len(), 5);
+    for (node, (place, kick)) in piece.nodes.iter().zip(kicks).enumerate() {
+        film.velocities.set(node, spin.cross(place) + kick * 0.5 + Vector3::new(0.3, 0.1, -0.2));
+    }
+    let sums = |film: &Explicit| {
+        let mass = &film.model.mass;
+        let momentum: Vector3<f64> = film.velocities.iter().zip(mass).map(|(v, m)| v * *m).sum();
+        let size: f64 = film.velocities.iter().zip(mass).map(|(v, m)| v.norm() * m).sum();
+        // The places half a step ago, where these velocities are.
+        let back = -0.5 * film.last_step;
+        let moment: Vector3<f64> = (0..mass.len())
+            .map(|i| {
+                let v = film.velocities.get(i);
+                (film.places.get(i) + v * back).cross(&v) * mass[i]
+            })
+            .sum();
+        (momentum, moment, size)
+    };
+    let (momentum, moment, size) = sums(&film);
+    let step = film.stable_step();
+    film.advance(1e5 * step, &free()).unwrap();
+    assert!(film.steps >= 100_000);
+    let after = sums(&film);
+    let (drift, turn) = ((after.0 - momentum).norm() / size, (after.1 - moment).norm() / size);
+    println!("{} steps: momentum {drift:e}, moment {turn:e} m of sum |m v|", film.steps);
+    assert!(drift < 1e-10 && turn < 1e-10, "{drift} {turn}");
+}
+
+/// `ω_max` by power iteration on the solver's own forces: a small push, its force.
+fn measured_frequency(piece: &Piece, film: &Film) -> f64 {
+    let model = piece.model(film);
+    let still = Field::zeros(piece.nodes.len());
+    let size = 1e-9;
+    let mut mode = pattern(piece.nodes.len(), 2);
+    let mut value = 0.0_f64;
+    for _ in 0..3000 {
+        for v in &mut mode {
+            v.z = 0.0;
+        }
+        let norm = mode.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+        let pushed = |sign: f64| {
+            let mut index = 0;
+            let places = mapped(piece, |x| {
+                index += 1;
+                x + mode[index - 1] * (sign * size / norm)
+            });
+            film_forces(&model, &places, &still).0.film
+        };
+        let (ahead, behind) = (pushed(1.0), pushed(-1.0));
+        mode = (0..mode.len())
+            .map(|node| (behind.get(node) - ahead.get(node)) / (2.0 * size * model.mass[node]))
+            .collect();
+        value = mode.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+    }
+    value.sqrt()
+}
+
+#[test]
+fn the_step_is_stable_up_to_the_assembled_limit_and_no_further() {
+    let piece = sheet(4, 3, 0.2, 0.15);
+    let linear = Film { compression: 1.0, ..ELASTIC };
+    let omega = measured_frequency(&piece, &linear);
+    let grows = |share: f64| {
+        let mut film = at_rest(&piece, &linear, Interior::Overpressure(0.0), GasState::default());
+        for (node, kick) in pattern(piece.nodes.len(), 4).iter().enumerate() {
+            film.velocities.set(node, Vector3::new(kick.x, kick.y, 0.0) * 1e-6);
+        }
+        film.setting.cfl = share * film.model.largest_frequency() / omega;
+        let target = 3000.0 * film.stable_step();
+        let end = film.advance(target, &free());
+        match end {
+            Ok(()) => film.velocities.iter().map(|v| v.norm()).fold(0.0, f64::max) > 1e-3,
+            Err(failure) => {
+                assert_eq!(failure.kind, FailureKind::Unstable);
+                true
+            }
+        }
+    };
+    println!(
+        "assembled limit at {} of the element bound",
+        omega / piece.model(&linear).largest_frequency()
+    );
+    assert!(!grows(0.99) && grows(1.01));
+}
+
+/// Relaxes a sphere; λ − 1 from the mean radius against the same mesh unloaded.
+fn sphere_stretch(level: u32, overpressure: f64) -> (f64, Explicit) {
+    let piece = icosphere(level, number("sphere/radius"));
+    let mut film =
+        at_rest(&piece, &PAPER_FILM, Interior::Overpressure(overpressure), GasState::default());
+    film.setting.cfl = 0.9;
+    let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
+    relaxation.relax(&mut film).unwrap();
+    let loaded: f64 = film.places.iter().map(|x| x.norm()).sum();
+    let unloaded: f64 = piece.nodes.iter().map(Vector3::norm).sum();
+    (loaded / unloaded - 1.0, film)
+}
+
+#[test]
+fn sphere_under_pressure() {
+    for [overpressure, expected] in rows("sphere") {
+        let errors: Vec<f64> =
+            [1, 2, 3].map(|level| sphere_stretch(level, overpressure).0 / expected - 1.0).to_vec();
+        let orders = orders(&errors);
+        println!("sphere {overpressure} Pa: errors {errors:?}, orders {orders:?}");
+        assert!(errors[2].abs() < number("sphere/band"), "{errors:?}");
+        assert!(orders.iter().all(|order| *order >= number("sphere/order")), "{orders:?}");
+    }
+}
+
+/// A tube between two planes, stretched as the closed form says: hoop stretch and axial force.
+#[test]
+fn cylinder_under_pressure() {
+    let radius = number("cylinder/radius");
+    let (axial, hoop) = (number("cylinder/axial"), number("cylinder/hoop"));
+    let overpressure = number("cylinder/overpressure");
+    let errors: Vec<[f64; 2]> = [24_u32, 48, 96]
+        .map(|around| {
+            let along = around / 8;
+            let length = 0.4;
+            let mut nodes = Vec::new();
+            for k in 0..=along {
+                for i in 0..around {
+                    let angle = std::f64::consts::TAU * f64::from(i) / f64::from(around);
+                    let z = length * f64::from(k) / f64::from(along);
+                    nodes.push(Vector3::new(radius * angle.cos(), radius * angle.sin(), z));
+                }
+            }
+            let at = |i: u32, k: u32| k * around + i % around;
+            let mut triangles = Vec::new();
+            for k in 0..along {
+                for i in 0..around {
+                    let [a, b] = [at(i, k), at(i + 1, k)];
+                    let [c, d] = [at(i + 1, k + 1), at(i, k + 1)];
+                    triangles.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+            let piece = Piece::relaxed(nodes, triangles);
+            let mut film = at_rest(
+                &piece,
+                &PAPER_FILM,
+                Interior::Overpressure(overpressure),
+                GasState::default(),
+            );
+            film.setting.cfl = 0.9;
+            let ends: Vec<u32> = (0..around).chain(along * around..(along + 1) * around).collect();
+            film.setting.supports.hold(&ends, "z");
+            for node in 0..film.places.len() {
+                film.places.z[node] *= 1.0 + axial;
+            }
+            let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
+            relaxation.relax(&mut film).unwrap();
+            let mean: f64 =
+                film.places.iter().map(|x| x.xy().norm()).sum::<f64>() / film.places.len() as f64;
+            let pull: f64 = (0..around as usize).map(|node| film.force(node).z).sum();
+            // S_axial t λ_axial over the undeformed girth: p π r² by balance of a closed end.
+            let r = radius * (1.0 + hoop);
+            let expected = overpressure * std::f64::consts::PI * r * r;
+            [(mean / radius - 1.0) / hoop - 1.0, pull / expected - 1.0]
+        })
+        .to_vec();
+    let hoops: Vec<f64> = errors.iter().map(|error| error[0]).collect();
+    let pulls: Vec<f64> = errors.iter().map(|error| error[1]).collect();
+    println!("cylinder: hoop {hoops:?} orders {:?}; axial {pulls:?}", orders(&hoops));
+    assert!(hoops[2].abs() < number("cylinder/band") && pulls[2].abs() < number("cylinder/band"));
+    assert!(orders(&hoops).iter().all(|order| *order >= 1.8), "{hoops:?}");
+}
+
+/// Frequency of the radial mode by upward crossings of the volume, linear between samples.
+fn breathing(level: u32, pressure: f64) -> f64 {
+    let (_, rest) = sphere_stretch(level, pressure);
+    let gas = nitrogen();
+    let mass = pressure * rest.volume / (supply().species.gas_constant * 293.0);
+    let piece = icosphere(level, number("breathing_sphere/radius"));
+    let interior = Interior::Gas(gas);
+    let mut film = at_rest(&piece, &ELASTIC, interior, gas.at_temperature(mass, 293.0));
+    film.places = rest.places.clone();
+    let mut film = Explicit::new(
+        film.model,
+        film.setting,
+        rest.places.clone(),
+        Field::of(&rest.places.iter().map(|x| x * (1e-5 * 5300.0)).collect::<Vec<_>>()),
+        film.gas,
+    );
+    assert!((film.pressure / pressure - 1.0).abs() < 1e-12);
+    film.setting.cfl = 0.45;
+    let step = film.stable_step();
+    let (mut crossings, mut before) = (Vec::new(), 0.0);
+    while crossings.len() < 7 {
+        let time = film.time;
+        film.advance(time + step, &free()).unwrap();
+        let swell = film.volume - rest.volume;
+        if before < 0.0 && swell >= 0.0 {
+            crossings.push(time + step * before / (before - swell));
+        }
+        before = swell;
+    }
+    6.0 / (crossings[6] - crossings[0])
+}
+
+#[test]
+fn breathing_sphere() {
+    for [pressure, expected] in rows("breathing_sphere") {
+        let values = [2, 3, 4].map(|level| breathing(level, pressure));
+        let errors: Vec<f64> = values.iter().map(|value| value / expected - 1.0).collect();
+        let richardson = (4.0 * values[2] - values[1]) / 3.0 / expected - 1.0;
+        println!(
+            "breathing {pressure} Pa: {values:?}, errors {errors:?}, Richardson {richardson:e}"
+        );
+        assert!(errors[2].abs() < number("breathing_sphere/raw_band"), "{errors:?}");
+        assert!(richardson.abs() < number("breathing_sphere/band"), "{richardson}");
+    }
+}
+
+/// Simple shear without stretch across: P = −Σ f ⊗ X over the film's volume.
+#[test]
+fn shear_panel() {
+    let piece = sheet(6, 4, 0.3, 0.2);
+    let model = piece.model(&ELASTIC);
+    let gamma = number("shear_panel/gamma");
+    let places = mapped(&piece, |x| Vector3::new(x.x + gamma * x.y, x.y, 0.0));
+    let forces = film_forces(&model, &places, &Field::zeros(piece.nodes.len())).0.film;
+    let volume: f64 = model.volume.iter().sum();
+    let stress: f64 =
+        -forces.iter().zip(&piece.nodes).map(|(f, x)| f.x * x.y).sum::<f64>() / volume;
+    println!("shear panel P12 {stress}");
+    assert!((stress / number("shear_panel/P12") - 1.0).abs() < number("shear_panel/band"));
+}
+
+#[test]
+fn mass_damping_slows_free_flight() {
+    let piece = sheet(2, 2, 0.1, 0.1);
+    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
+    let start = Vector3::new(3.0, -1.0, 2.0);
+    film.velocities = Field::of(&vec![start; piece.nodes.len()]);
+    film.setting.mass_damping = 40.0;
+    let kinetic = film.kinetic_energy();
+    film.advance(0.03, &free()).unwrap();
+    let share = film.velocity(4).norm() / start.norm();
+    assert!((share / (-1.2_f64).exp() - 1.0).abs() < 1e-3, "{share}");
+    let ledger = film.ledger();
+    let lost = kinetic - ledger.kinetic;
+    assert!((ledger.damping_work / lost - 1.0).abs() < 1e-4, "{ledger:?}");
+}
+
+#[test]
+fn weight_falls_as_it_should() {
+    let piece = icosphere(0, 0.5);
+    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
+    film.setting.gravity = -9.806_65;
+    film.advance(0.1, &free()).unwrap();
+    let drop = film.places.z[0] - piece.nodes[0].z;
+    assert!((drop / (-0.5 * 9.806_65 * 0.01) - 1.0).abs() < 1e-12, "{drop}");
+    let ledger = film.ledger();
+    assert!((ledger.kinetic / ledger.gravity_work - 1.0).abs() < 1e-3, "{ledger:?}");
+}
+
+#[test]
+fn typed_stops() {
+    let piece = icosphere(1, 0.5);
+    let gas = nitrogen();
+    let mut film =
+        at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), gas.at_temperature(1e-3, 293.0));
+    film.setting.step_limit = 7;
+    let failure = film.advance(1.0, &free()).unwrap_err();
+    assert_eq!((failure.kind, film.steps), (FailureKind::StepLimit, 7));
+
+    film.setting.step_limit = u64::MAX;
+    film.setting.cfl = 3.0;
+    let failure = film.advance(1.0, &free()).unwrap_err();
+    assert_eq!(failure.kind, FailureKind::Unstable, "{failure:?}");
+    assert!(failure.place.starts_with("node ") && failure.time < 0.1, "{failure:?}");
+
+    // Thrown through itself, turned inside out.
+    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), GasState::default());
+    film.velocities = mapped(&piece, |x| x * -400.0);
+    let failure = film.advance(1.0, &free()).unwrap_err();
+    assert_eq!(failure.kind, FailureKind::InvertedVolume, "{failure:?}");
+}
