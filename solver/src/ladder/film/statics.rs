@@ -21,7 +21,7 @@ use crate::integrate::explicit::{Explicit, Interior, Setting};
 use crate::ladder::SceneError;
 use crate::measures::{REFERENCE_PRESSURES, Reference};
 use crate::mesh::{Mesh, Shape};
-use crate::scene::{Film, Scene, Support};
+use crate::scene::{Film, Scene};
 use crate::state::Field;
 use crate::supports::Supports;
 
@@ -45,11 +45,13 @@ impl Default for Relaxation {
 }
 
 impl Relaxation {
-    /// Relaxes film under its overpressure (Pa) until it is settled, adapting the mass damping.
+    /// Relaxes film at this overpressure (Pa) until it is settled, adapting the mass damping.
     ///
     /// # Errors
     /// [`Failure`] of the motion, or `step_limit` when it does not settle.
-    pub fn relax(&self, film: &mut Explicit) -> Result<(), Failure> {
+    pub fn relax_at(&self, film: &mut Explicit, overpressure: f64) -> Result<(), Failure> {
+        film.setting.interior = Interior::Overpressure(overpressure);
+        film.pressure = overpressure;
         let limit = film.steps + self.step_limit;
         film.setting.step_limit = limit;
         let mut calm = 0;
@@ -108,34 +110,15 @@ pub fn static_states(
     overpressures: &[f64],
     relaxation: &Relaxation,
 ) -> Result<Vec<StaticState>, SceneError> {
-    scene.validate()?;
-    let pattern = FoldPattern::new(&scene.design)?;
-    let subdivisions = scene.design.subdivisions;
-    let erected = Mesh::new(&pattern, subdivisions, Shape::Erected)?;
-    let stowed = Mesh::new(&pattern, subdivisions, Shape::Stowed(scene.design.stowed_height))?;
-    let mut film = erected_film(scene, &erected, relaxation)?;
-    let failed = |failure: Failure| SceneError::Invalid {
-        key: "design".to_owned(),
-        problem: format!(
-            "no static state: {:?} at {} s, {}",
-            failure.kind, failure.time, failure.place
-        ),
-    };
-    if let Some(first) = overpressures.first() {
-        film.setting.interior = Interior::Overpressure(*first);
-        film.pressure = *first;
-    }
-    move_ring(&mut film, &stowed, &scene.supports).map_err(failed)?;
+    let (mut film, mesh) = erected(scene, relaxation)?;
     let mut states = Vec::new();
     for overpressure in overpressures {
-        film.setting.interior = Interior::Overpressure(*overpressure);
-        film.pressure = *overpressure;
         let steps = film.steps;
-        relaxation.relax(&mut film).map_err(failed)?;
+        relaxation.relax_at(&mut film, *overpressure).map_err(|failure| no_state(&failure))?;
         states.push(StaticState {
             overpressure: *overpressure,
             volume: film.volume,
-            z_rim: mean_height(&film.places, &erected.top_ring),
+            z_rim: mean_height(&film.places, &mesh.top_ring),
             strain_energy: film.strain_energy(),
             steps: film.steps - steps,
         });
@@ -155,46 +138,63 @@ pub fn static_reference(scene: &Scene, relaxation: &Relaxation) -> Result<Refere
     Ok(Reference::new(states.iter().map(|s| [s.overpressure, s.volume, s.z_rim]).collect()))
 }
 
-fn erected_film(
-    scene: &Scene,
-    erected: &Mesh,
-    relaxation: &Relaxation,
-) -> Result<Explicit, SceneError> {
+fn no_state(failure: &Failure) -> SceneError {
+    let Failure { kind, time, place } = failure;
+    let problem = format!("no static state: {kind:?} at {time} s, {place}");
+    SceneError::Invalid { key: "design".to_owned(), problem }
+}
+
+/// A scene's capsule erected, still and without pressure, with what is held moved to where it is
+/// held stowed; and its mesh. Its compression fraction is 0.
+///
+/// # Errors
+/// [`SceneError`] when the capsule cannot be made, or does not bear the move.
+pub fn erected(scene: &Scene, relaxation: &Relaxation) -> Result<(Explicit, Mesh), SceneError> {
+    scene.validate()?;
+    let pattern = FoldPattern::new(&scene.design)?;
+    let mesh = Mesh::new(&pattern, scene.design.subdivisions, Shape::Erected)?;
     let tension_field = Film { compression: 0.0, ..scene.film };
-    let scene = Scene { film: tension_field, ..scene.clone() };
-    let model = film_model(&scene, erected)?;
+    let model = film_model(&Scene { film: tension_field, ..scene.clone() }, &mesh)?;
     let setting = Setting {
         interior: Interior::Overpressure(0.0),
-        supports: Supports::of_capsule(&scene.supports, erected),
+        supports: Supports::of_capsule(&scene.supports, &mesh),
         gravity: 0.0,
         viscosity: scene.film.viscosity,
         mass_damping: 0.0,
         cfl: relaxation.cfl,
         step_limit: relaxation.step_limit,
     };
-    let places = Field::of(&erected.positions);
+    let places = Field::of(&mesh.positions);
     let still = Field::zeros(places.len());
-    Ok(Explicit::new(model, setting, places, still, GasState::default()))
+    let mut film = Explicit::new(model, setting, places, still, GasState::default());
+    if !scene.supports.is_empty() {
+        let stowed = Shape::Stowed(scene.design.stowed_height);
+        let stowed = Mesh::new(&pattern, scene.design.subdivisions, stowed)?;
+        move_held(&mut film, &stowed).map_err(|failure| no_state(&failure))?;
+    }
+    Ok((film, mesh))
 }
 
-/// How long a held ring takes to its stowed place, s.
+/// How long what is held takes to its stowed place, s.
 const MOVE_TIME: f64 = 0.01;
+/// Overpressure that keeps the film open meanwhile, Pa.
+const MOVE_PRESSURE: f64 = 1000.0;
 
 /// Moves what is held to where it is held stowed.
-fn move_ring(film: &mut Explicit, stowed: &Mesh, supports: &[Support]) -> Result<(), Failure> {
-    let held = Supports::of_capsule(supports, stowed);
+fn move_held(film: &mut Explicit, stowed: &Mesh) -> Result<(), Failure> {
     let nodes: Vec<u32> = (0_u32..)
-        .zip(held.free.iter())
+        .zip(film.setting.supports.free.iter())
         .filter(|(_, free)| free.product() == 0.0)
         .map(|(node, _)| node)
         .collect();
+    film.setting.interior = Interior::Overpressure(MOVE_PRESSURE);
+    film.pressure = MOVE_PRESSURE;
     let from = film.places.clone();
     let way = |node: u32| {
         let node = node as usize;
         stowed.positions[node] - from.get(node)
     };
     let start = film.time;
-    film.setting.mass_damping = 0.0;
     film.move_held(&nodes, |node| way(node) / MOVE_TIME);
     film.advance(start + MOVE_TIME, &Phase::default())?;
     film.move_held(&nodes, |_| Vector3::zeros());
