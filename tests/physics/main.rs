@@ -8,6 +8,7 @@
     reason = "judges by tolerances, not by bits; counts are small"
 )]
 
+mod allocation;
 mod capsule;
 mod conservation;
 mod explicit_cases;
