@@ -1,12 +1,16 @@
 //! Small films for the tests of the explicit solver.
 
+use billow_solver::deployment::Phase;
 use billow_solver::forces::membrane::{ElementForces, NodeForces, element_pass, node_pass};
+use billow_solver::gas::{Gas, GasState};
+use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
 use billow_solver::model::FilmModel;
 use billow_solver::scene::Film;
 use billow_solver::state::Field;
+use billow_solver::supports::Supports;
 use nalgebra::{Matrix2x3, Vector2, Vector3};
 
-use crate::rig::PAPER_FILM;
+use crate::rig::{PAPER_FILM, supply};
 
 /// Film without viscosity, tension field.
 pub const ELASTIC: Film = Film { viscosity: 0.0, ..PAPER_FILM };
@@ -147,4 +151,32 @@ pub fn gradients([a, b, c]: [Vector2<f64>; 3]) -> Matrix2x3<f64> {
     let first = Vector2::new(q.y, -q.x) / twice;
     let second = Vector2::new(-p.y, p.x) / twice;
     Matrix2x3::from_columns(&[-(first + second), first, second])
+}
+
+/// A piece of film at rest where it is stress free.
+pub fn at_rest(piece: &Piece, film: &Film, interior: Interior, gas: GasState) -> Explicit {
+    let setting = Setting {
+        interior,
+        supports: Supports::none(piece.nodes.len()),
+        gravity: 0.0,
+        viscosity: film.viscosity,
+        mass_damping: 0.0,
+        cfl: 0.45,
+        step_limit: u64::MAX,
+    };
+    let still = Field::zeros(piece.nodes.len());
+    Explicit::new(piece.model(film), setting, Field::of(&piece.nodes), still, gas)
+}
+
+pub fn free() -> Phase {
+    Phase::default()
+}
+
+pub fn nitrogen_gas() -> Gas {
+    Gas::new(&supply(), 293.0, 1.0)
+}
+
+/// Order of convergence of three errors on meshes halved each time.
+pub fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).abs().log2()).collect()
 }

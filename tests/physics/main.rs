@@ -22,3 +22,4 @@ mod geometry;
 mod membrane_cases;
 mod piston_cases;
 mod rig;
+mod shells;
