@@ -2,7 +2,6 @@
 # make test     the quick tier of the tests (what CI runs)
 # make test-all the quick tier, the long ones, and the Python readers
 # make check    formatting, lints, docs
-# make bench    benchmarks
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
 
 SHELL := /bin/bash
@@ -16,7 +15,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study test test-all test-long readers build check bench deps reader-deps fresh-check
+.PHONY: study test test-all test-long readers build check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -45,9 +44,6 @@ check: deps
 	$(CARGO) clippy $(FLAGS) --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc $(FLAGS) --no-deps
 	if command -v cargo-deny > /dev/null; then cargo deny check; fi
-
-bench: deps
-	$(CARGO) bench $(FLAGS)
 
 deps:
 	@.ci/install.sh $(PACKAGES)

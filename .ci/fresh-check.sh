@@ -33,7 +33,15 @@ debootstrap --variant=minbase --include=gcc,libc6-dev,make,git,ca-certificates \
   bookworm "$root" ${mirror:+"$mirror"}
 mount --bind "$root" "$root"
 
+rm -f "$root/etc/apt/sources.list"
 cp -a /etc/apt/. "$root/etc/apt/"
+# Copied, not mounted: packages write there.
+cp -a /etc/ssl/. "$root/etc/ssl/"
+cp -a /usr/share/keyrings/. "$root/usr/share/keyrings/"
+if [ -d /usr/local/share/ca-certificates ]; then
+  mkdir -p "$root/usr/local/share/ca-certificates"
+  cp -a /usr/local/share/ca-certificates/. "$root/usr/local/share/ca-certificates/"
+fi
 cp -L /etc/resolv.conf "$root/etc/resolv.conf"
 [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$root/etc/pip.conf"
 share() { # folder, mount options
@@ -41,9 +49,6 @@ share() { # folder, mount options
   mount --bind "$1" "$root$1"
   [ -z "${2:-}" ] || mount -o "remount,bind,$2" "$root$1"
 }
-share /etc/ssl ro
-share /usr/share/keyrings ro
-[ ! -d /usr/local/share/ca-certificates ] || share /usr/local/share/ca-certificates ro
 share "$rustup_home" ro
 share "$cargo_home"
 mount -t proc proc "$root/proc"

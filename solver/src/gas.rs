@@ -19,8 +19,9 @@
 //! - The leak lets gas out only: at p ≤ `p_ambient` nothing passes it, as through a flap valve. A
 //!   capsule under ambient pressure does not breathe air in.
 //! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat is what the balance asks for.
-//! - With h > 0 the gas warms at the rate h A/(m cv), so nearly empty volumes (a leak that has
-//!   emptied the capsule) are stiff and cost small steps.
+//! - With h > 0 the gas warms at the rate h A/(m cv), but never faster than in
+//!   [`FASTEST_EXCHANGE`]: a nearly empty volume (first gas, a leak that has emptied the capsule)
+//!   costs small steps, not ever smaller ones.
 //!
 //! Every model gets its gas from here; it brings V, dV/dt and its own work of p on the film.
 
@@ -61,6 +62,11 @@ pub struct GasRates {
     /// Work the gas does on the film, p dV/dt, W.
     pub work: f64,
 }
+
+/// Shortest time, s, in which gas takes on film temperature. h A/(m cv) grows without bound as the
+/// gas runs out; beyond this it would stiffen the equations and say nothing: no film motion is as
+/// fast.
+const FASTEST_EXCHANGE: f64 = 1e-6;
 
 /// The laws of one control volume: constant during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,14 +134,12 @@ impl Gas {
     }
 
     /// T, K, of the first gas to enter an empty volume, the limit of both balances for m → 0, so
-    /// that the rates are continuous there: m cv T = (ṁ cp `T_in` + Q̇) t with m = ṁ t gives
-    /// T = (ṁ cp `T_in` + h A `T_film`)/(ṁ cv + h A), γ `T_in` when adiabatic.
+    /// that the rates are continuous there: m cv T = ṁ cp `T_in` t with m = ṁ t gives T = γ `T_in`
+    /// (the film's share vanishes with m, see [`FASTEST_EXCHANGE`]).
     fn first_temperature(&self, inflow: Inflow) -> f64 {
         match self.heat_transfer {
-            HeatTransfer::Coefficient(coefficient) if inflow.mass > 0.0 => {
-                let exchange = coefficient * self.film_area;
-                (self.cp * inflow.mass_temperature + exchange * self.film_temperature)
-                    / (self.cv * inflow.mass + exchange)
+            HeatTransfer::Coefficient(_) if inflow.mass > 0.0 => {
+                self.gamma() * inflow.mass_temperature / inflow.mass
             }
             _ => self.film_temperature,
         }
@@ -160,7 +164,9 @@ impl Gas {
         let without_heat = enthalpy_in - enthalpy_out - work;
         let (internal_energy, heat) = match self.heat_transfer {
             HeatTransfer::Coefficient(coefficient) => {
-                let heat = coefficient * self.film_area * (self.film_temperature - temperature);
+                let exchange = coefficient * self.film_area;
+                let exchange = exchange.min(state.mass * self.cv / FASTEST_EXCHANGE);
+                let heat = exchange * (self.film_temperature - temperature);
                 (without_heat + heat, heat)
             }
             HeatTransfer::Isothermal => {

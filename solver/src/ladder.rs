@@ -27,6 +27,16 @@ pub enum SceneError {
     },
 }
 
+/// Whether the model a scene names can run it, as far as that shows without solving its pattern.
+///
+/// # Errors
+/// [`SceneError::Invalid`] with the key, what is wrong and, after a semicolon, what is allowed.
+pub fn check(scene: &Scene) -> Result<(), SceneError> {
+    match scene.solver.model {
+        ModelKind::Piston => piston::check(scene),
+    }
+}
+
 /// Runs a scene on the model it names.
 ///
 /// # Errors

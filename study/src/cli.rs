@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 
 mod completions;
 mod fold;
+mod notes;
 mod plan;
 pub mod print;
 mod run;
@@ -32,7 +33,7 @@ pub struct Cli {
 /// Options every command takes.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Global {
-    /// Folder of the results [default: results/<study> under the current folder].
+    /// Folder of the results [default: `results/STUDY` under the current folder].
     #[arg(long, global = true, value_name = "DIR")]
     pub results: Option<PathBuf>,
     /// Threads [default: one a core].

@@ -33,7 +33,7 @@ pub enum Error {
 pub struct InputError {
     /// File, or the flag it came from.
     pub file: String,
-    /// Dotted key ("film.thickness", "grid.N[2]"); empty when the file as a whole is meant.
+    /// Dotted key (`film.thickness`, `grid.N[2]`); empty when the file as a whole is meant.
     pub key: String,
     /// The value as written; empty when there is none.
     pub value: String,

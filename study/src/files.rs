@@ -5,8 +5,10 @@
 //! synced append at a time. Everything goes through [`Files`], so that tests can fail any write
 //! ([`failing::FailingFiles`]).
 
+#![expect(clippy::disallowed_methods, reason = "this is the door")]
+
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -161,6 +163,16 @@ impl Append for DiskAppend {
 
 /// How the name of a temporary file ends.
 const TEMPORARY: &str = ".tmp";
+
+/// The whole file a user names, `None` when it is larger than `limit` bytes.
+///
+/// # Errors
+/// Whatever the system says.
+pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= limit).then_some(bytes))
+}
 
 /// Writes a whole file, or leaves what was there: temporary name in the same folder, sync, rename,
 /// sync of the folder.

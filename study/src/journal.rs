@@ -254,6 +254,7 @@ impl<'a> Writer<'a> {
 }
 
 #[cfg(test)]
+#[expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
 mod tests {
     use super::*;
     use crate::files::Disk;

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use crate::study_file::Json;
 use crate::units::{self, Dimension};
-use crate::value::Value;
+use crate::value::{Value, short_number};
 
 pub use table::{KEYS, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
 
@@ -166,12 +166,8 @@ impl Quantity {
         let unit = if self.dimension == Dimension::Number { "" } else { self.dimension.si() };
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let from = if self.above { "above " } else { "from " };
-        let _ = write!(
-            text,
-            " {from}{} to {}{unit}",
-            crate::cli::print::short_number(self.min),
-            crate::cli::print::short_number(self.max)
-        );
+        let _ =
+            write!(text, " {from}{} to {}{unit}", short_number(self.min), short_number(self.max));
         if self.dimension != Dimension::Number {
             let _ = write!(
                 text,

@@ -6,7 +6,7 @@
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
-use billow_solver::fold::Nearest;
+use billow_solver::fold::{FoldPattern, Nearest};
 
 use crate::job::{Job, JobId, Parameters};
 use crate::study::Study;
@@ -27,8 +27,35 @@ pub struct Point {
     pub job: Job,
     /// Set when no fold pattern meets the design: the point is a row, not a run.
     pub infeasible: Option<Infeasible>,
+    /// What the fold solves; `None` where no pattern meets the design.
+    pub solved: Option<Solved>,
     /// Parameters of later points that resolve to the same job.
     pub merged: Vec<Parameters>,
+}
+
+/// What the fold of a point solves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solved {
+    /// ϕ, rad.
+    pub phi: f64,
+    /// Half top angle, rad.
+    pub half_angle: f64,
+    /// r1, m.
+    pub top_radius: f64,
+    /// H, m.
+    pub height: f64,
+}
+
+impl Solved {
+    /// Of a pattern.
+    pub fn of(pattern: &FoldPattern) -> Self {
+        Self {
+            phi: pattern.angles.phi,
+            half_angle: pattern.half_angle,
+            top_radius: pattern.top_radius,
+            height: pattern.height,
+        }
+    }
 }
 
 /// Why a point has no pattern.
@@ -38,6 +65,16 @@ pub struct Infeasible {
     pub reason: String,
     /// Nearest feasible values, each for a change of that key alone.
     pub nearest: Vec<Nearest>,
+}
+
+impl Infeasible {
+    /// The nearest feasible values in words, as a table cell has them; empty where there are none.
+    pub fn nearest_text(&self) -> String {
+        let nearest = self.nearest.iter();
+        let texts: Vec<String> =
+            nearest.map(|near| format!("{} = {}", near.key, near.value)).collect();
+        texts.join(" or ")
+    }
 }
 
 /// What planning may know of a finished job.
@@ -84,7 +121,7 @@ fn first_generation(study: &Study) -> Generation {
                 };
                 place.insert(points.len());
                 let infeasible = point.infeasible.clone();
-                points.push(Point { job, infeasible, merged: Vec::new() });
+                points.push(Point { job, infeasible, solved: point.solved, merged: Vec::new() });
             }
         }
     }

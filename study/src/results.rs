@@ -37,6 +37,17 @@ struct Owner {
     name: String,
 }
 
+/// study.json of a resolved study.
+fn study_bytes(name: &str, study: &serde_json::Value) -> io::Result<Vec<u8>> {
+    let mut study = study.clone();
+    study["format"] = FORMAT.into();
+    study["version"] = VERSION.into();
+    study["name"] = name.into();
+    let mut bytes = serde_json::to_vec_pretty(&study).map_err(io::Error::other)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
 /// A results folder on some disk.
 #[derive(Clone)]
 pub struct Results<'a> {
@@ -81,7 +92,9 @@ impl<'a> Results<'a> {
     /// [`Error::Disk`] when it cannot be created, or when another command holds the lock.
     pub fn lock(&self) -> Result<Lock> {
         let at_root = |error: io::Error| disk_error(&self.root, &error);
-        self.files.create_folder(&self.root).map_err(at_root)?;
+        if !self.files.create_folder(&self.root).map_err(at_root)? {
+            self.refuse_foreign()?;
+        }
         let path = self.root.join("lock");
         let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
         lock.ok_or_else(|| Error::Disk {
@@ -90,6 +103,32 @@ impl<'a> Results<'a> {
                       ended, or choose another folder with --results DIR"
                 .to_owned(),
         })
+    }
+
+    /// Refuses a folder that holds what no study left there.
+    fn refuse_foreign(&self) -> Result<()> {
+        const OURS: [&str; 5] = ["study.json", "journal", "jobs", "summary.parquet", "lock"];
+        let at_root = |error: io::Error| disk_error(&self.root, &error);
+        let names: Vec<String> = self
+            .files
+            .list(&self.root)
+            .map_err(at_root)?
+            .iter()
+            .filter_map(|path| path.file_name().map(|name| name.to_string_lossy().into_owned()))
+            .collect();
+        // A folder with its study.json is judged by that; hidden files may be half-written ones.
+        let foreign =
+            names.iter().find(|name| !OURS.contains(&name.as_str()) && !name.starts_with('.'));
+        match foreign {
+            Some(name) if !names.iter().any(|name| name == "study.json") => Err(Error::Disk {
+                path: self.root.clone(),
+                problem: format!(
+                    "not a folder of results: it holds {name:?} and no study.json\n  next: choose \
+                     an empty or new folder with --results DIR"
+                ),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Removes what a killed process left half written. Only with the lock held.
@@ -142,16 +181,20 @@ impl<'a> Results<'a> {
                 }
             }
         }
-        let mut study = study.clone();
-        study["format"] = FORMAT.into();
-        study["version"] = VERSION.into();
-        study["name"] = name.into();
-        let mut bytes = serde_json::to_vec_pretty(&study)
-            .map_err(|error| disk_error(&path, &io::Error::other(error)))?;
-        bytes.push(b'\n');
+        let bytes = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
         files::write_if_changed(self.files, &path, &bytes)
             .map_err(|error| disk_error(&path, &error))?;
         Ok(())
+    }
+
+    /// Whether this is the study the folder was last run for.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when study.json cannot be read.
+    pub fn holds(&self, name: &str, study: &serde_json::Value) -> Result<bool> {
+        let path = self.root.join("study.json");
+        let there = self.files.read(&path).map_err(|error| disk_error(&path, &error))?;
+        Ok(there == study_bytes(name, study).map_err(|error| disk_error(&path, &error))?)
     }
 
     /// What the journals say.

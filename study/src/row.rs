@@ -84,13 +84,8 @@ impl Cells {
     pub fn infeasible(infeasible: &Infeasible) -> Self {
         let mut cells = Self::new(INFEASIBLE);
         cells.set("reason", infeasible.reason.as_str());
-        let nearest: Vec<String> = infeasible
-            .nearest
-            .iter()
-            .map(|nearest| format!("{} = {}", nearest.key, nearest.value))
-            .collect();
-        if !nearest.is_empty() {
-            cells.set("nearest", nearest.join(" or "));
+        if !infeasible.nearest.is_empty() {
+            cells.set("nearest", infeasible.nearest_text());
         }
         cells
     }
@@ -110,7 +105,7 @@ impl Cells {
                 }
             },
             Outcome::Refused(error) => {
-                let infeasible = SceneErrorKind::of(error) == SceneErrorKind::Infeasible;
+                let infeasible = matches!(error, SceneError::Fold(FoldError::Infeasible { .. }));
                 let mut cells = Self::new(if infeasible { INFEASIBLE } else { INVALID });
                 cells.set("reason", error.to_string());
                 cells
@@ -150,7 +145,7 @@ impl Cells {
 
     fn deployment(&mut self, deployment: &Deployment, seconds: f64) {
         let measures = &deployment.measures;
-        self.set("verdict", measures.verdict.map(verdict_name));
+        self.set("verdict", measures.verdict.map(Verdict::name));
         if measures.verdict.is_some() {
             self.set("close", measures.close);
         }
@@ -194,30 +189,6 @@ impl Cells {
         if element_steps > 0.0 {
             self.set("ns_per_element_step", seconds * 1e9 / element_steps);
         }
-    }
-}
-
-#[derive(PartialEq)]
-enum SceneErrorKind {
-    Infeasible,
-    Other,
-}
-
-impl SceneErrorKind {
-    fn of(error: &SceneError) -> Self {
-        match error {
-            SceneError::Fold(FoldError::Infeasible { .. }) => Self::Infeasible,
-            SceneError::Fold(FoldError::Invalid { .. }) | SceneError::Invalid { .. } => Self::Other,
-        }
-    }
-}
-
-/// Name of a verdict, as in the table.
-pub fn verdict_name(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Deployed => "deployed",
-        Verdict::Partial => "partial",
-        Verdict::Stalled => "stalled",
     }
 }
 

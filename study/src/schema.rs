@@ -7,13 +7,27 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::cli::print::json_value;
 use crate::keys::{self, Default, KEYS, Key, Kind, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, json_value};
 
-/// A number with a unit after it, as JSON Schema can say it; which units is the program's to check.
-const QUANTITY: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^\s0-9].*$";
+/// A number as a text begins with it.
+const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*";
+
+/// A unit of several symbols or powers: which ones is the program's to check.
+const COMPOUND: &str = r"[^\s0-9][^\s]*[/^*·0-9 ].*";
+
+/// A number with a unit of the dimension after it, as JSON Schema can say it.
+fn quantity_pattern(dimension: Dimension) -> String {
+    let symbols = crate::units::symbols(dimension).join("|");
+    let alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
+    format!(r"{NUMBER}({alone}{COMPOUND})\s*$")
+}
+
+/// A number with any unit after it.
+fn any_pattern() -> String {
+    format!(r"{NUMBER}[^\s0-9].*$")
+}
 
 /// Names a strategy may have.
 const NAME: &str = "^[A-Za-z_][A-Za-z0-9_]{0,63}$";
@@ -84,6 +98,9 @@ fn object(section: &str) -> Json {
         "properties": properties,
         "additionalProperties": false,
     });
+    if section == "solver.stepping" {
+        schema["maxProperties"] = json!(1);
+    }
     if section == "gas.species" {
         schema["required"] = json!(["gas_constant", "cp"]);
     }
@@ -134,7 +151,10 @@ fn kind(key: &Key) -> Json {
             let least = if quantity.above { "exclusiveMinimum" } else { "minimum" };
             let mut number = json!({"type": "number", "maximum": quantity.max});
             number[least] = json!(quantity.min);
-            let mut forms = vec![number, json!({"type": "string", "pattern": QUANTITY})];
+            let mut forms = vec![
+                number,
+                json!({"type": "string", "pattern": quantity_pattern(quantity.dimension)}),
+            ];
             let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
             if !words.is_empty() {
                 forms.push(json!({"enum": words}));
@@ -211,7 +231,7 @@ fn axis(key: &Key) -> Json {
         _ => {
             let step = json!({"oneOf": [
                 {"type": "number", "exclusiveMinimum": 0},
-                {"type": "string", "pattern": QUANTITY},
+                {"type": "string", "pattern": any_pattern()},
             ]});
             let range = json!({
                 "type": "object",

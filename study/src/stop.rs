@@ -1,16 +1,17 @@
-//! Stopping early: Ctrl-C and SIGTERM end a run in order, the second one at once.
+//! Stopping early: Ctrl-C and SIGTERM end a run in order, a third one on the spot.
 
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicI32, Ordering};
+use std::thread;
 
 use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
+use signal_hook::iterator::Signals;
 
 /// Whether to stop, and for which signal.
 #[derive(Debug, Clone, Default)]
 pub struct Stop {
-    signal: Arc<AtomicUsize>,
+    signal: Arc<AtomicI32>,
 }
 
 impl Stop {
@@ -19,27 +20,30 @@ impl Stop {
         Self::default()
     }
 
-    /// Asks to stop when SIGINT or SIGTERM comes; a second one ends the program on the spot, which
-    /// costs the running jobs and nothing else.
+    /// Asks to stop when SIGINT or SIGTERM comes. The second one changes nothing: it often is the
+    /// first one over again, sent to the process and to its group. The third one ends the program on
+    /// the spot, which costs the running jobs and the newest table, nothing else.
     ///
     /// # Errors
-    /// When the system refuses the handlers.
+    /// When the system refuses the handlers or the thread that waits for signals.
     pub fn on_signals() -> io::Result<Self> {
         let stop = Self::new();
-        let second = Arc::new(AtomicBool::new(false));
-        for signal in [SIGINT, SIGTERM] {
-            // In this order: the first signal finds `second` false, sets it, and only the next
-            // one shuts down.
-            flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&second))?;
-            flag::register(signal, Arc::clone(&second))?;
-            let number = usize::try_from(signal).unwrap_or(0);
-            flag::register_usize(signal, Arc::clone(&stop.signal), number)?;
-        }
+        let mut signals = Signals::new([SIGINT, SIGTERM])?;
+        let asked = stop.clone();
+        thread::Builder::new().name("signals".to_owned()).spawn(move || {
+            for (earlier, signal) in signals.forever().enumerate() {
+                match earlier {
+                    0 => asked.request(signal),
+                    1 => eprintln!("billow: stopping; once more ends it on the spot"),
+                    _ => std::process::exit(128 + signal),
+                }
+            }
+        })?;
         Ok(stop)
     }
 
     /// Asks to stop, as that signal would.
-    pub fn request(&self, signal: usize) {
+    pub fn request(&self, signal: i32) {
         self.signal.store(signal, Ordering::SeqCst);
     }
 
@@ -47,7 +51,7 @@ impl Stop {
     pub fn requested(&self) -> Option<i32> {
         match self.signal.load(Ordering::SeqCst) {
             0 => None,
-            signal => i32::try_from(signal).ok(),
+            signal => Some(signal),
         }
     }
 }

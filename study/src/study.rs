@@ -17,12 +17,12 @@ mod supports;
 
 use serde_json::{Map, json};
 
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::job::Parameters;
 use crate::keys::Kind;
-use crate::plan::Infeasible;
+use crate::plan::{Infeasible, Solved};
 use crate::study_file::{self, Json};
+use crate::value::json_value;
 use billow_solver::scene::Scene;
 
 use base::Base;
@@ -64,6 +64,8 @@ pub(crate) struct StudyPoint {
     pub scene: Scene,
     /// Why it runs not.
     pub infeasible: Option<Infeasible>,
+    /// What the fold solves; `None` where it is infeasible.
+    pub solved: Option<Solved>,
 }
 
 impl Study {
@@ -112,6 +114,11 @@ impl Study {
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
     pub fn parameter_names(&self) -> Vec<String> {
         self.grid.columns.iter().map(|column| column.name.clone()).collect()
+    }
+
+    /// Dotted paths of the varied parameters, in the same order.
+    pub fn parameter_paths(&self) -> impl Iterator<Item = &'static str> {
+        self.grid.columns.iter().map(|column| column.target.key().path)
     }
 
     /// SI unit of a varied parameter: "1" for a pure number, empty for a word.

@@ -5,12 +5,12 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
-use std::io::Read;
 use std::path::Path;
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use crate::error::{Error, InputError, Result};
+use crate::files;
 use crate::study::{Limits, Study};
 
 /// Largest study file read, bytes. A study is written by hand; a grid of a million points fits in a
@@ -248,17 +248,13 @@ fn read(path: &Path) -> Result<Vec<u8>> {
         };
         disk(format!("cannot read the study file: {error}{next}"))
     };
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(disk(format!(
+    files::read_at_most(path, LARGEST_FILE).map_err(unreadable)?.ok_or_else(|| {
+        disk(format!(
             "larger than the {} MiB a study file may have; vary keys under grid instead of listing \
              points",
             LARGEST_FILE >> 20
-        )));
-    }
-    Ok(bytes)
+        ))
+    })
 }
 
 #[cfg(test)]

@@ -39,6 +39,15 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     })
 }
 
+/// Every single symbol a text of the dimension may carry as its unit; products and powers beside.
+pub fn symbols(dimension: Dimension) -> Vec<String> {
+    let mut symbols = symbol::symbols(dimension.powers());
+    if dimension == Dimension::Temperature {
+        symbols.extend(CELSIUS.map(str::to_owned));
+    }
+    symbols
+}
+
 /// Reads a quantity of any dimension, given as powers of the base units.
 ///
 /// # Errors
@@ -50,7 +59,7 @@ pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
     if unit.is_empty() {
         return Err("has no unit; write the number without quotes if it is SI".to_owned());
     }
-    if wanted == Dimension::Temperature.powers() && matches!(unit, "degC" | "°C" | "celsius") {
+    if wanted == Dimension::Temperature.powers() && CELSIUS.contains(&unit) {
         return finite(decimal::shifted(number, ZERO_CELSIUS), text);
     }
     let scale = symbol::unit(unit)?;
@@ -63,6 +72,9 @@ pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
     }
     finite(decimal::scaled(number, &scale), text)
 }
+
+/// Units of temperature that count from 0 °C.
+const CELSIUS: [&str; 3] = ["degC", "°C", "celsius"];
 
 /// 0 °C is 273.15 K: 27315 hundredths.
 const ZERO_CELSIUS: (i128, i32) = (27_315, -2);

@@ -1,4 +1,4 @@
-//! A value of a parameter or a table cell.
+//! A value of a parameter or a table cell, and how it is written.
 
 use std::fmt;
 
@@ -25,6 +25,66 @@ impl fmt::Display for Value {
             Self::Integer(value) => write!(f, "{value}"),
             Self::Number(value) => write!(f, "{value}"),
             Self::Text(value) => f.write_str(value),
+        }
+    }
+}
+
+/// A value as JSON; a number JSON cannot hold is `null`.
+pub fn json_value(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Null => serde_json::Value::Null,
+        Value::Bool(value) => (*value).into(),
+        Value::Integer(value) => (*value).into(),
+        Value::Number(value) => (*value).into(),
+        Value::Text(value) => value.as_str().into(),
+    }
+}
+
+/// A number to six significant digits, without trailing zeros; powers of ten where plain digits
+/// would be long.
+pub fn short_number(number: f64) -> String {
+    if !number.is_finite() {
+        return number.to_string();
+    }
+    if number == 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{number:.5e}");
+    let Some((mantissa, Ok(exponent))) =
+        scientific.split_once('e').map(|(mantissa, exponent)| (mantissa, exponent.parse::<i32>()))
+    else {
+        return scientific;
+    };
+    if (-4..7).contains(&exponent) {
+        let decimals = usize::try_from(5 - exponent).unwrap_or(0);
+        trim_zeros(&format!("{number:.decimals$}")).to_owned()
+    } else {
+        format!("{}e{exponent}", trim_zeros(mantissa))
+    }
+}
+
+fn trim_zeros(digits: &str) -> &str {
+    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_true() {
+        for (number, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1"),
+            (0.005, "0.005"),
+            (1_000_000.0, "1000000"),
+            (123_456_789.0, "1.23457e8"),
+            (25.4e-6, "2.54e-5"),
+            (std::f64::consts::PI, "3.14159"),
+            (-0.999_999_96, "-1"),
+        ] {
+            assert_eq!(short_number(number), text);
         }
     }
 }

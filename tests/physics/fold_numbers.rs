@@ -175,12 +175,63 @@ fn requests_that_are_none() {
         ("alpha1_over_phi", FoldDesign { alpha1_over_phi: None, ..paper_angles() }),
         ("top_radius", FoldDesign { half_angle: Some(0.1), ..paper_angles() }),
         ("top_radius", FoldDesign { top_radius: Some(0.3), ..paper_height(3) }),
-        ("stowed_height", FoldDesign { stowed_height: 2.0, ..paper_design() }),
+        ("stowed_height", FoldDesign { stowed_height: 0.0, ..paper_design() }),
     ];
     for (expected, design) in broken {
         match FoldPattern::new(&design) {
             Err(FoldError::Invalid { key, .. }) => assert_eq!(key, expected),
             other => panic!("{expected}: {other:?}"),
+        }
+    }
+}
+
+/// The pattern closes but cannot be packed so high: infeasible, and the nearest lower stack is one.
+#[test]
+fn a_stack_too_high_to_pack_has_a_nearest_lower_one() {
+    for (top_radius, stowed_height) in [(0.365, 2.0), (0.365, 0.9), (0.02, 0.3)] {
+        let design = FoldDesign {
+            storeys: 4,
+            stowed_height,
+            top_radius: Some(top_radius),
+            ..paper_design()
+        };
+        let Err(FoldError::Infeasible { reason, nearest }) = FoldPattern::new(&design) else {
+            panic!("{stowed_height} m is too high a stack");
+        };
+        assert!(reason.starts_with("stowed_height: "), "{reason}");
+        assert_eq!(nearest.len(), 1);
+        assert_eq!(nearest[0].key, "stowed_height");
+        let nearest = nearest[0].value;
+        assert!(nearest < stowed_height);
+        solved(&FoldDesign { stowed_height: nearest, ..design.clone() });
+        let higher = FoldDesign { stowed_height: 1.03 * nearest, ..design };
+        assert!(FoldPattern::new(&higher).is_err(), "{nearest} m is not the nearest");
+    }
+}
+
+/// Far from any pattern there is still a nearest one, and each nearest value alone is enough: for
+/// the stack as for the pattern.
+#[test]
+fn nearest_values_are_feasible_however_far() {
+    let far = FoldDesign { alpha1_over_phi: Some(1e-3), ..paper_height(3) };
+    let short = FoldDesign { top_radius: Some(1e-3), storeys: 1, ..paper_design() };
+    for design in [far, short] {
+        let Err(FoldError::Infeasible { nearest, .. }) = FoldPattern::new(&design) else {
+            panic!("no pattern");
+        };
+        assert!(!nearest.is_empty());
+        for near in nearest {
+            let mut changed = design.clone();
+            match near.key {
+                "N" => changed.panels = near.value as u32,
+                "M" => changed.storeys = near.value as u32,
+                "height" => changed.height = Some(near.value),
+                "top_radius" => changed.top_radius = Some(near.value),
+                "bottom_radius" => changed.bottom_radius = near.value,
+                "alpha1_over_phi" => changed.alpha1_over_phi = Some(near.value),
+                key => panic!("{key}"),
+            }
+            solved(&changed);
         }
     }
 }

@@ -5,6 +5,7 @@
     clippy::float_cmp,
     clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
     reason = "judges by tolerances, not by bits; counts are small"
 )]
 

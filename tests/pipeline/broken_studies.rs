@@ -104,6 +104,17 @@ fn every_broken_file_gives_one_clear_error() {
             changed("/supports", json!([{"on": "roof", "fix": "z"}])),
             &["supports[0].on = \"roof\"", "bottom_ring, top_ring"],
         ),
+        (
+            changed("/supports", json!([{"on": "bottom_ring", "fix": "xy"}])),
+            &["supports: model `piston` stands on its bottom ring", "allowed: at least one"],
+        ),
+        (
+            changed(
+                "/supports",
+                json!([{"on": "bottom_ring", "fix": "xyz"}, {"on": "top_cap", "fix": "z"}]),
+            ),
+            &["supports[1].fix: model `piston` moves the top along z", "xy"],
+        ),
         (changed("/gas/species", json!({"gas_constant": 300})), &["gas.species.cp", "missing"]),
         (
             changed("/outputs", json!({"sample_interval": "1 ns"})),

@@ -80,6 +80,7 @@ fn infeasible_is_an_answer() {
     assert!(answer["reason"].as_str().expect("a reason").contains("no phi closes"));
     assert_eq!(answer["nearest"]["M"], 2);
     assert!(answer["phi"].is_null());
+    assert_eq!(answer["height"], 1.0, "what was asked stands");
     // Without --json too, and nothing is written.
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
@@ -90,15 +91,17 @@ fn infeasible_is_an_answer() {
 
 #[test]
 fn bad_designs_are_refused_in_one_line() {
-    let cases: [(&[&str], &str, &str); 8] = [
+    let cases: [(&[&str], &str, &str); 10] = [
         (&["--panels", "3"], "--panels", "4 to 1000"),
+        (&["--bottom-radius", "500"], "--bottom-radius", "a length"),
+        (&["--bottom-radius", "nan"], "--bottom-radius", "a length"),
         (&["--storeys", "0"], "--storeys", "1 to 1000"),
-        (&["--top-radius", "0"], "--top-radius", "no top ring"),
+        (&["--top-radius", "0"], "--top-radius", "above 0"),
         (&["--top-radius", "3 s"], "--top-radius", "a time, not a length"),
         (&["--alpha1-over-phi", "1"], "--alpha1-over-phi", "cone"),
-        (&["--half-angle", "95 deg"], "--half-angle", "between"),
-        (&["--height", "-1"], "--height", "not a positive number"),
-        (&["--stowed-height", "2"], "--stowed-height", "below the height"),
+        (&["--half-angle", "95 deg"], "--half-angle", "out of range"),
+        (&["--height", "-1"], "--height", "out of range"),
+        (&["--stowed-height", "0"], "--stowed-height", "out of range"),
     ];
     for (changed, flag, allowed) in cases {
         let mut flags: Vec<&str> = PAPER.to_vec();
@@ -112,6 +115,47 @@ fn bad_designs_are_refused_in_one_line() {
         assert!(output.stdout.is_empty(), "{changed:?}");
         assert!(error.contains(flag) && error.contains(allowed), "{changed:?}: {error}");
     }
+}
+
+#[test]
+fn a_stack_too_high_is_an_answer_and_by_default_never_asked_for() {
+    let small = [
+        "--panels",
+        "6",
+        "--storeys",
+        "3",
+        "--bottom-radius",
+        "20 mm",
+        "--top-radius",
+        "14.6 mm",
+        "--height",
+        "40 mm",
+        "--json",
+    ];
+    let answer = |flags: &[&str]| -> Value {
+        let output = fold(flags);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let folded = answer(&small);
+    assert_eq!(folded["feasible"], true);
+    let stowed = folded["stowed_height"].as_f64().expect("a height");
+    assert!(stowed > 0.001 && stowed < 0.03, "{stowed}");
+    let asked = answer(&[&small[..], &["--stowed-height", "40 mm"]].concat());
+    assert_eq!(asked["feasible"], false);
+    assert!(asked["reason"].as_str().expect("a reason").starts_with("stowed_height"));
+    assert_eq!(asked["nearest"]["stowed_height"], stowed);
+}
+
+#[test]
+fn shapes_beyond_any_memory_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("shapes");
+    let flags = ["--subdivisions", "1000", "--out", out.to_str().expect("a path")];
+    let output = fold(&[&PAPER[..], &flags].concat());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("elements"));
+    assert!(output.stdout.is_empty() && !out.exists());
 }
 
 #[test]
@@ -130,6 +174,11 @@ fn writes_the_pattern_and_its_shapes() {
     }
     let names = std::fs::read_dir(&out).expect("the folder").count();
     assert_eq!(names, 6, "no temporary file is left");
+
+    let flags = ["--out", out.to_str().expect("a path"), "--glue-flaps", "1 m"];
+    let output = fold(&[&PAPER[..], &flags].concat());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--glue-flaps = 1 m: is too wide"));
 }
 
 #[test]

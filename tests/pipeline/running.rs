@@ -147,3 +147,29 @@ fn every_shell_gets_its_completions() {
         assert!(script.contains("billow") && script.contains("completions"), "{shell}");
     }
 }
+
+#[test]
+fn a_folder_of_something_else_is_left_alone() {
+    let desk = Desk::new(&small_grid());
+    let folder = desk.path().join("papers");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("thesis.txt"), "years of work").unwrap();
+    let output = desk.run(&["run", "grid.json", "--results", "papers"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("not a folder of results"), "{}", stderr(&output));
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    // An empty one is taken.
+    std::fs::remove_file(folder.join("thesis.txt")).unwrap();
+    assert_eq!(desk.run(&["run", "grid.json", "--results", "papers", "-q"]).status.code(), Some(0));
+}
+
+#[test]
+fn a_table_of_another_study_than_the_file_says_so() {
+    let desk = Desk::new(&small_grid());
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let same = desk.run(&["table", "grid.json"]);
+    assert!(!stderr(&same).contains("another study"), "{}", stderr(&same));
+    let other = desk.run(&["table", "grid.json", "--set", "film.viscosity=0.05"]);
+    assert_eq!(other.status.code(), Some(0));
+    assert!(stderr(&other).contains("another study"), "{}", stderr(&other));
+}

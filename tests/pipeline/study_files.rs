@@ -94,6 +94,10 @@ fn the_schema_refuses_what_the_program_refuses() {
         ("/supports", serde_json::json!([{"on": "bottom_ring", "fix": "xx"}])),
         ("/strategies", serde_json::json!({"two words": {}})),
         ("/version", serde_json::json!(2)),
+        ("/design/height", serde_json::json!("5 kg")),
+        ("/solver/end_time", serde_json::json!("5 g")),
+        ("/gas/mass_flow_rate", serde_json::json!("5 kg")),
+        ("/solver/stepping", serde_json::json!({"adaptive": 1e-6, "fixed": "1 us"})),
     ] {
         let mut broken = sound.clone();
         match broken.pointer_mut(pointer) {

@@ -1,6 +1,6 @@
 //! The nearest feasible value of a key, when a design is infeasible.
 
-use super::{Fit, FoldDesign, fit};
+use super::{Fit, FoldDesign, FoldPattern, fit};
 
 /// A single change that makes an infeasible design feasible.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,8 @@ const KNOBS: [Knob; 6] = [
 ];
 
 /// Nearest feasible values of an infeasible design, one a key, each for a change of that key alone;
-/// a key no change of which helps (whole numbers to 64, others within a factor of 50) is left out.
+/// a key no change of which helps (whole numbers to 64, others within a factor of a million) is left
+/// out.
 pub(super) fn search(design: &FoldDesign) -> Vec<Nearest> {
     KNOBS
         .iter()
@@ -68,9 +69,17 @@ pub(super) fn search(design: &FoldDesign) -> Vec<Nearest> {
                 (knob.set)(&mut changed, value);
                 fit::check(&changed).is_ok() && fit::obstacle(&changed).is_none()
             };
-            let value = if knob.whole { whole(start, feasible) } else { real(start, feasible) };
-            value.map(|value| Nearest { key: knob.key, value })
+            let value =
+                if knob.whole { whole(start, feasible) } else { real(start, &BOTH_WAYS, feasible) };
+            value.map(|value| (knob, Nearest { key: knob.key, value }))
         })
+        // A pattern that closes may still not pack to the stowed height asked for.
+        .filter(|(knob, near)| {
+            let mut changed = design.clone();
+            (knob.set)(&mut changed, near.value);
+            FoldPattern::new(&changed).is_ok()
+        })
+        .map(|(_, near)| near)
         .collect()
 }
 
@@ -81,13 +90,22 @@ fn whole(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
     })
 }
 
-fn real(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
-    const STRIDE: f64 = 1.02;
+/// The largest feasible value below one that is not; `None` if there is none within a factor of a
+/// million.
+pub(super) fn below(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
+    real(start, &[false], feasible)
+}
+
+/// Upward first.
+const BOTH_WAYS: [bool; 2] = [true, false];
+
+fn real(start: f64, ways: &[bool], feasible: impl Fn(f64) -> bool) -> Option<f64> {
     let mut factor = 1.0;
-    while factor < 50.0 {
+    while factor < 1e6 {
         let previous = factor;
-        factor *= STRIDE;
-        for up in [true, false] {
+        // Near, a narrow range must not be stepped over; far off the edge alone is looked for.
+        factor *= if factor < 50.0 { 1.02 } else { 1.5 };
+        for up in ways.iter().copied() {
             let at = |factor: f64| if up { start * factor } else { start / factor };
             if !feasible(at(factor)) {
                 continue;

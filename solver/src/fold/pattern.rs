@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use super::fit::{self, geometric_sum};
-use super::{FoldDesign, FoldError, PanelAngles, states};
+use super::{FoldDesign, FoldError, Nearest, PanelAngles, nearest, states};
 
 /// A fold design that closes: every angle and length of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,21 +80,32 @@ impl FoldPattern {
         Ok(pattern)
     }
 
+    /// A stack that this pattern cannot be packed to is infeasible, as is a pattern that does not
+    /// close; the nearest that can is lower.
     fn check_stowed_height(&self) -> Result<(), FoldError> {
         let stowed = self.design.stowed_height;
-        let invalid = |problem| Err(FoldError::Invalid { key: "stowed_height", problem });
-        if stowed >= self.height {
-            return invalid(format!("{stowed} m is not below the height of {} m", self.height));
-        }
         let strain = self.stowed_strain(stowed);
-        if strain > STOWED_STRAIN {
-            return invalid(format!(
-                "{stowed} m strains folded edges by {:.2} %; allowed: up to {} %, so a lower stack",
+        let reason = if stowed >= self.height {
+            format!("stowed_height: {stowed} m is not below the height of {} m", self.height)
+        } else if strain > STOWED_STRAIN {
+            format!(
+                "stowed_height: {stowed} m strains folded edges by {:.2} %; allowed: up to {} %, so \
+                 a lower stack",
                 100.0 * strain,
                 100.0 * STOWED_STRAIN
-            ));
-        }
-        Ok(())
+            )
+        } else {
+            return Ok(());
+        };
+        let packs = |height| {
+            height < self.height
+                // One storey first: most heights tried fall to it.
+                && self.smallest_storey_strain(height) <= STOWED_STRAIN
+                && self.stowed_strain(height) <= STOWED_STRAIN
+        };
+        let nearest = nearest::below(stowed, packs);
+        let nearest = nearest.map(|value| Nearest { key: "stowed_height", value });
+        Err(FoldError::Infeasible { reason, nearest: nearest.into_iter().collect() })
     }
 
     /// Radius of ring `ring` of the cone, m (0 is the bottom ring, M the top ring).
@@ -121,12 +132,11 @@ impl FoldPattern {
         }
     }
 
-    /// How far the flat-folded storey misses closing on itself, relative to |AB|, from edge lengths
-    /// alone: the two facets of a panel are laid out from their sides and folded over AE; the motion
-    /// that carries (A, D) to (B, E), done N times, must be the identity (Eq. 14 says the same in
-    /// angles).
+    /// How far the flat-folded storey misses closing on itself, relative to |AB|: the two facets of a
+    /// panel are laid out from α1, β1 and their lengths and folded over AE; the motion that carries
+    /// (A, D) to (B, E), done N times, must be the identity (Eq. 14 says the same in angles).
     pub fn closure_defect(&self) -> f64 {
-        states::closure_defect(&self.angles.unit_lengths, self.design.panels)
+        states::closure_defect(&self.angles, self.design.panels)
     }
 
     /// Fraction of the capsule's height at which ring `ring` sits when erected: 0 at the bottom

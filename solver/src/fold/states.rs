@@ -12,7 +12,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::angles::{angle_over, sine_over};
 use super::fit::geometric_sum;
-use super::{Chirality, FoldPattern, Lengths};
+use super::{Chirality, FoldPattern, Lengths, PanelAngles};
 
 /// A ring folded to a regular N-gon.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,9 +102,22 @@ impl FoldPattern {
 
     /// Largest Green strain of a folded edge, in magnitude, at stack height `height`, m.
     pub fn stowed_strain(&self, height: f64) -> f64 {
+        let strains = (0..self.design.storeys).map(|storey| self.storey_strain(storey, height));
+        strains.fold(0.0, f64::max)
+    }
+
+    /// The same of the smallest storey alone, as a rule the largest: storeys are alike but for their
+    /// size and equally high.
+    pub(super) fn smallest_storey_strain(&self, height: f64) -> f64 {
+        let last = self.design.storeys - 1;
+        self.storey_strain(if self.angles.ring_ratio < 1.0 { last } else { 0 }, height)
+    }
+
+    /// Largest Green strain of the folded edges of one storey, in magnitude.
+    fn storey_strain(&self, storey: u32, height: f64) -> f64 {
         let rise = height / f64::from(self.design.storeys);
-        (0..self.design.storeys)
-            .flat_map(|storey| self.edge_strains(storey, rise, self.stowed_twist(storey, rise)))
+        self.edge_strains(storey, rise, self.stowed_twist(storey, rise))
+            .iter()
             .fold(0.0, |largest: f64, (strain, _)| largest.max(strain.abs()))
     }
 
@@ -227,15 +240,16 @@ impl FoldPattern {
 }
 
 /// See [`FoldPattern::closure_defect`].
-pub(super) fn closure_defect(lengths: &Lengths, panels: u32) -> f64 {
-    let Lengths { ab, de, ad, ae } = *lengths;
+pub(super) fn closure_defect(angles: &PanelAngles, panels: u32) -> f64 {
+    let Lengths { ab, ad, ae, .. } = angles.unit_lengths;
+    let at = |length: f64, angle: f64| {
+        let (sin, cos) = libm::sincos(angle);
+        Vector2::new(length * cos, length * sin)
+    };
     let b = Vector2::new(ab, 0.0);
-    // E from A, B and the sides AE, BE (BE is the next panel's AD); D from A, E and AD, DE.
-    let e = apex(ab, ae, ad);
-    let on_ae = apex(ae, ad, de);
-    let (cos, sin) = (e.x / ae, e.y / ae);
+    let e = at(ae, angles.alpha1);
     // Folded over AE, D lies on B's side of it.
-    let d = Vector2::new(cos * on_ae.x + sin * on_ae.y, sin * on_ae.x - cos * on_ae.y);
+    let d = at(ad, angles.alpha1 - angles.beta1);
     // The motion z → w z + b carries A to B; w carries D (from A) to E (from B).
     let (from, to) = (d, e - b);
     let w = Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared();
@@ -247,15 +261,4 @@ pub(super) fn closure_defect(lengths: &Lengths, panels: u32) -> f64 {
             Vector2::new(heading.x * w.x - heading.y * w.y, heading.x * w.y + heading.y * w.x);
     }
     (place.norm() / ab).max((heading - Vector2::new(1.0, 0.0)).norm())
-}
-
-/// Third corner of the triangle over the base (0,0)-(base,0) with sides `near` to (0,0) and `far`
-/// to (base,0); its height by Kahan's form of Heron's formula, exact for slivers.
-fn apex(base: f64, near: f64, far: f64) -> Vector2<f64> {
-    let x = 0.5 * (base + (near - far) * (near + far) / base);
-    let mut sides = [base, near, far];
-    sides.sort_by(|p, q| q.total_cmp(p));
-    let [a, b, c] = sides;
-    let product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
-    Vector2::new(x, 0.5 * libm::sqrt(product.max(0.0)) / base)
 }

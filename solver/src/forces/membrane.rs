@@ -69,9 +69,33 @@ fn green([f, g]: [Vector3<f64>; 2]) -> PlaneTensor {
     PlaneTensor { xx: 0.5 * (f.dot(&f) - 1.0), yy: 0.5 * (g.dot(&g) - 1.0), xy: 0.5 * f.dot(&g) }
 }
 
+/// A field at the corners of an element.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "inside the element loop")]
+fn corners_of(field: &Field, [a, b, c]: [u32; 3]) -> [Vector3<f64>; 3] {
+    [field.get(a as usize), field.get(b as usize), field.get(c as usize)]
+}
+
+/// −A t F S Dm⁻ᵀ, and what balances it.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "inside the element loop")]
+fn corner_forces(
+    model: &FilmModel,
+    element: usize,
+    [f, g]: [Vector3<f64>; 2],
+    s: PlaneTensor,
+) -> [Vector3<f64>; 3] {
+    let [d11, d12, d21, d22] = &model.inverse_shape;
+    let volume = model.volume[element];
+    let (p, q) = (f * s.xx + g * s.xy, f * s.xy + g * s.yy);
+    let first = (p * d11[element] + q * d12[element]) * -volume;
+    let second = (p * d21[element] + q * d22[element]) * -volume;
+    [-(first + second), first, second]
+}
+
 /// Green strain of an element at these positions (m).
 pub fn strain(model: &FilmModel, positions: &Field, element: usize) -> PlaneTensor {
-    let corners = model.triangles[element].map(|node| positions.get(node as usize));
+    let corners = corners_of(positions, model.triangles[element]);
     green(gradient(model, element, edges(corners)))
 }
 
@@ -94,27 +118,19 @@ pub fn element_pass(
 ) -> Sums {
     let mut sums = Sums::default();
     let material = model.material;
-    let [d11, d12, d21, d22] = &model.inverse_shape;
     for (element, triangle) in model.triangles.iter().enumerate() {
-        let corners = triangle.map(|node| positions.get(node as usize));
+        let corners = corners_of(positions, *triangle);
         let edge = edges(corners);
         let [f, g] = gradient(model, element, edge);
         let stress = material.stress(green([f, g]));
-        let speeds = triangle.map(|node| velocities.get(node as usize));
-        let [fr, gr] = gradient(model, element, edges(speeds));
+        let [fr, gr] = gradient(model, element, edges(corners_of(velocities, *triangle)));
         let rate =
             PlaneTensor { xx: f.dot(&fr), yy: g.dot(&gr), xy: 0.5 * (f.dot(&gr) + g.dot(&fr)) };
         let viscous = viscous_stress(&material, model.viscous_time[element], rate);
 
         let volume = model.volume[element];
-        let corner_forces = |s: PlaneTensor| {
-            let (p, q) = (f * s.xx + g * s.xy, f * s.xy + g * s.yy);
-            let first = (p * d11[element] + q * d12[element]) * -volume;
-            let second = (p * d21[element] + q * d22[element]) * -volume;
-            [-(first + second), first, second]
-        };
-        let elastic = corner_forces(stress.tensor);
-        let drag = corner_forces(viscous);
+        let elastic = corner_forces(model, element, [f, g], stress.tensor);
+        let drag = corner_forces(model, element, [f, g], viscous);
         for corner in 0..3 {
             out.film.set(3 * element + corner, elastic[corner] + drag[corner]);
             out.viscous.set(3 * element + corner, drag[corner]);

@@ -11,7 +11,7 @@
 //! constant mass relax exactly as e^−z, however fast. What the balance loses the books gain: mass
 //! and energy are kept to rounding. The work is the film's own entry too, with the same dV.
 
-use super::{Gas, GasState, Inflow};
+use super::{FASTEST_EXCHANGE, Gas, GasState, Inflow};
 use crate::scene::HeatTransfer;
 
 /// What one step did.
@@ -88,12 +88,13 @@ impl Gas {
                 heat = internal_energy - start - enthalpy_in + enthalpy_out + work;
             }
             HeatTransfer::Coefficient(coefficient) => {
-                let exchange = coefficient * self.film_area * time;
                 let started = state.mass > 0.0;
                 let temperature =
                     if started { self.temperature(state) } else { self.first_temperature(inflow) };
                 // Heat capacity of the gas in the middle of the step and after it.
                 let capacity = 0.5 * (state.mass + mass) * self.cv;
+                let rate = (coefficient * self.film_area).min(capacity / FASTEST_EXCHANGE);
+                let exchange = rate * time;
                 let late = if exchange > 0.0 && capacity > 0.0 {
                     late_share(exchange / capacity)
                 } else {

@@ -51,14 +51,19 @@ pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, S
     Ok(deployment::run(&mut run, &Course::new(scene), observer))
 }
 
+/// Whether a scene is sound and its supports are those of a piston.
+pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+    scene.validate()?;
+    from_scene::check_supports(scene)
+}
+
 impl PistonRun {
     /// The scene's piston, stowed, at time 0.
     ///
     /// # Errors
     /// As [`solve`].
     pub fn from_scene(scene: &Scene) -> Result<Self, SceneError> {
-        scene.validate()?;
-        from_scene::check_supports(scene)?;
+        check(scene)?;
         let pattern = FoldPattern::new(&scene.design)?;
         from_scene::build(scene, &pattern)
     }

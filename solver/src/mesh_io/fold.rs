@@ -3,11 +3,12 @@
 //! frame. Caps are not part of it: they have no creases.
 
 use core::f64::consts::PI;
+use std::collections::HashMap;
 
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-use crate::fold::{Assignment, Corner, FoldPattern};
+use crate::fold::{Assignment, Corner, Facet, FoldPattern};
 use crate::mesh_io::obj::Sheet;
 
 /// A pattern as FOLD text. Lengths in m; the sheet is seen from outside, faces counter-clockwise, so
@@ -68,12 +69,20 @@ fn stowed(pattern: &FoldPattern) -> Value {
         .flat_map(|polygon| (0..=panels).map(|corner| polygon.corner(corner % panels, panels)))
         .map(Into::into)
         .collect();
+    let place = |c: Corner| Vector3::from(places[(c.ring * (panels + 1) + c.corner) as usize]);
+    let normals = left_normals(pattern, place);
     let angles: Vec<Value> = pattern
         .creases()
         .iter()
-        .map(|crease| match crease.assignment {
-            Assignment::Boundary => Value::Null,
-            _ => json!(fold_angle(pattern, crease.ends, &places)),
+        .map(|crease| {
+            let [from, to] = crease.ends;
+            match (normals.get(&[from, to]), normals.get(&[to, from])) {
+                (Some(left), Some(right)) => {
+                    json!(fold_angle(left, right, &(place(to) - place(from))))
+                }
+                // Only one facet: the edge of the sheet.
+                _ => Value::Null,
+            }
         })
         .collect();
     json!({
@@ -88,26 +97,21 @@ fn stowed(pattern: &FoldPattern) -> Value {
     })
 }
 
-/// Angle between the normals of the two facets on an edge, degrees, negative for a mountain.
-fn fold_angle(pattern: &FoldPattern, ends: [Corner; 2], places: &[[f64; 3]]) -> f64 {
-    let across = pattern.design.panels + 1;
-    let place = |c: Corner| Vector3::from(places[(c.ring * across + c.corner) as usize]);
-    let [p, q] = ends;
-    let along = (place(q) - place(p)).normalize();
-    let mut left = Vector3::zeros();
-    let mut right = Vector3::zeros();
-    for facet in pattern.facets() {
-        for i in 0..3 {
-            let (a, b, c) =
-                (facet.corners[i], facet.corners[(i + 1) % 3], facet.corners[(i + 2) % 3]);
-            let normal = (place(b) - place(a)).cross(&(place(c) - place(a))).normalize();
-            if [a, b] == [p, q] {
-                left = normal;
-            } else if [b, a] == [p, q] {
-                right = normal;
-            }
-        }
+/// The normal of the facet to the left of every directed edge.
+fn left_normals(
+    pattern: &FoldPattern,
+    place: impl Fn(Corner) -> Vector3<f64>,
+) -> HashMap<[Corner; 2], Vector3<f64>> {
+    let mut normals = HashMap::new();
+    for Facet { corners: [a, b, c], .. } in pattern.facets() {
+        let normal = (place(b) - place(a)).cross(&(place(c) - place(a))).normalize();
+        normals.extend([[a, b], [b, c], [c, a]].map(|edge| (edge, normal)));
     }
-    // Over a crest the normal turns forward, from the left facet's to the right one's: negative.
-    180.0 / PI * libm::atan2(right.cross(&left).dot(&along), left.dot(&right))
+    normals
+}
+
+/// Angle between the normals of the facets left and right of an edge along `along`, degrees,
+/// negative for a mountain: over a crest the normal turns forward, from left to right.
+fn fold_angle(left: &Vector3<f64>, right: &Vector3<f64>, along: &Vector3<f64>) -> f64 {
+    180.0 / PI * libm::atan2(right.cross(left).dot(&along.normalize()), left.dot(right))
 }

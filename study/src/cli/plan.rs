@@ -4,15 +4,13 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::fold::{FoldPattern, Nearest};
-
-use super::print::{print_rows, short_number};
-use super::{Format, Global};
+use super::print::print_rows;
+use super::{Format, Global, notes};
 use crate::error::Result;
 use crate::job::Parameters;
 use crate::plan::{Generation, Point, next_jobs};
 use crate::study_file;
-use crate::value::Value;
+use crate::value::{Value, short_number};
 
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]
@@ -36,6 +34,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     print_rows(&columns(&names), &rows, format, out)?;
     if !global.quiet {
         eprintln!("{}: {}", study.name, summary(&generation));
+        notes::print(&study);
     }
     Ok(())
 }
@@ -64,23 +63,16 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
     match &point.infeasible {
         None => {
             row.push(text("job"));
-            match FoldPattern::new(&point.job.scene.design) {
-                Ok(pattern) => row.extend(
-                    [pattern.angles.phi, pattern.half_angle, pattern.top_radius, pattern.height]
-                        .map(Value::Number),
-                ),
-                // Planned as feasible a moment ago, so this is not reached; an empty cell is true.
-                Err(_) => row.extend([const { Value::Null }; SOLVED.len()]),
-            }
+            row.extend(solved(point));
             row.extend([Value::Null, Value::Null]);
         }
         Some(infeasible) => {
             row.push(text("infeasible"));
-            row.extend([const { Value::Null }; SOLVED.len()]);
+            row.extend(solved(point));
             row.push(text(&infeasible.reason));
             row.push(match infeasible.nearest.as_slice() {
                 [] => Value::Null,
-                nearest => Value::Text(nearest_text(nearest)),
+                _ => Value::Text(infeasible.nearest_text()),
             });
         }
     }
@@ -88,10 +80,11 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
     row
 }
 
-fn nearest_text(nearest: &[Nearest]) -> String {
-    let texts: Vec<String> =
-        nearest.iter().map(|near| format!("{} = {}", near.key, near.value)).collect();
-    texts.join(", ")
+/// The cells of [`SOLVED`].
+fn solved(point: &Point) -> [Value; SOLVED.len()] {
+    point.solved.map_or([const { Value::Null }; SOLVED.len()], |solved| {
+        [solved.phi, solved.half_angle, solved.top_radius, solved.height].map(Value::Number)
+    })
 }
 
 /// Which points are the same job as this one; beyond a few, how many.

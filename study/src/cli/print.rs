@@ -5,7 +5,7 @@ use std::io::{self, IsTerminal, Write};
 
 use super::{Format, output_error};
 use crate::error::Result;
-use crate::value::Value;
+use crate::value::{Value, json_value, short_number};
 
 /// Prints rows under their columns.
 ///
@@ -105,33 +105,6 @@ fn cell(value: &Value) -> String {
     }
 }
 
-/// A number to six significant digits, without trailing zeros; powers of ten where plain digits
-/// would be long.
-pub fn short_number(number: f64) -> String {
-    if !number.is_finite() {
-        return number.to_string();
-    }
-    if number == 0.0 {
-        return "0".to_owned();
-    }
-    let scientific = format!("{number:.5e}");
-    let Some((mantissa, Ok(exponent))) =
-        scientific.split_once('e').map(|(mantissa, exponent)| (mantissa, exponent.parse::<i32>()))
-    else {
-        return scientific;
-    };
-    if (-4..7).contains(&exponent) {
-        let decimals = usize::try_from(5 - exponent).unwrap_or(0);
-        trim_zeros(&format!("{number:.decimals$}")).to_owned()
-    } else {
-        format!("{}e{exponent}", trim_zeros(mantissa))
-    }
-}
-
-fn trim_zeros(digits: &str) -> &str {
-    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
-}
-
 fn csv(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Result<()> {
     let header: Vec<String> = columns.iter().map(|name| quoted(name)).collect();
     writeln!(out, "{}", header.join(","))?;
@@ -171,17 +144,6 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
         write!(out, "}}")?;
     }
     writeln!(out, "{}]", if rows.is_empty() { "" } else { "\n" })
-}
-
-/// A value as JSON; a number JSON cannot hold is `null`.
-pub fn json_value(value: &Value) -> serde_json::Value {
-    match value {
-        Value::Null => serde_json::Value::Null,
-        Value::Bool(value) => (*value).into(),
-        Value::Integer(value) => (*value).into(),
-        Value::Number(value) => (*value).into(),
-        Value::Text(value) => value.as_str().into(),
-    }
 }
 
 #[cfg(test)]
@@ -230,22 +192,5 @@ mod tests {
         let mut empty = Vec::new();
         print_rows(&["N"], &[], Format::Json, &mut empty).unwrap();
         assert_eq!(empty, b"[]\n");
-    }
-
-    #[test]
-    fn numbers_are_short_and_true() {
-        for (number, text) in [
-            (0.0, "0"),
-            (-0.0, "0"),
-            (1.0, "1"),
-            (0.005, "0.005"),
-            (1_000_000.0, "1000000"),
-            (123_456_789.0, "1.23457e8"),
-            (25.4e-6, "2.54e-5"),
-            (std::f64::consts::PI, "3.14159"),
-            (-0.999_999_96, "-1"),
-        ] {
-            assert_eq!(short_number(number), text);
-        }
     }
 }

@@ -4,11 +4,10 @@ use std::io::{self, Write};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
-use super::{Format, Global, output_error};
+use super::{Format, Global, notes, output_error};
 use crate::error::{Error, InputError, Result};
 use crate::executor::Solver;
 use crate::files::{Disk, disk_error};
-use crate::keys;
 use crate::plan;
 use crate::progress::{self, Loudness};
 use crate::results::Results;
@@ -41,7 +40,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             name: &study.name,
             study: &study.to_json(),
             planner: &|finished| plan::next_jobs(&study, finished),
-            unit: &parameter_unit,
+            unit: &|name| study.unit(name).to_owned(),
             executor: &Solver,
             results: Results::new(&Disk, &root),
             threads: threads(global)?,
@@ -50,12 +49,16 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         progress::reporter(loudness).as_mut(),
     )?;
     print(&study.name, &root, &summary, global.format(), out).map_err(output_error)?;
+    if !global.quiet {
+        notes::print(&study);
+    }
     match (summary.signal, summary.failed()) {
         (Some(signal), _) => Err(Error::Signal(signal)),
         (None, 0) => Ok(()),
         (None, failed) => Err(Error::JobsFailed(format!(
-            "{failed} jobs failed\n  next: billow table {} --columns job,status,reason,stop_time,\
+            "{failed} {} failed\n  next: billow table {} --columns job,status,reason,stop_time,\
              stop_place",
+            plural(failed, "job"),
             root.display()
         ))),
     }
@@ -66,15 +69,8 @@ pub fn results_folder(global: &Global, study: &Study) -> PathBuf {
     global.results.clone().unwrap_or_else(|| Path::new("results").join(&study.name))
 }
 
-/// SI unit of a parameter: "1" for a pure number, empty for words.
-fn parameter_unit(name: &str) -> String {
-    let kind = keys::find(name).map(|at| keys::KEYS[at].kind);
-    match kind {
-        Some(keys::Kind::Quantity(quantity)) => quantity.dimension.si(),
-        Some(keys::Kind::Integer(..)) => "1",
-        Some(keys::Kind::Choice(_) | keys::Kind::Text) | None => "",
-    }
-    .to_owned()
+fn plural(count: usize, word: &str) -> String {
+    format!("{word}{}", if count == 1 { "" } else { "s" })
 }
 
 fn threads(global: &Global) -> Result<Option<NonZero<usize>>> {
@@ -114,7 +110,8 @@ fn print(
     if summary.ran == 0 && pending == 0 {
         writeln!(out, "{name}: nothing to run, all {} jobs are finished", points - without_job)?;
     } else {
-        writeln!(out, "{name}: {} jobs run, {points} points", summary.ran)?;
+        let (jobs, of) = (plural(summary.ran, "job"), plural(points, "point"));
+        writeln!(out, "{name}: {} {jobs} run, {points} {of}", summary.ran)?;
     }
     let list = |counts: &std::collections::BTreeMap<String, usize>| {
         let parts: Vec<String> = counts.iter().map(|(name, n)| format!("{n} {name}")).collect();

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::print::{print_rows, short_number};
+use super::print::print_rows;
 use super::run::results_folder;
 use super::{Format, Global};
 use crate::error::{Error, InputError, Result};
@@ -16,20 +16,20 @@ use crate::row::Kind;
 use crate::study_file;
 use crate::table::{Column, Table};
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, short_number};
 
 /// Measures shown after the parameters, in this order, as far as they fit.
 const MAIN: [&str; 10] = [
     "status",
     "verdict",
     "t_90_z_rim",
+    "peak_vz",
     "final_pressure",
+    "t_deployed",
+    "peak_kinetic_energy",
     "volume_ratio",
     "height_ratio",
-    "peak_vz",
     "overshoot",
-    "final_z_rim",
-    "final_volume",
 ];
 /// Characters a line of the default table may have.
 const WIDTH: usize = 120;
@@ -54,7 +54,18 @@ pub struct Args {
 /// Runs `billow table`.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let root = folder(args.study.as_deref(), global)?;
-    let table = Results::new(&Disk, &root).read_table()?;
+    let results = Results::new(&Disk, &root);
+    let table = results.read_table()?;
+    if let Some(path) = args.study.as_deref().filter(|path| path.is_file()) {
+        let study = study_file::load(path, &global.set)?;
+        if !results.holds(&study.name, &study.to_json())? {
+            eprintln!(
+                "billow: {} says another study than the one these rows were run for; `billow run` \
+                 brings them up to date",
+                path.display()
+            );
+        }
+    }
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = global.format();
     let columns = chosen(&table, &args.columns, format)?;
@@ -63,7 +74,23 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         .iter()
         .map(|row| columns.iter().map(|column| shown(column, *row, format)).collect())
         .collect();
-    print_rows(&names, &cells, format, out)
+    print_rows(&names, &cells, format, out)?;
+    if format == Format::Table && !global.quiet {
+        eprintln!("{}", legend(&columns, table.columns.len()));
+    }
+    Ok(())
+}
+
+/// Units of the columns printed, and how many there are beside them.
+fn legend(shown: &[&Column], all: usize) -> String {
+    let units: Vec<String> = shown
+        .iter()
+        .filter(|column| !matches!(column.unit.as_str(), "" | "1"))
+        .map(|column| format!("{} {}", column.name, column.unit))
+        .collect();
+    let units =
+        if units.is_empty() { String::new() } else { format!("units: {}; ", units.join(", ")) };
+    format!("{units}{} of {all} columns (--columns all)", shown.len())
 }
 
 /// The results folder meant: a folder, or that of a study file, or the only one there is.
@@ -77,6 +104,14 @@ fn folder(given: Option<&Path>, global: &Global) -> Result<PathBuf> {
         Ok(given.to_owned())
     } else if !given.exists() && named.is_dir() {
         Ok(named)
+    } else if !given.exists() {
+        Err(Error::Disk {
+            path: given.to_owned(),
+            problem:
+                "neither a study file nor a folder of results\n  next: billow table STUDY, or \
+                      the folder of its results"
+                    .to_owned(),
+        })
     } else {
         Ok(results_folder(global, &study_file::load(given, &global.set)?))
     }
@@ -167,8 +202,8 @@ fn kind(column: &Column) -> Type {
 fn sorted(table: &Table, mut rows: Vec<usize>, sort: &[String]) -> Result<Vec<usize>> {
     let mut keys = Vec::with_capacity(sort.len());
     for key in sort {
-        let (name, down) = match key.split_once(':') {
-            None => (key.as_str(), false),
+        let (name, down) = match key.trim().split_once(':') {
+            None => (key.trim(), false),
             Some((name, "asc")) => (name, false),
             Some((name, "desc")) => (name, true),
             Some(_) => {
@@ -213,7 +248,7 @@ fn chosen<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Vec<
         [] if format == Format::Table => Ok(main_columns(table)),
         [] => Ok(table.columns.iter().collect()),
         [all] if all == "all" => Ok(table.columns.iter().collect()),
-        names => names.iter().map(|name| find(table, "--columns", name)).collect(),
+        names => names.iter().map(|name| find(table, "--columns", name.trim())).collect(),
     }
 }
 

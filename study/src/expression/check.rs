@@ -72,11 +72,11 @@ impl Checker<'_> {
         let Some(at) = self.variables.iter().position(|variable| variable.name == name) else {
             let near = keys::nearest(name, self.variables.iter().map(|v| v.name.as_str()));
             let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+            let names: Vec<&str> = self.variables.iter().map(|v| v.name.as_str()).collect();
             return Err(self.refuse(
                 tree,
                 format!("no variable is called {name}{near}"),
-                "axes of the grid, keys of the study, and what the fold solves: phi, alpha1, \
-                 ring_ratio, half_angle, top_radius, height, feasible",
+                &format!("{}; text stands in quotes", names.join(", ")),
             ));
         };
         Ok(match &self.variables[at].kind {

@@ -1,5 +1,7 @@
 //! History files: back to the bit, same bytes twice, nothing foreign accepted.
 
+#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+
 use billow_solver::deployment::{Failure, FailureKind};
 
 use super::*;

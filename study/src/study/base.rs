@@ -8,11 +8,10 @@ use serde_json::{Map, json};
 use super::source::Source;
 use super::strategy::{Strategy, read_strategy};
 use super::supports;
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::keys::{self, KEYS, Key, SECTIONS};
 use crate::study_file::Json;
-use crate::value::Value;
+use crate::value::{Value, json_value};
 use billow_solver::scene::Support;
 
 /// Everything a point starts from.

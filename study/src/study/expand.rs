@@ -8,13 +8,14 @@ use super::grid::{Axis, Column, Grid, Target};
 use super::resolve::{self, Fold};
 use super::source::Source;
 use super::{Limits, StudyPoint};
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::expression::{Type, Variable};
 use crate::keys::{self, KEYS, Key, Kind};
+use crate::plan::Solved;
 use crate::study_file::Json;
 use crate::units::Dimension;
-use crate::value::Value;
+use crate::value::{Value, json_value};
+use billow_solver::ladder::{self, SceneError};
 
 /// Derived quantities an expression may use, before the keys of the same name.
 const DERIVED: [(&str, Dimension); 6] = [
@@ -113,7 +114,12 @@ pub(super) fn range(
         (None, Some(_)) if log => return refuse("has logarithmic spacing, so it needs `steps`"),
         (None, Some(step)) => {
             // A last value that rounding alone keeps above `to` belongs to the range.
-            let count = ((to - from) / step * (1.0 + 1e-12)).floor() + 1.0;
+            let widths = (to - from) / step * (1.0 + 1e-12);
+            let count = widths.floor() + 1.0;
+            if widths - widths.floor() > 2e-12 * widths {
+                let last = tidy(from + step * widths.floor());
+                return refuse(&format!("does not end at `to`: its last step is {last}"));
+            }
             if count > limits.points as f64 {
                 return too_many(count);
             }
@@ -348,9 +354,9 @@ impl Expansion<'_> {
         {
             return Ok(());
         }
-        let infeasible = match &*fold {
-            Fold::Solved(_) => None,
-            Fold::Infeasible(infeasible) => Some(infeasible.clone()),
+        let (infeasible, solved) = match &*fold {
+            Fold::Solved(pattern) => (None, Some(Solved::of(pattern))),
+            Fold::Infeasible(infeasible) => (Some(infeasible.clone()), None),
             Fold::Invalid { key, problem } => {
                 let key = format!("design.{key}");
                 let value = keys::index(&key).map(|at| point.settings.at(at));
@@ -361,7 +367,17 @@ impl Expansion<'_> {
             }
         };
         let scene = resolve::scene(point, design, self.source).map_err(place)?;
-        self.points.push(StudyPoint { parameters: parameters(), scene, infeasible });
+        ladder::check(&scene).map_err(|error| place(self.refused(&error)))?;
+        self.points.push(StudyPoint { parameters: parameters(), scene, infeasible, solved });
         Ok(())
+    }
+    /// What the model says against a scene.
+    fn refused(&self, error: &SceneError) -> InputError {
+        let SceneError::Invalid { key, problem } = error else {
+            return self.source.error("design", "", error.to_string(), "a design that folds");
+        };
+        let (problem, allowed) = problem.rsplit_once("; ").unwrap_or((problem, ""));
+        let allowed = allowed.strip_prefix("allowed: ").unwrap_or(allowed);
+        self.source.error(key, "", problem, allowed)
     }
 }

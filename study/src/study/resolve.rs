@@ -33,12 +33,6 @@ pub(super) fn fold(design: &FoldDesign) -> Fold {
         Err(FoldError::Infeasible { reason, nearest }) => {
             Fold::Infeasible(Infeasible { reason, nearest })
         }
-        // A stack this pattern cannot be packed to is an answer about the design, as is a pattern
-        // that does not close: a row, so that the rest of the grid runs.
-        Err(FoldError::Invalid { key: "stowed_height", problem }) => Fold::Infeasible(Infeasible {
-            reason: format!("stowed_height: {problem}"),
-            nearest: Vec::new(),
-        }),
         Err(FoldError::Invalid { key, problem }) => Fold::Invalid { key, problem },
     }
 }

@@ -4,11 +4,10 @@ use serde_json::{Map, json};
 
 use super::base::{list, read};
 use super::source::Source;
-use crate::cli::print::json_value;
 use crate::error::InputError;
 use crate::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::study_file::Json;
-use crate::value::Value;
+use crate::value::{Value, json_value};
 
 /// A named inflation schedule.
 #[derive(Debug, Clone, PartialEq)]

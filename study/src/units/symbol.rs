@@ -114,6 +114,21 @@ fn symbol(name: &str) -> Option<Scale> {
     })
 }
 
+/// Every single symbol, prefixes and all, of a unit with these powers.
+pub(super) fn symbols(powers: Powers) -> Vec<String> {
+    let mut symbols = Vec::new();
+    for (symbol, _, _, _, prefixed) in KNOWN.iter().filter(|known| known.1 == powers) {
+        symbols.push((*symbol).to_owned());
+        if *prefixed {
+            symbols.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{symbol}")));
+        }
+    }
+    if powers == [0, 0, 0, 0, 1] {
+        symbols.extend(["deg", "°"].map(str::to_owned));
+    }
+    symbols
+}
+
 /// Reads a unit.
 ///
 /// # Errors
