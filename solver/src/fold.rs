@@ -28,11 +28,11 @@ mod creases;
 mod fit;
 mod nearest;
 mod pattern;
+mod scan;
 mod states;
 
 pub use angles::PanelAngles;
 pub use creases::{Assignment, Crease};
-pub use nearest::Nearest;
 pub use pattern::{FoldPattern, Lengths};
 pub use states::{Corner, Facet, Polygon};
 
@@ -101,6 +101,15 @@ pub struct FoldDesign {
     pub caps: Caps,
 }
 
+/// A single change that makes an infeasible design feasible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Key of [`crate::fold::FoldDesign`], as in JSON.
+    pub key: &'static str,
+    /// Nearest feasible value, SI.
+    pub value: f64,
+}
+
 /// Why a design has no pattern.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FoldError {
@@ -120,4 +129,19 @@ pub enum FoldError {
         /// Nearest feasible values, each for a change of that key alone.
         nearest: Vec<Nearest>,
     },
+}
+
+impl FoldPattern {
+    /// Solves a design.
+    ///
+    /// # Errors
+    /// [`FoldError::Invalid`] for a request out of range or contradicting itself,
+    /// [`FoldError::Infeasible`] for one no pattern meets.
+    pub fn new(design: &FoldDesign) -> Result<Self, FoldError> {
+        fit::check(design)?;
+        if let Some(reason) = fit::obstacle(design) {
+            return Err(FoldError::Infeasible { reason, nearest: nearest::search(design) });
+        }
+        Self::close(design)
+    }
 }

@@ -20,7 +20,7 @@
 //!   capsule under ambient pressure does not breathe air in.
 //! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat is what the balance asks for.
 //! - With h > 0 the gas warms at the rate h A/(m cv), but never faster than in
-//!   [`FASTEST_EXCHANGE`]: a nearly empty volume (first gas, a leak that has emptied the capsule)
+//!   1 µs: a nearly empty volume (first gas, a leak that has emptied the capsule)
 //!   costs small steps, not ever smaller ones.
 //!
 //! Every model gets its gas from here; it brings V, dV/dt and its own work of p on the film.
@@ -135,7 +135,7 @@ impl Gas {
 
     /// T, K, of the first gas to enter an empty volume, the limit of both balances for m → 0, so
     /// that the rates are continuous there: m cv T = ṁ cp `T_in` t with m = ṁ t gives T = γ `T_in`
-    /// (the film's share vanishes with m, see [`FASTEST_EXCHANGE`]).
+    /// (the film's share vanishes with m, see `FASTEST_EXCHANGE`).
     fn first_temperature(&self, inflow: Inflow) -> f64 {
         match self.heat_transfer {
             HeatTransfer::Coefficient(_) if inflow.mass > 0.0 => {

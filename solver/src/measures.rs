@@ -3,7 +3,7 @@
 //! `V_ref` and `H_ref` are those at the **final overpressure** (last p less ambient) everywhere, in
 //! the verdict and in the thresholds of times alike. Series are linear between samples.
 
-use crate::deployment::Course;
+use crate::course::Course;
 use crate::history::History;
 
 mod hold;

@@ -14,7 +14,8 @@ use billow_solver::scene::{
 
 use crate::executor::{Executor, Outcome, Watch};
 use crate::job::{Job, JobId};
-use crate::plan::{Generation, Infeasible, Point};
+use crate::plan::Generation;
+use crate::point::{Infeasible, Point};
 use crate::value::Value;
 
 /// A job whose seed is `number`.

@@ -22,6 +22,7 @@ pub mod job;
 pub mod journal;
 pub mod keys;
 pub mod plan;
+pub mod point;
 pub mod progress;
 pub mod provenance;
 pub mod render;

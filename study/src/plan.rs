@@ -6,9 +6,8 @@
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
-use billow_solver::fold::{FoldPattern, Nearest};
-
-use crate::job::{Job, JobId, Parameters};
+use crate::job::{Job, JobId};
+use crate::point::Point;
 use crate::study::Study;
 
 /// The jobs that can be planned together.
@@ -18,63 +17,6 @@ pub struct Generation {
     pub number: u32,
     /// Points in plan order.
     pub points: Vec<Point>,
-}
-
-/// One point of the grid.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// The job; for an infeasible point it carries the id and the parameters of its row.
-    pub job: Job,
-    /// Set when no fold pattern meets the design: the point is a row, not a run.
-    pub infeasible: Option<Infeasible>,
-    /// What the fold solves; `None` where no pattern meets the design.
-    pub solved: Option<Solved>,
-    /// Parameters of later points that resolve to the same job.
-    pub merged: Vec<Parameters>,
-}
-
-/// What the fold of a point solves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solved {
-    /// ϕ, rad.
-    pub phi: f64,
-    /// Half top angle, rad.
-    pub half_angle: f64,
-    /// r1, m.
-    pub top_radius: f64,
-    /// H, m.
-    pub height: f64,
-}
-
-impl Solved {
-    /// Of a pattern.
-    pub fn of(pattern: &FoldPattern) -> Self {
-        Self {
-            phi: pattern.angles.phi,
-            half_angle: pattern.half_angle,
-            top_radius: pattern.top_radius,
-            height: pattern.height,
-        }
-    }
-}
-
-/// Why a point has no pattern.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Infeasible {
-    /// Reason.
-    pub reason: String,
-    /// Nearest feasible values, each for a change of that key alone.
-    pub nearest: Vec<Nearest>,
-}
-
-impl Infeasible {
-    /// The nearest feasible values in words, as a table cell has them; empty where there are none.
-    pub fn nearest_text(&self) -> String {
-        let nearest = self.nearest.iter();
-        let texts: Vec<String> =
-            nearest.map(|near| format!("{} = {}", near.key, near.value)).collect();
-        texts.join(" or ")
-    }
 }
 
 /// What planning may know of a finished job.

@@ -7,7 +7,7 @@ use billow_solver::measures::Verdict;
 
 use crate::executor::Outcome;
 use crate::job::Job;
-use crate::plan::Infeasible;
+use crate::point::Infeasible;
 use crate::provenance;
 use crate::value::Value;
 

@@ -15,12 +15,14 @@ mod source;
 mod strategy;
 mod supports;
 
+use std::path::Path;
+
 use serde_json::{Map, json};
 
 use crate::error::InputError;
 use crate::job::Parameters;
 use crate::keys::Kind;
-use crate::plan::{Infeasible, Solved};
+use crate::point::{Infeasible, Solved};
 use crate::study_file::{self, Json};
 use crate::value::json_value;
 use billow_solver::scene::Scene;
@@ -69,6 +71,19 @@ pub(crate) struct StudyPoint {
 }
 
 impl Study {
+    /// Reads a study file, with `--set key=value` overrides applied to it.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Disk`] when the file cannot be read, [`crate::error::Error::Input`] when it is no sound study.
+    pub fn load(path: &Path, sets: &[String]) -> crate::error::Result<Self> {
+        let bytes = study_file::read(path)?;
+        let file = path.display().to_string();
+        let text = study_file::text_of(&bytes, &file)?;
+        let stem =
+            path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Self::from_text(text, &file, &stem, sets, Limits::default())?)
+    }
+
     /// Reads a study from its text. `file` is what errors call it, `stem` its name when it gives
     /// none, `sets` the `--set key=value` overrides.
     ///

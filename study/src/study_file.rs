@@ -11,7 +11,6 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use crate::error::{Error, InputError, Result};
 use crate::files;
-use crate::study::{Limits, Study};
 
 /// Largest study file read, bytes. A study is written by hand; a grid of a million points fits in a
 /// few lines.
@@ -225,19 +224,11 @@ pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, 
     Ok(text)
 }
 
-/// Reads a study file, with `--set key=value` overrides applied to it.
+/// The bytes of a study file.
 ///
 /// # Errors
-/// [`Error::Disk`] when the file cannot be read, [`Error::Input`] when it is no sound study.
-pub fn load(path: &Path, sets: &[String]) -> Result<Study> {
-    let bytes = read(path)?;
-    let file = path.display().to_string();
-    let text = text_of(&bytes, &file)?;
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(Study::from_text(text, &file, &stem, sets, Limits::default())?)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>> {
+/// [`Error::Disk`] when it cannot be read, or is larger than [`LARGEST_FILE`].
+pub fn read(path: &Path) -> Result<Vec<u8>> {
     let disk = |problem: String| Error::Disk { path: path.to_owned(), problem };
     let unreadable = |error: std::io::Error| {
         let next = match error.kind() {

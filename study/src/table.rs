@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::job::JobId;
 use crate::journal::Record;
-use crate::plan::Point;
+use crate::point::Point;
 use crate::row::{self, COLUMNS, Cells, Kind};
 use crate::value::Value;
 

@@ -3,7 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use billow_solver::deployment::{Model, Phase};
+use billow_solver::course::Phase;
+use billow_solver::deployment::Model;
 use billow_solver::gas::Inflow;
 use billow_solver::integrate::explicit::DEFAULT_CFL;
 use billow_solver::ladder::film::FilmRun;

@@ -1,6 +1,6 @@
 //! Small films for the tests of the explicit solver.
 
-use billow_solver::deployment::Phase;
+use billow_solver::course::Phase;
 use billow_solver::forces::membrane::{ElementForces, NodeForces, element_pass, node_pass};
 use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::explicit::{Explicit, Interior, Setting};

@@ -1,6 +1,7 @@
 //! The gas laws against closed forms and independent quadratures.
 
-use billow_solver::deployment::{Model, Phase};
+use billow_solver::course::Phase;
+use billow_solver::deployment::Model;
 use billow_solver::gas::{Gas, Inflow, Schedule};
 use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
 use billow_solver::ladder::piston::{PistonRun, PistonState};

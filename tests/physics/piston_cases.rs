@@ -1,6 +1,7 @@
 //! The moving mass against closed forms.
 
-use billow_solver::deployment::{Model, Phase};
+use billow_solver::course::Phase;
+use billow_solver::deployment::Model;
 use billow_solver::gas::{Gas, GasState, Inflow};
 use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
 use billow_solver::ladder::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};

@@ -43,7 +43,7 @@ fn with_grid(grid: Json) -> Json {
 }
 
 fn column(generation: &Generation, name: &str) -> Vec<Value> {
-    let value = |point: &billow_study::plan::Point| {
+    let value = |point: &billow_study::point::Point| {
         let parameters = &point.job.parameters;
         parameters.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone()).unwrap()
     };

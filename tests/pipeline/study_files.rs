@@ -8,7 +8,6 @@ use billow_study::job::JobId;
 use billow_study::plan::next_jobs;
 use billow_study::schema::study_schema;
 use billow_study::study::{Limits, Study};
-use billow_study::study_file;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies")
@@ -43,7 +42,7 @@ fn every_file_is_sound_by_the_schema_and_plans() {
             validator.iter_errors(&json).map(|e| format!("{}: {e}", e.instance_path())).collect();
         assert!(errors.is_empty(), "{}: {errors:?}", path.display());
 
-        let study = study_file::load(&path, &[]).unwrap();
+        let study = Study::load(&path, &[]).unwrap();
         assert!(study.question.ends_with('?'), "{}", path.display());
         let generation = next_jobs(&study, &[]).unwrap();
         assert!(generation.points.iter().any(|point| point.infeasible.is_none()));
@@ -57,7 +56,7 @@ fn every_file_is_sound_by_the_schema_and_plans() {
 fn a_resolved_study_is_a_study_of_the_same_jobs() {
     let validator = jsonschema::validator_for(&study_schema()).unwrap();
     for path in shipped() {
-        let study = study_file::load(&path, &[]).unwrap();
+        let study = Study::load(&path, &[]).unwrap();
         let resolved = study.to_json();
         assert!(validator.is_valid(&resolved), "{}", path.display());
         let again =

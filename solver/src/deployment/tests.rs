@@ -1,6 +1,8 @@
 use super::*;
+use crate::gas::Schedule;
 use crate::ledger::Ledger;
 use crate::scene::InflowWindow;
+use crate::scene::Thresholds;
 
 /// A model that computes nothing: it writes down what it is asked, and shows the energy it is told.
 struct Recorder {

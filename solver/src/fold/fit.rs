@@ -10,7 +10,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Fit, FoldDesign, FoldError, PanelAngles, nearest};
+use super::{Fit, FoldDesign, FoldError, PanelAngles};
 
 /// ϕ and half angle of a design, rad.
 pub(super) struct Solved {
@@ -18,12 +18,9 @@ pub(super) struct Solved {
     pub(super) half_angle: f64,
 }
 
-/// Solves a design that [`check`] has passed.
-pub(super) fn solve(design: &FoldDesign) -> Result<Solved, FoldError> {
-    if let Some(reason) = obstacle(design) {
-        return Err(FoldError::Infeasible { reason, nearest: nearest::search(design) });
-    }
-    let solved = match design.fit {
+/// Solves a design that [`check`] has passed and that has no [`obstacle`].
+pub(super) fn solve(design: &FoldDesign) -> Solved {
+    match design.fit {
         Fit::Cone => {
             let (half_angle, height) = nominal_cone(design);
             let phi = falling_root(0.0, widest_phi(design), |phi| {
@@ -44,8 +41,7 @@ pub(super) fn solve(design: &FoldDesign) -> Result<Solved, FoldError> {
             };
             Solved { phi, half_angle }
         }
-    };
-    Ok(solved)
+    }
 }
 
 /// Why no pattern meets a design, or `None` when one does. Costs no root search.

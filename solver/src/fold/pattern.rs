@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use super::fit::{self, geometric_sum};
-use super::{FoldDesign, FoldError, Nearest, PanelAngles, nearest, states};
+use super::{FoldDesign, FoldError, Nearest, PanelAngles, scan, states};
 
 /// A fold design that closes: every angle and length of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,14 +39,9 @@ pub struct Lengths {
 const STOWED_STRAIN: f64 = 0.01;
 
 impl FoldPattern {
-    /// Solves a design.
-    ///
-    /// # Errors
-    /// [`FoldError::Invalid`] for a request out of range or contradicting itself,
-    /// [`FoldError::Infeasible`] for one no pattern meets.
-    pub fn new(design: &FoldDesign) -> Result<Self, FoldError> {
-        fit::check(design)?;
-        let fit::Solved { phi, half_angle } = fit::solve(design)?;
+    /// Solves a design that [`fit::check`] and [`fit::obstacle`] have passed.
+    pub(super) fn close(design: &FoldDesign) -> Result<Self, FoldError> {
+        let fit::Solved { phi, half_angle } = fit::solve(design);
         let angles = PanelAngles::closing(design.panels, phi, half_angle);
         if !angles.is_panel() {
             return Err(FoldError::Infeasible {
@@ -103,7 +98,7 @@ impl FoldPattern {
                 && self.smallest_storey_strain(height) <= STOWED_STRAIN
                 && self.stowed_strain(height) <= STOWED_STRAIN
         };
-        let nearest = nearest::below(stowed, packs);
+        let nearest = scan::below(stowed, packs);
         let nearest = nearest.map(|value| Nearest { key: "stowed_height", value });
         Err(FoldError::Infeasible { reason, nearest: nearest.into_iter().collect() })
     }

@@ -18,7 +18,8 @@
 
 use nalgebra::Vector3;
 
-use crate::deployment::{Failure, FailureKind, Phase};
+use crate::course::Phase;
+use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::{kick_factors, stable_share};
 use crate::forces::membrane::{
     ElementForces, NodeForces, Sums, element_pass, node_pass, strain_energy,

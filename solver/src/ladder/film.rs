@@ -11,7 +11,8 @@
 //! would feel.
 
 use super::SceneError;
-use crate::deployment::{self, Course, Deployment, Failure, Model, Observer, Phase};
+use crate::course::{Course, Phase};
+use crate::deployment::{self, Deployment, Failure, Model, Observer};
 use crate::fold::FoldPattern;
 use crate::gas::Gas;
 use crate::history::Sample;

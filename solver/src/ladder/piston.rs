@@ -26,7 +26,8 @@
 //! enough, so it answers how fast, not whether.
 
 use super::SceneError;
-use crate::deployment::{self, Course, Deployment, Observer};
+use crate::course::Course;
+use crate::deployment::{self, Deployment, Observer};
 use crate::fold::FoldPattern;
 use crate::scene::Scene;
 

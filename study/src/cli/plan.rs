@@ -8,8 +8,9 @@ use super::print::print_rows;
 use super::{Format, Global, notes};
 use crate::error::Result;
 use crate::job::Parameters;
-use crate::plan::{Generation, Point, next_jobs};
-use crate::study_file;
+use crate::plan::{Generation, next_jobs};
+use crate::point::Point;
+use crate::study::Study;
 use crate::value::{Value, short_number};
 
 /// Arguments of `billow plan`.
@@ -25,7 +26,7 @@ pub struct Args {
 /// # Errors
 /// When the study is not sound or the output cannot be written.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let study = study_file::load(&args.study, &global.set)?;
+    let study = Study::load(&args.study, &global.set)?;
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
     let format = global.format();
     let names = study.parameter_names();

@@ -15,7 +15,6 @@ use crate::row;
 use crate::runner::{self, Run, Summary};
 use crate::stop::Stop;
 use crate::study::Study;
-use crate::study_file;
 
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]
@@ -27,7 +26,7 @@ pub struct Args {
 /// Runs `billow run`: jobs that are finished are kept, the rest is run; stopped at any moment, the
 /// same command goes on. A study whose grid has changed keeps the jobs it still plans.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let study = study_file::load(&args.study, &global.set)?;
+    let study = Study::load(&args.study, &global.set)?;
     let root = results_folder(global, &study);
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let loudness = match global {

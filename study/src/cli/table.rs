@@ -13,7 +13,7 @@ use crate::files::{Disk, Files};
 use crate::keys;
 use crate::results::Results;
 use crate::row::Kind;
-use crate::study_file;
+use crate::study::Study;
 use crate::table::{Column, Table};
 use crate::units::Dimension;
 use crate::value::{Value, short_number};
@@ -57,7 +57,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let results = Results::new(&Disk, &root);
     let table = results.read_table()?;
     if let Some(path) = args.study.as_deref().filter(|path| path.is_file()) {
-        let study = study_file::load(path, &global.set)?;
+        let study = Study::load(path, &global.set)?;
         if !results.holds(&study.name, &study.to_json())? {
             eprintln!(
                 "billow: {} says another study than the one these rows were run for; `billow run` \
@@ -113,7 +113,7 @@ fn folder(given: Option<&Path>, global: &Global) -> Result<PathBuf> {
                     .to_owned(),
         })
     } else {
-        Ok(results_folder(global, &study_file::load(given, &global.set)?))
+        Ok(results_folder(global, &Study::load(given, &global.set)?))
     }
 }
 

@@ -11,7 +11,7 @@ use super::{Limits, StudyPoint};
 use crate::error::InputError;
 use crate::expression::{Type, Variable};
 use crate::keys::{self, KEYS, Key, Kind};
-use crate::plan::Solved;
+use crate::point::Solved;
 use crate::study_file::Json;
 use crate::units::Dimension;
 use crate::value::{Value, json_value};

@@ -11,7 +11,7 @@ use super::source::{Source, shown};
 use super::strategy::Strategy;
 use crate::error::InputError;
 use crate::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
-use crate::plan::Infeasible;
+use crate::point::Infeasible;
 use crate::value::Value;
 
 /// A design's pattern, or why it has none.

@@ -14,7 +14,8 @@
 use nalgebra::Vector3;
 
 use super::{film_model, mean_height};
-use crate::deployment::{Failure, FailureKind, Phase};
+use crate::course::Phase;
+use crate::deployment::{Failure, FailureKind};
 use crate::fold::FoldPattern;
 use crate::gas::GasState;
 use crate::integrate::explicit::{Explicit, Interior, Setting};

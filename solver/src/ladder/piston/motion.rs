@@ -1,7 +1,8 @@
 //! The motion: a piston's constants, its state, and its run.
 
 use super::{EndFilm, EndState, VolumeLaw};
-use crate::deployment::{Failure, FailureKind, Model, Phase};
+use crate::course::Phase;
+use crate::deployment::{Failure, FailureKind, Model};
 use crate::gas::{Gas, GasState};
 use crate::history::Sample;
 use crate::integrate::{Control, Integrator, System};
