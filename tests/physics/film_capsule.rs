@@ -37,16 +37,22 @@ fn report(name: &str, deployment: &Deployment, wall: f64) {
     let last = |name: &str| *history.column(name).last().unwrap();
     let reaches = |height: f64| z.iter().position(|z| *z >= height).map(|index| time[index]);
     println!(
-        "{name}: {:?}; z 0.5 m at {:?} s, 0.9 m at {:?} s, end {:.3} m; peak vz {:?} m/s; peak \
+        "{name}: {:?}; z 0.5 m at {:?} s, 0.9 m at {:?} s, end {:.3} m; peak vz {:?} m/s at {:?} s; peak \
          kinetic {:?} J; V {:.4} m3; p {:.1} Pa",
         deployment.stop,
         reaches(0.5),
         reaches(0.9),
         last("z_centre"),
         deployment.measures.peak_vz,
+        deployment.measures.t_peak_vz,
         deployment.measures.peak_kinetic_energy,
         last("volume"),
         last("pressure"),
+    );
+    let rim: Vec<f64> = history.column("z_rim").windows(2).map(|z| z[1] - z[0]).collect();
+    println!(
+        "  fastest rim {:.1} m/s",
+        rim.iter().copied().fold(0.0, f64::max) / (time[1] - time[0])
     );
     println!(
         "  ledger residual {:e}, gas residual {:e}, viscous fraction {:.3}, gas work {:.2} J, \
