@@ -14,21 +14,21 @@ pub struct Audit {
     pub gas_residual: f64,
     /// Energy dissipated by film viscosity over the work of the gas.
     pub viscous_fraction: f64,
-    /// Film through film, whole run; `None` where the model has no film to pass.
+    /// Film through film, whole run; `None` where the model does not count them.
     pub passages: Option<u64>,
-    /// Intersections at the worst frame; `None` where the model has no film to intersect.
+    /// Intersections at the worst frame; `None` where the model does not look.
     pub intersections: Option<u64>,
 }
 
 impl Audit {
-    /// The audit of a history; `has_film` where the model has film that can pass itself.
-    pub fn of(history: &History, has_film: bool) -> Self {
+    /// The audit of a history; `counts_passages` where the model does.
+    pub fn of(history: &History, counts_passages: bool) -> Self {
         let largest = |name: &str| history.column(name).iter().copied().fold(0.0, f64::max);
         let last = |name: &str| history.column(name).last().copied().unwrap_or(0.0);
         let gas_work = last("gas_work");
         // Counts are whole numbers below 2^53 stored as f64.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
-        let count = |name: &str| has_film.then(|| largest(name) as u64);
+        let count = |name: &str| counts_passages.then(|| largest(name) as u64);
         Self {
             ledger_residual: largest("ledger_residual"),
             gas_residual: largest("gas_residual"),

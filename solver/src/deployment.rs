@@ -31,8 +31,9 @@ pub trait Model {
     /// Elements of its mesh.
     fn elements(&self) -> usize;
 
-    /// Whether it has film that can pass and intersect itself.
-    fn has_film(&self) -> bool;
+    /// Whether it counts film passing through film, and intersections. A model without film has
+    /// none to count, one without contact cannot.
+    fn counts_passages(&self) -> bool;
 }
 
 /// Runs a model through a course, from time 0.
@@ -97,7 +98,7 @@ fn advance(
 
 fn finish(model: &dyn Model, course: &Course, samples: &[Sample], mut stop: Stop) -> Deployment {
     let history = History::of(samples);
-    let audit = Audit::of(&history, model.has_film());
+    let audit = Audit::of(&history, model.counts_passages());
     if stop == Stop::Done
         && let Some(time) = audit::first_drift(&history)
     {

@@ -29,9 +29,11 @@ use crate::scene::{GasSupply, HeatTransfer};
 
 mod leak;
 mod schedule;
+mod step;
 
 use leak::Orifice;
 pub use schedule::{Inflow, Schedule};
+pub use step::GasStep;
 
 /// What the gas is at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

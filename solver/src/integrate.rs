@@ -22,6 +22,7 @@ use crate::deployment::{Failure, FailureKind};
 use crate::scene::Stepping;
 
 mod dormand_prince;
+pub mod explicit;
 
 use dormand_prince::{Trial, step};
 

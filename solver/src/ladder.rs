@@ -1,9 +1,13 @@
 //! Models from cheap to full behind one interface: Scene → Deployment.
+//!
+//! [`solve`] runs the models a scene can name. [`film`] is not among them yet: without contact it is
+//! reached by its own name alone.
 
 use crate::deployment::{Deployment, Observer};
 use crate::fold::FoldError;
 use crate::scene::{ModelKind, Scene};
 
+pub mod film;
 pub mod piston;
 
 /// Why a scene cannot be run at all (a run that stops short is no error: see

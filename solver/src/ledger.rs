@@ -1,7 +1,7 @@
 //! The energy ledger and the gas balance: does the run's energy add up?
 //!
 //! ```text
-//! film:   Δ(kinetic + strain + contact) + viscous + friction = gas + ambient + gravity + support
+//! film:   Δ(kinetic + strain + contact) + viscous + friction + damping = gas + ambient + gravity + support
 //! gas:    Δm = mass in − mass out
 //!         ΔU = enthalpy in − enthalpy out − gas work + heat
 //!
@@ -37,6 +37,8 @@ pub struct Ledger {
     pub viscous_work: f64,
     /// Energy dissipated by friction.
     pub friction_work: f64,
+    /// Energy dissipated by mass damping, which only statics has.
+    pub damping_work: f64,
 }
 
 impl Ledger {
@@ -47,7 +49,7 @@ impl Ledger {
     /// Energy that appeared from nowhere since `start`, J; negative where it was lost.
     pub fn defect(&self, start: &Self) -> f64 {
         let external = self.gas_work + self.ambient_work + self.gravity_work + self.support_work;
-        let dissipated = self.viscous_work + self.friction_work;
+        let dissipated = self.viscous_work + self.friction_work + self.damping_work;
         (self.stored() - start.stored()) + dissipated - external
     }
 
@@ -167,7 +169,7 @@ mod tests {
 
     #[test]
     fn every_entry_counts() {
-        let entries: [fn(&mut Ledger); 9] = [
+        let entries: [fn(&mut Ledger); 10] = [
             |l| l.kinetic = 1.0,
             |l| l.strain = 1.0,
             |l| l.contact = 1.0,
@@ -177,6 +179,7 @@ mod tests {
             |l| l.support_work = 1.0,
             |l| l.viscous_work = 1.0,
             |l| l.friction_work = 1.0,
+            |l| l.damping_work = 1.0,
         ];
         let start = Ledger::default();
         for (index, set) in entries.into_iter().enumerate() {

@@ -24,15 +24,20 @@ pub mod audit;
 pub mod course;
 pub mod deployment;
 pub mod fold;
+pub mod forces;
 pub mod gas;
 pub mod history;
 pub mod integrate;
 pub mod ladder;
 pub mod ledger;
+pub mod material;
 pub mod measures;
 pub mod mesh;
 pub mod mesh_io;
+pub mod model;
 pub mod scene;
+pub mod state;
+pub mod supports;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

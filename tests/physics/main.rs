@@ -9,12 +9,18 @@
     reason = "judges by tolerances, not by bits; counts are small"
 )]
 
+mod allocation;
 mod capsule;
 mod conservation;
+mod explicit_cases;
 mod exports;
+mod film_capsule;
+mod film_rig;
 mod fold_numbers;
 mod fold_properties;
 mod gas_cases;
 mod geometry;
+mod membrane_cases;
 mod piston_cases;
 mod rig;
+mod shells;

@@ -55,7 +55,7 @@ impl Model for Recorder {
         7
     }
 
-    fn has_film(&self) -> bool {
+    fn counts_passages(&self) -> bool {
         true
     }
 }

@@ -184,6 +184,7 @@ impl PistonRun {
             // and so do no work.
             contact: 0.0,
             friction_work: 0.0,
+            damping_work: 0.0,
             support_work: 0.0,
         }
     }
@@ -266,7 +267,7 @@ impl Model for PistonRun {
         0
     }
 
-    fn has_film(&self) -> bool {
+    fn counts_passages(&self) -> bool {
         false
     }
 }

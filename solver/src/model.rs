@@ -1,0 +1,166 @@
+//! What is constant while film moves: elements, masses, incidence.
+//!
+//! ```text
+//! Dm = [X1 − X0, X2 − X0]      A = det Dm/2      F = [x1 − x0, x2 − x0] Dm⁻¹
+//! m_i = Σ_e ρ t A_e/3          ω_e: largest in-plane frequency of the lumped element
+//! ```
+//!
+//! Symbols: X flat reference, x current places of an element's corners, m; F deformation gradient
+//! (3×2); A reference area, m²; m lumped mass, kg. One `Vec` a quantity; element quantities are
+//! indexed by element, node quantities by node.
+
+use nalgebra::Vector2;
+
+use crate::material::Material;
+use crate::scene::Film;
+
+mod frequency;
+
+pub use frequency::largest_frequency;
+
+/// Why nodes and triangles are no film.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FilmError {
+    /// An element's reference has no area, or is turned over.
+    #[error(
+        "element {element}: reference area {area} m²; allowed: above 0, corners counter-clockwise"
+    )]
+    Degenerate {
+        /// Element.
+        element: usize,
+        /// Its signed area, m².
+        area: f64,
+    },
+    /// A node belongs to no element and so has no mass.
+    #[error("node {node} belongs to no element; allowed: nodes of the film only")]
+    Loose {
+        /// Node.
+        node: usize,
+    },
+    /// An element names a node that is not there.
+    #[error("element {element} names a node that is not there; there are {nodes} nodes")]
+    Unknown {
+        /// Element.
+        element: usize,
+        /// Nodes there are.
+        nodes: usize,
+    },
+}
+
+/// Film of triangles: constant data of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilmModel {
+    /// Material.
+    pub material: Material,
+    /// ρ, kg/m³.
+    pub density: f64,
+    /// Nodes of each element, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Dm⁻¹ of each element, row by row, 1/m.
+    pub inverse_shape: [Vec<f64>; 4],
+    /// A t of each element, m³.
+    pub volume: Vec<f64>,
+    /// `ω_e` of each element, rad/s.
+    pub frequency: Vec<f64>,
+    /// `2ζ/ω_e` of each element, s.
+    pub viscous_time: Vec<f64>,
+    /// m of each node, kg.
+    pub mass: Vec<f64>,
+    /// Where each node's corners begin in `corners`; one more entry than nodes.
+    pub first_corner: Vec<u32>,
+    /// Corners (3 element + corner) of each node, in order.
+    pub corners: Vec<u32>,
+}
+
+impl FilmModel {
+    /// Film of these triangles with their flat references (m), over `nodes` nodes.
+    ///
+    /// # Errors
+    /// [`FilmError`].
+    pub fn new(
+        film: &Film,
+        nodes: usize,
+        triangles: &[[u32; 3]],
+        reference: &[[Vector2<f64>; 3]],
+    ) -> Result<Self, FilmError> {
+        let material = Material::new(film);
+        let mut model = Self {
+            material,
+            density: film.density,
+            triangles: triangles.to_vec(),
+            inverse_shape: core::array::from_fn(|_| Vec::with_capacity(triangles.len())),
+            volume: Vec::with_capacity(triangles.len()),
+            frequency: Vec::with_capacity(triangles.len()),
+            viscous_time: Vec::with_capacity(triangles.len()),
+            mass: vec![0.0; nodes],
+            first_corner: Vec::new(),
+            corners: Vec::new(),
+        };
+        for (element, (triangle, [a, b, c])) in triangles.iter().zip(reference).enumerate() {
+            if triangle.iter().any(|node| *node as usize >= nodes) {
+                return Err(FilmError::Unknown { element, nodes });
+            }
+            let (p, q) = (b - a, c - a);
+            let determinant = p.perp(&q);
+            // Written so that a reference that is no number is refused too.
+            let sound = determinant > 0.0 && determinant.is_finite();
+            if !sound {
+                return Err(FilmError::Degenerate { element, area: 0.5 * determinant });
+            }
+            let inverse = [q.y, -q.x, -p.y, p.x].map(|entry| entry / determinant);
+            for (column, entry) in model.inverse_shape.iter_mut().zip(inverse) {
+                column.push(entry);
+            }
+            let volume = 0.5 * determinant * film.thickness;
+            let frequency = largest_frequency(&material, film.density, inverse);
+            model.volume.push(volume);
+            model.frequency.push(frequency);
+            model.viscous_time.push(2.0 * film.viscosity / frequency);
+            for node in triangle {
+                model.mass[*node as usize] += film.density * volume / 3.0;
+            }
+        }
+        if let Some(node) = model.mass.iter().position(|mass| *mass == 0.0) {
+            return Err(FilmError::Loose { node });
+        }
+        model.link();
+        Ok(model)
+    }
+
+    /// Lists the corners of each node, in the order of elements.
+    fn link(&mut self) {
+        let mut corners: Vec<Vec<u32>> = vec![Vec::new(); self.mass.len()];
+        let nodes = self.triangles.iter().flatten();
+        for (corner, node) in (0_u32..).zip(nodes) {
+            corners[*node as usize].push(corner);
+        }
+        let mut first = 0;
+        self.first_corner.push(0);
+        for own in &corners {
+            first += u32::try_from(own.len()).expect("under 2^32 corners");
+            self.first_corner.push(first);
+        }
+        self.corners = corners.concat();
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// `ω_max` bound: the largest `ω_e`, rad/s. No frequency of the assembled film at rest is above it
+    /// (Rayleigh quotient: element stiffnesses and element masses add up alike).
+    pub fn largest_frequency(&self) -> f64 {
+        self.frequency.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Speed of a plane wave in the film, √(E/(ρ(1−ν²))), m/s.
+    pub fn wave_speed(&self) -> f64 {
+        (self.material.plane_modulus() / self.density).sqrt()
+    }
+}

@@ -1,0 +1,56 @@
+//! Nothing is allocated inside a step: a counting allocator says so.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use billow_solver::course::Phase;
+use billow_solver::deployment::Model;
+use billow_solver::gas::Inflow;
+use billow_solver::integrate::explicit::DEFAULT_CFL;
+use billow_solver::ladder::film::FilmRun;
+use billow_solver::measures::Reference;
+
+use crate::rig::paper_scene;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+#[expect(unsafe_code, reason = "an allocator is unsafe by nature; it only counts and passes on")]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_step_allocates_nothing() {
+    let count = || ALLOCATIONS.with(Cell::get);
+    let before = count();
+    drop(vec![0_u8; 100]);
+    assert!(count() > before);
+
+    let mut scene = paper_scene();
+    scene.design.subdivisions = 2;
+    scene.gas.leak_area = 1e-4;
+    let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
+    let mut run = FilmRun::from_scene(&scene, DEFAULT_CFL, reference).unwrap();
+    let inflow = Inflow { mass: 0.005, mass_temperature: 0.005 * 293.0 };
+    for packed in [true, false] {
+        let before = count();
+        let until = run.film.time + 2e-3;
+        run.advance(until, &Phase { packed, inflow }).unwrap();
+        assert_eq!(count(), before, "packed {packed}");
+    }
+    assert!(run.steps() > 100);
+}

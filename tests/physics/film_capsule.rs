@@ -1,0 +1,245 @@
+//! The paper's capsule as film without contact: what it keeps, and its static states.
+
+use std::time::Instant;
+
+use billow_solver::deployment::{Deployment, Stop, Unobserved};
+use billow_solver::fold::Caps;
+use billow_solver::integrate::explicit::DEFAULT_CFL;
+use billow_solver::ladder::SceneError;
+use billow_solver::ladder::film::{self, Relaxation, static_states};
+use billow_solver::measures::Reference;
+use billow_solver::scene::{HeatTransfer, Scene};
+use nalgebra::Vector3;
+use serde_json::Value;
+
+use crate::rig::{paper_scene, window};
+
+/// Its static states are not judged here; a stand-in that no assertion reads.
+fn unread() -> Reference {
+    Reference::new(vec![[1.0, 1.0, 1.0]])
+}
+
+fn injected(subdivisions: u32, end_time: f64) -> Scene {
+    let mut scene = paper_scene();
+    scene.design.subdivisions = subdivisions;
+    scene.gas.windows = vec![window(0.0, 1.5, 0.005)];
+    scene.solver.end_time = end_time;
+    scene
+}
+
+fn run(scene: &Scene, cfl: f64) -> Deployment {
+    film::solve(scene, cfl, unread(), &mut Unobserved).expect("a scene that can be run")
+}
+
+fn report(name: &str, deployment: &Deployment, wall: f64) {
+    let history = &deployment.history;
+    let (time, z) = (history.column("time"), history.column("z_centre"));
+    let last = |name: &str| *history.column(name).last().unwrap();
+    let reaches = |height: f64| z.iter().position(|z| *z >= height).map(|index| time[index]);
+    println!(
+        "{name}: {:?}; z 0.5 m at {:?} s, 0.9 m at {:?} s, end {:.3} m; peak vz {:?} m/s at {:?} s; peak \
+         kinetic {:?} J; V {:.4} m3; p {:.1} Pa",
+        deployment.stop,
+        reaches(0.5),
+        reaches(0.9),
+        last("z_centre"),
+        deployment.measures.peak_vz,
+        deployment.measures.t_peak_vz,
+        deployment.measures.peak_kinetic_energy,
+        last("volume"),
+        last("pressure"),
+    );
+    let rim: Vec<f64> = history.column("z_rim").windows(2).map(|z| z[1] - z[0]).collect();
+    println!(
+        "  fastest rim {:.1} m/s",
+        rim.iter().copied().fold(0.0, f64::max) / (time[1] - time[0])
+    );
+    println!(
+        "  ledger residual {:e}, gas residual {:e}, viscous fraction {:.3}, gas work {:.2} J, \
+         {} steps, {:.1} ns per element and step",
+        deployment.audit.ledger_residual,
+        deployment.audit.gas_residual,
+        deployment.audit.viscous_fraction,
+        last("gas_work"),
+        deployment.steps,
+        wall * 1e9 / (deployment.steps as f64 * deployment.elements as f64),
+    );
+}
+
+fn timed(name: &str, scene: &Scene, cfl: f64) -> Deployment {
+    let start = Instant::now();
+    let deployment = run(scene, cfl);
+    report(name, &deployment, start.elapsed().as_secs_f64());
+    deployment
+}
+
+#[test]
+fn a_coarse_capsule_keeps_its_energy_and_its_bits() {
+    let scene = injected(2, 0.06);
+    let deployment = timed("n 2, 60 ms", &scene, DEFAULT_CFL);
+    assert_eq!(deployment.stop, Stop::Done);
+    assert!(deployment.audit.ledger_residual < 5e-3);
+    assert!(deployment.audit.gas_residual < 1e-12);
+    assert_eq!((deployment.audit.passages, deployment.audit.intersections), (None, None));
+    assert_eq!(deployment.elements, 2 * 6 * 4 * 4);
+    assert_eq!(run(&scene, DEFAULT_CFL), deployment);
+}
+
+#[test]
+#[ignore = "long: 0.3 s of the paper's capsule at n 5"]
+fn five_grams_a_second_without_contact() {
+    let deployment = timed("n 5, 0.3 s", &injected(5, 0.3), DEFAULT_CFL);
+    assert_eq!(deployment.stop, Stop::Done);
+    assert!(deployment.audit.ledger_residual <= 5e-3, "{}", deployment.audit.ledger_residual);
+    assert!(deployment.audit.gas_residual < 1e-10, "{}", deployment.audit.gas_residual);
+}
+
+#[test]
+fn packed_it_waits_and_presses_on_the_lid() {
+    let mut scene = injected(2, 0.02);
+    scene.release_time = 0.01;
+    scene.outputs.sample_interval = 1e-3;
+    let deployment = run(&scene, DEFAULT_CFL);
+    let history = &deployment.history;
+    let column = |name: &str| history.column(name);
+    for index in 0..=10 {
+        assert_eq!(column("volume")[index], column("volume")[0]);
+        assert_eq!(column("kinetic_energy")[index], 0.0);
+    }
+    // The gas does the work of a uniform stretch: p dV/dz, V nearly linear in the height.
+    let (force, pressure) = (column("lid_force")[10], column("pressure")[10]);
+    let expected = pressure * column("volume")[0] / 0.04;
+    assert!(force > 0.9 * expected && force < 1.1 * expected, "{force} {expected}");
+    assert!(column("z_rim")[20] > 0.05 && column("lid_force")[20] == 0.0);
+    assert!(deployment.audit.ledger_residual < 5e-3);
+}
+
+/// n 4, coarser than any verdict is given at: the film sags between its folds, so both lie below
+/// the cone's, rise with pressure, and the volume is that of a capsule.
+#[test]
+#[ignore = "long: static states by relaxation"]
+fn static_states_rise_with_pressure() {
+    for subdivisions in [4, 5] {
+        let scene = injected(subdivisions, 0.3);
+        let start = Instant::now();
+        let states =
+            static_states(&scene, &[1000.0, 100.0, 10.0, 1.0], &Relaxation::default()).unwrap();
+        println!("n {subdivisions}, {:.1} s: {states:#?}", start.elapsed().as_secs_f64());
+        for pair in states.windows(2) {
+            assert!(pair[1].volume < pair[0].volume, "{pair:?}");
+        }
+        assert!(states.iter().all(|s| s.volume > 0.5 && s.volume < 0.7 && s.z_rim > 0.8));
+    }
+}
+
+/// Circular caps, free body: volume, rims and heights against the axisymmetric tension field.
+#[test]
+#[ignore = "long: the end state on three meshes"]
+fn end_state_of_the_erected_cone() {
+    let reference: Value =
+        serde_json::from_str(include_str!("../reference/film.json")).expect("JSON");
+    let case = &reference["capsule_end_state"];
+    let numbers = |value: &Value| -> Vec<f64> {
+        value.as_array().expect("numbers").iter().map(|n| n.as_f64().expect("a number")).collect()
+    };
+    let (row, bands) = (numbers(&case["rows"][1]), numbers(&case["bands"]));
+    let mut finest = Vec::new();
+    for subdivisions in [7, 14, 28] {
+        let mut scene = injected(subdivisions, 0.3);
+        scene.design.caps = Caps::Circular;
+        scene.supports.clear();
+        let start = Instant::now();
+        let relaxation = Relaxation::default();
+        let (mut film, mesh) = film::erected(&scene, &relaxation).unwrap();
+        relaxation.relax_at(&mut film, row[0]).unwrap();
+        let mean = |nodes: &[u32], value: fn(Vector3<f64>) -> f64| {
+            nodes.iter().map(|node| value(film.places.get(*node as usize))).sum::<f64>()
+                / nodes.len() as f64
+        };
+        let radius = |x: Vector3<f64>| x.xy().norm();
+        let height = |x: Vector3<f64>| x.z;
+        let pole = |node: u32| film.places.z[node as usize];
+        let measured = [
+            film.volume,
+            mean(&mesh.bottom_ring, radius),
+            mean(&mesh.top_ring, radius),
+            mean(&mesh.top_ring, height) - mean(&mesh.bottom_ring, height),
+            pole(mesh.top_centre) - pole(mesh.bottom_centre),
+        ];
+        finest = measured
+            .iter()
+            .zip(&row[1..])
+            .map(|(value, expected)| value / expected - 1.0)
+            .collect();
+        println!(
+            "end state n {subdivisions}: {measured:.6?}, errors {finest:.5?}, {} steps, {:.1} s",
+            film.steps,
+            start.elapsed().as_secs_f64()
+        );
+    }
+    assert!(finest.iter().zip(&bands).all(|(error, band)| error.abs() < *band), "{finest:?}");
+}
+
+#[test]
+#[ignore = "long: the paper's capsule at three steps and two viscosities"]
+fn what_the_ledger_misses_falls_with_the_step() {
+    let scene = injected(5, 0.3);
+    let residuals: Vec<f64> = [0.9, 0.45, 0.225]
+        .map(|cfl| timed(&format!("n 5, CFL {cfl}"), &scene, cfl).audit.ledger_residual)
+        .to_vec();
+    assert!(residuals[1] < residuals[0] && residuals[2] < residuals[1], "{residuals:?}");
+    let mut thin = injected(5, 0.3);
+    thin.film.viscosity = 0.05;
+    let deployment = timed("n 5, zeta 0.05", &thin, DEFAULT_CFL);
+    assert!(deployment.audit.ledger_residual <= 5e-3, "{:?}", deployment.audit);
+}
+
+/// Everything that can do work or carry energy at once, on the ground and released late.
+#[test]
+fn every_entry_of_the_ledger_is_kept() {
+    let mut scene = injected(2, 0.1);
+    scene.gravity = -9.806_65;
+    scene.gas.ambient_pressure = 20.0;
+    scene.gas.initial_mass = 1e-5;
+    scene.gas.leak_area = 2e-4;
+    scene.gas.heat_transfer = HeatTransfer::Coefficient(3.0);
+    scene.release_time = 0.02;
+    scene.film.compression = 1e-3;
+    let deployment = timed("n 2, every entry", &scene, DEFAULT_CFL);
+    assert_eq!(deployment.stop, Stop::Done);
+    let history = &deployment.history;
+    let moved =
+        ["gas_work", "ambient_work", "gravity_work", "viscous_work", "heat", "enthalpy_out"];
+    for name in moved {
+        assert!(history.column(name).last().unwrap().abs() > 1e-2, "{name}");
+    }
+    assert!(deployment.audit.ledger_residual < 5e-3, "{:?}", deployment.audit);
+    assert!(deployment.audit.gas_residual < 1e-12, "{:?}", deployment.audit);
+    scene.gas.heat_transfer = HeatTransfer::Isothermal;
+    let deployment = timed("n 2, isothermal", &scene, DEFAULT_CFL);
+    assert!(deployment.audit.ledger_residual < 5e-3, "{:?}", deployment.audit);
+    assert!(deployment.audit.gas_residual < 1e-12, "{:?}", deployment.audit);
+}
+
+#[test]
+fn a_settled_state_is_settled() {
+    let scene = injected(3, 0.3);
+    let at = |kinetic_share: f64| {
+        let relaxation = Relaxation { kinetic_share, ..Relaxation::default() };
+        static_states(&scene, &[1000.0, 100.0], &relaxation).unwrap()
+    };
+    let (usual, strict) = (at(Relaxation::default().kinetic_share), at(1e-13));
+    for (usual, strict) in usual.iter().zip(&strict) {
+        println!("{usual:?}, strict {strict:?}");
+        assert!((usual.volume / strict.volume - 1.0).abs() < 1e-3);
+        assert!((usual.z_rim / strict.z_rim - 1.0).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn a_step_share_out_of_range_is_refused() {
+    for cfl in [0.0, 1.5, f64::NAN] {
+        let refused = film::solve(&injected(2, 0.1), cfl, unread(), &mut Unobserved);
+        assert!(matches!(refused, Err(SceneError::Invalid { key, .. }) if key == "cfl"));
+    }
+}
