@@ -46,34 +46,35 @@ pub(super) fn solve(design: &FoldDesign) -> Solved {
 
 /// Why no pattern meets a design, or `None` when one does. Costs no root search.
 pub(super) fn obstacle(design: &FoldDesign) -> Option<String> {
-    let stack = format!(
-        "{} {} of {} panels",
-        design.storeys,
-        if design.storeys == 1 { "storey" } else { "storeys" },
-        design.panels
-    );
+    let (tallest, height) = shortfall(design)?;
+    let storeys = if design.storeys == 1 { "storey" } else { "storeys" };
+    let stack = format!("{} {storeys} of {} panels", design.storeys, design.panels);
+    Some(match design.fit {
+        Fit::Cone => format!(
+            "{stack} on this cone reach at most {tallest:.4} m (phi towards 0), the cone is \
+             {height:.4} m high: no phi closes on the top radius"
+        ),
+        Fit::Angles | Fit::Height => format!(
+            "{stack} at this alpha1_over_phi reach at most {tallest:.4} m (as a cylinder), \
+             {height:.4} m are asked for: no half angle of 0 or more closes"
+        ),
+    })
+}
+
+/// The greatest height a design can have and the height it should have, m, where that is too great.
+pub(super) fn shortfall(design: &FoldDesign) -> Option<(f64, f64)> {
     match design.fit {
         Fit::Cone => {
             let (half_angle, height) = nominal_cone(design);
             let (slant, ratio) = PanelAngles::tallest(design.panels, half_angle);
             let tallest = stack_height(design, half_angle, slant, ratio);
-            (tallest <= height).then(|| {
-                format!(
-                    "{stack} on this cone reach at most {tallest:.4} m (phi towards 0), the cone is \
-                     {height:.4} m high: no phi closes on the top radius"
-                )
-            })
+            (tallest <= height).then_some((tallest, height))
         }
         Fit::Angles => None,
         Fit::Height => {
             let tallest = storeys_height(design, phi_of_ratio(design), 0.0);
             let height = given(design.height);
-            (tallest < height).then(|| {
-                format!(
-                    "{stack} at this alpha1_over_phi reach at most {tallest:.4} m (as a cylinder), \
-                     {height:.4} m are asked for: no half angle of 0 or more closes"
-                )
-            })
+            (tallest < height).then_some((tallest, height))
         }
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn search(design: &FoldDesign) -> Vec<Nearest> {
             let feasible = |value: f64| {
                 let mut changed = design.clone();
                 (knob.set)(&mut changed, value);
-                fit::check(&changed).is_ok() && fit::obstacle(&changed).is_none()
+                fit::check(&changed).is_ok() && fit::shortfall(&changed).is_none()
             };
             let value =
                 if knob.whole { whole(start, feasible) } else { real(start, &BOTH_WAYS, feasible) };

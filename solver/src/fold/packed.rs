@@ -49,13 +49,14 @@ impl PackedStorey {
         };
         let (mut low, mut high) = (self.flat_twist, self.flat_twist);
         // Edges are too long at the flat twist, so less twist shortens them; half a panel's turn
-        // backwards AD and AE would be alike, and no rise gets there. Strides double, so that a low
-        // rise is as quick as a high one.
-        let mut stride = 1e-6;
+        // backwards AD and AE would be alike, and no rise gets there. Strides start small, so that a
+        // low rise is quick, and stay small enough not to step over a root.
+        let longest = 1e-3 * (self.flat_twist + self.half_panel);
+        let mut stride = 1e-3 * longest;
         while slope(low) > 0.0 && low > -self.half_panel {
             high = low;
             low -= stride;
-            stride *= 2.0;
+            stride = longest.min(2.0 * stride);
         }
         loop {
             let middle = 0.5 * (low + high);

@@ -92,7 +92,12 @@ impl FoldPattern {
         } else {
             return Ok(());
         };
-        let packs = |height| height < self.height && self.stowed_strain(height) <= STOWED_STRAIN;
+        let packs = |height| {
+            height < self.height
+                // One storey first: most heights tried fall to it.
+                && self.smallest_storey_strain(height) <= STOWED_STRAIN
+                && self.stowed_strain(height) <= STOWED_STRAIN
+        };
         let nearest = scan::below(stowed, packs);
         let nearest = nearest.map(|value| Nearest { key: "stowed_height", value });
         Err(FoldError::Infeasible { reason, nearest: nearest.into_iter().collect() })

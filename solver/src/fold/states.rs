@@ -100,9 +100,18 @@ impl FoldPattern {
         self.stack(|storey| (rise, packed.twist(rise / self.polygon_radius(storey))))
     }
 
-    /// Largest Green strain of a folded edge, in magnitude, at stack height `height`, m: that of the
-    /// smallest storey, since storeys are alike but for their size and equally high.
+    /// Largest Green strain of a folded edge, in magnitude, at stack height `height`, m.
     pub fn stowed_strain(&self, height: f64) -> f64 {
+        let rise = height / f64::from(self.design.storeys);
+        let packed = PackedStorey::of(self);
+        (0..self.design.storeys)
+            .map(|storey| packed.strain(rise / self.polygon_radius(storey)))
+            .fold(0.0, f64::max)
+    }
+
+    /// The same of the smallest storey alone, as a rule the largest: storeys are alike but for their
+    /// size and equally high.
+    pub(super) fn smallest_storey_strain(&self, height: f64) -> f64 {
         let rise = height / f64::from(self.design.storeys);
         let last = self.design.storeys - 1;
         let smallest = self.polygon_radius(0).min(self.polygon_radius(last));
