@@ -150,3 +150,21 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_leaking_capsule_pressed_shut_has_no_volume() {
+    let mut scene = paper_scene();
+    scene.film.thickness = 7.3e-5;
+    scene.film.viscosity = 0.0;
+    scene.film.temperature = 200.0;
+    scene.gas.windows = vec![window(0.0, 0.005, 1.4e-6)];
+    scene.gas.heat_transfer = HeatTransfer::Coefficient(7.8);
+    scene.gas.leak_area = 1.9e-4;
+    scene.gas.discharge_coefficient = 0.6;
+    scene.gravity = -7.3;
+    scene.solver.end_time = 0.5;
+    let deployment = run(&scene);
+    let Stop::Failed(failure) = &deployment.stop else { panic!("{:?}", deployment.stop) };
+    assert_eq!(failure.kind.name(), "inverted_volume");
+    assert!(deployment.steps < 100_000, "{} steps", deployment.steps);
+}

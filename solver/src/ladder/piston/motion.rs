@@ -57,6 +57,8 @@ const COMPONENTS: usize = 13;
 pub struct Motion<'a> {
     piston: &'a Piston,
     phase: &'a Phase,
+    /// Volume that counts as none, m³.
+    least_volume: f64,
 }
 
 impl System<COMPONENTS> for Motion<'_> {
@@ -108,12 +110,16 @@ impl System<COMPONENTS> for Motion<'_> {
         if state[HEIGHT] <= 0.0 {
             return Err((FailureKind::InvertedVolume, "height of the top ring"));
         }
-        if self.piston.volume.volume(state[HEIGHT]) <= 0.0 {
+        if self.piston.volume.volume(state[HEIGHT]) <= self.least_volume {
             return Err((FailureKind::InvertedVolume, "gas volume"));
         }
         Ok(())
     }
 }
+
+/// Share of the starting volume that counts as none: a leaking capsule pressed shut would take ever
+/// smaller steps towards a volume of 0 and never reach it.
+const NO_VOLUME: f64 = 1e-9;
 
 /// Gas of this share of the moving mass is the least that errors are judged by.
 ///
@@ -138,6 +144,7 @@ pub struct PistonRun {
     control: Control,
     integrator: Integrator<COMPONENTS, EndState>,
     film_stress: f64,
+    least_volume: f64,
 }
 
 impl PistonRun {
@@ -150,7 +157,8 @@ impl PistonRun {
         state[INTERNAL_ENERGY] = start.gas.internal_energy;
         let branch = piston.end.state_at(start.height, start.speed);
         let integrator = Integrator::new(time, state, branch, least_scales(&piston));
-        Self { piston, control, integrator, film_stress: 0.0 }
+        let least_volume = NO_VOLUME * piston.volume.volume(start.height);
+        Self { piston, control, integrator, film_stress: 0.0, least_volume }
     }
 
     /// Where it stands.
@@ -208,7 +216,7 @@ impl Model for PistonRun {
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
         let piston = &self.piston;
         let film_stress = &mut self.film_stress;
-        let motion = Motion { piston, phase };
+        let motion = Motion { piston, phase, least_volume: self.least_volume };
         let mut accepted = |state: &[f64; COMPONENTS]| {
             let z = state[HEIGHT];
             let gas = GasState { mass: state[MASS], internal_energy: state[INTERNAL_ENERGY] };
