@@ -25,6 +25,8 @@
 //!
 //! Every model gets its gas from here; it brings V, dV/dt and its own work of p on the film.
 
+use serde::{Deserialize, Serialize};
+
 use crate::scene::{GasSupply, HeatTransfer};
 
 mod leak;
@@ -36,7 +38,8 @@ pub use schedule::{Inflow, Schedule};
 pub use step::GasStep;
 
 /// What the gas is at one moment.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct GasState {
     /// m, kg.
     pub mass: f64,

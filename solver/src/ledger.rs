@@ -16,8 +16,11 @@
 //! judged by what they move: m0 + mass in, U0 + enthalpy in + |heat| + |gas work|, with the same
 //! floor. Residuals are judged on the stored series, once the end is known.
 
+use serde::{Deserialize, Serialize};
+
 /// The film's side of the ledger at one moment; all J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Ledger {
     /// Kinetic energy.
     pub kinetic: f64,
@@ -63,7 +66,8 @@ impl Ledger {
 }
 
 /// The gas's side of the ledger at one moment.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct GasBooks {
     /// Mass inside, kg.
     pub mass: f64,

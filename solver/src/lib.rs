@@ -23,6 +23,7 @@
 pub mod audit;
 pub mod course;
 pub mod deployment;
+pub mod film_scene;
 pub mod fold;
 pub mod forces;
 pub mod gas;
@@ -35,7 +36,10 @@ pub mod measures;
 pub mod mesh;
 pub mod mesh_io;
 pub mod model;
+pub mod mutation;
 pub mod scene;
+pub mod shell;
+pub mod simd;
 pub mod state;
 pub mod supports;
 

@@ -16,7 +16,10 @@
 //! Principal values are m ± r with m = (exx + eyy)/2, r² = ((exx − eyy)/2)² + exy². Where e1 = e2
 //! no direction is needed: the film is then taut or slack, and both stresses are isotropic forms.
 
+#![allow(clippy::inline_always, reason = "inside the element loop")]
+
 use crate::scene::Film;
+use crate::simd::Lanes;
 
 /// A symmetric tensor in the developed plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -31,8 +34,6 @@ pub struct PlaneTensor {
 
 impl PlaneTensor {
     /// Mean and half the difference of the principal values.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "inside the element loop")]
     fn circle(self) -> (f64, f64) {
         let half = 0.5 * (self.xx - self.yy);
         (0.5 * (self.xx + self.yy), (half * half + self.xy * self.xy).sqrt())
@@ -42,13 +43,6 @@ impl PlaneTensor {
     pub fn principal(self) -> (f64, f64) {
         let (mean, radius) = self.circle();
         (mean + radius, mean - radius)
-    }
-
-    /// Double contraction with another tensor.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "inside the element loop")]
-    pub fn contract(self, other: Self) -> f64 {
-        self.xx * other.xx + self.yy * other.yy + 2.0 * (self.xy * other.xy)
     }
 }
 
@@ -128,51 +122,87 @@ impl Material {
 
     /// C:e, Pa: the stress of the film if it bore compression as it bears tension.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "inside the element loop")]
-    pub fn full_stress(&self, strain: PlaneTensor) -> PlaneTensor {
+    pub fn full_stress(&self, strain: PlaneLanes) -> PlaneLanes {
         let (k, nu) = (self.plane_modulus, self.poisson_ratio);
-        PlaneTensor {
-            xx: k * (strain.xx + nu * strain.yy),
-            yy: k * (strain.yy + nu * strain.xx),
-            xy: k * (1.0 - nu) * strain.xy,
+        PlaneLanes {
+            xx: (strain.xx + strain.yy * nu) * k,
+            yy: (strain.yy + strain.xx * nu) * k,
+            xy: strain.xy * (k * (1.0 - nu)),
         }
     }
 
-    /// S, Pa.
+    /// S of eight elements, and its larger principal value, Pa.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "inside the element loop")]
-    pub fn stress(&self, strain: PlaneTensor) -> Stress {
-        let (mean, radius) = strain.circle();
+    pub fn stresses(&self, strain: PlaneLanes) -> (PlaneLanes, Lanes) {
+        let half = (strain.xx - strain.yy) * 0.5;
+        let mean = (strain.xx + strain.yy) * 0.5;
+        let radius = (half * half + strain.xy * strain.xy).sqrt();
         let (e1, e2) = (mean + radius, mean - radius);
         let full = self.full_stress(strain);
-        let full_largest = self.plane_modulus * (e1 + self.poisson_ratio * e2);
-        if e2 + self.poisson_ratio * e1 > 0.0 {
-            return Stress { tensor: full, largest: full_largest };
-        }
-        // E e1 n⊗n with n⊗n = (1 + deviator/r)/2; wrinkled film has e2 < e1, so r > 0.
-        let (relaxed, relaxed_largest) = if e1 > 0.0 {
-            let tension = self.youngs_modulus * e1;
-            let lean = 0.5 * tension / radius;
-            let half = 0.5 * (strain.xx - strain.yy);
-            let tensor = PlaneTensor {
-                xx: 0.5 * tension + lean * half,
-                yy: 0.5 * tension - lean * half,
-                xy: lean * strain.xy,
-            };
-            (tensor, tension)
-        } else {
-            (PlaneTensor::default(), 0.0)
+        let full_largest = (e1 + e2 * self.poisson_ratio) * self.plane_modulus;
+        // E e1 n⊗n with n⊗n = (1 + deviator/r)/2; wrinkled film has e2 < e1, so r > 0 where this is
+        // taken.
+        let tension = e1 * self.youngs_modulus;
+        let lean = (tension * 0.5).over(radius);
+        let wrinkled = PlaneLanes {
+            xx: tension * 0.5 + lean * half,
+            yy: tension * 0.5 - lean * half,
+            xy: lean * strain.xy,
         };
-        let c = self.compression;
-        let blend = |relaxed: f64, full: f64| relaxed + c * (full - relaxed);
-        Stress {
-            tensor: PlaneTensor {
-                xx: blend(relaxed.xx, full.xx),
-                yy: blend(relaxed.yy, full.yy),
-                xy: blend(relaxed.xy, full.xy),
-            },
-            largest: blend(relaxed_largest, full_largest),
-        }
+        let taut = e2 + e1 * self.poisson_ratio;
+        let choose = |wrinkled: Lanes, full: Lanes| {
+            let relaxed = e1.if_positive(wrinkled, Lanes::default());
+            let blend = relaxed + (full - relaxed) * self.compression;
+            taut.if_positive(full, blend)
+        };
+        let tensor = PlaneLanes {
+            xx: choose(wrinkled.xx, full.xx),
+            yy: choose(wrinkled.yy, full.yy),
+            xy: choose(wrinkled.xy, full.xy),
+        };
+        (tensor, choose(tension, full_largest))
+    }
+
+    /// S of one element: one lane of [`Self::stresses`].
+    pub fn stress(&self, strain: PlaneTensor) -> Stress {
+        let (tensor, largest) = self.stresses(PlaneLanes::splat(strain));
+        Stress { tensor: tensor.first(), largest: largest.0[0] }
+    }
+}
+
+/// A symmetric tensor in the developed plane of each of eight elements.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlaneLanes {
+    /// First diagonal entries.
+    pub xx: Lanes,
+    /// Second diagonal entries.
+    pub yy: Lanes,
+    /// Off-diagonal entries.
+    pub xy: Lanes,
+}
+
+impl PlaneLanes {
+    /// The same tensor eight times.
+    pub fn splat(tensor: PlaneTensor) -> Self {
+        let [xx, yy, xy] = [tensor.xx, tensor.yy, tensor.xy].map(Lanes::splat);
+        Self { xx, yy, xy }
+    }
+
+    /// The first element's.
+    pub fn first(self) -> PlaneTensor {
+        PlaneTensor { xx: self.xx.0[0], yy: self.yy.0[0], xy: self.xy.0[0] }
+    }
+
+    /// Each times its own number.
+    #[inline(always)]
+    pub fn scale(self, factor: Lanes) -> Self {
+        Self { xx: self.xx * factor, yy: self.yy * factor, xy: self.xy * factor }
+    }
+
+    /// Double contractions.
+    #[inline(always)]
+    pub fn contract(self, other: Self) -> Lanes {
+        self.xx * other.xx + self.yy * other.yy + (self.xy * other.xy) * 2.0
     }
 }
 
@@ -260,7 +290,8 @@ mod tests {
         let material = material(1.0);
         for (e1, e2, _) in STRAINS {
             let strain = turned(e1, e2, 1.0);
-            let (stress, full) = (material.stress(strain), material.full_stress(strain));
+            let stress = material.stress(strain);
+            let full = material.full_stress(PlaneLanes::splat(strain)).first();
             let scale = material.youngs_modulus * 1e-15;
             assert!((stress.tensor.xx - full.xx).abs() < scale);
             assert!((stress.tensor.xy - full.xy).abs() < scale);

@@ -9,10 +9,14 @@
 //! (3×2); A reference area, m²; m lumped mass, kg. One `Vec` a quantity; element quantities are
 //! indexed by element, node quantities by node.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector2;
 
 use crate::material::Material;
 use crate::scene::Film;
+use crate::shell::Shell;
+use crate::simd::WIDTH;
 
 mod frequency;
 
@@ -56,7 +60,11 @@ pub struct FilmModel {
     pub density: f64,
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Dm⁻¹ of each element, row by row, 1/m.
+    /// The same by corner, eight elements a block; the last is filled up with elements of no volume.
+    pub blocks: Vec<[[u32; WIDTH]; 3]>,
+    /// Faces that close the volume and are no film.
+    pub closure: Vec<[u32; 3]>,
+    /// Dm⁻¹ of each element, row by row, 1/m; this and the next three columns are padded.
     pub inverse_shape: [Vec<f64>; 4],
     /// A t of each element, m³.
     pub volume: Vec<f64>,
@@ -64,11 +72,13 @@ pub struct FilmModel {
     pub frequency: Vec<f64>,
     /// `2ζ/ω_e` of each element, s.
     pub viscous_time: Vec<f64>,
-    /// m of each node, kg.
+    /// m of each node, kg; 0 where only closing faces meet.
     pub mass: Vec<f64>,
+    /// 1/m of each node, 1/kg; 0 where it has no mass, so that no force moves it.
+    pub inverse_mass: Vec<f64>,
     /// Where each node's corners begin in `corners`; one more entry than nodes.
     pub first_corner: Vec<u32>,
-    /// Corners (3 element + corner) of each node, in order.
+    /// Corners (4 element + corner) of each node, in order.
     pub corners: Vec<u32>,
 }
 
@@ -83,16 +93,38 @@ impl FilmModel {
         triangles: &[[u32; 3]],
         reference: &[[Vector2<f64>; 3]],
     ) -> Result<Self, FilmError> {
+        Self::closed_by(film, nodes, triangles, reference, &[])
+    }
+
+    /// The film of a shell, with its closing faces.
+    ///
+    /// # Errors
+    /// [`FilmError`].
+    pub fn of_shell(film: &Film, shell: &Shell) -> Result<Self, FilmError> {
+        let nodes = shell.positions.len();
+        Self::closed_by(film, nodes, &shell.triangles, &shell.reference, &shell.closure)
+    }
+
+    fn closed_by(
+        film: &Film,
+        nodes: usize,
+        triangles: &[[u32; 3]],
+        reference: &[[Vector2<f64>; 3]],
+        closure: &[[u32; 3]],
+    ) -> Result<Self, FilmError> {
         let material = Material::new(film);
         let mut model = Self {
             material,
             density: film.density,
             triangles: triangles.to_vec(),
+            blocks: Vec::with_capacity(triangles.len().div_ceil(WIDTH)),
+            closure: closure.to_vec(),
             inverse_shape: core::array::from_fn(|_| Vec::with_capacity(triangles.len())),
             volume: Vec::with_capacity(triangles.len()),
             frequency: Vec::with_capacity(triangles.len()),
             viscous_time: Vec::with_capacity(triangles.len()),
             mass: vec![0.0; nodes],
+            inverse_mass: Vec::new(),
             first_corner: Vec::new(),
             corners: Vec::new(),
         };
@@ -120,19 +152,27 @@ impl FilmModel {
                 model.mass[*node as usize] += film.density * volume / 3.0;
             }
         }
-        if let Some(node) = model.mass.iter().position(|mass| *mass == 0.0) {
-            return Err(FilmError::Loose { node });
+        let closing: BTreeSet<u32> = closure.iter().flatten().copied().collect();
+        let loose = (0_u32..)
+            .zip(&model.mass)
+            .find(|(node, mass)| **mass == 0.0 && !closing.contains(node));
+        if let Some((node, _)) = loose {
+            return Err(FilmError::Loose { node: node as usize });
         }
+        let inverse = |mass: &f64| if *mass > 0.0 { 1.0 / mass } else { 0.0 };
+        model.inverse_mass = model.mass.iter().map(inverse).collect();
         model.link();
+        model.pad();
         Ok(model)
     }
 
     /// Lists the corners of each node, in the order of elements.
     fn link(&mut self) {
         let mut corners: Vec<Vec<u32>> = vec![Vec::new(); self.mass.len()];
-        let nodes = self.triangles.iter().flatten();
-        for (corner, node) in (0_u32..).zip(nodes) {
-            corners[*node as usize].push(corner);
+        for (element, triangle) in (0_u32..).zip(&self.triangles) {
+            for (corner, node) in (0_u32..).zip(triangle) {
+                corners[*node as usize].push(4 * element + corner);
+            }
         }
         let mut first = 0;
         self.first_corner.push(0);
@@ -141,6 +181,26 @@ impl FilmModel {
             self.first_corner.push(first);
         }
         self.corners = corners.concat();
+    }
+
+    /// Groups the elements by eight; fills the last group with elements of no volume.
+    fn pad(&mut self) {
+        for chunk in self.triangles.chunks(WIDTH) {
+            let node =
+                |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
+            self.blocks
+                .push([0, 1, 2].map(|corner| core::array::from_fn(|lane| node(corner, lane))));
+        }
+        let padded = self.padded();
+        let columns = self.inverse_shape.iter_mut();
+        for column in columns.chain([&mut self.volume, &mut self.viscous_time]) {
+            column.resize(padded, 0.0);
+        }
+    }
+
+    /// Number of elements with those of no volume.
+    pub fn padded(&self) -> usize {
+        self.blocks.len() * WIDTH
     }
 
     /// Number of nodes.

@@ -1,9 +1,11 @@
 //! What changes while film moves.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// One vector a node (or corner), a `Vec` a component.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Field {
     /// x components.
     pub x: Vec<f64>,

@@ -48,7 +48,7 @@ fn a_step_allocates_nothing() {
     let inflow = Inflow { mass: 0.005, mass_temperature: 0.005 * 293.0 };
     for packed in [true, false] {
         let before = count();
-        let until = run.film.time + 2e-3;
+        let until = run.film.state.time + 2e-3;
         run.advance(until, &Phase { packed, inflow }).unwrap();
         assert_eq!(count(), before, "packed {packed}");
     }

@@ -1,11 +1,13 @@
 //! Film in motion: momentum, the stable step, damping, supports, typed stops.
 
 use billow_solver::deployment::FailureKind;
+use billow_solver::film_scene::{FilmSupport, Hold, Motion, Profile};
 use billow_solver::gas::GasState;
 use billow_solver::integrate::explicit::{Explicit, Interior};
 use billow_solver::ledger::Ledger;
 use billow_solver::scene::Film;
 use billow_solver::state::Field;
+use billow_solver::supports::Supports;
 use nalgebra::Vector3;
 
 use crate::film_rig::{
@@ -22,18 +24,21 @@ fn momentum_and_moment_are_kept_over_a_hundred_thousand_steps() {
     let spin = Vector3::new(2.0, -3.0, 5.0);
     let kicks = pattern(piece.nodes.len(), 5);
     for (node, (place, kick)) in piece.nodes.iter().zip(kicks).enumerate() {
-        film.velocities.set(node, spin.cross(place) + kick * 0.5 + Vector3::new(0.3, 0.1, -0.2));
+        film.state
+            .velocities
+            .set(node, spin.cross(place) + kick * 0.5 + Vector3::new(0.3, 0.1, -0.2));
     }
     let sums = |film: &Explicit| {
         let mass = &film.model.mass;
-        let momentum: Vector3<f64> = film.velocities.iter().zip(mass).map(|(v, m)| v * *m).sum();
-        let size: f64 = film.velocities.iter().zip(mass).map(|(v, m)| v.norm() * m).sum();
+        let momentum: Vector3<f64> =
+            film.state.velocities.iter().zip(mass).map(|(v, m)| v * *m).sum();
+        let size: f64 = film.state.velocities.iter().zip(mass).map(|(v, m)| v.norm() * m).sum();
         // The places half a step ago, where these velocities are.
-        let back = -0.5 * film.last_step;
+        let back = -0.5 * film.state.last_step;
         let moment: Vector3<f64> = (0..mass.len())
             .map(|i| {
-                let v = film.velocities.get(i);
-                (film.places.get(i) + v * back).cross(&v) * mass[i]
+                let v = film.state.velocities.get(i);
+                (film.state.places.get(i) + v * back).cross(&v) * mass[i]
             })
             .sum();
         (momentum, moment, size)
@@ -41,10 +46,10 @@ fn momentum_and_moment_are_kept_over_a_hundred_thousand_steps() {
     let (momentum, moment, size) = sums(&film);
     let step = film.stable_step();
     film.advance(1e5 * step, &free()).unwrap();
-    assert!(film.steps >= 100_000);
+    assert!(film.state.steps >= 100_000);
     let after = sums(&film);
     let (drift, turn) = ((after.0 - momentum).norm() / size, (after.1 - moment).norm() / size);
-    println!("{} steps: momentum {drift:e}, moment {turn:e} m of sum |m v|", film.steps);
+    println!("{} steps: momentum {drift:e}, moment {turn:e} m of sum |m v|", film.state.steps);
     assert!(drift < 1e-10 && turn < 1e-10, "{drift} {turn}");
 }
 
@@ -85,13 +90,13 @@ fn the_step_is_stable_up_to_the_assembled_limit_and_no_further() {
     let grows = |share: f64| {
         let mut film = at_rest(&piece, &linear, Interior::Overpressure(0.0), GasState::default());
         for (node, kick) in pattern(piece.nodes.len(), 4).iter().enumerate() {
-            film.velocities.set(node, Vector3::new(kick.x, kick.y, 0.0) * 1e-6);
+            film.state.velocities.set(node, Vector3::new(kick.x, kick.y, 0.0) * 1e-6);
         }
         film.setting.cfl = share * film.model.largest_frequency() / omega;
         let target = 3000.0 * film.stable_step();
         let end = film.advance(target, &free());
         match end {
-            Ok(()) => film.velocities.iter().map(|v| v.norm()).fold(0.0, f64::max) > 1e-3,
+            Ok(()) => film.state.velocities.iter().map(|v| v.norm()).fold(0.0, f64::max) > 1e-3,
             Err(failure) => {
                 assert_eq!(failure.kind, FailureKind::Unstable);
                 true
@@ -110,11 +115,11 @@ fn mass_damping_slows_free_flight() {
     let piece = sheet(2, 2, 0.1, 0.1);
     let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
     let start = Vector3::new(3.0, -1.0, 2.0);
-    film.velocities = Field::of(&vec![start; piece.nodes.len()]);
+    film.state.velocities = Field::of(&vec![start; piece.nodes.len()]);
     film.setting.mass_damping = 40.0;
     let kinetic = film.kinetic_energy();
     film.advance(0.03, &free()).unwrap();
-    let share = film.velocity(4).norm() / start.norm();
+    let share = film.velocities().get(4).norm() / start.norm();
     assert!((share / (-1.2_f64).exp() - 1.0).abs() < 1e-3, "{share}");
     let ledger = film.ledger();
     let lost = kinetic - ledger.kinetic;
@@ -140,17 +145,17 @@ fn viscosity_damps_a_strip_as_its_ratio_says() {
     strip.setting.supports.hold(&all, "yz");
     strip.setting.supports.hold(&[0, columns, columns + 1, 2 * columns + 1], "x");
     let wave = |x: f64| (std::f64::consts::PI * x / length).sin();
-    strip.velocities = mapped(&piece, |x| Vector3::new(1e-4 * wave(x.x), 0.0, 0.0));
+    strip.state.velocities = mapped(&piece, |x| Vector3::new(1e-4 * wave(x.x), 0.0, 0.0));
     strip.setting.cfl = 0.1;
     let step = strip.stable_step();
     let centre = columns as usize / 2;
     let (mut peaks, mut last) = (Vec::<(f64, f64)>::new(), [0.0; 3]);
     while peaks.len() < 9 {
-        let time = strip.time;
+        let time = strip.state.time;
         strip.advance(time + step, &free()).unwrap();
-        last = [last[1], last[2], strip.places.x[centre] - piece.nodes[centre].x];
+        last = [last[1], last[2], strip.state.places.x[centre] - piece.nodes[centre].x];
         let (rise, fall) = (last[1] - last[0], last[2] - last[1]);
-        if strip.steps > 3 && rise * fall < 0.0 {
+        if strip.state.steps > 3 && rise * fall < 0.0 {
             let shift = 0.5 * (rise + fall) / (rise - fall);
             peaks.push((time + shift * step, last[1] + 0.25 * (rise + fall) * shift));
         }
@@ -173,16 +178,28 @@ fn a_moving_support_does_the_work_it_should() {
         (0..piece.nodes.len() as u32).filter(on).collect()
     };
     let (left, right) = (edge(0.0), edge(0.3));
-    film.setting.supports.hold(&left, "xyz");
-    film.setting.supports.hold(&right, "xyz");
     let start = film.ledger();
-    film.move_held(&right, |_| Vector3::new(2.0, 0.5, 1.0));
+    let motion = Motion {
+        from: 0.0,
+        to: 1e-3,
+        profile: Profile::Linear,
+        translation: Vector3::new(2e-3, 0.5e-3, 1e-3),
+        turn: None,
+    };
+    let hold = Hold::Components([true; 3]);
+    let [left, right] = [(left, None), (right, Some(motion))].map(|(nodes, motion)| FilmSupport {
+        name: "edge".to_owned(),
+        nodes,
+        hold,
+        motion,
+    });
+    let right_node = right.nodes[0] as usize;
+    film.setting.supports = Supports::new(&[left, right], &film.state.places);
     film.advance(1e-3, &free()).unwrap();
-    film.move_held(&right, |_| Vector3::zeros());
     film.advance(2e-3, &free()).unwrap();
     let end: Ledger = film.ledger();
     println!("moving support: {end:?}, defect {}", end.defect(&start));
-    let moved = film.places.get(right[0] as usize) - piece.nodes[right[0] as usize];
+    let moved = film.state.places.get(right_node) - piece.nodes[right_node];
     assert!((moved - Vector3::new(2e-3, 0.5e-3, 1e-3)).norm() < 1e-14);
     assert!(end.support_work > 0.09 && end.strain > 0.09 && end.viscous_work > 0.0);
     assert!(end.defect(&start).abs() < 5e-3 * end.support_work, "{}", end.defect(&start));
@@ -192,9 +209,9 @@ fn a_moving_support_does_the_work_it_should() {
 fn weight_falls_as_it_should() {
     let piece = icosphere(0, 0.5);
     let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
-    film.setting.gravity = -9.806_65;
+    film.setting.gravity = Vector3::new(0.0, 0.0, -9.806_65);
     film.advance(0.1, &free()).unwrap();
-    let drop = film.places.z[0] - piece.nodes[0].z;
+    let drop = film.state.places.z[0] - piece.nodes[0].z;
     assert!((drop / (-0.5 * 9.806_65 * 0.01) - 1.0).abs() < 1e-12, "{drop}");
     let ledger = film.ledger();
     assert!((ledger.kinetic / ledger.gravity_work - 1.0).abs() < 1e-3, "{ledger:?}");
@@ -208,7 +225,7 @@ fn typed_stops() {
         at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), gas.at_temperature(1e-3, 293.0));
     film.setting.step_limit = 7;
     let failure = film.advance(1.0, &free()).unwrap_err();
-    assert_eq!((failure.kind, film.steps), (FailureKind::StepLimit, 7));
+    assert_eq!((failure.kind, film.state.steps), (FailureKind::StepLimit, 7));
 
     film.setting.step_limit = u64::MAX;
     film.setting.cfl = 3.0;
@@ -218,7 +235,7 @@ fn typed_stops() {
 
     // Thrown through itself, turned inside out.
     let mut film = at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), GasState::default());
-    film.velocities = mapped(&piece, |x| x * -400.0);
+    film.state.velocities = mapped(&piece, |x| x * -400.0);
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::InvertedVolume, "{failure:?}");
 }

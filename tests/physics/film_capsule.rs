@@ -153,14 +153,14 @@ fn end_state_of_the_erected_cone() {
         let (mut film, mesh) = film::erected(&scene, &relaxation).unwrap();
         relaxation.relax_at(&mut film, row[0]).unwrap();
         let mean = |nodes: &[u32], value: fn(Vector3<f64>) -> f64| {
-            nodes.iter().map(|node| value(film.places.get(*node as usize))).sum::<f64>()
+            nodes.iter().map(|node| value(film.state.places.get(*node as usize))).sum::<f64>()
                 / nodes.len() as f64
         };
         let radius = |x: Vector3<f64>| x.xy().norm();
         let height = |x: Vector3<f64>| x.z;
-        let pole = |node: u32| film.places.z[node as usize];
+        let pole = |node: u32| film.state.places.z[node as usize];
         let measured = [
-            film.volume,
+            film.state.volume,
             mean(&mesh.bottom_ring, radius),
             mean(&mesh.top_ring, radius),
             mean(&mesh.top_ring, height) - mean(&mesh.bottom_ring, height),
@@ -173,7 +173,7 @@ fn end_state_of_the_erected_cone() {
             .collect();
         println!(
             "end state n {subdivisions}: {measured:.6?}, errors {finest:.5?}, {} steps, {:.1} s",
-            film.steps,
+            film.state.steps,
             start.elapsed().as_secs_f64()
         );
     }

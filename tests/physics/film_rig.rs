@@ -6,8 +6,8 @@ use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
 use billow_solver::model::FilmModel;
 use billow_solver::scene::Film;
+use billow_solver::simd::Path;
 use billow_solver::state::Field;
-use billow_solver::supports::Supports;
 use nalgebra::{Matrix2x3, Vector2, Vector3};
 
 use crate::rig::{PAPER_FILM, supply};
@@ -123,7 +123,7 @@ pub fn icosphere(level: u32, radius: f64) -> Piece {
 pub fn film_forces(model: &FilmModel, places: &Field, velocities: &Field) -> (NodeForces, f64) {
     let mut elements = ElementForces::new(model);
     let mut nodes = NodeForces::new(model);
-    let sums = element_pass(model, places, velocities, &mut elements);
+    let sums = element_pass(Path::best(), model, places, velocities, &mut elements);
     node_pass(model, &elements, &mut nodes);
     (nodes, sums.viscous_power)
 }
@@ -155,15 +155,8 @@ pub fn gradients([a, b, c]: [Vector2<f64>; 3]) -> Matrix2x3<f64> {
 
 /// A piece of film at rest where it is stress free.
 pub fn at_rest(piece: &Piece, film: &Film, interior: Interior, gas: GasState) -> Explicit {
-    let setting = Setting {
-        interior,
-        supports: Supports::none(piece.nodes.len()),
-        gravity: 0.0,
-        viscosity: film.viscosity,
-        mass_damping: 0.0,
-        cfl: 0.45,
-        step_limit: u64::MAX,
-    };
+    let viscosity = film.viscosity;
+    let setting = Setting { viscosity, ..Setting::free(interior, piece.nodes.len()) };
     let still = Field::zeros(piece.nodes.len());
     Explicit::new(piece.model(film), setting, Field::of(&piece.nodes), still, gas)
 }

@@ -35,7 +35,7 @@ fn sphere_stretch(level: u32, overpressure: f64) -> (f64, Explicit) {
     film.setting.cfl = 0.9;
     let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
     relaxation.relax_at(&mut film, overpressure).unwrap();
-    let loaded: f64 = film.places.iter().map(|x| x.norm()).sum();
+    let loaded: f64 = film.state.places.iter().map(|x| x.norm()).sum();
     let unloaded: f64 = piece.nodes.iter().map(Vector3::norm).sum();
     (loaded / unloaded - 1.0, film)
 }
@@ -89,13 +89,13 @@ fn cylinder_under_pressure() {
             film.setting.cfl = 0.9;
             let ends: Vec<u32> = (0..around).chain(along * around..(along + 1) * around).collect();
             film.setting.supports.hold(&ends, "z");
-            for node in 0..film.places.len() {
-                film.places.z[node] *= 1.0 + axial;
+            for node in 0..film.state.places.len() {
+                film.state.places.z[node] *= 1.0 + axial;
             }
             let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
             relaxation.relax_at(&mut film, overpressure).unwrap();
-            let mean: f64 =
-                film.places.iter().map(|x| x.xy().norm()).sum::<f64>() / film.places.len() as f64;
+            let mean: f64 = film.state.places.iter().map(|x| x.xy().norm()).sum::<f64>()
+                / film.state.places.len() as f64;
             let pull: f64 = (0..around as usize).map(|node| film.force(node).z).sum();
             // S_axial t λ_axial over the undeformed girth: p π r² by balance of a closed end.
             let r = radius * (1.0 + hoop);
@@ -114,26 +114,26 @@ fn cylinder_under_pressure() {
 fn breathing(level: u32, pressure: f64) -> f64 {
     let (_, rest) = sphere_stretch(level, pressure);
     let gas = nitrogen_gas();
-    let mass = pressure * rest.volume / (supply().species.gas_constant * 293.0);
+    let mass = pressure * rest.state.volume / (supply().species.gas_constant * 293.0);
     let piece = icosphere(level, number("breathing_sphere/radius"));
     let interior = Interior::Gas(gas);
     let mut film = at_rest(&piece, &ELASTIC, interior, gas.at_temperature(mass, 293.0));
-    film.places = rest.places.clone();
+    film.state.places = rest.state.places.clone();
     let mut film = Explicit::new(
         film.model,
         film.setting,
-        rest.places.clone(),
-        Field::of(&rest.places.iter().map(|x| x * (1e-5 * 5300.0)).collect::<Vec<_>>()),
-        film.gas,
+        rest.state.places.clone(),
+        Field::of(&rest.state.places.iter().map(|x| x * (1e-5 * 5300.0)).collect::<Vec<_>>()),
+        film.state.gas,
     );
-    assert!((film.pressure / pressure - 1.0).abs() < 1e-12);
+    assert!((film.state.pressure / pressure - 1.0).abs() < 1e-12);
     film.setting.cfl = 0.45;
     let step = film.stable_step();
     let (mut crossings, mut before) = (Vec::new(), 0.0);
     while crossings.len() < 7 {
-        let time = film.time;
+        let time = film.state.time;
         film.advance(time + step, &free()).unwrap();
-        let swell = film.volume - rest.volume;
+        let swell = film.state.volume - rest.state.volume;
         if before < 0.0 && swell >= 0.0 {
             crossings.push(time + step * before / (before - swell));
         }
@@ -159,11 +159,11 @@ fn breathing_sphere() {
 /// A sphere let go unstretched, with gas that has this pressure (Pa) where it is at rest.
 fn released(level: u32, pressure: f64) -> Explicit {
     let gas = nitrogen_gas();
-    let rest = sphere_stretch(level, pressure).1.volume;
+    let rest = sphere_stretch(level, pressure).1.state.volume;
     let piece = icosphere(level, number("breathing_sphere/radius"));
     let empty = at_rest(&piece, &ELASTIC, Interior::Gas(gas), GasState::default());
-    let pressure = pressure * (rest / empty.volume).powf(gas.gamma());
-    let mass = pressure * empty.volume / (supply().species.gas_constant * 293.0);
+    let pressure = pressure * (rest / empty.state.volume).powf(gas.gamma());
+    let mass = pressure * empty.state.volume / (supply().species.gas_constant * 293.0);
     at_rest(&piece, &ELASTIC, Interior::Gas(gas), gas.at_temperature(mass, 293.0))
 }
 
@@ -179,15 +179,15 @@ fn sphere_released_unstretched() {
     let values = [3, 4, 5].map(|level| {
         let mut film = released(level, pressure);
         let step = film.stable_step();
-        let start = film.volume;
+        let start = film.state.volume;
         let mut last = [start; 3];
         let mut turns = Vec::new();
         while turns.len() < 2 {
-            let time = film.time;
+            let time = film.state.time;
             film.advance(time + step, &free()).unwrap();
-            last = [last[1], last[2], film.volume];
+            last = [last[1], last[2], film.state.volume];
             let (rise, fall) = (last[1] - last[0], last[2] - last[1]);
-            if film.steps > 2 && rise * fall < 0.0 {
+            if film.state.steps > 2 && rise * fall < 0.0 {
                 let shift = 0.5 * (rise + fall) / (rise - fall);
                 let top = last[1] + 0.25 * (rise + fall) * shift;
                 turns.push([(top / start).cbrt() - 1.0, time + shift * step]);
@@ -213,7 +213,7 @@ fn film_and_gas_together_are_of_second_order_in_the_step() {
         let mut film = released(1, 1000.0);
         film.setting.cfl = cfl;
         film.advance(0.9e-3, &free()).unwrap();
-        film.volume
+        film.state.volume
     };
     let exact = volume(0.005);
     let errors: Vec<f64> = [0.4, 0.2, 0.1].map(|cfl| volume(cfl) - exact).to_vec();

@@ -11,14 +11,15 @@
 //! neither force nor moment. It resists closing and opening alike, in slack film too: that is what
 //! keeps slack nodes from flying.
 
-use crate::material::{Material, PlaneTensor};
+#![allow(clippy::inline_always, reason = "inside the element loop")]
 
-/// `S_v`, Pa, at a strain rate (1/s); `time` is `2ζ/ω_e`, s.
+use crate::material::{Material, PlaneLanes};
+use crate::simd::Lanes;
+
+/// `S_v` of eight elements, Pa, at their strain rates (1/s); `time` is `2ζ/ω_e`, s.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "inside the element loop")]
-pub fn viscous_stress(material: &Material, time: f64, rate: PlaneTensor) -> PlaneTensor {
-    let full = material.full_stress(rate);
-    PlaneTensor { xx: time * full.xx, yy: time * full.yy, xy: time * full.xy }
+pub fn viscous_stress(material: &Material, time: Lanes, rate: PlaneLanes) -> PlaneLanes {
+    material.full_stress(rate).scale(time)
 }
 
 /// The factors of velocity and of acceleration in a kick of length h (s) under mass damping c

@@ -7,21 +7,25 @@
 //!
 //! Constant-strain triangles, total Lagrangian: S of [`crate::material`], `S_v` of
 //! [`super::damping`]. The oriented area is (x1 − x0) × (x2 − x0)/6, a third for each corner.
+//! Elements go eight at a time ([`crate::simd`]); columns are padded with elements of no volume.
+
+#![allow(clippy::inline_always, reason = "inside the element loop")]
 
 use nalgebra::Vector3;
 
 use super::damping::viscous_stress;
-use crate::material::PlaneTensor;
+use crate::material::{PlaneLanes, PlaneTensor};
 use crate::model::FilmModel;
+use crate::simd::{Lanes, Vectors, WIDTH, dispatch};
 use crate::state::Field;
 
 /// What one element pass leaves for the node pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementForces {
-    /// Elastic and viscous force on each corner (3 element + corner), N.
-    pub film: Field,
-    /// Viscous force on each corner, N.
-    pub viscous: Field,
+    /// Elastic and viscous force on the elements' first, second and third corners, N.
+    pub film: [Field; 3],
+    /// Viscous force on them, N.
+    pub viscous: [Field; 3],
     /// Each element's share of ∂V/∂x at each of its corners, m².
     pub area: Field,
 }
@@ -29,11 +33,11 @@ pub struct ElementForces {
 impl ElementForces {
     /// Room for a model's elements.
     pub fn new(model: &FilmModel) -> Self {
-        let elements = model.elements();
+        let zeros = || Field::zeros(model.padded());
         Self {
-            film: Field::zeros(3 * elements),
-            viscous: Field::zeros(3 * elements),
-            area: Field::zeros(elements),
+            film: core::array::from_fn(|_| zeros()),
+            viscous: core::array::from_fn(|_| zeros()),
+            area: zeros(),
         }
     }
 }
@@ -41,7 +45,7 @@ impl ElementForces {
 /// Sums over all elements of one pass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sums {
-    /// Six times the enclosed volume, m³.
+    /// Six times the volume enclosed by film (and closing faces), m³.
     pub six_volumes: f64,
     /// Power taken by viscosity, W.
     pub viscous_power: f64,
@@ -49,54 +53,117 @@ pub struct Sums {
     pub largest_stress: f64,
 }
 
-/// F by columns, and the edges it comes from.
+/// F by columns.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "inside the element loop")]
-fn gradient(model: &FilmModel, element: usize, [p, q]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
-    let [d11, d12, d21, d22] = &model.inverse_shape;
-    [p * d11[element] + q * d21[element], p * d12[element] + q * d22[element]]
+fn gradient([a, b, c, d]: [Lanes; 4], [p, q]: [Vectors; 2]) -> [Vectors; 2] {
+    [p.scale(a) + q.scale(c), p.scale(b) + q.scale(d)]
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "inside the element loop")]
-fn edges(corners: [Vector3<f64>; 3]) -> [Vector3<f64>; 2] {
-    [corners[1] - corners[0], corners[2] - corners[0]]
+fn edges([a, b, c]: [Vectors; 3]) -> [Vectors; 2] {
+    [b - a, c - a]
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "inside the element loop")]
-fn green([f, g]: [Vector3<f64>; 2]) -> PlaneTensor {
-    PlaneTensor { xx: 0.5 * (f.dot(&f) - 1.0), yy: 0.5 * (g.dot(&g) - 1.0), xy: 0.5 * f.dot(&g) }
+fn green([f, g]: [Vectors; 2]) -> PlaneLanes {
+    let one = Lanes::splat(1.0);
+    PlaneLanes { xx: (f.dot(f) - one) * 0.5, yy: (g.dot(g) - one) * 0.5, xy: f.dot(g) * 0.5 }
 }
 
-/// A field at the corners of an element.
+/// Sum of two rates of the same entry: Ė of F and Ḟ.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "inside the element loop")]
-fn corners_of(field: &Field, [a, b, c]: [u32; 3]) -> [Vector3<f64>; 3] {
-    [field.get(a as usize), field.get(b as usize), field.get(c as usize)]
+fn green_rate([f, g]: [Vectors; 2], [fr, gr]: [Vectors; 2]) -> PlaneLanes {
+    PlaneLanes { xx: f.dot(fr), yy: g.dot(gr), xy: (f.dot(gr) + g.dot(fr)) * 0.5 }
+}
+
+/// A field at the corners of eight elements.
+#[inline(always)]
+fn corners_of(field: &Field, nodes: &[[u32; WIDTH]; 3]) -> [Vectors; 3] {
+    nodes.each_ref().map(|nodes| Vectors {
+        x: Lanes::gather(&field.x, nodes),
+        y: Lanes::gather(&field.y, nodes),
+        z: Lanes::gather(&field.z, nodes),
+    })
 }
 
 /// −A t F S Dm⁻ᵀ, and what balances it.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "inside the element loop")]
 fn corner_forces(
-    model: &FilmModel,
-    element: usize,
-    [f, g]: [Vector3<f64>; 2],
-    s: PlaneTensor,
-) -> [Vector3<f64>; 3] {
-    let [d11, d12, d21, d22] = &model.inverse_shape;
-    let volume = model.volume[element];
-    let (p, q) = (f * s.xx + g * s.xy, f * s.xy + g * s.yy);
-    let first = (p * d11[element] + q * d12[element]) * -volume;
-    let second = (p * d21[element] + q * d22[element]) * -volume;
+    [a, b, c, d]: [Lanes; 4],
+    volume: Lanes,
+    [f, g]: [Vectors; 2],
+    s: PlaneLanes,
+) -> [Vectors; 3] {
+    let (p, q) = (f.scale(s.xx) + g.scale(s.xy), f.scale(s.xy) + g.scale(s.yy));
+    let loss = -volume;
+    let first = (p.scale(a) + q.scale(b)).scale(loss);
+    let second = (p.scale(c) + q.scale(d)).scale(loss);
     [-(first + second), first, second]
+}
+
+#[inline(always)]
+fn store(out: &mut Field, at: usize, vectors: Vectors) {
+    vectors.x.store(&mut out.x, at);
+    vectors.y.store(&mut out.y, at);
+    vectors.z.store(&mut out.z, at);
+}
+
+#[inline(always)]
+fn element_kernel(
+    model: &FilmModel,
+    positions: &Field,
+    velocities: &Field,
+    out: &mut ElementForces,
+) -> Sums {
+    let material = model.material;
+    let (mut volumes, mut power, mut largest) =
+        (Lanes::default(), Lanes::default(), Lanes::splat(0.0));
+    for (block, nodes) in model.blocks.iter().enumerate() {
+        let at = block * WIDTH;
+        let shape = model.inverse_shape.each_ref().map(|column| Lanes::load(column, at));
+        let volume = Lanes::load(&model.volume, at);
+        let corners = corners_of(positions, nodes);
+        let edge = edges(corners);
+        let slope = gradient(shape, edge);
+        let (stress, most) = material.stresses(green(slope));
+        let rate = green_rate(slope, gradient(shape, edges(corners_of(velocities, nodes))));
+        let viscous = viscous_stress(&material, Lanes::load(&model.viscous_time, at), rate);
+
+        let elastic = corner_forces(shape, volume, slope, stress);
+        let drag = corner_forces(shape, volume, slope, viscous);
+        for corner in 0..3 {
+            store(&mut out.film[corner], at, elastic[corner] + drag[corner]);
+            store(&mut out.viscous[corner], at, drag[corner]);
+        }
+        store(&mut out.area, at, edge[0].cross(edge[1]).scale(Lanes::splat(1.0 / 6.0)));
+
+        volumes += corners[0].dot(corners[1].cross(corners[2]));
+        power += viscous.contract(rate) * volume;
+        largest = largest.max(most);
+    }
+    Sums {
+        six_volumes: volumes.sum(),
+        viscous_power: power.sum(),
+        largest_stress: largest.largest(),
+    }
+}
+
+dispatch! {
+    /// The element pass, at positions (m) and the velocities (m/s) viscosity takes.
+    pub fn element_pass / element_kernel(
+        model: &FilmModel,
+        positions: &Field,
+        velocities: &Field,
+        out: &mut ElementForces,
+    ) -> Sums
 }
 
 /// Green strain of an element at these positions (m).
 pub fn strain(model: &FilmModel, positions: &Field, element: usize) -> PlaneTensor {
-    let corners = corners_of(positions, model.triangles[element]);
-    green(gradient(model, element, edges(corners)))
+    let (block, lane) = (element / WIDTH, element % WIDTH);
+    let nodes = model.blocks[block].map(|nodes| [nodes[lane]; WIDTH]);
+    let shape = model.inverse_shape.each_ref().map(|column| Lanes::splat(column[element]));
+    green(gradient(shape, edges(corners_of(positions, &nodes)))).first()
 }
 
 /// Strain energy at these positions (m), J.
@@ -107,41 +174,6 @@ pub fn strain_energy(model: &FilmModel, positions: &Field) -> f64 {
             model.volume[element] * model.material.energy_density(strain)
         })
         .sum()
-}
-
-/// The element pass, at positions (m) and the velocities (m/s) viscosity takes.
-pub fn element_pass(
-    model: &FilmModel,
-    positions: &Field,
-    velocities: &Field,
-    out: &mut ElementForces,
-) -> Sums {
-    let mut sums = Sums::default();
-    let material = model.material;
-    for (element, triangle) in model.triangles.iter().enumerate() {
-        let corners = corners_of(positions, *triangle);
-        let edge = edges(corners);
-        let [f, g] = gradient(model, element, edge);
-        let stress = material.stress(green([f, g]));
-        let [fr, gr] = gradient(model, element, edges(corners_of(velocities, *triangle)));
-        let rate =
-            PlaneTensor { xx: f.dot(&fr), yy: g.dot(&gr), xy: 0.5 * (f.dot(&gr) + g.dot(&fr)) };
-        let viscous = viscous_stress(&material, model.viscous_time[element], rate);
-
-        let volume = model.volume[element];
-        let elastic = corner_forces(model, element, [f, g], stress.tensor);
-        let drag = corner_forces(model, element, [f, g], viscous);
-        for corner in 0..3 {
-            out.film.set(3 * element + corner, elastic[corner] + drag[corner]);
-            out.viscous.set(3 * element + corner, drag[corner]);
-        }
-        out.area.set(element, edge[0].cross(&edge[1]) * (1.0 / 6.0));
-
-        sums.six_volumes += corners[0].dot(&corners[1].cross(&corners[2]));
-        sums.viscous_power += volume * viscous.contract(rate);
-        sums.largest_stress = sums.largest_stress.max(stress.largest);
-    }
-    sums
 }
 
 /// Forces summed to nodes.
@@ -163,17 +195,17 @@ impl NodeForces {
     }
 }
 
-/// The node pass.
+/// The node pass: sums the corners of each node in the order of elements, then the closing faces.
 pub fn node_pass(model: &FilmModel, elements: &ElementForces, out: &mut NodeForces) {
     for node in 0..model.nodes() {
         let own = model.first_corner[node] as usize..model.first_corner[node + 1] as usize;
         let (mut film, mut viscous, mut area) =
             (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
         for corner in &model.corners[own] {
-            let corner = *corner as usize;
-            film += elements.film.get(corner);
-            viscous += elements.viscous.get(corner);
-            area += elements.area.get(corner / 3);
+            let (element, corner) = (*corner as usize / 4, *corner as usize % 4);
+            film += elements.film[corner].get(element);
+            viscous += elements.viscous[corner].get(element);
+            area += elements.area.get(element);
         }
         out.film.set(node, film);
         out.viscous.set(node, viscous);

@@ -7,17 +7,21 @@
 //!
 //! Divergence theorem over the closed surface. The gradient is written by oriented areas, which do
 //! not depend on the origin; round the closed fan of a node they add up to the derivative of V.
-//! Whatever the gas does through V and the film through f is thus the same p dV. The areas come
-//! from [`super::membrane::element_pass`].
+//! Whatever the gas does through V and the film through f is thus the same p dV. The areas of film
+//! come from [`super::membrane::element_pass`]; those of closing faces are added here.
+
+use nalgebra::Vector3;
 
 use crate::model::FilmModel;
 use crate::state::Field;
+use crate::supports::Supports;
 
 /// Enclosed volume at these positions (m), m³.
 pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
     let six: f64 = model
         .triangles
         .iter()
+        .chain(&model.closure)
         .map(|triangle| {
             let [a, b, c] = triangle.map(|node| positions.get(node as usize));
             a.dot(&b.cross(&c))
@@ -26,10 +30,44 @@ pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
     six / 6.0
 }
 
-/// ω² of the gas as a spring (rad²/s²): `γ p/V Σ |∂V/∂x_i|²/m_i`, an upper bound of what gas of
-/// bulk stiffness γ p adds to any mode.
-pub fn gas_frequency_squared(model: &FilmModel, area: &Field, stiffness: f64, volume: f64) -> f64 {
-    let mobility: f64 =
-        area.iter().zip(&model.mass).map(|(area, mass)| area.norm_squared() / mass).sum();
+/// Adds the oriented areas of the closing faces to `area`; gives six times their share of the
+/// volume, m³.
+pub fn add_closure(model: &FilmModel, positions: &Field, area: &mut Field) -> f64 {
+    let mut six = 0.0;
+    for face in &model.closure {
+        let [a, b, c] = face.map(|node| positions.get(node as usize));
+        let share = (b - a).cross(&(c - a)) * (1.0 / 6.0);
+        for node in face {
+            area.set(*node as usize, area.get(*node as usize) + share);
+        }
+        six += a.dot(&b.cross(&c));
+    }
+    six
+}
+
+/// ω² of the gas as a spring (rad²/s²): `γ p/V Σ |P ∂V/∂x_i|²/m_i`, an upper bound of what gas of
+/// bulk stiffness γ p (Pa) adds to any mode; a rigid plane counts as one node of its mass.
+pub fn gas_frequency_squared(
+    model: &FilmModel,
+    supports: &Supports,
+    area: &Field,
+    stiffness: f64,
+    volume: f64,
+) -> f64 {
+    let node = |node: usize, area: Vector3<f64>| area.norm_squared() * model.inverse_mass[node];
+    let mut mobility = 0.0;
+    for own in 0..model.nodes() {
+        mobility += node(own, area.get(own).component_mul(&supports.free.get(own)));
+    }
+    for (own, projector) in &supports.oblique {
+        let own = *own as usize;
+        let all = area.get(own).component_mul(&supports.free.get(own));
+        mobility += node(own, projector * area.get(own)) - node(own, all);
+    }
+    for body in &supports.bodies {
+        let push: f64 =
+            body.nodes.iter().map(|own| area.get(*own as usize).dot(&body.plane.normal)).sum();
+        mobility += push * push / body.mass(model);
+    }
     stiffness / volume * mobility
 }

@@ -14,22 +14,30 @@
 //! misses is a force that is no derivative of its energy, or a step too long for its bends. The
 //! gas gives ½ (pⁿ + pⁿ⁺¹) ΔV and the same number is the film's entry.
 //!
-//! Between two targets all steps are equal, so a target is hit exactly and no sliver is left.
+//! Between two targets all steps are equal, so a target is hit exactly and no sliver is left. What
+//! changes is one [`State`]: a run put back on it goes on bit for bit, at any step.
 
 use nalgebra::Vector3;
 
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
-use crate::forces::damping::{kick_factors, stable_share};
+use crate::forces::damping::stable_share;
 use crate::forces::membrane::{
     ElementForces, NodeForces, Sums, element_pass, node_pass, strain_energy,
 };
-use crate::forces::pressure::gas_frequency_squared;
+use crate::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::gas::{Gas, GasState, Inflow};
 use crate::ledger::{GasBooks, Ledger};
 use crate::model::FilmModel;
+use crate::mutation::{Mutation, Term};
+use crate::simd::Path;
 use crate::state::Field;
 use crate::supports::Supports;
+
+mod kick;
+mod state;
+
+pub use state::{State, Stretch, Works};
 
 /// CFL number to use where nobody asks for another: over the deployment of the paper's capsule
 /// without contact it keeps the energy ledger well inside its bound.
@@ -51,26 +59,42 @@ pub struct Setting {
     pub interior: Interior,
     /// What is held.
     pub supports: Supports,
-    /// Acceleration along z, m/s².
-    pub gravity: f64,
+    /// Acceleration of gravity, m/s².
+    pub gravity: Vector3<f64>,
     /// ζ of the film's viscosity, for the stable step.
     pub viscosity: f64,
-    /// c, 1/s: nought but in statics.
+    /// c, 1/s: nought but in statics and where a scene asks for it.
     pub mass_damping: f64,
     /// Share of the stable step.
     pub cfl: f64,
     /// Accepted steps after which a run stops.
     pub step_limit: u64,
+    /// Instruction set; the bits are the same on each.
+    pub path: Path,
+    /// A deliberate fault: tests only.
+    pub mutation: Option<Mutation>,
 }
 
-/// Works so far, J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Works {
-    gas: f64,
-    ambient: f64,
-    support: f64,
-    viscous: f64,
-    damping: f64,
+impl Setting {
+    /// Film without supports, gravity, viscosity or mass damping, at the default step.
+    pub fn free(interior: Interior, nodes: usize) -> Self {
+        Self {
+            interior,
+            supports: Supports::none(nodes),
+            gravity: Vector3::zeros(),
+            viscosity: 0.0,
+            mass_damping: 0.0,
+            cfl: DEFAULT_CFL,
+            step_limit: u64::MAX,
+            path: Path::best(),
+            mutation: None,
+        }
+    }
+
+    /// The factor of a term: 1 but in tests.
+    fn fault(&self, term: Term) -> f64 {
+        self.mutation.filter(|mutation| mutation.term == term).map_or(1.0, |m| m.factor)
+    }
 }
 
 /// Film in motion: constants and state.
@@ -80,30 +104,12 @@ pub struct Explicit {
     pub model: FilmModel,
     /// All else that is constant.
     pub setting: Setting,
-    /// Time, s.
-    pub time: f64,
-    /// Node places, m.
-    pub places: Field,
-    /// Node velocities half a step ago, m/s; those of the start before the first step.
-    pub velocities: Field,
-    /// Length of the last step, s; 0 before the first.
-    pub last_step: f64,
-    /// V, m³.
-    pub volume: f64,
-    /// p inside (gas) or overpressure, Pa.
-    pub pressure: f64,
-    /// Gas inside.
-    pub gas: GasState,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Largest principal second Piola-Kirchhoff stress so far, Pa.
-    pub film_stress: f64,
-    /// Forces on nodes now.
+    /// All that changes.
+    pub state: State,
+    /// Forces on nodes now: a function of the state.
     pub forces: NodeForces,
     elements: ElementForces,
-    works: Works,
-    books: GasBooks,
-    start_moment: f64,
+    next: Field,
 }
 
 impl Explicit {
@@ -115,33 +121,33 @@ impl Explicit {
         velocities: Field,
         gas: GasState,
     ) -> Self {
-        let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
-        let mut film = Self {
-            model,
-            setting,
-            time: 0.0,
-            places,
-            velocities,
-            last_step: 0.0,
-            volume: 0.0,
-            pressure: 0.0,
-            gas,
-            steps: 0,
-            film_stress: 0.0,
-            forces,
-            elements,
-            works: Works::default(),
-            books: GasBooks::default(),
-            start_moment: 0.0,
-        };
+        let planes = setting.supports.bodies.iter().map(|body| body.plane.velocity).collect();
+        let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
+        film.bind_to_planes();
         let sums = film.pass();
-        film.volume = sums.six_volumes / 6.0;
-        film.pressure = match film.setting.interior {
-            Interior::Gas(gas) => gas.pressure(film.gas, film.volume),
+        film.state.volume = sums.six_volumes / 6.0;
+        film.state.pressure = match film.setting.interior {
+            Interior::Gas(gas) => {
+                film.setting.fault(Term::GasPressure)
+                    * gas.pressure(film.state.gas, film.state.volume)
+            }
             Interior::Overpressure(pressure) => pressure,
         };
-        film.start_moment = film.first_moment();
+        film.state.start_moment = film.first_moment().into();
         film
+    }
+
+    /// Goes on from a state of the same film under the same setting, bit for bit.
+    pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
+        let mut film = Self::with(model, setting, state);
+        let _ = film.pass();
+        film
+    }
+
+    fn with(model: FilmModel, setting: Setting, state: State) -> Self {
+        let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
+        let next = Field::zeros(model.nodes());
+        Self { model, setting, state, forces, elements, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -149,29 +155,46 @@ impl Explicit {
     /// # Errors
     /// [`Failure`]: `unstable`, `inverted_volume` or `step_limit`.
     pub fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
-        let start = self.time;
-        let count = ((target - start) / self.stable_step() * (1.0 - 1e-12)).ceil().max(1.0);
-        let length = (target - start) / count;
-        if start + length <= start {
-            return Err(self.failure(FailureKind::StepLimit, "step too small to advance time"));
-        }
-        let mut index = 0.0;
-        while index < count {
-            if self.steps >= self.setting.step_limit {
-                let place = format!("after {} accepted steps", self.steps);
+        self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
+    }
+
+    /// Advances towards `target` (s), under a phase, by at most `steps` steps, which it counts down;
+    /// whether it got there. Pausing changes no bit of what follows.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    pub fn advance_at_most(
+        &mut self,
+        target: f64,
+        phase: &Phase,
+        steps: &mut u64,
+    ) -> Result<bool, Failure> {
+        let mut stretch = match self.state.stretch.take() {
+            Some(stretch) => stretch,
+            None => Stretch::new(self.state.time, target, self.stable_step()).ok_or_else(|| {
+                self.failure(FailureKind::StepLimit, "step too small to advance time")
+            })?,
+        };
+        while let Some(until) = stretch.next_end() {
+            if *steps == 0 {
+                self.state.stretch = Some(stretch);
+                return Ok(false);
+            }
+            if self.state.steps >= self.setting.step_limit {
+                let place = format!("after {} accepted steps", self.state.steps);
                 return Err(self.failure(FailureKind::StepLimit, &place));
             }
-            index += 1.0;
-            let until = if index < count { start + index * length } else { target };
+            *steps -= 1;
+            stretch.index += 1.0;
             if phase.packed {
-                self.wait(length, phase.inflow);
+                self.wait(stretch.length, phase.inflow);
             } else {
-                self.step(length, phase.inflow)?;
+                self.step(stretch.length, until, phase.inflow)?;
             }
-            self.time = until;
-            self.steps += 1;
+            self.state.time = until;
+            self.state.steps += 1;
         }
-        Ok(())
+        Ok(true)
     }
 
     /// The longest step allowed now, s.
@@ -179,8 +202,9 @@ impl Explicit {
         let film = self.model.largest_frequency();
         let gas = match self.setting.interior {
             Interior::Gas(gas) => {
-                let stiffness = gas.gamma() * self.pressure;
-                gas_frequency_squared(&self.model, &self.forces.area, stiffness, self.volume)
+                let stiffness = gas.gamma() * self.state.pressure;
+                let (supports, area) = (&self.setting.supports, &self.forces.area);
+                gas_frequency_squared(&self.model, supports, area, stiffness, self.state.volume)
             }
             Interior::Overpressure(_) => 0.0,
         };
@@ -190,12 +214,14 @@ impl Explicit {
 
     /// A step in which nothing moves.
     fn wait(&mut self, length: f64, inflow: Inflow) {
-        self.last_step = 0.0;
-        self.step_gas(self.volume, length, inflow);
+        self.state.last_step = 0.0;
+        self.step_gas(self.state.volume, length, inflow);
     }
 
-    fn step(&mut self, length: f64, inflow: Inflow) -> Result<(), Failure> {
-        self.kick(0.5 * (self.last_step + length), length);
+    /// A step that ends at the time `until` (s).
+    fn step(&mut self, length: f64, until: f64, inflow: Inflow) -> Result<(), Failure> {
+        self.kick(0.5 * (self.state.last_step + length), length, until);
+        self.share_work(length);
         let fastest = self.drift(length);
         let sums = self.pass();
         let volume = sums.six_volumes / 6.0;
@@ -204,42 +230,58 @@ impl Explicit {
         if !sound || !volume.is_finite() {
             return Err(self.unstable());
         }
-        self.works.viscous += 0.5 * length * sums.viscous_power;
-        self.works.support -= 0.5 * length * self.support_power();
-        self.film_stress = self.film_stress.max(sums.largest_stress);
+        self.state.works.viscous +=
+            0.5 * length * sums.viscous_power * self.setting.fault(Term::ViscousPower);
+        self.state.film_stress = self.state.film_stress.max(sums.largest_stress);
         if matches!(self.setting.interior, Interior::Gas(_)) && volume <= 0.0 {
             return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
         }
         self.step_gas(volume, length, inflow);
-        self.last_step = length;
+        self.share_work(length);
+        self.state.last_step = length;
         Ok(())
+    }
+
+    /// Half a step's work of what acts at the nodes now along the velocities now: on moving supports,
+    /// and of an overpressure on the film.
+    fn share_work(&mut self, length: f64) {
+        let half = 0.5 * length;
+        self.state.works.support -= half * self.support_power();
+        if let Interior::Overpressure(pressure) = self.setting.interior {
+            let sweep: f64 = (0..self.model.nodes())
+                .map(|node| self.forces.area.get(node).dot(&self.state.velocities.get(node)))
+                .sum();
+            self.state.works.gas += half * pressure * sweep;
+        }
     }
 
     /// The gas, while the volume goes to `volume` (m³).
     fn step_gas(&mut self, volume: f64, length: f64, inflow: Inflow) {
-        match self.setting.interior {
-            Interior::Gas(gas) => {
-                let step = gas.step(self.gas, self.volume, volume, length, inflow);
-                self.gas = step.state;
-                self.pressure = step.pressure;
-                self.works.gas += step.work;
-                self.works.ambient -= gas.ambient_pressure * (volume - self.volume);
-                self.books.mass_out += step.mass_out;
-                self.books.enthalpy_in += step.enthalpy_in;
-                self.books.enthalpy_out += step.enthalpy_out;
-                self.books.heat += step.heat;
+        let state = &mut self.state;
+        if let Interior::Gas(gas) = self.setting.interior {
+            let mut step = gas.step(state.gas, state.volume, volume, length, inflow);
+            if let Some(mutation) = self.setting.mutation {
+                step.suffer(&gas, volume, inflow.mass * length, mutation);
             }
-            Interior::Overpressure(pressure) => {
-                self.works.gas += pressure * (volume - self.volume);
-            }
+            state.gas = step.state;
+            state.pressure = step.pressure;
+            state.works.gas += step.work;
+            state.works.ambient -= gas.ambient_pressure * (volume - state.volume);
+            state.books.mass_out += step.mass_out;
+            state.books.enthalpy_in += step.enthalpy_in;
+            state.books.enthalpy_out += step.enthalpy_out;
+            state.books.heat += step.heat;
         }
-        self.volume = volume;
+        state.volume = volume;
     }
 
     /// p − `p_ambient`, Pa.
     pub fn overpressure(&self) -> f64 {
         match self.setting.interior {
-            Interior::Gas(gas) => self.pressure - gas.ambient_pressure,
+            Interior::Gas(gas) => {
+                let ambient = gas.ambient_pressure * self.setting.fault(Term::Ambient);
+                self.state.pressure - ambient
+            }
             Interior::Overpressure(pressure) => pressure,
         }
     }
@@ -247,115 +289,75 @@ impl Explicit {
     /// Force on a node now, N.
     #[inline]
     pub fn force(&self, node: usize) -> Vector3<f64> {
-        let weight = self.model.mass[node] * self.setting.gravity;
         self.forces.film.get(node)
             + self.forces.area.get(node) * self.overpressure()
-            + Vector3::new(0.0, 0.0, weight)
-    }
-
-    /// The velocity (m/s) a node gets from its force in a kick.
-    #[inline]
-    fn kicked(&self, node: usize, (keep, gain): (f64, f64)) -> Vector3<f64> {
-        let velocity = self.velocities.get(node);
-        let change = velocity * (keep - 1.0) + self.force(node) * (gain / self.model.mass[node]);
-        velocity + change.component_mul(&self.setting.supports.free(node))
-    }
-
-    fn kick(&mut self, kick: f64, length: f64) {
-        let factors = kick_factors(self.setting.mass_damping, kick);
-        let mut damped = 0.0;
-        for node in 0..self.model.nodes() {
-            let velocity = self.kicked(node, factors);
-            if self.setting.mass_damping > 0.0 {
-                let mean = (velocity + self.velocities.get(node)) * 0.5;
-                let free = mean.component_mul(&self.setting.supports.free(node));
-                damped += self.model.mass[node] * free.norm_squared();
-            }
-            self.velocities.set(node, velocity);
-        }
-        self.works.damping += self.setting.mass_damping * kick * damped;
-        self.works.support -= 0.5 * length * self.support_power();
+            + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
 
     /// Moves the nodes; gives the largest squared speed.
     fn drift(&mut self, length: f64) -> f64 {
         let (mut fastest, mut taken) = (0.0_f64, 0.0);
+        let way = length * self.setting.fault(Term::Drift);
+        let state = &mut self.state;
         for node in 0..self.model.nodes() {
-            let velocity = self.velocities.get(node);
-            self.places.set(node, self.places.get(node) + velocity * length);
+            let velocity = state.velocities.get(node);
+            state.places.set(node, state.places.get(node) + velocity * way);
             taken -= self.forces.viscous.get(node).dot(&velocity);
             let squared = velocity.norm_squared();
             // `max` would let a NaN pass.
             fastest = if squared <= fastest { fastest } else { squared };
         }
-        self.works.viscous += 0.5 * length * taken;
+        state.works.viscous += 0.5 * length * taken * self.setting.fault(Term::ViscousPower);
         fastest
     }
 
     /// Element and node passes at the places now.
     fn pass(&mut self) -> Sums {
-        let sums = element_pass(&self.model, &self.places, &self.velocities, &mut self.elements);
-        node_pass(&self.model, &self.elements, &mut self.forces);
+        let (model, state) = (&self.model, &self.state);
+        let path = self.setting.path;
+        let mut sums =
+            element_pass(path, model, &state.places, &state.velocities, &mut self.elements);
+        node_pass(model, &self.elements, &mut self.forces);
+        sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
+        if self.setting.mutation.is_some() {
+            self.suffer(&mut sums);
+        }
         sums
     }
 
-    /// Power of the film's own forces on what holds it and moves, W.
-    fn support_power(&self) -> f64 {
-        let one = Vector3::new(1.0, 1.0, 1.0);
-        let moving = self.setting.supports.moving.iter().map(|node| *node as usize);
-        moving
-            .map(|node| {
-                let held = one - self.setting.supports.free(node);
-                self.force(node).dot(&self.velocities.get(node).component_mul(&held))
-            })
-            .sum()
-    }
-
-    /// Sets the velocity (m/s) of held nodes; their supports do the work of setting it.
-    pub fn move_held(&mut self, nodes: &[u32], velocity: impl Fn(u32) -> Vector3<f64>) {
-        for node in nodes {
-            let index = *node as usize;
-            let free = self.setting.supports.free(index);
-            let old = self.velocities.get(index);
-            let held = Vector3::new(1.0, 1.0, 1.0) - free;
-            let new = old.component_mul(&free) + velocity(*node).component_mul(&held);
-            self.works.support +=
-                0.5 * self.model.mass[index] * (new.norm_squared() - old.norm_squared());
-            self.velocities.set(index, new);
+    /// Faults of the forces: tests only.
+    fn suffer(&mut self, sums: &mut Sums) {
+        let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
+            .map(|term| self.setting.fault(term));
+        for node in 0..self.model.nodes() {
+            let drag = self.forces.viscous.get(node);
+            let rest = self.forces.film.get(node) - drag;
+            self.forces.film.set(node, rest * elastic + drag * viscous);
+            self.forces.area.set(node, self.forces.area.get(node) * area);
         }
-        self.setting.supports.moving = nodes.to_vec();
-    }
-
-    /// Velocity of a node now, m/s.
-    pub fn velocity(&self, node: usize) -> Vector3<f64> {
-        self.kicked(node, kick_factors(self.setting.mass_damping, 0.5 * self.last_step))
-    }
-
-    /// Kinetic energy, J: ½ Σ m v⁻·v⁺, the form leapfrog keeps.
-    pub fn kinetic_energy(&self) -> f64 {
-        let factors = kick_factors(self.setting.mass_damping, self.last_step);
-        let double = |node: usize| {
-            self.model.mass[node] * self.velocities.get(node).dot(&self.kicked(node, factors))
-        };
-        0.5 * (0..self.model.nodes()).map(double).sum::<f64>()
+        sums.six_volumes *= self.setting.fault(Term::Volume);
     }
 
     /// Elastic energy, J.
     pub fn strain_energy(&self) -> f64 {
-        strain_energy(&self.model, &self.places)
+        strain_energy(&self.model, &self.state.places)
     }
 
     /// The film's side of the ledger.
     pub fn ledger(&self) -> Ledger {
+        let works = self.state.works;
         Ledger {
             kinetic: self.kinetic_energy(),
             strain: self.strain_energy(),
-            gas_work: self.works.gas,
-            ambient_work: self.works.ambient,
-            gravity_work: self.setting.gravity * (self.first_moment() - self.start_moment),
-            support_work: self.works.support,
-            viscous_work: self.works.viscous,
-            damping_work: self.works.damping,
+            gas_work: works.gas,
+            ambient_work: works.ambient,
+            gravity_work: self
+                .setting
+                .gravity
+                .dot(&(self.first_moment() - Vector3::from(self.state.start_moment))),
+            support_work: works.support,
+            viscous_work: works.viscous,
+            damping_work: works.damping,
             // No contact yet.
             contact: 0.0,
             friction_work: 0.0,
@@ -365,21 +367,22 @@ impl Explicit {
     /// The gas's side of the ledger; the mass let in is the loop's.
     pub fn books(&self) -> GasBooks {
         GasBooks {
-            mass: self.gas.mass,
-            internal_energy: self.gas.internal_energy,
-            gas_work: self.works.gas,
-            ..self.books
+            mass: self.state.gas.mass,
+            internal_energy: self.state.gas.internal_energy,
+            gas_work: self.state.works.gas,
+            ..self.state.books
         }
     }
 
-    /// Σ m z, kg m.
-    fn first_moment(&self) -> f64 {
-        self.model.mass.iter().zip(&self.places.z).map(|(mass, z)| mass * z).sum()
+    /// Σ m x, kg m.
+    fn first_moment(&self) -> Vector3<f64> {
+        let nodes = self.model.mass.iter().zip(self.state.places.iter());
+        nodes.map(|(mass, place)| place * *mass).sum()
     }
 
     fn unstable(&self) -> Failure {
         let bound = self.model.wave_speed();
-        let sound = |node: &usize| self.velocities.get(*node).norm() < bound;
+        let sound = |node: &usize| self.state.velocities.get(*node).norm() < bound;
         let node = (0..self.model.nodes()).find(|node| !sound(node));
         let place = match node {
             Some(node) => format!("node {node}, faster than the film's waves ({bound:.0} m/s)"),
@@ -389,6 +392,6 @@ impl Explicit {
     }
 
     fn failure(&self, kind: FailureKind, place: &str) -> Failure {
-        Failure { kind, time: self.time, place: place.to_owned() }
+        Failure { kind, time: self.state.time, place: place.to_owned() }
     }
 }

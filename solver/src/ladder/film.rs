@@ -13,17 +13,14 @@
 use super::SceneError;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
-use crate::fold::FoldPattern;
-use crate::gas::Gas;
 use crate::history::Sample;
-use crate::integrate::explicit::{Explicit, Interior, Setting};
+use crate::integrate::explicit::{Explicit, Interior};
 use crate::measures::Reference;
-use crate::mesh::{Mesh, Shape};
-use crate::model::FilmModel;
+use crate::mesh::Shape;
 use crate::scene::Scene;
 use crate::state::Field;
-use crate::supports::Supports;
 
+pub mod capsule;
 mod statics;
 
 pub use statics::{Relaxation, StaticState, erected, static_reference, static_states};
@@ -60,27 +57,10 @@ impl FilmRun {
     /// # Errors
     /// As [`solve`].
     pub fn from_scene(scene: &Scene, cfl: f64, reference: Reference) -> Result<Self, SceneError> {
-        scene.validate()?;
-        check_cfl(cfl)?;
-        let pattern = FoldPattern::new(&scene.design)?;
-        let shape = Shape::Stowed(scene.design.stowed_height);
-        let mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
-        let model = film_model(scene, &mesh)?;
-        let gas = Gas::new(&scene.gas, scene.film.temperature, mesh.reference_area());
-        let start = gas.at_temperature(scene.gas.initial_mass, scene.film.temperature);
-        let setting = Setting {
-            interior: Interior::Gas(gas),
-            supports: Supports::of_capsule(&scene.supports, &mesh),
-            gravity: scene.gravity,
-            viscosity: scene.film.viscosity,
-            mass_damping: 0.0,
-            cfl,
-            step_limit: scene.solver.step_limit,
-        };
-        let places = Field::of(&mesh.positions);
-        let still = Field::zeros(places.len());
+        let stowed = Shape::Stowed(scene.design.stowed_height);
+        let (film, mesh) = capsule::film_scene(scene, stowed, cfl)?;
         Ok(Self {
-            film: Explicit::new(model, setting, places, still, start),
+            film: capsule::start(&film)?,
             top_ring: mesh.top_ring,
             top_centre: mesh.top_centre,
             stowed_height: scene.design.stowed_height,
@@ -90,24 +70,10 @@ impl FilmRun {
 
     fn lid_force(&self) -> f64 {
         let lift: f64 = (0..self.film.model.nodes())
-            .map(|node| self.film.force(node).z * self.film.places.z[node])
+            .map(|node| self.film.force(node).z * self.film.state.places.z[node])
             .sum();
         (lift / self.stowed_height).max(0.0)
     }
-}
-
-fn check_cfl(cfl: f64) -> Result<(), SceneError> {
-    if cfl > 0.0 && cfl <= 1.0 {
-        return Ok(());
-    }
-    let problem = format!("{cfl} is not allowed; above 0, at most 1");
-    Err(SceneError::Invalid { key: "cfl".to_owned(), problem })
-}
-
-fn film_model(scene: &Scene, mesh: &Mesh) -> Result<FilmModel, SceneError> {
-    FilmModel::new(&scene.film, mesh.positions.len(), &mesh.triangles, &mesh.reference).map_err(
-        |error| SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() },
-    )
 }
 
 /// Mean height of these nodes, m.
@@ -125,14 +91,14 @@ impl Model for FilmRun {
         let Interior::Gas(gas) = film.setting.interior else { unreachable!("made with gas") };
         let centre = self.top_centre as usize;
         Sample {
-            time: film.time,
-            z_centre: film.places.z[centre],
-            z_rim: mean_height(&film.places, &self.top_ring),
-            z_max: film.places.z.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            vz: film.velocity(centre).z,
-            volume: film.volume,
-            pressure: film.pressure,
-            temperature: gas.temperature(film.gas),
+            time: film.state.time,
+            z_centre: film.state.places.z[centre],
+            z_rim: mean_height(&film.state.places, &self.top_ring),
+            z_max: film.state.places.z.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            vz: film.velocities().z[centre],
+            volume: film.state.volume,
+            pressure: film.state.pressure,
+            temperature: gas.temperature(film.state.gas),
             lid_force: if phase.packed { self.lid_force() } else { 0.0 },
             ledger: film.ledger(),
             gas: film.books(),
@@ -146,11 +112,11 @@ impl Model for FilmRun {
     }
 
     fn film_stress(&self) -> f64 {
-        self.film.film_stress
+        self.film.state.film_stress
     }
 
     fn steps(&self) -> u64 {
-        self.film.steps
+        self.film.state.steps
     }
 
     fn elements(&self) -> usize {

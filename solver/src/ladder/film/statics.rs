@@ -13,18 +13,19 @@
 
 use nalgebra::Vector3;
 
-use super::{film_model, mean_height};
+use super::capsule::{film_scene, start};
+use super::mean_height;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
+use crate::film_scene::{Filling, FilmSupport, Motion, Profile};
 use crate::fold::FoldPattern;
-use crate::gas::GasState;
-use crate::integrate::explicit::{Explicit, Interior, Setting};
+use crate::integrate::explicit::{Explicit, Interior};
 use crate::ladder::SceneError;
 use crate::measures::{REFERENCE_PRESSURES, Reference};
 use crate::mesh::{Mesh, Shape};
 use crate::scene::{Film, Scene};
 use crate::state::Field;
-use crate::supports::Supports;
+use crate::supports::Mover;
 
 /// How a relaxation goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,16 +53,16 @@ impl Relaxation {
     /// [`Failure`] of the motion, or `step_limit` when it does not settle.
     pub fn relax_at(&self, film: &mut Explicit, overpressure: f64) -> Result<(), Failure> {
         film.setting.interior = Interior::Overpressure(overpressure);
-        film.pressure = overpressure;
-        let limit = film.steps + self.step_limit;
+        film.state.pressure = overpressure;
+        let limit = film.state.steps + self.step_limit;
         film.setting.step_limit = limit;
         let mut calm = 0;
         while calm < 2 {
-            let (places, forces) = (film.places.clone(), all_forces(film));
-            let target = film.time + film.stable_step() * f64::from(self.stretch);
+            let (places, forces) = (film.state.places.clone(), all_forces(film));
+            let target = film.state.time + film.stable_step() * f64::from(self.stretch);
             film.advance(target, &Phase::default())?;
             film.setting.mass_damping = 2.0 * frequency(film, &places, &forces);
-            let energy = film.overpressure() * film.volume;
+            let energy = film.overpressure() * film.state.volume;
             let settled = film.kinetic_energy().abs() < self.kinetic_share * energy;
             calm = if settled { calm + 1 } else { 0 };
         }
@@ -70,7 +71,7 @@ impl Relaxation {
 }
 
 fn all_forces(film: &Explicit) -> Vec<Vector3<f64>> {
-    let free = |node: usize| film.force(node).component_mul(&film.setting.supports.free(node));
+    let free = |node: usize| film.setting.supports.projector(node) * film.force(node);
     (0..film.model.nodes()).map(free).collect()
 }
 
@@ -78,7 +79,7 @@ fn all_forces(film: &Explicit) -> Vec<Vector3<f64>> {
 fn frequency(film: &Explicit, places: &Field, forces: &[Vector3<f64>]) -> f64 {
     let (mut stiffness, mut mass) = (0.0, 0.0);
     for (node, (before, now)) in forces.iter().zip(all_forces(film)).enumerate() {
-        let moved = film.places.get(node) - places.get(node);
+        let moved = film.state.places.get(node) - places.get(node);
         stiffness += moved.dot(&(before - now));
         mass += film.model.mass[node] * moved.norm_squared();
     }
@@ -114,14 +115,14 @@ pub fn static_states(
     let (mut film, mesh) = erected(scene, relaxation)?;
     let mut states = Vec::new();
     for overpressure in overpressures {
-        let steps = film.steps;
+        let steps = film.state.steps;
         relaxation.relax_at(&mut film, *overpressure).map_err(|failure| no_state(&failure))?;
         states.push(StaticState {
             overpressure: *overpressure,
-            volume: film.volume,
-            z_rim: mean_height(&film.places, &mesh.top_ring),
+            volume: film.state.volume,
+            z_rim: mean_height(&film.state.places, &mesh.top_ring),
             strain_energy: film.strain_energy(),
-            steps: film.steps - steps,
+            steps: film.state.steps - steps,
         });
     }
     Ok(states)
@@ -152,26 +153,17 @@ fn no_state(failure: &Failure) -> SceneError {
 /// [`SceneError`] when the capsule cannot be made, or does not bear the move.
 pub fn erected(scene: &Scene, relaxation: &Relaxation) -> Result<(Explicit, Mesh), SceneError> {
     scene.validate()?;
-    let pattern = FoldPattern::new(&scene.design)?;
-    let mesh = Mesh::new(&pattern, scene.design.subdivisions, Shape::Erected)?;
-    let tension_field = Film { compression: 0.0, ..scene.film };
-    let model = film_model(&Scene { film: tension_field, ..scene.clone() }, &mesh)?;
-    let setting = Setting {
-        interior: Interior::Overpressure(0.0),
-        supports: Supports::of_capsule(&scene.supports, &mesh),
-        gravity: 0.0,
-        viscosity: scene.film.viscosity,
-        mass_damping: 0.0,
-        cfl: relaxation.cfl,
-        step_limit: relaxation.step_limit,
-    };
-    let places = Field::of(&mesh.positions);
-    let still = Field::zeros(places.len());
-    let mut film = Explicit::new(model, setting, places, still, GasState::default());
+    let still =
+        Scene { film: Film { compression: 0.0, ..scene.film }, gravity: 0.0, ..scene.clone() };
+    let (mut capsule, mesh) = film_scene(&still, Shape::Erected, relaxation.cfl)?;
+    capsule.filling = Filling::Pressure(MOVE_PRESSURE);
+    let mut film = start(&capsule)?;
+    film.setting.step_limit = relaxation.step_limit;
     if !scene.supports.is_empty() {
+        let pattern = FoldPattern::new(&scene.design)?;
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let stowed = Mesh::new(&pattern, scene.design.subdivisions, stowed)?;
-        move_held(&mut film, &stowed).map_err(|failure| no_state(&failure))?;
+        move_held(&mut film, &capsule.supports, &stowed).map_err(|failure| no_state(&failure))?;
     }
     Ok((film, mesh))
 }
@@ -182,27 +174,31 @@ const MOVE_TIME: f64 = 0.01;
 const MOVE_PRESSURE: f64 = 1000.0;
 
 /// Moves what is held to where it is held stowed.
-fn move_held(film: &mut Explicit, stowed: &Mesh) -> Result<(), Failure> {
-    let nodes: Vec<u32> = (0_u32..)
-        .zip(film.setting.supports.free.iter())
-        .filter(|(_, free)| free.product() == 0.0)
-        .map(|(node, _)| node)
-        .collect();
-    film.setting.interior = Interior::Overpressure(MOVE_PRESSURE);
-    film.pressure = MOVE_PRESSURE;
-    let from = film.places.clone();
-    let way = |node: u32| {
-        let node = node as usize;
-        stowed.positions[node] - from.get(node)
+fn move_held(film: &mut Explicit, held: &[FilmSupport], stowed: &Mesh) -> Result<(), Failure> {
+    let place = |node: &u32| film.state.places.get(*node as usize);
+    let motion = Motion {
+        from: 0.0,
+        to: MOVE_TIME,
+        profile: Profile::Smooth,
+        translation: Vector3::zeros(),
+        turn: None,
     };
-    let start = film.time;
-    film.move_held(&nodes, |node| way(node) / MOVE_TIME);
-    film.advance(start + MOVE_TIME, &Phase::default())?;
-    film.move_held(&nodes, |_| Vector3::zeros());
-    film.setting.supports.moving.clear();
-    if film.volume > 0.0 {
+    let mover = |support: &FilmSupport| Mover {
+        nodes: support.nodes.clone(),
+        start: support.nodes.iter().map(place).collect(),
+        held: support.hold.projector(),
+        motion,
+        beside: support
+            .nodes
+            .iter()
+            .map(|node| stowed.positions[*node as usize] - place(node))
+            .collect(),
+    };
+    film.setting.supports.movers = held.iter().map(mover).collect();
+    film.advance(MOVE_TIME, &Phase::default())?;
+    if film.state.volume > 0.0 {
         return Ok(());
     }
     let place = "gas volume, moving the ring".to_owned();
-    Err(Failure { kind: FailureKind::InvertedVolume, time: film.time, place })
+    Err(Failure { kind: FailureKind::InvertedVolume, time: film.state.time, place })
 }

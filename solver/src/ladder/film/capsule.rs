@@ -1,0 +1,130 @@
+//! A capsule as film: mesh, supports and places of its rings.
+
+use nalgebra::Vector3;
+
+use crate::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold};
+use crate::fold::FoldPattern;
+use crate::gas::{Gas, GasState};
+use crate::integrate::explicit::{Explicit, Interior, Setting};
+use crate::ladder::SceneError;
+use crate::mesh::{Mesh, Part, Shape};
+use crate::model::FilmModel;
+use crate::scene::{Scene, Support, SupportPlace};
+use crate::shell::Shell;
+use crate::simd::Path;
+use crate::state::Field;
+use crate::supports::Supports;
+
+/// A scene's capsule in one of its shapes, at this share of the stable step; and its mesh.
+///
+/// # Errors
+/// [`SceneError`] when the scene is not sound or the capsule cannot be made.
+pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, Mesh), SceneError> {
+    scene.validate()?;
+    let pattern = FoldPattern::new(&scene.design)?;
+    let mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
+    let film = FilmScene {
+        shell: Shell::of_mesh(&mesh),
+        velocities: Vec::new(),
+        film: scene.film,
+        filling: Filling::Gas {
+            supply: scene.gas.clone(),
+            initial_temperature: scene.film.temperature,
+        },
+        supports: scene.supports.iter().map(|support| on_capsule(support, &mesh)).collect(),
+        gravity: Vector3::new(0.0, 0.0, scene.gravity),
+        release_time: scene.release_time,
+        solver: FilmSolver {
+            cfl,
+            end_time: scene.solver.end_time,
+            statics: false,
+            mass_damping: 0.0,
+            step_limit: scene.solver.step_limit,
+            path: Path::best(),
+        },
+        outputs: FilmOutputs {
+            sample_interval: scene.outputs.sample_interval,
+            nodes: Vec::new(),
+            elements: Vec::new(),
+        },
+    };
+    Ok((film, mesh))
+}
+
+fn on_capsule(support: &Support, mesh: &Mesh) -> FilmSupport {
+    let (name, nodes) = match support.on {
+        SupportPlace::BottomRing => ("bottom_ring", sorted(mesh.bottom_ring.clone())),
+        SupportPlace::TopRing => ("top_ring", sorted(mesh.top_ring.clone())),
+        SupportPlace::BottomCap => ("bottom_cap", part_nodes(mesh, Part::BottomCap)),
+        SupportPlace::TopCap => ("top_cap", part_nodes(mesh, Part::TopCap)),
+    };
+    let held = ['x', 'y', 'z'].map(|axis| support.fix.contains(axis));
+    FilmSupport { name: name.to_owned(), nodes, hold: Hold::Components(held), motion: None }
+}
+
+/// Nodes of a piece of film, in ascending order.
+pub fn part_nodes(mesh: &Mesh, part: Part) -> Vec<u32> {
+    let own = mesh.triangles.iter().zip(&mesh.parts).filter(|(_, own)| **own == part);
+    sorted(own.flat_map(|(triangle, _)| *triangle).collect())
+}
+
+fn sorted(mut nodes: Vec<u32>) -> Vec<u32> {
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// A scene's film at time 0.
+///
+/// # Errors
+/// [`SceneError::Invalid`] when the film is none, or a number is out of range.
+pub fn start(scene: &FilmScene) -> Result<Explicit, SceneError> {
+    let (model, setting, gas) = constants(scene)?;
+    let places = Field::of(&scene.shell.positions);
+    let mut velocities = Field::zeros(places.len());
+    for (node, velocity) in scene.velocities.iter().enumerate() {
+        velocities.set(node, *velocity);
+    }
+    Ok(Explicit::new(model, setting, places, velocities, gas))
+}
+
+/// What is constant in a scene's run, and the gas it starts with.
+///
+/// # Errors
+/// As [`start`].
+pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Setting, GasState), SceneError> {
+    let solver = &scene.solver;
+    check_cfl(solver.cfl)?;
+    let invalid = |key: &str, problem: String| SceneError::Invalid { key: key.to_owned(), problem };
+    scene.shell.check().map_err(|error| invalid("mesh", error.to_string()))?;
+    let model = FilmModel::of_shell(&scene.film, &scene.shell)
+        .map_err(|error| invalid("mesh", error.to_string()))?;
+    let places = Field::of(&scene.shell.positions);
+    let (interior, gas) = match &scene.filling {
+        Filling::Pressure(pressure) => (Interior::Overpressure(*pressure), GasState::default()),
+        Filling::Gas { supply, initial_temperature } => {
+            let gas = Gas::new(supply, scene.film.temperature, scene.shell.reference_area());
+            (Interior::Gas(gas), gas.at_temperature(supply.initial_mass, *initial_temperature))
+        }
+    };
+    let setting = Setting {
+        interior,
+        supports: Supports::new(&scene.supports, &places),
+        gravity: scene.gravity,
+        viscosity: scene.film.viscosity,
+        mass_damping: solver.mass_damping,
+        cfl: solver.cfl,
+        step_limit: solver.step_limit,
+        path: solver.path,
+        mutation: None,
+    };
+    Ok((model, setting, gas))
+}
+
+fn check_cfl(cfl: f64) -> Result<(), SceneError> {
+    if cfl > 0.0 && cfl <= 1.0 {
+        return Ok(());
+    }
+    let problem = format!("{cfl} is not allowed; above 0, at most 1");
+    Err(SceneError::Invalid { key: "cfl".to_owned(), problem })
+}

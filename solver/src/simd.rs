@@ -1,0 +1,309 @@
+//! Eight elements at a time: plain arithmetic on `[f64; 8]`, compiled for several instruction sets.
+//!
+//! A kernel is written once over [`Lanes`] and is `#[inline(always)]`; [`dispatch!`] instantiates it
+//! under `#[target_feature]` and picks at run time. Every lane does the same additions,
+//! multiplications, divisions and square roots in the same order on every path, nothing is
+//! contracted to a fused multiply-add, and sums over lanes are one fixed tree: the bits are equal,
+//! the build needs no flags.
+
+#![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
+
+use core::ops::{Add, AddAssign, Mul, Neg, Sub};
+
+/// Elements handled at once.
+pub const WIDTH: usize = 8;
+
+/// Instruction set a kernel runs on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Path {
+    /// What every x86-64 (or other) machine has.
+    Scalar,
+    /// AVX2: four at a time.
+    Avx2,
+    /// AVX-512: eight at a time.
+    Avx512,
+}
+
+impl Path {
+    /// Every path, the widest last.
+    pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
+
+    /// Name: `scalar`, `avx2`, `avx512`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// Whether this machine has it.
+    pub fn available(self) -> bool {
+        match self {
+            Self::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => false,
+        }
+    }
+
+    /// The widest this machine has.
+    pub fn best() -> Self {
+        let [scalar, rest @ ..] = Self::ALL;
+        rest.into_iter().rev().find(|path| path.available()).unwrap_or(scalar)
+    }
+}
+
+/// Defines `pub fn $name(path, arguments…)` that runs the `#[inline(always)]` function `$kernel` on
+/// the instruction set of `path`.
+///
+/// A path this machine lacks runs as scalar: the bits are the same.
+macro_rules! dispatch {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)?) => {
+        $(#[$meta])*
+        #[expect(unsafe_code, reason = "each instruction set is entered only where it is detected")]
+        $vis fn $name(path: $crate::simd::Path, $($arg: $ty),*) $(-> $ret)? {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2")]
+                fn avx2($($arg: $ty),*) $(-> $ret)? {
+                    $kernel($($arg),*)
+                }
+                #[target_feature(enable = "avx512f,avx512dq")]
+                fn avx512($($arg: $ty),*) $(-> $ret)? {
+                    $kernel($($arg),*)
+                }
+                use $crate::simd::Path;
+                match path {
+                    // SAFETY: the features are there, just asked for.
+                    Path::Avx2 if path.available() => return unsafe { avx2($($arg),*) },
+                    // SAFETY: as above.
+                    Path::Avx512 if path.available() => return unsafe { avx512($($arg),*) },
+                    _ => {}
+                }
+            }
+            let _ = path;
+            $kernel($($arg),*)
+        }
+    };
+}
+pub(crate) use dispatch;
+
+/// One number of each of eight elements.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(align(64))]
+pub struct Lanes(pub [f64; WIDTH]);
+
+impl Lanes {
+    /// The same number eight times.
+    #[inline(always)]
+    pub fn splat(value: f64) -> Self {
+        Self([value; WIDTH])
+    }
+
+    /// Eight numbers from `column[at..]`.
+    #[inline(always)]
+    pub fn load(column: &[f64], at: usize) -> Self {
+        let mut lanes = [0.0; WIDTH];
+        lanes.copy_from_slice(&column[at..at + WIDTH]);
+        Self(lanes)
+    }
+
+    /// Writes to `column[at..]`.
+    #[inline(always)]
+    pub fn store(self, column: &mut [f64], at: usize) {
+        column[at..at + WIDTH].copy_from_slice(&self.0);
+    }
+
+    /// The numbers at these places of a column.
+    #[inline(always)]
+    pub fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self {
+        Self(core::array::from_fn(|lane| column[at[lane] as usize]))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, join: impl Fn(f64, f64) -> f64) -> Self {
+        Self(core::array::from_fn(|lane| join(self.0[lane], other.0[lane])))
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    /// Quotients.
+    #[inline(always)]
+    pub fn over(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+
+    /// The larger of each pair.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    /// `yes` where this is above 0, else `no`.
+    #[inline(always)]
+    pub fn if_positive(self, yes: Self, no: Self) -> Self {
+        Self(core::array::from_fn(|lane| if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] }))
+    }
+
+    /// Sum of the eight, as a tree: ((0+4)+(2+6)) + ((1+5)+(3+7)).
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    }
+
+    /// Largest of the eight.
+    pub fn largest(self) -> f64 {
+        self.0.into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a })
+    }
+}
+
+impl Add for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl AddAssign for Lanes {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl Mul<f64> for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|a| a * factor))
+    }
+}
+
+impl Neg for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|a| -a))
+    }
+}
+
+/// One vector of each of eight elements.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vectors {
+    /// x components.
+    pub x: Lanes,
+    /// y components.
+    pub y: Lanes,
+    /// z components.
+    pub z: Lanes,
+}
+
+impl Vectors {
+    /// Scalar products.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> Lanes {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// Vector products.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    /// Each vector times its own number.
+    #[inline(always)]
+    pub fn scale(self, factor: Lanes) -> Self {
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
+    }
+}
+
+impl Add for Vectors {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl Sub for Vectors {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+impl Neg for Vectors {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z }
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "bits are what is asked")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sum_is_a_fixed_tree() {
+        let lanes = Lanes([1e16, 1.0, -1e16, 1.0, 1.0, 1.0, 1.0, 1.0]);
+        assert_eq!(lanes.sum(), ((1e16 + 1.0) + (-1e16 + 1.0)) + (2.0 + 2.0));
+        assert_eq!(lanes.largest(), 1e16);
+    }
+
+    #[inline(always)]
+    fn kernel(values: &[f64]) -> f64 {
+        let mut sum = Lanes::default();
+        for at in (0..values.len()).step_by(WIDTH) {
+            let a = Lanes::load(values, at);
+            sum += (a * a + a * 0.1).sqrt().over(a + Lanes::splat(3.0));
+        }
+        sum.sum()
+    }
+    dispatch! { fn run / kernel(values: &[f64]) -> f64 }
+
+    #[test]
+    fn every_path_gives_the_same_bits() {
+        let values: Vec<f64> = (0..800).map(|k| f64::from(k) * 0.371 + 0.01).collect();
+        let scalar = run(Path::Scalar, &values);
+        for path in Path::ALL {
+            assert_eq!(run(path, &values).to_bits(), scalar.to_bits(), "{}", path.name());
+        }
+        assert!(Path::best().available());
+    }
+}
