@@ -1,0 +1,57 @@
+//! The table of cases.
+
+use super::{Case, Outcome, Rig, Tier, gas_piston, gas_vessel, piston_model};
+
+const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, compares, tier: Tier::Quick, body }
+}
+
+/// Every case, in the order they are told.
+pub const CASES: &[Case] = &[
+    quick(
+        "tank_filling",
+        "temperature of a rigid vessel filled from vacuum, with the first law",
+        gas_vessel::tank_filling,
+    ),
+    quick(
+        "blow_down",
+        "temperature and pressure of a vessel emptying through a choked orifice, with the closed form",
+        gas_vessel::blow_down,
+    ),
+    quick(
+        "cooling",
+        "temperature of a vessel cooled by its film, with the exponential",
+        gas_vessel::cooling,
+    ),
+    quick(
+        "gas_spring",
+        "period of a plate on adiabatic gas, with a quadrature",
+        gas_piston::gas_spring,
+    ),
+    quick(
+        "injected_piston",
+        "way of a plate driven by a constant inflow into vacuum, with the self-similar solution",
+        gas_piston::injected_piston,
+    ),
+    quick(
+        "injected_piston_dead_volume",
+        "the same from rest on an empty dead volume, with a high-order integration",
+        gas_piston::injected_piston_dead_volume,
+    ),
+    quick(
+        "piston_model_tank_filling",
+        "tank_filling by the piston model",
+        piston_model::tank_filling,
+    ),
+    quick("piston_model_gas_spring", "gas_spring by the piston model", piston_model::gas_spring),
+    quick(
+        "piston_model_injected",
+        "injected_piston by the piston model",
+        piston_model::injected_piston,
+    ),
+    quick(
+        "piston_model_dead_volume",
+        "injected_piston_dead_volume by the piston model, with the classical Runge-Kutta rule",
+        piston_model::injected_piston_dead_volume,
+    ),
+];
