@@ -23,9 +23,13 @@ mod row;
 mod shapes_dynamic;
 mod table;
 
+mod damping;
+mod drum;
 mod gas_piston;
 mod gas_vessel;
+mod oscillation;
 mod piston_model;
+mod sphere_motion;
 
 pub use rig::Rig;
 pub use row::Row;

@@ -1,9 +1,15 @@
 //! The table of cases.
 
-use super::{Case, Outcome, Rig, Tier, gas_piston, gas_vessel, piston_model};
+use super::{
+    Case, Outcome, Rig, Tier, damping, drum, gas_piston, gas_vessel, piston_model, sphere_motion,
+};
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
     Case { name, compares, tier: Tier::Quick, body }
+}
+
+const fn long(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, compares, tier: Tier::Long, body }
 }
 
 /// Every case, in the order they are told.
@@ -53,5 +59,35 @@ pub const CASES: &[Case] = &[
         "piston_model_dead_volume",
         "injected_piston_dead_volume by the piston model, with the classical Runge-Kutta rule",
         piston_model::injected_piston_dead_volume,
+    ),
+    quick(
+        "stretched_disc",
+        "frequencies of a drum, with the zeros of Bessel functions",
+        drum::stretched_disc,
+    ),
+    quick(
+        "spinning_disc",
+        "frequencies of a free disc held flat by its spin, with the closed form",
+        drum::spinning_disc,
+    ),
+    quick(
+        "breathing_sphere",
+        "frequency of a sphere on adiabatic gas about its rest, with its linear equation",
+        sphere_motion::breathing_sphere,
+    ),
+    long(
+        "released_sphere",
+        "turning points of a sphere let go unstretched, with a quadrature",
+        sphere_motion::released_sphere,
+    ),
+    quick(
+        "strip_damping",
+        "decrement of a strip's mode under film viscosity, with 2 pi zeta omega/omega_e",
+        damping::strip_decrement,
+    ),
+    quick(
+        "free_flight_damping",
+        "speed of free flight under mass damping, with exp(-c t)",
+        damping::free_flight,
     ),
 ];
