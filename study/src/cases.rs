@@ -23,13 +23,17 @@ mod row;
 mod shapes_dynamic;
 mod table;
 
+mod capsule_run;
 mod damping;
 mod drum;
+mod forces;
 mod gas_piston;
 mod gas_vessel;
+mod invariants;
 mod oscillation;
 mod piston_model;
 mod sphere_motion;
+mod step_limit;
 
 pub use rig::Rig;
 pub use row::Row;

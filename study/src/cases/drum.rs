@@ -76,17 +76,16 @@ pub fn stretched_disc(rig: &Rig) -> Outcome {
             }
             let supports = vec![held(rim(rings), "xyz")];
             let scene = FilmScene { supports, ..scene(shell, film) };
-            ring(rig, scene, &shape, share * radius, (1.0 / (400.0 * expected), 5))
+            ring(rig, scene, &shape, share * radius, (1.0 / (400.0 * expected), 3))
         };
         let values = [run(8)?, run(16)?, run(32)?];
         let errors = values.map(|value| value / expected - 1.0);
         let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
         let mode = format!("({diameters},{})", row[1]);
-        let note = format!("errors {:.2e} {:.2e} {:.2e}", errors[0], errors[1], errors[2]);
         judged.push(
             Row::new(&format!("frequency {mode}, finest mesh, Hz"), values[2], expected, raw)
                 .with_least_order(seen, least)
-                .with_note(&note),
+                .with_errors(errors),
         );
         let limit = richardson(values[1], values[2]);
         judged.push(Row::new(&format!("frequency {mode}, Richardson, Hz"), limit, expected, band));
@@ -137,12 +136,11 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
         };
         let values = [run(4)?, run(8)?, run(16)?];
         let errors = values.map(|value| value / expected - 1.0);
-        let note = format!("errors {:.2e} {:.2e} {:.2e}", errors[0], errors[1], errors[2]);
         let quantity = format!("p/Omega of mode ({diameters},{})", row[1]);
         judged.push(
             Row::new(&quantity, values[2], expected, band)
                 .with_order(order(errors[1], errors[2]))
-                .with_note(&note),
+                .with_errors(errors),
         );
     }
     Ok(judged)

@@ -86,7 +86,7 @@ pub fn injected_piston(rig: &Rig) -> Outcome {
     Ok(vec![
         Row::new("x at 50 ms, m", height(finest), expected, number("injected_piston/band"))
             .with_least_order(seen, number("injected_piston/order"))
-            .with_note(&format!("errors {:.2e} {:.2e} {:.2e}", errors[0], errors[1], errors[2])),
+            .with_errors(errors),
         Row::new(
             "kinetic energy over enthalpy let in",
             share,

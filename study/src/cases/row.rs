@@ -80,14 +80,27 @@ impl Row {
         self.with_order(order)
     }
 
-    /// With a word to its reader, where it has none yet.
+    /// With one more word to its reader.
     #[must_use]
     pub fn with_note(mut self, note: &str) -> Self {
-        if self.note.is_empty() {
-            note.clone_into(&mut self.note);
+        if !self.note.is_empty() {
+            self.note.push_str("; ");
         }
+        self.note.push_str(note);
         self
     }
+
+    /// With the errors of three steps or meshes, signed.
+    #[must_use]
+    pub fn with_errors(self, errors: [f64; 3]) -> Self {
+        let [a, b, c] = errors;
+        self.with_note(&format!("errors {a:.2e} {b:.2e} {c:.2e}"))
+    }
+}
+
+/// The larger of two errors; no number is the largest of all (`max` would let it pass).
+pub fn worse(a: f64, b: f64) -> f64 {
+    if b <= a || a.is_nan() { a } else { b }
 }
 
 /// Order of convergence seen in the errors of two steps (or meshes), the finer half the coarser.

@@ -1,7 +1,8 @@
 //! The table of cases.
 
 use super::{
-    Case, Outcome, Rig, Tier, damping, drum, gas_piston, gas_vessel, piston_model, sphere_motion,
+    Case, Outcome, Rig, Tier, capsule_run, damping, drum, forces, gas_piston, gas_vessel,
+    invariants, piston_model, sphere_motion, step_limit,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -89,5 +90,51 @@ pub const CASES: &[Case] = &[
         "free_flight_damping",
         "speed of free flight under mass damping, with exp(-c t)",
         damping::free_flight,
+    ),
+    quick("patch", "film under a uniform strain, with no force inside", invariants::patch),
+    quick(
+        "rigid_rotation",
+        "film turned and spun as a rigid body, with no strain, force or power",
+        invariants::rigid_rotation,
+    ),
+    quick(
+        "momentum",
+        "momentum and moment of free film and gas over 1e5 steps, with those of the start",
+        invariants::momenta,
+    ),
+    quick(
+        "force_energy",
+        "every conservative force, with finite differences of its energy in each regime",
+        forces::force_energy,
+    ),
+    quick(
+        "path_energy",
+        "work of film along a path through all regimes, with the change of its energy",
+        forces::path_energy,
+    ),
+    quick(
+        "dissipation",
+        "power, net force and moment of viscosity, with the power told and nought",
+        forces::dissipation,
+    ),
+    quick(
+        "step_limit",
+        "measured limit of the step and element bound, with 2/omega_max of the assembled stiffness",
+        step_limit::step_limit,
+    ),
+    quick(
+        "shear_panel",
+        "stress of a wrinkled panel in simple shear, with the tension field's",
+        invariants::shear_panel,
+    ),
+    quick(
+        "sphere_ledger",
+        "energy of a sphere that meets every term at once, with its works",
+        capsule_run::sphere_ledger,
+    ),
+    quick(
+        "capsule_ledger",
+        "energy of the paper's capsule deployed without contact, with its works",
+        capsule_run::capsule_ledger,
     ),
 ];
