@@ -17,7 +17,7 @@ pub mod print;
 mod run;
 mod schema;
 mod table;
-mod validate;
+pub mod validate;
 
 /// Parameter studies of inflatable capsules: fold, inflate, compare.
 #[derive(Debug, Parser)]

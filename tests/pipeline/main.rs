@@ -5,9 +5,11 @@
 mod broken_studies;
 mod determinism;
 mod folding;
+mod mutations;
 mod planning;
 mod resume;
 mod running;
 mod storage;
 mod study_files;
 mod support;
+mod validating;

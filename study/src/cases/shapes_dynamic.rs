@@ -132,7 +132,7 @@ pub fn disc(rings: u32, radius: f64) -> Shell {
 
 /// Nodes of the rim of a [`disc`] of so many rings.
 pub fn rim(rings: u32) -> Vec<u32> {
-    (1 + 3 * rings * (rings - 1)..1 + 3 * rings * (rings + 1)).collect()
+    (1 + 3 * rings * (rings - 1)..=3 * rings * (rings + 1)).collect()
 }
 
 /// Film in the plane z = 0, its own reference.

@@ -4,6 +4,7 @@ fn pool(threads: usize) -> ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the shape of a case")]
 fn sound(_: &Rig) -> Outcome {
     Ok(vec![Row::new("x", 1.0005, 1.0, 1e-3)])
 }

@@ -54,13 +54,22 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         eprintln!("billow: skipped by --quick: {}", names.join(", "));
     }
     print(&judged, global.format(), out)?;
+    verdict(&judged)
+}
+
+/// What the program ends with.
+///
+/// # Errors
+/// When a case is out of band.
+pub fn verdict(judged: &[Judged]) -> Result<()> {
     let outside: Vec<&str> = judged.iter().filter(|j| !j.pass()).map(|j| j.name).collect();
     if outside.is_empty() {
         return Ok(());
     }
     Err(Error::JobsFailed(format!(
-        "{} of {total} cases out of band: {}",
+        "{} of {} cases out of band: {}",
         outside.len(),
+        judged.len(),
         outside.join(", ")
     )))
 }
