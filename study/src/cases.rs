@@ -20,10 +20,10 @@ use rayon::ThreadPool;
 pub mod reference;
 pub mod rig;
 mod row;
-mod shapes_dynamic;
+pub mod shapes_dynamic;
 mod table;
 
-mod capsule_run;
+pub mod capsule_run;
 mod damping;
 mod drum;
 mod forces;

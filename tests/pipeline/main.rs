@@ -6,6 +6,7 @@ mod broken_studies;
 mod determinism;
 mod folding;
 mod mutations;
+mod physics_version;
 mod planning;
 mod resume;
 mod running;

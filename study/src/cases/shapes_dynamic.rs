@@ -196,3 +196,25 @@ pub fn pattern(length: usize, seed: u64) -> Vec<Vector3<f64>> {
     };
     (0..length).map(|_| Vector3::new(next(), next(), next())).collect()
 }
+
+/// An open tube about z from z = 0 on: `around` cells round, `along` up, wound outward.
+pub fn tube(around: u32, along: u32, radius: f64, length: f64) -> Shell {
+    let mut positions = Vec::new();
+    for row in 0..=along {
+        for k in 0..around {
+            let angle = core::f64::consts::TAU * f64::from(k) / f64::from(around);
+            let (sin, cos) = libm::sincos(angle);
+            let z = length * f64::from(row) / f64::from(along);
+            positions.push(Vector3::new(radius * cos, radius * sin, z));
+        }
+    }
+    let mut triangles = Vec::new();
+    for row in 0..along {
+        for k in 0..around {
+            let next = (k + 1) % around;
+            let [a, b] = [row * around + k, row * around + next];
+            triangles.extend([[a, b, b + around], [a, b + around, a + around]]);
+        }
+    }
+    Shell::relaxed(positions, triangles)
+}

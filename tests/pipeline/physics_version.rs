@@ -1,0 +1,170 @@
+//! The physics version is guarded: six small runs, whose bits may change only with it.
+//!
+//! `tests/reference/physics.json` holds the SHA-256 of the bits of each run's history or end state,
+//! and the version they belong to. Whoever changes physics raises the version, records the hashes
+//! this test prints, and says so in CHANGELOG.
+
+use billow_solver::course::Phase;
+use billow_solver::deployment::Model;
+use billow_solver::deployment::Unobserved;
+use billow_solver::film_scene::{Filling, FilmScene, FilmSupport, Hold, Motion, Profile, Turn};
+use billow_solver::gas::Inflow;
+use billow_solver::history::COLUMNS;
+use billow_solver::integrate::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::ladder;
+use billow_solver::ladder::film::FilmRun;
+use billow_solver::measures::Reference;
+use billow_solver::scene::{Film, GasSupply, HeatTransfer, InflowWindow, Scene};
+use billow_study::cases::Rig;
+use billow_study::cases::capsule_run::paper_capsule;
+use billow_study::cases::rig::{film, held, nitrogen, scene};
+use billow_study::cases::shapes_dynamic::{icosphere, pattern, sheet, tube};
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+/// SHA-256 of the bits of these numbers, in hexadecimal digits.
+fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
+    let mut sha = Sha256::new();
+    numbers.into_iter().for_each(|number| sha.update(number.to_bits().to_le_bytes()));
+    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Of a piston's whole history.
+fn piston(scene: &Scene) -> String {
+    let deployment = ladder::solve(scene, &mut Unobserved).expect("a scene that can be run");
+    let columns = COLUMNS.iter().map(|column| deployment.history.column(column.name));
+    hash(columns.flatten().copied())
+}
+
+/// Of film's end state: places, velocities, gas, works.
+fn end_state(film: &Explicit) -> String {
+    let state = &film.state;
+    let fields = [&state.places, &state.velocities].map(|field| [&field.x, &field.y, &field.z]);
+    let nodes = fields.into_iter().flatten().flatten().copied();
+    let works = state.works;
+    let scalars = [
+        state.time,
+        state.volume,
+        state.pressure,
+        state.gas.mass,
+        state.gas.internal_energy,
+        state.film_stress,
+        works.gas,
+        works.ambient,
+        works.support,
+        works.viscous,
+        works.damping,
+    ];
+    hash(nodes.chain(scalars))
+}
+
+fn window(from: f64, to: f64, rate: f64) -> InflowWindow {
+    InflowWindow { from, to, rate, temperature: 293.0 }
+}
+
+/// 5 g/s from the start, with heat exchange and a leak.
+fn rapid() -> String {
+    let mut scene = paper_capsule(5, 0.1);
+    scene.gas.windows = vec![window(0.0, 1.5, 5e-3)];
+    scene.gas.leak_area = 1e-5;
+    piston(&scene)
+}
+
+/// Filled while packed, let go at 20 ms, filled on from 50 ms.
+fn preinflated() -> String {
+    let mut scene = paper_capsule(5, 0.1);
+    scene.gas.windows = vec![window(0.0, 0.01, 5e-3), window(0.05, 0.1, 1e-3)];
+    scene.gas.initial_mass = 1.5e-4;
+    scene.release_time = 0.02;
+    piston(&scene)
+}
+
+fn capsule() -> String {
+    let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
+    let mut run =
+        FilmRun::from_scene(&paper_capsule(2, 0.003), DEFAULT_CFL, reference).expect("a capsule");
+    let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
+    run.advance(3e-3, &Phase { packed: false, inflow }).expect("it runs");
+    end_state(&run.film)
+}
+
+fn moved(scene: &FilmScene, time: f64, phase: &Phase) -> String {
+    let mut film = Rig::default().start(scene).expect("a scene");
+    film.advance(time, phase).expect("it runs");
+    end_state(&film)
+}
+
+/// Gas that leaks into air and exchanges heat.
+fn sphere() -> String {
+    let supply = GasSupply {
+        initial_mass: 2e-2,
+        ambient_pressure: 500.0,
+        heat_transfer: HeatTransfer::Coefficient(20.0),
+        leak_area: 1e-3,
+        ..nitrogen()
+    };
+    let filling = Filling::Gas { supply, initial_temperature: 350.0 };
+    let scene = FilmScene { filling, ..scene(icosphere(1, 0.5), film()) };
+    moved(&scene, 3e-3, &Phase::default())
+}
+
+/// A viscous sheet with some compressive stiffness, shaken, falls from two of its corners.
+fn falling_sheet() -> String {
+    let film = Film { viscosity: 0.1, compression: 0.3, ..film() };
+    let scene = FilmScene {
+        velocities: pattern(30, 1),
+        supports: vec![held(vec![0, 5], "xyz")],
+        gravity: Vector3::new(0.0, -3.0, -9.806_65),
+        ..scene(sheet(5, 4, 0.3, 0.2), film)
+    };
+    moved(&scene, 5e-3, &Phase::default())
+}
+
+/// A tube whose upper end is moved and turned, the lower one held.
+fn turned_tube() -> String {
+    let (around, along) = (8, 4);
+    let turn = Turn { axis: Vector3::z(), centre: Vector3::zeros(), angle: 0.02 };
+    let motion = Motion {
+        from: 0.0,
+        to: 2e-3,
+        profile: Profile::Smooth,
+        translation: Vector3::new(0.0, 1e-3, 1e-3),
+        turn: Some(turn),
+    };
+    let upper = FilmSupport {
+        name: "upper".to_owned(),
+        nodes: (around * along..around * (along + 1)).collect(),
+        hold: Hold::Components([true; 3]),
+        motion: Some(motion),
+    };
+    let scene = FilmScene {
+        filling: Filling::Pressure(100.0),
+        supports: vec![held((0..around).collect(), "xyz"), upper],
+        ..scene(tube(around, along, 0.1, 0.2), film())
+    };
+    moved(&scene, 3e-3, &Phase::default())
+}
+
+#[test]
+fn the_physics_changes_only_with_its_version() {
+    let recorded: Value =
+        serde_json::from_str(include_str!("../reference/physics.json")).expect("JSON");
+    let hashes = json!({
+        "piston, rapid inflation with heat and leak": rapid(),
+        "piston, preinflated and packed": preinflated(),
+        "film, capsule of two subdivisions for 3 ms": capsule(),
+        "film, sphere with gas, heat and leak in air": sphere(),
+        "film, viscous sheet under gravity, compression 0.3": falling_sheet(),
+        "film, tube with a moving support": turned_tube(),
+    });
+    let now = json!({ "physics_version": billow_solver::PHYSICS_VERSION, "hashes": hashes });
+    let same = recorded["physics_version"] == now["physics_version"]
+        && recorded["hashes"] == now["hashes"];
+    assert!(
+        same,
+        "the physics changed (or its version did): raise PHYSICS_VERSION in solver/src/lib.rs, \
+         record these hashes in tests/reference/physics.json, and say in CHANGELOG what changed:\n\
+         {now:#}"
+    );
+}
