@@ -12,6 +12,7 @@
 mod allocation;
 mod capsule;
 mod conservation;
+mod explicit_bits;
 mod explicit_cases;
 mod exports;
 mod film_capsule;
@@ -23,4 +24,5 @@ mod geometry;
 mod membrane_cases;
 mod piston_cases;
 mod rig;
+mod rigid_planes;
 mod shells;

@@ -1,0 +1,109 @@
+//! Rigid planes and slanted supports, against what they stand for.
+
+use billow_solver::course::Phase;
+use billow_solver::film_scene::{FilmSupport, Hold, PlaneBody};
+use billow_solver::gas::GasState;
+use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
+use billow_solver::state::Field;
+use billow_solver::supports::Supports;
+use nalgebra::{Rotation3, Vector3};
+
+use crate::film_rig::{at_rest, sheet};
+use crate::rig::PAPER_FILM;
+
+fn support(nodes: Vec<u32>, hold: Hold) -> FilmSupport {
+    FilmSupport { name: "plane".to_owned(), nodes, hold, motion: None }
+}
+
+/// A sheet hanging from one edge, a heavy plane at the other, everything turned by `turn`.
+fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
+    let mut piece = sheet(6, 3, 0.3, 0.15);
+    let edge = |x: f64| -> Vec<u32> {
+        let on = |node: &u32| (piece.nodes[*node as usize].x - x).abs() < 1e-12;
+        (0..piece.nodes.len() as u32).filter(on).collect()
+    };
+    let (left, right) = (edge(0.0), edge(0.3));
+    piece.nodes = piece.nodes.iter().map(|x| turn * x).collect();
+    let plane = PlaneBody { normal: turn * Vector3::x(), mass: 0.02, velocity: -0.5, force: 3.0 };
+    let supports = [
+        support(left.clone(), Hold::Plane(turn * Vector3::x())),
+        support(left, Hold::Plane(turn * Vector3::z())),
+        support(right, Hold::Body(plane)),
+    ];
+    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
+    let setting = Setting {
+        supports: Supports::new(&supports, &film.state.places),
+        viscosity: film.setting.viscosity,
+        mass_damping: 5.0,
+        cfl,
+        ..Setting::free(Interior::Overpressure(0.0), piece.nodes.len())
+    };
+    let still = Field::zeros(piece.nodes.len());
+    film = Explicit::new(film.model, setting, film.state.places, still, GasState::default());
+    let start = film.ledger();
+    film.advance(0.02, &Phase::default()).unwrap();
+    let end = film.ledger();
+    let defect = end.defect(&start).abs() / (start.kinetic + end.external());
+    (film, defect)
+}
+
+#[test]
+fn a_turned_scene_moves_as_the_unturned() {
+    let (straight, first) = hanging(Rotation3::identity(), 0.45);
+    let turn = Rotation3::from_euler_angles(0.3, -1.1, 2.0);
+    let (turned, second) = hanging(turn, 0.45);
+    println!("defects {first:e} {second:e}, plane {}", straight.state.planes[0]);
+    assert!((straight.state.planes[0] / turned.state.planes[0] - 1.0).abs() < 1e-9);
+    for (a, b) in straight.state.places.iter().zip(turned.state.places.iter()) {
+        assert!((turn * a - b).norm() < 1e-10, "{a} {b}");
+    }
+    assert!(
+        straight.setting.supports.oblique.is_empty() && !turned.setting.supports.oblique.is_empty()
+    );
+    assert!(first < 1e-3 && second < 1e-3);
+}
+
+#[test]
+fn a_planes_ledger_closes_with_the_square_of_the_step() {
+    let defects: Vec<f64> =
+        [0.4, 0.2, 0.1].map(|cfl| hanging(Rotation3::identity(), cfl).1).to_vec();
+    println!("plane ledger defects {defects:?}");
+    assert!(defects[2] < 1e-4 && defects[2] < 0.2 * defects[0], "{defects:?}");
+}
+
+/// Two bodies and nothing between them but film without stress: each keeps its speed, then film
+/// hands momentum over and keeps the sum.
+#[test]
+fn planes_and_film_keep_their_momentum() {
+    let piece = sheet(6, 3, 0.3, 0.15);
+    let edge = |x: f64| -> Vec<u32> {
+        let on = |node: &u32| (piece.nodes[*node as usize].x - x).abs() < 1e-12;
+        (0..piece.nodes.len() as u32).filter(on).collect()
+    };
+    let plane = |mass: f64, velocity: f64| {
+        Hold::Body(PlaneBody { normal: Vector3::x(), mass, velocity, force: 0.0 })
+    };
+    let supports = [support(edge(0.0), plane(0.01, -1.0)), support(edge(0.3), plane(0.03, 2.0))];
+    let film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
+    let setting = Setting {
+        supports: Supports::new(&supports, &film.state.places),
+        ..Setting::free(Interior::Overpressure(0.0), piece.nodes.len())
+    };
+    let still = Field::zeros(piece.nodes.len());
+    let mut film =
+        Explicit::new(film.model, setting, film.state.places, still, GasState::default());
+    let momentum = |film: &Explicit| -> f64 {
+        let nodes = film.model.mass.iter().zip(film.state.velocities.iter());
+        let bodies = film.setting.supports.bodies.iter().zip(&film.state.planes);
+        nodes.map(|(m, v)| m * v.x).sum::<f64>()
+            + bodies.map(|(b, v)| b.plane.mass * v).sum::<f64>()
+    };
+    let before = momentum(&film);
+    assert!(before > 0.05);
+    for _ in 0..10 {
+        film.advance(film.state.time + 1e-3, &Phase::default()).unwrap();
+        assert!((momentum(&film) / before - 1.0).abs() < 1e-12, "{}", momentum(&film));
+    }
+    let apart = film.state.planes[1] - film.state.planes[0];
+    assert!(apart < 0.5, "the film has not pulled: {apart}");
+}
