@@ -1,4 +1,5 @@
-//! The gas laws against closed forms and independent quadratures.
+//! The gas laws against independent quadratures and the schedule's closed form. Filling, blow-down
+//! and cooling are reference cases of `billow validate`.
 
 use billow_solver::course::Phase;
 use billow_solver::deployment::Model;
@@ -7,7 +8,7 @@ use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
 use billow_solver::ladder::piston::{PistonRun, PistonState};
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
-use crate::rig::{adaptive, fixed, nitrogen, number, paper_scene, rows, run, supply, tube, window};
+use crate::rig::{adaptive, nitrogen, paper_scene, run, supply, tube, window};
 
 /// A rigid tank of `volume` m³: a packed piston.
 fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64, control: Control) -> PistonRun {
@@ -19,75 +20,8 @@ fn packed(inflow: Inflow) -> Phase {
     Phase { packed: true, inflow }
 }
 
-fn flow(mass: f64, temperature: f64) -> Inflow {
-    Inflow { mass, mass_temperature: mass * temperature }
-}
-
 fn near(value: f64, expected: f64, band: f64, what: &str) {
     assert!((value / expected - 1.0).abs() < band, "{what}: {value}, expected {expected}");
-}
-
-#[test]
-fn tank_filling() {
-    let gas = Gas::new(&supply(), 293.0, 1.0);
-    let temperature_in = number("tank_filling/inflow_temperature");
-    let initial = number("tank_filling/initial_mass");
-    let start = number("tank_filling/initial_temperature");
-    let band = number("tank_filling/band");
-    for control in [adaptive(DEFAULT_TOLERANCE), fixed(0.013)] {
-        let mut run = tank(gas, 0.3, initial, start, control);
-        for row in rows("tank_filling") {
-            let until = (row[0] - initial) / 0.005;
-            run.advance(until, &packed(flow(0.005, temperature_in))).unwrap();
-            near(run.sample(&packed(Inflow::default())).temperature, row[1], band, "T");
-        }
-        // From vacuum: γ T_in from the first moment on.
-        let mut run = tank(gas, 0.3, 0.0, start, control);
-        for until in [1e-6, 1e-3, 1.0] {
-            run.advance(until, &packed(flow(0.005, temperature_in))).unwrap();
-            let temperature = run.sample(&packed(Inflow::default())).temperature;
-            near(temperature, gas.gamma() * temperature_in, band, "T from vacuum");
-        }
-    }
-}
-
-#[test]
-fn blow_down_through_a_choked_orifice() {
-    let (area, volume, mass, start) = (1e-4, 0.5, 0.6, 300.0);
-    let gas = Gas::new(&GasSupply { leak_area: area, ..supply() }, 293.0, 1.0);
-    let species = nitrogen();
-    let gamma = gas.gamma();
-    let exponent = (gamma + 1.0) / (2.0 * (gamma - 1.0));
-    let speed = (gamma * species.gas_constant * start).sqrt();
-    let tau = volume / (0.6 * area * speed * (2.0 / (gamma + 1.0)).powf(exponent));
-    let mut run = tank(gas, volume, mass, start, adaptive(DEFAULT_TOLERANCE));
-    let first = run.sample(&packed(Inflow::default()));
-    for share in [0.1, 0.5, 1.0, 3.0] {
-        run.advance(share * tau, &packed(Inflow::default())).unwrap();
-        let now = run.sample(&packed(Inflow::default()));
-        let cooled = (1.0 + (gamma - 1.0) * share / 2.0).powi(-2);
-        let band = number("blow_down/band");
-        near(now.temperature / start, cooled, band, "T/T0");
-        let pressure = cooled.powf(gamma / (gamma - 1.0));
-        near(now.pressure / first.pressure, pressure, band, "p/p0");
-    }
-}
-
-#[test]
-fn cooling_of_a_rigid_tank() {
-    let exchange = HeatTransfer::Coefficient(5.0);
-    let gas = Gas::new(&GasSupply { heat_transfer: exchange, ..supply() }, 293.0, 2.0);
-    let (mass, start) = (0.02, 450.0);
-    let mut run = tank(gas, 0.5, mass, start, adaptive(DEFAULT_TOLERANCE));
-    let rate = 5.0 * 2.0 / (mass * gas.cv);
-    for turns in [0.3, 1.0, 4.0] {
-        run.advance(turns / rate, &packed(Inflow::default())).unwrap();
-        let excess = run.sample(&packed(Inflow::default())).temperature - 293.0;
-        near(excess / (start - 293.0), (-turns).exp(), number("cooling/band"), "T - T_film");
-    }
-    let heat = run.sample(&packed(Inflow::default())).gas.heat;
-    let given = mass * gas.cv * (start - 293.0) * ((-4.0_f64).exp() - 1.0);
-    near(heat, given, number("cooling/band"), "heat");
 }
 
 /// Time for a rigid adiabatic tank to fall from p0 to p1 through a subsonic orifice, by Simpson's

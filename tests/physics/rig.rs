@@ -26,15 +26,6 @@ pub fn number(path: &str) -> f64 {
     REFERENCE.pointer(&pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {path}"))
 }
 
-/// The rows of a reference table.
-pub fn rows(path: &str) -> Vec<Vec<f64>> {
-    let pointer = format!("/{path}/rows");
-    let rows = REFERENCE.pointer(&pointer).and_then(Value::as_array).expect("rows");
-    let numbers =
-        |row: &Value| -> Option<Vec<f64>> { row.as_array()?.iter().map(Value::as_f64).collect() };
-    rows.iter().map(|row| numbers(row).expect("numbers")).collect()
-}
-
 pub fn nitrogen() -> Species {
     Species { gas_constant: number("nitrogen/gas_constant"), cp: number("nitrogen/cp") }
 }

@@ -27,7 +27,7 @@ use sha2::{Digest, Sha256};
 fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
     let mut sha = Sha256::new();
     numbers.into_iter().for_each(|number| sha.update(number.to_bits().to_le_bytes()));
-    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    sha.finalize().iter().fold(String::new(), |text, byte| format!("{text}{byte:02x}"))
 }
 
 /// Of a piston's whole history.

@@ -66,7 +66,7 @@ pub fn paper_capsule(subdivisions: u32, end_time: f64) -> Scene {
 }
 
 /// The paper's capsule deployed without contact for 0.3 s: its ledgers.
-pub fn capsule_ledger(rig: &Rig) -> Outcome {
+pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     let scene = paper_capsule(5, 0.3);
     // Nothing here is judged by its static states.
     let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
@@ -87,7 +87,7 @@ pub fn capsule_ledger(rig: &Rig) -> Outcome {
 
 /// A viscous sphere thrown upward in air, that is filled, leaks, exchanges heat, and is slowed by
 /// mass damping: every term at once.
-pub fn sphere_ledger(rig: &Rig) -> Outcome {
+pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     let ambient = 1000.0;
     let shell = icosphere(2, 0.5);
     let species = nitrogen().species;

@@ -62,15 +62,21 @@ pub fn tank_filling(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
+/// τ of a choked orifice on this volume (m³) at this temperature (K), s.
+pub fn emptying_time(supply: &GasSupply, volume: f64, temperature: f64) -> f64 {
+    let gamma = gamma();
+    let exponent = (gamma + 1.0) / (2.0 * (gamma - 1.0));
+    let sound = (gamma * supply.species.gas_constant * temperature).sqrt();
+    let choked = libm::pow(2.0 / (gamma + 1.0), exponent);
+    volume / (supply.discharge_coefficient * supply.leak_area * sound * choked)
+}
+
 /// Blow-down through a choked orifice into vacuum.
 pub fn blow_down(rig: &Rig) -> Outcome {
     let (area, height, mass, start) = (1e-3, 1.0, 0.6, 300.0);
     let supply = GasSupply { leak_area: area, ..nitrogen() };
     let (gamma, band) = (gamma(), number("blow_down/band"));
-    let exponent = (gamma + 1.0) / (2.0 * (gamma - 1.0));
-    let sound = (gamma * supply.species.gas_constant * start).sqrt();
-    let choked = libm::pow(2.0 / (gamma + 1.0), exponent);
-    let tau = 0.5 * height / (supply.discharge_coefficient * area * sound * choked);
+    let tau = emptying_time(&supply, 0.5 * height, start);
     let mut tank = rig.start(&vessel(height, supply, mass, start))?;
     let first = tank.state.pressure;
     let mut judged = Vec::new();

@@ -5,8 +5,9 @@ use billow_solver::deployment::Model;
 use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
 use billow_solver::ladder::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
-use billow_solver::scene::{GasSupply, Species, Stepping};
+use billow_solver::scene::{GasSupply, HeatTransfer, Species, Stepping};
 
+use super::gas_vessel::emptying_time;
 use super::reference::{number, rows};
 use super::rig::{inflow, nitrogen};
 use super::row::order;
@@ -35,14 +36,66 @@ fn injection() -> Phase {
     inflow(number("injected_piston/rate"), number("injected_piston/inflow_temperature"))
 }
 
-/// Filling of a rigid tank: a packed piston.
+/// A rigid tank (m³): a packed piston.
+fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64) -> PistonRun {
+    let gas_state = gas.at_temperature(mass, temperature);
+    let state = PistonState { height: 1.0, speed: 0.0, gas: gas_state };
+    PistonRun::new(tube(0.0, volume, 1.0, gas), 0.0, state, adaptive(DEFAULT_TOLERANCE))
+}
+
+/// Blow-down of a rigid tank through a choked orifice.
+pub fn blow_down(_: &Rig) -> Outcome {
+    let (volume, mass, start) = (0.5, 0.6, 300.0);
+    let supply = GasSupply { leak_area: 1e-3, ..nitrogen() };
+    let gas = Gas::new(&supply, 293.0, 1.0);
+    let (gamma, tau) = (gas.gamma(), emptying_time(&supply, volume, start));
+    let closed = Phase { packed: true, ..Phase::default() };
+    let mut run = tank(gas, volume, mass, start);
+    let first = run.sample(&closed).pressure;
+    let band = number("blow_down/band");
+    let mut judged = Vec::new();
+    for share in [0.1, 0.5, 1.0, 3.0] {
+        advance(&mut run, share * tau, &closed)?;
+        let now = run.sample(&closed);
+        let slower = 1.0 + 0.5 * (gamma - 1.0) * share;
+        let cooled = 1.0 / (slower * slower);
+        let pressure = libm::pow(cooled, gamma / (gamma - 1.0));
+        let [of_temperature, of_pressure] = ["T/T0", "p/p0"].map(|q| format!("{q} at {share} tau"));
+        judged.push(Row::new(&of_temperature, now.temperature / start, cooled, band));
+        judged.push(Row::new(&of_pressure, now.pressure / first, pressure, band));
+    }
+    Ok(judged)
+}
+
+/// A rigid tank takes on the temperature of its film.
+pub fn cooling(_: &Rig) -> Outcome {
+    let (coefficient, area, mass, start) = (5.0, 2.0, 0.02, 450.0);
+    let supply = GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen() };
+    let gas = Gas::new(&supply, 293.0, area);
+    let rate = coefficient * area / (mass * gas.cv);
+    let closed = Phase { packed: true, ..Phase::default() };
+    let mut run = tank(gas, 0.5, mass, start);
+    let band = number("cooling/band");
+    let mut judged = Vec::new();
+    for turns in [0.3, 1.0, 4.0] {
+        advance(&mut run, turns / rate, &closed)?;
+        let share = (run.sample(&closed).temperature - 293.0) / (start - 293.0);
+        let quantity = format!("(T - T_film)/(T0 - T_film) at {turns} time constants");
+        judged.push(Row::new(&quantity, share, libm::exp(-turns), band));
+    }
+    let given = mass * gas.cv * (start - 293.0) * (libm::exp(-4.0) - 1.0);
+    let heat = run.sample(&closed).gas.heat;
+    judged.push(Row::new("heat given by the film, J", heat, given, band));
+    Ok(judged)
+}
+
+/// Filling of a rigid tank.
 pub fn tank_filling(_: &Rig) -> Outcome {
     let [initial, start, entering, band] =
         ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
             .map(|key| number(&format!("tank_filling/{key}")));
     let gas = Gas::new(&nitrogen(), 293.0, 1.0);
-    let state = PistonState { height: 1.0, speed: 0.0, gas: gas.at_temperature(initial, start) };
-    let mut run = PistonRun::new(tube(0.0, 0.3, 1.0, gas), 0.0, state, adaptive(DEFAULT_TOLERANCE));
+    let mut run = tank(gas, 0.3, initial, start);
     let phase = Phase { packed: true, ..inflow(5e-3, entering) };
     let mut judged = Vec::new();
     for row in rows("tank_filling") {

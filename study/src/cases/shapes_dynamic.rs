@@ -143,6 +143,9 @@ fn in_plane(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
 }
 
 /// An icosahedron, every face cut into four `level` times, on a sphere.
+///
+/// # Panics
+/// Beyond 2^32 nodes.
 pub fn icosphere(level: u32, radius: f64) -> Shell {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut nodes: Vec<Vector3<f64>> = Vec::new();

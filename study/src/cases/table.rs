@@ -50,6 +50,8 @@ pub const CASES: &[Case] = &[
         "tank_filling by the piston model",
         piston_model::tank_filling,
     ),
+    quick("piston_model_blow_down", "blow_down by the piston model", piston_model::blow_down),
+    quick("piston_model_cooling", "cooling by the piston model", piston_model::cooling),
     quick("piston_model_gas_spring", "gas_spring by the piston model", piston_model::gas_spring),
     quick(
         "piston_model_injected",
