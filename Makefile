@@ -1,6 +1,6 @@
 # make study    install what is missing, build, run studies/first.json, print its table
-# make test     the quick tier of the tests (what CI runs)
-# make test-all the quick tier, the long ones, and the Python readers
+# make test     the quick tier of the tests and of the reference cases (what CI runs)
+# make test-all the quick tier, the long ones, every reference case, and the Python readers
 # make check    formatting, lints, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
 
@@ -23,12 +23,14 @@ study: build
 
 test: deps
 	$(CARGO) test $(FLAGS)
+	$(BILLOW) validate --quick
 
 test-all: test test-long readers
 
-# Tests marked `#[ignore]` are the long tier.
+# Tests marked `#[ignore]` are the long tier; so are the cases `validate --quick` leaves out.
 test-long: deps
 	$(CARGO) test $(FLAGS) -- --ignored
+	$(BILLOW) validate
 
 # Opens a fresh study with h5py, xarray, pandas and pyarrow.
 readers: build reader-deps
