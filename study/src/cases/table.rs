@@ -79,6 +79,11 @@ pub const CASES: &[Case] = &[
         sphere_motion::breathing_sphere,
     ),
     long(
+        "breathing_sphere_fine",
+        "breathing_sphere on meshes twice as fine",
+        sphere_motion::breathing_sphere_fine,
+    ),
+    long(
         "released_sphere",
         "turning points of a sphere let go unstretched, with a quadrature",
         sphere_motion::released_sphere,
