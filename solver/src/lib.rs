@@ -37,6 +37,7 @@ pub mod mesh;
 pub mod mesh_io;
 pub mod model;
 pub mod mutation;
+pub mod resultants;
 pub mod scene;
 pub mod shell;
 pub mod simd;
