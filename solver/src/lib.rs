@@ -42,6 +42,7 @@ pub mod scene;
 pub mod shell;
 pub mod simd;
 pub mod state;
+pub mod statics;
 pub mod supports;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
