@@ -93,6 +93,19 @@ pub struct Reaction {
 /// # Errors
 /// [`StaticError`].
 pub fn solve(scene: &FilmScene, watch: Watch<'_>) -> Result<StaticSolution, StaticError> {
+    solve_from(scene, None, watch)
+}
+
+/// [`solve`], from a state of the same scene under another overpressure (Pa) where there is one:
+/// sooner, where the pressure falls.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_from(
+    scene: &FilmScene,
+    known: Option<(&StaticSolution, f64)>,
+    watch: Watch<'_>,
+) -> Result<StaticSolution, StaticError> {
     let Filling::Pressure(overpressure) = scene.filling else { return Err(StaticError::Gas) };
     scene.shell.check()?;
     let model = FilmModel::of_shell(&scene.film, &scene.shell)?;
@@ -105,7 +118,8 @@ pub fn solve(scene: &FilmScene, watch: Watch<'_>) -> Result<StaticSolution, Stat
         gravity: scene.gravity,
         path: scene.solver.path,
     };
-    let rest = settle(&loaded, &start, None, &Settling::default(), watch)?;
+    let (places, from) = known.map_or((&start, None), |(state, at)| (&state.places, Some(at)));
+    let rest = settle(&loaded, places, from, &Settling::default(), watch)?;
     let strain = strain_energy(&model, &rest.places);
     let volume = scene.shell.volume(|node| rest.places.get(node as usize));
     let weight: f64 = model

@@ -23,6 +23,7 @@ use crate::state::Field;
 pub mod capsule;
 mod statics;
 
+pub use crate::statics::Relaxation;
 pub use statics::{Erected, StaticState, erected, static_reference, static_states};
 
 /// Runs a scene as film without contact, at this share of the stable step, judged against
