@@ -21,6 +21,7 @@ pub mod reference;
 pub mod rig;
 mod row;
 pub mod shapes_dynamic;
+mod shapes_static;
 mod table;
 
 pub mod capsule_run;
@@ -33,6 +34,12 @@ mod invariants;
 mod oscillation;
 mod piston_model;
 mod sphere_motion;
+mod static_airbag;
+mod static_discs;
+mod static_end_state;
+mod static_rest;
+mod static_shells;
+mod static_wrinkling;
 mod step_limit;
 
 pub use rig::Rig;

@@ -26,3 +26,4 @@ mod piston_cases;
 mod rig;
 mod rigid_planes;
 mod shells;
+mod statics;

@@ -4,11 +4,12 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-static FILES: LazyLock<[Value; 3]> = LazyLock::new(|| {
+static FILES: LazyLock<[Value; 4]> = LazyLock::new(|| {
     [
         include_str!("../../../tests/reference/gas.json"),
         include_str!("../../../tests/reference/film.json"),
         include_str!("../../../tests/reference/dynamics.json"),
+        include_str!("../../../tests/reference/statics.json"),
     ]
     .map(|text| serde_json::from_str(text).expect("JSON in tests/reference"))
 });
@@ -38,4 +39,14 @@ pub fn rows(path: &str) -> Vec<Vec<f64>> {
         |row: &Value| -> Option<Vec<f64>> { row.as_array()?.iter().map(Value::as_f64).collect() };
     let rows: Option<Vec<Vec<f64>>> = rows.and_then(|rows| rows.iter().map(numbers).collect());
     rows.unwrap_or_else(|| panic!("{path}/rows in tests/reference are no numbers"))
+}
+
+/// A list of numbers by its path.
+///
+/// # Panics
+/// Where there is none.
+pub fn numbers(path: &str) -> Vec<f64> {
+    let list: Option<Vec<f64>> =
+        find(path).as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
+    list.unwrap_or_else(|| panic!("{path} in tests/reference are no numbers"))
 }

@@ -2,7 +2,8 @@
 
 use super::{
     Case, Outcome, Rig, Tier, capsule_run, damping, drum, forces, gas_piston, gas_vessel,
-    invariants, piston_model, sphere_motion, step_limit,
+    invariants, piston_model, sphere_motion, static_airbag, static_discs, static_end_state,
+    static_shells, static_wrinkling, step_limit,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -144,4 +145,50 @@ pub const CASES: &[Case] = &[
         "energy of the paper's capsule deployed without contact, with its works",
         capsule_run::capsule_ledger,
     ),
+    quick(
+        "static_sphere",
+        "stretch of a sphere at rest, with the closed form",
+        static_shells::sphere,
+    ),
+    quick(
+        "static_cylinder",
+        "stretches of a cylinder with closed ends, with the closed form",
+        static_shells::cylinder,
+    ),
+    quick(
+        "cone",
+        "membrane forces of a cone away from its ends, with the closed form",
+        static_shells::cone,
+    ),
+    quick(
+        "clamped_disc",
+        "a clamped disc under a pressure that follows it, with a boundary value problem",
+        static_discs::clamped_disc,
+    ),
+    quick(
+        "mylar_balloon",
+        "two discs sewn together and inflated, with the meridian's equation",
+        static_discs::mylar_balloon,
+    ),
+    quick(
+        "square_airbag",
+        "two squares sewn together and inflated, with another program on the same meshes",
+        static_airbag::square_airbag,
+    ),
+    quick(
+        "beam",
+        "moment of a pulled and bent strip, wrinkled in part, with the closed form",
+        static_wrinkling::beam,
+    ),
+    quick(
+        "annulus_torsion",
+        "torque and wrinkles of a twisted annulus, with a boundary value problem",
+        static_wrinkling::annulus_torsion,
+    ),
+    quick(
+        "end_state",
+        "end state of the capsule with circular caps, with the axisymmetric tension field",
+        static_end_state::circular,
+    ),
+    quick("end_state_aligned", "the same on a mesh along its meridians", static_end_state::aligned),
 ];
