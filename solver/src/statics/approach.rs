@@ -7,7 +7,9 @@
 //!
 //! Film of extent L that starts slack or flat finds its place soonest under a pressure that
 //! stretches it by some percent, and then follows the pressure down. A cold start at a low pressure
-//! takes ten times the steps, and may end in a higher minimum.
+//! takes ten times the steps. While the pressure is high, the film keeps a thousandth of its
+//! stiffness against compression, which is then let go: of the many minima of wrinkled film near each
+//! other that finds a low one (the square airbag's energy comes out 0.03 J lower of 78 J).
 
 use nalgebra::Vector3;
 
@@ -23,6 +25,10 @@ use crate::supports::Supports;
 
 /// p L/(E t) of the first pressure.
 const FIRST_STRETCH: f64 = 0.05;
+/// p L/(E t) down to which film is stiffened.
+const STIFF_STRETCH: f64 = 0.008;
+/// Its compression fraction there.
+const STIFFENED: f64 = 1e-3;
 /// Largest ratio of two pressures.
 const RATIO: f64 = 4.0;
 /// Into how many parts moves of held nodes are cut, one attempt after the other.
@@ -30,8 +36,8 @@ const PARTS: [u32; 3] = [1, 4, 16];
 /// Steps of relaxation where Newton's method is lost.
 const ROUGH_STEPS: u64 = 20_000;
 
-/// What counts as found on the way.
-const PASSING: Settling = Settling { residual: 1e-3, step: 1e-4, iterations: 200 };
+/// What counts as near enough on the way.
+const PASSING: Settling = Settling { residual: 1e-2, step: 1e-3, iterations: 80 };
 
 /// Finds the state of rest under this load: from these places (m), with what movers hold brought to
 /// the end of its motion. Where the places are a state of rest under another overpressure, `from`
@@ -46,13 +52,13 @@ pub fn settle(
     settling: &Settling,
     watch: Watch<'_>,
 ) -> Result<Rest, StaticFailure> {
-    let pressures = pressures(loaded, places, from);
+    let stages = stages(loaded, places, from);
     let moves = !loaded.supports.movers.is_empty();
     let attempts = if moves { &PARTS[..] } else { &PARTS[..1] };
     let mut last = None;
     for parts in attempts {
         let mut way = Way { loaded, settling, watch: &mut *watch, iterations: 0 };
-        match way.go(places, &pressures, *parts) {
+        match way.go(places, &stages, *parts) {
             Ok(rest) => return Ok(rest),
             Err(failure) if failure.kind == StaticFailureKind::Stopped => return Err(failure),
             Err(failure) => last = Some(failure),
@@ -61,28 +67,47 @@ pub fn settle(
     Err(last.expect("at least one attempt"))
 }
 
-/// Pressures to pass through, the one asked for last, Pa.
-fn pressures(loaded: &Loaded<'_>, places: &Field, from: Option<f64>) -> Vec<f64> {
+/// One load on the way.
+#[derive(Debug, Clone, Copy)]
+struct Stage {
+    /// Overpressure, Pa.
+    overpressure: f64,
+    /// Compression fraction.
+    compression: f64,
+}
+
+/// What to pass through, the load asked for last.
+fn stages(loaded: &Loaded<'_>, places: &Field, from: Option<f64>) -> Vec<Stage> {
     let stiffness = (0..loaded.model.elements())
         .map(|element| thickness(loaded.model, element))
         .fold(0.0, f64::max)
         * loaded.model.material.youngs_modulus;
-    let pressure = loaded.overpressure;
-    let first = from.map_or(FIRST_STRETCH * stiffness / extent(places), f64::abs);
+    let unit = stiffness / extent(places);
+    let (pressure, own) = (loaded.overpressure, loaded.model.material.compression);
+    let first = from.map_or(FIRST_STRETCH * unit, f64::abs);
     let fall = first / pressure.abs();
-    if pressure == 0.0 || fall <= 1.0 {
-        return vec![pressure];
+    let mut all = Vec::new();
+    if pressure != 0.0 && fall > 1.0 {
+        let count = (libm::log(fall) / libm::log(RATIO)).ceil();
+        // Where the film rests already there is nothing to look for.
+        let mut k = if from.is_some() { 1.0 } else { 0.0 };
+        while k < count {
+            let overpressure = pressure * libm::pow(fall, (count - k) / count);
+            all.push(Stage { overpressure, compression: own });
+            k += 1.0;
+        }
     }
-    let count = (libm::log(fall) / libm::log(RATIO)).ceil();
-    let at = |k: f64| pressure * libm::pow(fall, (count - k) / count);
-    let mut all: Vec<f64> = Vec::new();
-    // Where the film rests already there is nothing to look for.
-    let mut k = if from.is_some() { 1.0 } else { 0.0 };
-    while k < count {
-        all.push(at(k));
-        k += 1.0;
+    all.push(Stage { overpressure: pressure, compression: own });
+    if from.is_none() && pressure != 0.0 {
+        let stiff = |stage: &&Stage| stage.overpressure.abs() >= STIFF_STRETCH * unit;
+        let count = all.iter().take_while(stiff).count();
+        if let Some(last) = all[..count].last().copied() {
+            for stage in &mut all[..count] {
+                stage.compression = own.max(STIFFENED);
+            }
+            all.insert(count, last);
+        }
     }
-    all.push(pressure);
     all
 }
 
@@ -94,53 +119,63 @@ struct Way<'a, 'b> {
 }
 
 impl Way<'_, '_> {
-    fn go(&mut self, places: &Field, pressures: &[f64], parts: u32) -> Result<Rest, StaticFailure> {
+    fn go(&mut self, places: &Field, stages: &[Stage], parts: u32) -> Result<Rest, StaticFailure> {
         let mut places = places.clone();
-        let supports = self.loaded.supports;
         for part in 1..=parts {
-            let share = f64::from(part) / f64::from(parts);
-            move_held(supports, &mut places, share);
+            move_held(self.loaded.supports, &mut places, f64::from(part) / f64::from(parts));
             if part < parts {
-                places = self.state(places, pressures[0], &PASSING)?.places;
+                places = self.pass(places, stages[0])?;
             }
         }
-        let (last, before) = pressures.split_last().expect("the pressure asked for");
-        for pressure in before {
-            places = self.state(places, *pressure, &PASSING)?.places;
+        let (last, before) = stages.split_last().expect("the load asked for");
+        for stage in before {
+            places = self.pass(places, *stage)?;
         }
-        let mut rest = self.state(places, *last, self.settling)?;
-        rest.iterations = self.iterations;
-        Ok(rest)
+        let found = match self.state(places, *last, self.settling) {
+            Err(failure) if !lost(&failure) => match relaxed(self.loaded, &failure.places) {
+                Some(places) => self.state(places, *last, self.settling),
+                None => Err(failure),
+            },
+            found => found,
+        };
+        let iterations = self.iterations;
+        match found {
+            Ok(rest) => Ok(Rest { iterations, ..rest }),
+            Err(failure) => Err(StaticFailure { iterations, ..failure }),
+        }
     }
 
-    /// A state of rest under one pressure (Pa), after a relaxation if it is not found at once.
+    /// Places near rest under a load on the way: as near as some steps bring them.
+    fn pass(&mut self, places: Field, stage: Stage) -> Result<Field, StaticFailure> {
+        match self.state(places, stage, &PASSING) {
+            Ok(rest) => Ok(rest.places),
+            Err(failure) if lost(&failure) => Err(failure),
+            Err(failure) => Ok(*failure.places),
+        }
+    }
+
+    /// A state of rest under one load, with its steps counted.
     fn state(
         &mut self,
         places: Field,
-        overpressure: f64,
+        stage: Stage,
         settling: &Settling,
     ) -> Result<Rest, StaticFailure> {
-        let loaded = Loaded { overpressure, ..*self.loaded };
+        let mut model = self.loaded.model.clone();
+        model.material.compression = stage.compression;
+        let loaded = Loaded { model: &model, overpressure: stage.overpressure, ..*self.loaded };
         let found = equilibrium(&loaded, places, settling, &mut *self.watch);
-        let found = match found {
-            Err(failure)
-                if failure.kind != StaticFailureKind::Stopped
-                    && failure.kind != StaticFailureKind::NotFinite =>
-            {
-                self.iterations += failure.iterations;
-                match relaxed(&loaded, &failure.places) {
-                    Some(places) => equilibrium(&loaded, places, settling, &mut *self.watch),
-                    None => Err(failure),
-                }
-            }
-            found => found,
-        };
         self.iterations += match &found {
             Ok(rest) => rest.iterations,
             Err(failure) => failure.iterations,
         };
-        found.map_err(|failure| StaticFailure { iterations: self.iterations, ..failure })
+        found
     }
+}
+
+/// Whether nothing can be made of what is left.
+fn lost(failure: &StaticFailure) -> bool {
+    matches!(failure.kind, StaticFailureKind::Stopped | StaticFailureKind::NotFinite)
 }
 
 /// Brings what movers hold to this share of the way from where it is at its start to its end.

@@ -82,8 +82,8 @@ pub fn mylar_balloon(_: &Rig) -> Outcome {
                 [wide / radius, 2.0 * state.places.z[0] / radius, 2.0 * state.volume / cube];
             Ok((sizes, word))
         };
-        let (finest, word) = run(48)?;
-        let values = [run(12)?.0, run(24)?.0, finest];
+        let (finest, word) = run(32)?;
+        let values = [run(8)?.0, run(16)?.0, finest];
         let names = ["r/a", "thickness/a", "V/a3"];
         for (at, (name, band)) in names.into_iter().zip([size, size, bulk]).enumerate() {
             let expected = row[1 + at];
