@@ -38,10 +38,12 @@ pub mod mesh;
 pub mod mesh_io;
 pub mod model;
 pub mod mutation;
+pub mod resultants;
 pub mod scene;
 pub mod shell;
 pub mod simd;
 pub mod state;
+pub mod statics;
 pub mod supports;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes

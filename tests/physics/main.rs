@@ -24,3 +24,4 @@ mod membrane_cases;
 mod piston_cases;
 mod rig;
 mod shells;
+mod statics;
