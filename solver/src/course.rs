@@ -1,6 +1,6 @@
 //! What happens when: the part of a scene that is no model's own.
 
-use crate::film_scene::{FilmScene, Filling};
+use crate::film_scene::{Filling, FilmScene};
 use crate::gas::{Inflow, Schedule};
 use crate::scene::{Scene, Thresholds};
 

@@ -116,7 +116,8 @@ pub fn measure(
     let peak_vz = peak(vz);
     let peak_kinetic = peak(kinetic);
     let overpressure = final_pressure - course.ambient_pressure;
-    let judged = reference.map(|reference| judge(history, reference.at(overpressure), course, done));
+    let judged =
+        reference.map(|reference| judge(history, reference.at(overpressure), course, done));
     Measures {
         peak_vz: peak_vz.map(|(_, value)| value),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),

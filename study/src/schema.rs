@@ -7,7 +7,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::keys::{self, Default, KEYS, Key, Kind, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::keys::{
+    self, Default, KEYS, Key, Kind, Quantity, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS,
+};
 use crate::units::Dimension;
 use crate::value::{Value, json_value};
 
@@ -38,8 +40,8 @@ pub fn study_schema() -> Json {
     for key in KEYS.iter().filter(|key| !key.path.contains('.')) {
         properties.insert(key.path.to_owned(), property(key));
     }
-    for (section, _) in SECTIONS.iter().filter(|(path, _)| !path.contains('.')) {
-        properties.insert((*section).to_owned(), object(section));
+    for (section, _) in STUDY.sections.iter().filter(|(path, _)| !path.contains('.')) {
+        properties.insert((*section).to_owned(), object(&STUDY, section));
     }
     properties.insert("supports".to_owned(), supports());
     properties.insert("strategies".to_owned(), strategies());
@@ -56,21 +58,21 @@ pub fn study_schema() -> Json {
 }
 
 /// One section, with the sections within it.
-fn object(section: &str) -> Json {
+fn object(table: &Table, section: &str) -> Json {
     let mut properties = Map::new();
     let below = |path: &'static str| {
         path.strip_prefix(section)
             .and_then(|rest| rest.strip_prefix('.'))
             .filter(|rest| !rest.contains('.'))
     };
-    for key in KEYS {
+    for key in &table.keys {
         if let Some(name) = below(key.path) {
             properties.insert(name.to_owned(), property(key));
         }
     }
-    for (path, _) in SECTIONS {
+    for (path, _) in table.sections {
         if let Some(name) = below(path) {
-            let inner = object(path);
+            let inner = object(table, path);
             // A section that is a key as well (gas.species) is a word or an object.
             let whole = match properties.remove(name) {
                 Some(Json::Object(mut word)) => {
@@ -90,7 +92,7 @@ fn object(section: &str) -> Json {
             properties.insert(name.to_owned(), whole);
         }
     }
-    let doc = SECTIONS.iter().find(|(path, _)| *path == section).map_or("", |(_, doc)| doc);
+    let doc = table.sections.iter().find(|(path, _)| *path == section).map_or("", |(_, doc)| doc);
     let mut schema = json!({
         "title": title(section),
         "description": doc,
@@ -147,24 +149,33 @@ fn property(key: &Key) -> Json {
 /// What a key may hold.
 fn kind(key: &Key) -> Json {
     match key.kind {
-        Kind::Quantity(quantity) => {
-            let least = if quantity.above { "exclusiveMinimum" } else { "minimum" };
-            let mut number = json!({"type": "number", "maximum": quantity.max});
-            number[least] = json!(quantity.min);
-            let mut forms = vec![
-                number,
-                json!({"type": "string", "pattern": quantity_pattern(quantity.dimension)}),
-            ];
-            let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
-            if !words.is_empty() {
-                forms.push(json!({"enum": words}));
-            }
-            json!({"oneOf": forms})
-        }
+        Kind::Quantity(quantity) => json!({"oneOf": forms(quantity)}),
         Kind::Integer(min, max) => json!({"type": "integer", "minimum": min, "maximum": max}),
         Kind::Choice(words) => json!({"enum": words}),
         Kind::Text => json!({"type": "string"}),
+        Kind::Flag => json!({"type": "boolean"}),
+        Kind::Vector(quantity) => {
+            let mut part = forms(quantity);
+            if matches!(key.path, "min" | "max") {
+                part.push(json!({"type": "null"}));
+            }
+            json!({"type": "array", "items": {"oneOf": part}, "minItems": 3, "maxItems": 3})
+        }
     }
+}
+
+/// A quantity as a number, as a text with a unit, as a word.
+fn forms(quantity: Quantity) -> Vec<Json> {
+    let least = if quantity.above { "exclusiveMinimum" } else { "minimum" };
+    let mut number = json!({"type": "number", "maximum": quantity.max});
+    number[least] = json!(quantity.min);
+    let mut forms =
+        vec![number, json!({"type": "string", "pattern": quantity_pattern(quantity.dimension)})];
+    let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
+    if !words.is_empty() {
+        forms.push(json!({"enum": words}));
+    }
+    forms
 }
 
 fn supports() -> Json {

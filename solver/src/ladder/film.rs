@@ -10,6 +10,8 @@
 //! is the one that does the work of a uniform stretch of the stack, Σ `f_z` z/h: what a lone piston
 //! would feel. Film that is no capsule has no lid to press on.
 
+use nalgebra::Vector3;
+
 use super::SceneError;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
@@ -18,6 +20,7 @@ use crate::history::{Sample, Track};
 use crate::integrate::explicit::{Explicit, Interior, State};
 use crate::measures::Reference;
 use crate::mesh::{Mesh, Shape};
+use crate::resultants::resultants;
 use crate::scene::Scene;
 use crate::state::Field;
 
@@ -50,6 +53,8 @@ pub struct FilmRun {
     reference: Option<Reference>,
     nodes: Vec<u32>,
     elements: Vec<u32>,
+    /// Boundary loops of an open film with what their fans are spun about, m.
+    fans: Vec<(Vector3<f64>, Vec<u32>)>,
     /// `T_film`, K.
     temperature: f64,
 }
@@ -106,7 +111,8 @@ impl FilmRun {
     fn with(film: Explicit, scene: &FilmScene, rings: Option<Rings>) -> Self {
         let (nodes, elements) = (scene.outputs.nodes.clone(), scene.outputs.elements.clone());
         let temperature = scene.film.temperature;
-        Self { film, rings, reference: None, nodes, elements, temperature }
+        let fans = scene.shell.fans();
+        Self { film, rings, reference: None, nodes, elements, fans, temperature }
     }
 
     /// The scene's capsule, stowed, at time 0.
@@ -125,6 +131,18 @@ impl FilmRun {
             .map(|node| self.film.force(node).z * self.film.state.places.z[node])
             .sum();
         (lift / rings.stowed_height).max(0.0)
+    }
+
+    /// Enclosed volume, m³; that of an open film between it and the fans over its free edges.
+    pub fn volume(&self) -> f64 {
+        let place = |node: u32| self.film.state.places.get(node as usize);
+        let fan = |(apex, path): &(Vector3<f64>, Vec<u32>)| -> f64 {
+            let edge =
+                |k: usize| place(path[k]).dot(&place(path[(k + 1) % path.len()]).cross(apex));
+            (0..path.len()).map(edge).sum()
+        };
+        let own = self.film.state.volume;
+        if self.fans.is_empty() { own } else { own + self.fans.iter().map(fan).sum::<f64>() / 6.0 }
     }
 
     /// Largest height of any node with mass, m.
@@ -167,7 +185,7 @@ impl Model for FilmRun {
         Sample {
             time: film.state.time,
             z_max: self.largest_height(),
-            volume: film.state.volume,
+            volume: self.volume(),
             pressure: film.state.pressure,
             temperature: match film.setting.interior {
                 Interior::Gas(gas) => gas.temperature(film.state.gas),
@@ -197,13 +215,25 @@ impl Model for FilmRun {
                 values: Vec::new(),
             })
         });
-        nodes.collect()
+        let elements = self.elements.iter().flat_map(|element| {
+            ["N1", "N2"].map(|name| Track {
+                name: format!("element_{element}_{name}"),
+                unit: "N/m",
+                meaning: "principal membrane force of a followed element, per reference width",
+                values: Vec::new(),
+            })
+        });
+        nodes.chain(elements).collect()
     }
 
     fn follow(&self, values: &mut Vec<f64>) {
         for node in &self.nodes {
             let place = self.film.state.places.get(*node as usize);
             values.extend([place.x, place.y, place.z]);
+        }
+        for element in &self.elements {
+            let (model, places) = (&self.film.model, &self.film.state.places);
+            values.extend(resultants(model, places, *element as usize).principal);
         }
     }
 
