@@ -18,6 +18,7 @@
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
+use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
 use crate::simd::Lanes;
 
@@ -87,6 +88,16 @@ impl Material {
             poisson_ratio: film.poisson_ratio,
             compression: film.compression,
             plane_modulus: film.youngs_modulus / (1.0 - film.poisson_ratio * film.poisson_ratio),
+        }
+    }
+
+    /// A fault of one constant, the others as they were: tests only.
+    pub(crate) fn suffer(&mut self, fault: Mutation) {
+        match fault.term {
+            Term::PlaneModulus => self.plane_modulus *= fault.factor,
+            Term::WrinkledModulus => self.youngs_modulus *= fault.factor,
+            Term::PoissonRatio => self.poisson_ratio *= fault.factor,
+            _ => {}
         }
     }
 

@@ -14,6 +14,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector2;
 
 use crate::material::Material;
+use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
 use crate::shell::Shell;
 use crate::simd::WIDTH;
@@ -195,6 +196,15 @@ impl FilmModel {
         let columns = self.inverse_shape.iter_mut();
         for column in columns.chain([&mut self.volume, &mut self.viscous_time]) {
             column.resize(padded, 0.0);
+        }
+    }
+
+    /// A fault of the constants: tests only. Step and viscosity stay those of the sound film.
+    pub fn suffer(&mut self, fault: Mutation) {
+        self.material.suffer(fault);
+        if fault.term == Term::Mass {
+            self.mass.iter_mut().for_each(|mass| *mass *= fault.factor);
+            self.inverse_mass.iter_mut().for_each(|inverse| *inverse /= fault.factor);
         }
     }
 

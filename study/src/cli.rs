@@ -17,6 +17,7 @@ pub mod print;
 mod run;
 mod schema;
 mod table;
+mod validate;
 
 /// Parameter studies of inflatable capsules: fold, inflate, compare.
 #[derive(Debug, Parser)]
@@ -87,6 +88,8 @@ pub enum Command {
     Table(table::Args),
     /// Print the JSON Schema of the study file.
     Schema(schema::Args),
+    /// Run the reference cases and judge them; exit code 1 if one is out of band.
+    Validate(validate::Args),
     /// Print the completions of a shell.
     Completions(completions::Args),
 }
@@ -122,6 +125,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Run(args) => run::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),
+        Command::Validate(args) => validate::run(args, &cli.global, out),
         Command::Completions(args) => completions::run(args, out),
     }
 }

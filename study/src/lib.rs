@@ -9,6 +9,7 @@
 //! **Reading order.** `study_file` (what the JSON says), `study` (what it means), `plan`
 //! (which jobs), `runner` (running them), `history_file` and `table` (what is left).
 
+pub mod cases;
 pub mod cli;
 pub mod error;
 pub mod event;

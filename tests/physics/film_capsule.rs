@@ -3,14 +3,11 @@
 use std::time::Instant;
 
 use billow_solver::deployment::{Deployment, Stop, Unobserved};
-use billow_solver::fold::Caps;
 use billow_solver::integrate::explicit::DEFAULT_CFL;
 use billow_solver::ladder::SceneError;
-use billow_solver::ladder::film::{self, Relaxation, static_states};
+use billow_solver::ladder::film::{self, static_states};
 use billow_solver::measures::Reference;
 use billow_solver::scene::{HeatTransfer, Scene};
-use nalgebra::Vector3;
-use serde_json::Value;
 
 use crate::rig::{paper_scene, window};
 
@@ -117,67 +114,23 @@ fn packed_it_waits_and_presses_on_the_lid() {
 /// n 4, coarser than any verdict is given at: the film sags between its folds, so both lie below
 /// the cone's, rise with pressure, and the volume is that of a capsule.
 #[test]
-#[ignore = "long: static states by relaxation"]
 fn static_states_rise_with_pressure() {
     for subdivisions in [4, 5] {
         let scene = injected(subdivisions, 0.3);
         let start = Instant::now();
-        let states =
-            static_states(&scene, &[1000.0, 100.0, 10.0, 1.0], &Relaxation::default()).unwrap();
-        println!("n {subdivisions}, {:.1} s: {states:#?}", start.elapsed().as_secs_f64());
+        let states = static_states(&scene, &[1000.0, 100.0, 10.0, 1.0]).unwrap();
+        for s in &states {
+            println!(
+                "n {subdivisions}, {} Pa: V {:.6}, z_rim {:.6}, {} steps",
+                s.overpressure, s.volume, s.z_rim, s.iterations
+            );
+        }
+        println!("n {subdivisions}: {:.1} s", start.elapsed().as_secs_f64());
         for pair in states.windows(2) {
             assert!(pair[1].volume < pair[0].volume, "{pair:?}");
         }
         assert!(states.iter().all(|s| s.volume > 0.5 && s.volume < 0.7 && s.z_rim > 0.8));
     }
-}
-
-/// Circular caps, free body: volume, rims and heights against the axisymmetric tension field.
-#[test]
-#[ignore = "long: the end state on three meshes"]
-fn end_state_of_the_erected_cone() {
-    let reference: Value =
-        serde_json::from_str(include_str!("../reference/film.json")).expect("JSON");
-    let case = &reference["capsule_end_state"];
-    let numbers = |value: &Value| -> Vec<f64> {
-        value.as_array().expect("numbers").iter().map(|n| n.as_f64().expect("a number")).collect()
-    };
-    let (row, bands) = (numbers(&case["rows"][1]), numbers(&case["bands"]));
-    let mut finest = Vec::new();
-    for subdivisions in [7, 14, 28] {
-        let mut scene = injected(subdivisions, 0.3);
-        scene.design.caps = Caps::Circular;
-        scene.supports.clear();
-        let start = Instant::now();
-        let relaxation = Relaxation::default();
-        let (mut film, mesh) = film::erected(&scene, &relaxation).unwrap();
-        relaxation.relax_at(&mut film, row[0]).unwrap();
-        let mean = |nodes: &[u32], value: fn(Vector3<f64>) -> f64| {
-            nodes.iter().map(|node| value(film.state.places.get(*node as usize))).sum::<f64>()
-                / nodes.len() as f64
-        };
-        let radius = |x: Vector3<f64>| x.xy().norm();
-        let height = |x: Vector3<f64>| x.z;
-        let pole = |node: u32| film.state.places.z[node as usize];
-        let measured = [
-            film.state.volume,
-            mean(&mesh.bottom_ring, radius),
-            mean(&mesh.top_ring, radius),
-            mean(&mesh.top_ring, height) - mean(&mesh.bottom_ring, height),
-            pole(mesh.top_centre) - pole(mesh.bottom_centre),
-        ];
-        finest = measured
-            .iter()
-            .zip(&row[1..])
-            .map(|(value, expected)| value / expected - 1.0)
-            .collect();
-        println!(
-            "end state n {subdivisions}: {measured:.6?}, errors {finest:.5?}, {} steps, {:.1} s",
-            film.state.steps,
-            start.elapsed().as_secs_f64()
-        );
-    }
-    assert!(finest.iter().zip(&bands).all(|(error, band)| error.abs() < *band), "{finest:?}");
 }
 
 #[test]
@@ -219,21 +172,6 @@ fn every_entry_of_the_ledger_is_kept() {
     let deployment = timed("n 2, isothermal", &scene, DEFAULT_CFL);
     assert!(deployment.audit.ledger_residual < 5e-3, "{:?}", deployment.audit);
     assert!(deployment.audit.gas_residual < 1e-12, "{:?}", deployment.audit);
-}
-
-#[test]
-fn a_settled_state_is_settled() {
-    let scene = injected(3, 0.3);
-    let at = |kinetic_share: f64| {
-        let relaxation = Relaxation { kinetic_share, ..Relaxation::default() };
-        static_states(&scene, &[1000.0, 100.0], &relaxation).unwrap()
-    };
-    let (usual, strict) = (at(Relaxation::default().kinetic_share), at(1e-13));
-    for (usual, strict) in usual.iter().zip(&strict) {
-        println!("{usual:?}, strict {strict:?}");
-        assert!((usual.volume / strict.volume - 1.0).abs() < 1e-3);
-        assert!((usual.z_rim / strict.z_rim - 1.0).abs() < 1e-3);
-    }
 }
 
 #[test]

@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use billow_solver::gas::GasState;
 use billow_solver::integrate::explicit::{Explicit, Interior};
-use billow_solver::ladder::film::Relaxation;
 use billow_solver::state::Field;
+use billow_solver::statics::Relaxation;
 use nalgebra::Vector3;
 use serde_json::Value;
 

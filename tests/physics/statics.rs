@@ -1,62 +1,324 @@
-//! Static states by Newton's method.
+//! Static states by Newton's method: its tangent, its supports, and states against damped motion.
 
-use std::ops::ControlFlow;
 use std::time::Instant;
 
-use billow_solver::ladder::film::capsule::film_scene;
-use billow_solver::mesh::Shape;
-use billow_solver::fold::Caps;
+use billow_solver::film_scene::{
+    Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold, Motion, PlaneBody, Profile,
+};
+use billow_solver::gas::GasState;
+use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
+use billow_solver::ladder::film::erected;
+use billow_solver::material::Regime;
 use billow_solver::model::FilmModel;
+use billow_solver::scene::Film;
+use billow_solver::shell::Shell;
 use billow_solver::simd::Path;
 use billow_solver::state::Field;
-use billow_solver::statics::{Iteration, Loaded, Settling, equilibrium};
+use billow_solver::statics::tangent::{self, Stiffness};
+use billow_solver::statics::{
+    Loaded, Relaxation, Settling, StaticError, StaticFailureKind, equilibrium, solve_unwatched,
+};
 use billow_solver::supports::Supports;
-use nalgebra::Vector3;
+use nalgebra::{SVector, Vector2, Vector3};
 
-use crate::film_rig::{ELASTIC, icosphere};
+use crate::film_rig::{ELASTIC, film_forces, icosphere, pattern};
 use crate::rig::paper_scene;
 
-fn watch(print: bool) -> impl FnMut(&Iteration) -> ControlFlow<()> {
-    let start = Instant::now();
-    move |it| {
-        if print { println!("{:6.2} s {:3} r {:.2e} d {:.2e} mu {:.0e} a {:.3}", start.elapsed().as_secs_f64(), it.index, it.residual, it.step, it.shift, it.share); }
-        ControlFlow::Continue(())
+/// One element and its nodes under an in-plane stretch, turned in space.
+fn stretched(film: &Film, a: f64, b: f64) -> (FilmModel, Field) {
+    let flat = [Vector2::new(0.1, 0.2), Vector2::new(0.14, 0.21), Vector2::new(0.11, 0.25)];
+    let model = FilmModel::new(film, 3, &[[0, 1, 2]], &[flat]).unwrap();
+    let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.3);
+    let place =
+        |x: Vector2<f64>| turn * Vector3::new(x.x * (1.0 + a) + 1e-3 * x.y, x.y * (1.0 + b), 0.3);
+    (model, Field::of(&flat.map(place)))
+}
+
+/// Minus the central differences of all nine forces.
+fn differences(places: &Field, step: f64, force: impl Fn(&Field) -> Field) -> Stiffness {
+    let mut stiffness = Stiffness::zeros();
+    for column in 0..9 {
+        let at = |by: f64| {
+            let mut moved = places.clone();
+            let mut place = moved.get(column / 3);
+            place[column % 3] += by;
+            moved.set(column / 3, place);
+            let force = force(&moved);
+            SVector::<f64, 9>::from_fn(|row, _| force.get(row / 3)[row % 3])
+        };
+        stiffness.set_column(column, &((at(-step) - at(step)) / (2.0 * step)));
     }
+    stiffness
 }
 
 #[test]
-fn sphere() {
-    for level in [1, 2, 3] {
-    for p in [100.0, 1000.0, 5000.0] {
-    let piece = icosphere(level, 0.5);
-    let model = piece.model(&ELASTIC);
-    let supports = Supports::none(piece.nodes.len());
-    let loaded = Loaded { model: &model, supports: &supports, overpressure: p, gravity: Vector3::zeros(), path: Path::best() };
-    let rest = equilibrium(&loaded, Field::of(&piece.nodes), &Settling::default(), &mut watch(level == 3)).unwrap();
-    let loaded: f64 = rest.places.iter().map(|x| x.norm()).sum();
-    let unloaded: f64 = piece.nodes.iter().map(Vector3::norm).sum();
-    println!("{level} {p} {} {}", rest.iterations, loaded / unloaded - 1.0);
-    }}
-}
-
-#[test]
-fn capsule() {
-    let n: u32 = std::env::var("N").map_or(5, |n| n.parse().unwrap());
-    let mut scene = paper_scene();
-    scene.design.subdivisions = n;
-    scene.design.caps = Caps::Circular;
-    scene.supports.clear();
-    let (scene, _) = film_scene(&scene, Shape::Erected, 0.9).unwrap();
-    let model = FilmModel::of_shell(&scene.film, &scene.shell).unwrap();
-    let supports = Supports::none(model.nodes());
-    let mut places = Field::of(&scene.shell.positions);
-    let list: Vec<f64> = std::env::var("P").map_or(vec![10.0], |p| p.split(',').map(|p| p.parse().unwrap()).collect());
-    for p in list {
-        let loaded = Loaded { model: &model, supports: &supports, overpressure: p, gravity: Vector3::zeros(), path: Path::best() };
-        let start = Instant::now();
-        match equilibrium(&loaded, places.clone(), &Settling::default(), &mut watch(true)) {
-            Ok(rest) => { println!("{p}: {} V {} {:.2} s", rest.iterations, billow_solver::forces::pressure::volume(&model, &rest.places), start.elapsed().as_secs_f64()); places = rest.places; }
-            Err(f) => { println!("{p}: {f}"); }
+fn the_tangent_is_the_slope_of_the_forces_in_every_regime() {
+    let regimes = [
+        (5e-3, 4e-3, Regime::Taut),
+        (6e-3, -5e-3, Regime::Wrinkled),
+        (2e-3, -0.2, Regime::Wrinkled),
+        (-6e-3, -5e-3, Regime::Slack),
+    ];
+    for compression in [0.0, 0.01, 1.0] {
+        for (a, b, regime) in regimes {
+            let film = Film { compression, ..ELASTIC };
+            let (model, places) = stretched(&film, a, b);
+            assert_eq!(
+                model.material.regime(billow_solver::forces::membrane::strain(&model, &places, 0)),
+                regime
+            );
+            let own = tangent::elastic(&model, &places, 0);
+            let still = Field::zeros(3);
+            let slope = differences(&places, 1e-8, |at| film_forces(&model, at, &still).0.film);
+            let scale = film.youngs_modulus * film.thickness;
+            assert!((own - own.transpose()).norm() < 1e-13 * scale);
+            assert!((own - slope).norm() < 1e-6 * scale, "{regime:?} c {compression}");
+            if compression == 0.0 {
+                let least = own.symmetric_eigenvalues().min();
+                assert!(least > -1e-13 * scale, "{regime:?}: {least}");
+            }
         }
     }
+}
+
+#[test]
+fn the_pressure_tangent_is_the_symmetric_slope_of_the_pressure() {
+    let (model, places) = stretched(&ELASTIC, 5e-3, 4e-3);
+    let still = Field::zeros(3);
+    let own = tangent::pressure([0, 1, 2], &places, 1000.0);
+    let force = |at: &Field| {
+        let area = film_forces(&model, at, &still).0.area;
+        Field::of(&area.iter().map(|share| share * 1000.0).collect::<Vec<_>>())
+    };
+    let slope = differences(&places, 1e-6, force);
+    let symmetric = (slope + slope.transpose()) * 0.5;
+    assert!((own - own.transpose()).norm() < 1e-15 * own.norm());
+    assert!((own - symmetric).norm() < 1e-8 * own.norm());
+}
+
+/// The tangent of a whole closed film is the slope of its forces, pressure and all.
+#[test]
+fn over_a_closed_film_nothing_of_the_pressure_is_left_out() {
+    let piece = icosphere(1, 0.5);
+    let model = piece.model(&ELASTIC);
+    let bump = |(k, x): (usize, &Vector3<f64>)| x * (1.01 + 1e-3 * f64::from(k as u32 % 5));
+    let places = Field::of(&piece.nodes.iter().enumerate().map(bump).collect::<Vec<_>>());
+    let way: Vec<Vector3<f64>> = pattern(places.len(), 7);
+    let pressure = 5e4;
+    let force = |share: f64| {
+        let moved: Vec<Vector3<f64>> =
+            places.iter().zip(&way).map(|(place, way)| place + way * share).collect();
+        let moved = Field::of(&moved);
+        let own = film_forces(&model, &moved, &Field::zeros(moved.len())).0;
+        own.film.iter().zip(own.area.iter()).map(|(f, a)| f + a * pressure).collect::<Vec<_>>()
+    };
+    let (ahead, behind) = (force(1e-7), force(-1e-7));
+    let mut push = vec![Vector3::zeros(); places.len()];
+    for (element, face) in model.triangles.iter().enumerate() {
+        let stiffness = tangent::elastic(&model, &places, element)
+            + tangent::pressure(*face, &places, pressure);
+        let moves = SVector::<f64, 9>::from_fn(|row, _| way[face[row / 3] as usize][row % 3]);
+        let forces = stiffness * moves;
+        for (corner, node) in face.iter().enumerate() {
+            push[*node as usize] -= forces.fixed_rows::<3>(3 * corner);
+        }
+    }
+    let size = push.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    for node in 0..places.len() {
+        let slope = (ahead[node] - behind[node]) / 2e-7;
+        assert!((push[node] - slope).norm() < 1e-5 * size, "{node}");
+    }
+}
+
+#[test]
+fn where_damped_motion_rests_newton_rests() {
+    let mut scene = paper_scene();
+    scene.design.subdivisions = 3;
+    let mut capsule = erected(&scene).unwrap();
+    let state = capsule.settle(100.0).unwrap();
+    let nodes = capsule.model.nodes();
+    let setting = Setting {
+        supports: capsule.supports.clone(),
+        cfl: 0.9,
+        viscosity: scene.film.viscosity,
+        ..Setting::free(Interior::Overpressure(100.0), nodes)
+    };
+    let mut film = Explicit::new(
+        capsule.model.clone(),
+        setting,
+        // Pushed off by a tenth of a millimetre, so that there is something to settle.
+        Field::of(
+            &state
+                .places
+                .iter()
+                .zip(pattern(nodes, 5))
+                .enumerate()
+                .map(|(n, (place, way))| place + capsule.supports.projector(n) * way * 1e-4)
+                .collect::<Vec<_>>(),
+        ),
+        Field::zeros(nodes),
+        GasState::default(),
+    );
+    Relaxation { kinetic_share: 1e-16, ..Relaxation::default() }
+        .relax_at(&mut film, 100.0)
+        .unwrap();
+    let moved = (0..nodes).map(|n| (film.state.places.get(n) - state.places.get(n)).norm());
+    let moved = moved.fold(0.0, f64::max);
+    println!("{} Newton steps; damped motion moves {moved:e} m on", state.iterations);
+    assert!(moved < 1e-6, "{moved}");
+    assert!((film.state.volume / state.volume - 1.0).abs() < 1e-9);
+}
+
+fn scene(shell: Shell, pressure: f64, supports: Vec<FilmSupport>) -> FilmScene {
+    FilmScene {
+        shell,
+        velocities: Vec::new(),
+        film: ELASTIC,
+        filling: Filling::Pressure(pressure),
+        supports,
+        gravity: Vector3::zeros(),
+        release_time: 0.0,
+        solver: FilmSolver {
+            cfl: 0.5,
+            end_time: 0.0,
+            statics: true,
+            mass_damping: 0.0,
+            step_limit: 0,
+            path: Path::best(),
+        },
+        outputs: FilmOutputs { sample_interval: 1.0, nodes: Vec::new(), elements: Vec::new() },
+    }
+}
+
+/// A strip of film along x, `width` m wide, in z = 0.
+fn strip(columns: u32, length: f64, width: f64) -> Shell {
+    let at = |i: u32, j: u32| i * 3 + j;
+    let mut nodes = Vec::new();
+    let mut triangles = Vec::new();
+    for i in 0..=columns {
+        for j in 0..3 {
+            let (x, y) = (f64::from(i) / f64::from(columns), f64::from(j) / 2.0);
+            nodes.push(Vector3::new(x * length, y * width, 0.0));
+            if i < columns && j < 2 {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    Shell::relaxed(nodes, triangles)
+}
+
+fn on(name: &str, nodes: Vec<u32>, hold: Hold) -> FilmSupport {
+    FilmSupport { name: name.to_owned(), nodes, hold, motion: None }
+}
+
+/// A strip pulled by a rigid plane that a force pushes: N = F/width, the travel from the stretch.
+#[test]
+fn a_rigid_plane_goes_where_its_force_is_borne() {
+    let (columns, length, width, force) = (6_u32, 0.3, 0.1, 20.0);
+    let slant = Vector3::new(1.0, 0.0, 0.0);
+    let ends = |i: u32| (0..3).map(|j| i * 3 + j).collect::<Vec<u32>>();
+    let plane = PlaneBody { normal: slant, mass: 0.1, velocity: 0.0, force };
+    let supports = vec![
+        on("wall", ends(0), Hold::Components([true, false, false])),
+        on("corner", vec![0], Hold::Components([true, true, false])),
+        on("flat", (0..(columns + 1) * 3).collect(), Hold::Components([false, false, true])),
+        on("plate", ends(columns), Hold::Body(plane)),
+    ];
+    let scene = scene(strip(columns, length, width), 0.0, supports);
+    let state = solve_unwatched(&scene).unwrap();
+    // λ (λ² − 1)/2 E t w = F.
+    let stiffness = ELASTIC.youngs_modulus * ELASTIC.thickness * width;
+    let mut stretch = 1.0;
+    for _ in 0..50 {
+        stretch = 1.0 + force / (stiffness * stretch * (stretch + 1.0) / 2.0);
+    }
+    let travel = state.places.x[(columns * 3) as usize] - length;
+    println!("travel {travel}, expected {}", (stretch - 1.0) * length);
+    assert!((travel / ((stretch - 1.0) * length) - 1.0).abs() < 1e-6);
+    assert!((state.reactions[0].force.x / force - 1.0).abs() < 1e-6);
+    assert!((state.reactions[3].force.x / -force - 1.0).abs() < 1e-6);
+    assert!(state.potential_energy < 0.0 && state.strain_energy > 0.0);
+}
+
+/// A strip whose end is moved 3 mm: the mover bears what the wall bears.
+#[test]
+fn what_is_moved_is_moved_and_bears() {
+    let ends = |i: u32| (0..3).map(|j| i * 3 + j).collect::<Vec<u32>>();
+    let motion = Motion {
+        from: 0.0,
+        to: 1.0,
+        profile: Profile::Smooth,
+        translation: Vector3::new(3e-3, 0.0, 0.0),
+        turn: None,
+    };
+    let all = Hold::Components([true, true, true]);
+    let mut moved = on("jaw", ends(6), all);
+    moved.motion = Some(motion);
+    let supports = vec![on("wall", ends(0), all), moved];
+    let state = solve_unwatched(&scene(strip(6, 0.3, 0.1), 0.0, supports)).unwrap();
+    assert!((state.places.x[18] - 0.303).abs() < 1e-15);
+    let [wall, jaw] = [&state.reactions[0], &state.reactions[1]];
+    assert!((wall.force + jaw.force).norm() < 1e-6 * wall.force.norm());
+    let pull = ELASTIC.youngs_modulus * ELASTIC.thickness * 0.1 * 0.01;
+    assert!(wall.force.x > pull && wall.force.x < 1.1 * pull, "{}", wall.force.x);
+}
+
+/// A film that nothing holds, with a weight and no support, has no state of rest.
+#[test]
+fn film_that_falls_is_refused() {
+    let mut falling = scene(strip(4, 0.3, 0.1), 0.0, Vec::new());
+    falling.gravity = Vector3::new(0.0, 0.0, -9.81);
+    let refused = solve_unwatched(&falling);
+    let Err(StaticError::NoState(failure)) = refused else { panic!("{refused:?}") };
+    assert_ne!(failure.kind, StaticFailureKind::Stopped);
+    println!("{failure}");
+}
+
+#[test]
+fn the_watcher_can_end_a_search() {
+    let piece = icosphere(1, 0.5);
+    let model = piece.model(&ELASTIC);
+    let supports = Supports::none(piece.nodes.len());
+    let loaded = Loaded {
+        model: &model,
+        supports: &supports,
+        overpressure: 100.0,
+        gravity: Vector3::zeros(),
+        path: Path::best(),
+    };
+    let mut looks = 0;
+    let stop = &mut |_: &_| {
+        looks += 1;
+        if looks == 3 {
+            std::ops::ControlFlow::Break(())
+        } else {
+            std::ops::ControlFlow::Continue(())
+        }
+    };
+    let ended = equilibrium(&loaded, Field::of(&piece.nodes), &Settling::default(), stop);
+    assert_eq!(ended.unwrap_err().kind, StaticFailureKind::Stopped);
+}
+
+/// The same bits on every instruction set.
+#[test]
+fn a_state_has_the_same_bits_on_every_path() {
+    let mut scene = paper_scene();
+    scene.design.subdivisions = 2;
+    let capsule = erected(&scene).unwrap();
+    let states = Path::ALL.map(|path| {
+        let loaded = Loaded {
+            model: &capsule.model,
+            supports: &Supports::none(capsule.model.nodes()),
+            overpressure: 1000.0,
+            gravity: Vector3::zeros(),
+            path,
+        };
+        let start = Instant::now();
+        let go = &mut |_: &_| std::ops::ControlFlow::Continue(());
+        let rest = equilibrium(&loaded, capsule.places.clone(), &Settling::default(), go).unwrap();
+        println!("{}: {:.3} s", path.name(), start.elapsed().as_secs_f64());
+        rest.places
+    });
+    assert!(states.iter().all(|state| *state == states[0]));
 }

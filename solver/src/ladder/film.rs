@@ -27,7 +27,8 @@ use crate::state::Field;
 pub mod capsule;
 mod statics;
 
-pub use statics::{Relaxation, StaticState, erected, static_reference, static_states};
+pub use crate::statics::Relaxation;
+pub use statics::{Erected, StaticState, erected, static_reference, static_states};
 
 /// Runs a scene as film without contact, at this share of the stable step, judged against
 /// `reference` ([`static_reference`], or a stored one of the same design, film and supports).

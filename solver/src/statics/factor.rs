@@ -54,8 +54,7 @@ pub struct Factor {
 impl Elimination {
     /// For this film with these unknowns, cut where its nodes are now (m).
     pub fn new(model: &FilmModel, unknowns: &Unknowns, places: &Field) -> Self {
-        let faces: Vec<[u32; 3]> =
-            model.triangles.iter().chain(&model.closure).copied().collect();
+        let faces: Vec<[u32; 3]> = model.triangles.iter().chain(&model.closure).copied().collect();
         let free = |node: u32| !unknowns.own[node as usize].is_empty();
         let mut neighbours = vec![Vec::new(); model.nodes()];
         for face in &faces {
@@ -124,7 +123,9 @@ impl Elimination {
         }
         // Both lists are in the order of elimination, and a front's own begin its list.
         let locate = |plan: &Plan, unknown: u32| -> u32 {
-            let at = plan.unknowns.binary_search_by_key(&rank[unknown as usize], |own| rank[*own as usize]);
+            let at = plan
+                .unknowns
+                .binary_search_by_key(&rank[unknown as usize], |own| rank[*own as usize]);
             u32::try_from(at.expect("an unknown of the front")).expect("under 2^32")
         };
         for index in 0..plans.len() {
@@ -165,12 +166,7 @@ impl Elimination {
 
     /// Factors a stiffness given face by face, film first, with a shift of its diagonal (both N/m);
     /// `None` where that is not positive definite.
-    pub fn factor(
-        &self,
-        path: Path,
-        stiffness: &[Stiffness],
-        shift: &[f64],
-    ) -> Option<Factor> {
+    pub fn factor(&self, path: Path, stiffness: &[Stiffness], shift: &[f64]) -> Option<Factor> {
         let diagonal = self.diagonal(stiffness);
         let mut columns = Vec::with_capacity(self.plans.len());
         let mut left: Vec<Vec<f64>> = vec![Vec::new(); self.plans.len()];

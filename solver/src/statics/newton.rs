@@ -276,9 +276,7 @@ impl<'a> Search<'a> {
             let stiffness = self.stiffness();
             let factor = loop {
                 let shifts: Vec<f64> = mass.iter().map(|mass| mass * shift).collect();
-                if let Some(factor) =
-                    elimination.factor(self.loaded.path, &stiffness, &shifts)
-                {
+                if let Some(factor) = elimination.factor(self.loaded.path, &stiffness, &shifts) {
                     break factor;
                 }
                 shift *= 10.0;
@@ -345,11 +343,7 @@ impl<'a> Search<'a> {
             } else {
                 high = [share, work];
             }
-            share = if high[0].is_infinite() {
-                2.0 * share
-            } else {
-                between(low, high)
-            };
+            share = if high[0].is_infinite() { 2.0 * share } else { between(low, high) };
         }
         // As far as it surely goes downhill.
         self.look(step, low[0]);
@@ -371,7 +365,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Longest diagonal of the box round these places, m.
-fn extent(places: &Field) -> f64 {
+pub(super) fn extent(places: &Field) -> f64 {
     let side = |axis: &[f64]| {
         let low = axis.iter().copied().fold(f64::INFINITY, f64::min);
         axis.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low

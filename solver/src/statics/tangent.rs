@@ -28,8 +28,7 @@ pub type Stiffness = SMatrix<f64, 9, 9>;
 /// D at a strain, Pa, for (xx, yy, 2xy).
 pub fn material_tangent(material: &Material, strain: PlaneTensor) -> Matrix3<f64> {
     let (k, nu) = (material.plane_modulus(), material.poisson_ratio);
-    let full =
-        Matrix3::new(k, k * nu, 0.0, k * nu, k, 0.0, 0.0, 0.0, 0.5 * k * (1.0 - nu));
+    let full = Matrix3::new(k, k * nu, 0.0, k * nu, k, 0.0, 0.0, 0.0, 0.5 * k * (1.0 - nu));
     let relaxed = match material.regime(strain) {
         Regime::Taut => full,
         Regime::Wrinkled => {
@@ -72,9 +71,8 @@ pub fn elastic(model: &FilmModel, places: &Field, element: usize) -> Stiffness {
         let left = moves[i].transpose() * tangent * volume;
         for j in 0..=i {
             let (s, r) = (slopes[i], slopes[j]);
-            let pull = stress.xx * s.x * r.x
-                + stress.yy * s.y * r.y
-                + stress.xy * (s.x * r.y + s.y * r.x);
+            let pull =
+                stress.xx * s.x * r.x + stress.yy * s.y * r.y + stress.xy * (s.x * r.y + s.y * r.x);
             let block = left * moves[j] + Matrix3::identity() * (pull * volume);
             stiffness.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&block);
             if i != j {

@@ -36,7 +36,8 @@ fn free_directions(projector: &Matrix3<f64>) -> Vec<Vector3<f64>> {
     let mut found = Vec::new();
     // A projector's diagonal entry is the squared length of what it leaves of that axis.
     for _ in 0..3 {
-        let axis = (0..3).fold(0, |best, k| if rest[(k, k)] > rest[(best, best)] { k } else { best });
+        let axis =
+            (0..3).fold(0, |best, k| if rest[(k, k)] > rest[(best, best)] { k } else { best });
         if rest[(axis, axis)] <= 1e-9 {
             break;
         }

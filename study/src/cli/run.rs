@@ -85,6 +85,19 @@ fn threads(global: &Global) -> Result<Option<NonZero<usize>>> {
     Ok(Some(NonZero::new(threads).ok_or_else(refused)?))
 }
 
+/// As many threads as asked for; one a core where nobody asks.
+///
+/// # Errors
+/// Where nought is asked for, or the system gives none.
+pub fn pool(global: &Global) -> Result<rayon::ThreadPool> {
+    let threads = threads(global)?.map_or(0, NonZero::get);
+    let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    built.map_err(|error| Error::Disk {
+        path: "threads".into(),
+        problem: format!("cannot start: {error}\n  next: ask for fewer with --threads N"),
+    })
+}
+
 fn print(
     name: &str,
     root: &Path,

@@ -1,0 +1,76 @@
+//! What takes energy from film takes as much as it says.
+//!
+//! ```text
+//! viscosity:     log decrement of a mode 2π ζ ω/ω_e
+//! mass damping:  v = v0 exp(−c t) in free flight
+//! ```
+
+use core::f64::consts::{PI, TAU};
+
+use billow_solver::course::Phase;
+use billow_solver::film_scene::FilmScene;
+use billow_solver::scene::Film;
+use nalgebra::Vector3;
+
+use super::oscillation::turns;
+use super::reference::number;
+use super::rig::{advance, film, held, scene};
+use super::shapes_dynamic::{sheet, strip};
+use super::{Outcome, Rig, Row};
+
+/// A standing wave along a strip of equal elements, held across.
+pub fn strip_decrement(rig: &Rig) -> Outcome {
+    let (columns, length) = (40_u32, 1.0);
+    let shell = strip(columns, length, 0.05);
+    let all = (0..2 * (columns + 1)).collect();
+    let ends = vec![0, columns, columns + 1, 2 * columns + 1];
+    let film = Film { compression: 1.0, viscosity: 0.1, ..film() };
+    let wave = |x: &Vector3<f64>| Vector3::x() * (1e-4 * libm::sin(PI * x.x / length));
+    let mut scene = FilmScene {
+        velocities: shell.positions.iter().map(wave).collect(),
+        supports: vec![held(all, "yz"), held(ends, "x")],
+        ..scene(shell, film)
+    };
+    scene.solver.cfl = 0.1;
+    let centre = columns as usize / 2;
+    let place = scene.shell.positions[centre].x;
+    let mut film = rig.start(&scene)?;
+    let interval = film.stable_step();
+    let turns = turns(&mut film, interval, 9, |film| film.state.places.x[centre] - place)?;
+    // Four periods between eight half waves.
+    let omega = 4.0 * TAU / (turns[8].time - turns[0].time);
+    let decrement = libm::log(turns[0].value / turns[8].value) / 4.0;
+    let expected = TAU * scene.film.viscosity * omega / film.model.frequency[0];
+    let ledger = film.ledger();
+    let kinetic: f64 = scene
+        .velocities
+        .iter()
+        .zip(&film.model.mass)
+        .map(|(v, mass)| 0.5 * mass * v.norm_squared())
+        .sum();
+    let lost = kinetic - ledger.kinetic - ledger.strain;
+    let band = number("damping/band");
+    Ok(vec![
+        Row::new("log decrement of a strip's mode", decrement, expected, band),
+        Row::new("energy taken, J", ledger.viscous_work, lost, band),
+    ])
+}
+
+/// Free flight under mass damping.
+pub fn free_flight(rig: &Rig) -> Outcome {
+    let shell = sheet(2, 2, 0.1, 0.1);
+    let (start, damping, time) = (Vector3::new(3.0, -1.0, 2.0), 40.0, 0.03);
+    let velocities = vec![start; shell.positions.len()];
+    let mut scene = FilmScene { velocities, ..scene(shell, film()) };
+    scene.solver.mass_damping = damping;
+    let mut film = rig.start(&scene)?;
+    let before = film.kinetic_energy();
+    advance(&mut film, time, &Phase::default())?;
+    let share = film.velocities().get(4).norm() / start.norm();
+    let lost = before - film.kinetic_energy();
+    let band = number("damping/band");
+    Ok(vec![
+        Row::new("speed left of free flight", share, libm::exp(-damping * time), band),
+        Row::new("energy taken, J", film.ledger().damping_work, lost, band),
+    ])
+}

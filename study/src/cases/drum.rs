@@ -1,0 +1,147 @@
+//! Discs that vibrate out of their plane: stretched by the rim, and by their own spin.
+//!
+//! ```text
+//! stretched:  f = j/(2π a) √(S t/(ρ t)),  j a zero of J_m               w = J_m(j r/a) cos mθ
+//! spinning:   (p/Ω)² = (n(n+2)(3+ν) − m²(1+3ν))/8,  n = m + 2s          in the co-rotating frame
+//!             (2,0): w = r² cos 2θ      (0,1): w = 1 − 2 (r/a)²
+//! ```
+//!
+//! The frequency is that of the projection Σ m w φ on the mode, so that what the mesh mixes in
+//! counts by its square.
+
+use core::f64::consts::TAU;
+
+use billow_solver::film_scene::FilmScene;
+use billow_solver::scene::Film;
+use nalgebra::Vector3;
+
+use super::oscillation::frequency;
+use super::reference::{number, rows};
+use super::rig::{film, held, scene};
+use super::row::{order, richardson};
+use super::shapes_dynamic::{disc, rim};
+use super::{Outcome, Rig, Row};
+
+/// Share of the stable step: a drum's periods are thousands of steps, whose own error is 1e-8.
+const CFL: f64 = 0.9;
+
+/// Frequency of a scene's disc, let go in this shape of amplitude (m), over so many crossings.
+fn ring(
+    rig: &Rig,
+    mut scene: FilmScene,
+    shape: &[f64],
+    amplitude: f64,
+    (interval, crossings): (f64, usize),
+) -> Result<f64, String> {
+    for (place, shape) in scene.shell.positions.iter_mut().zip(shape) {
+        place.z = amplitude * shape;
+    }
+    scene.solver.cfl = CFL;
+    let mut film = rig.start(&scene)?;
+    frequency(&mut film, interval, crossings, |film| {
+        let heights = film.state.places.z.iter().zip(shape);
+        heights.zip(&film.model.mass).map(|((z, shape), mass)| mass * z * shape).sum()
+    })
+}
+
+/// The drum: a disc whose film is stretched alike both ways, its rim held.
+pub fn stretched_disc(rig: &Rig) -> Outcome {
+    let [radius, tension, share, raw, band, least] =
+        ["radius", "tension", "amplitude", "raw_band", "band", "order"]
+            .map(|key| number(&format!("stretched_disc/{key}")));
+    let film = film();
+    // S = E/(1−ν) e on a strain alike both ways.
+    let stress = tension / film.thickness;
+    let strain = stress * (1.0 - film.poisson_ratio) / film.youngs_modulus;
+    let stretch = (1.0 + 2.0 * strain).sqrt();
+    let mut judged = Vec::new();
+    for row in rows("stretched_disc") {
+        let (diameters, zero, expected) = (row[0], row[2], row[3]);
+        let run = |rings: u32| -> Result<f64, String> {
+            let mut shell = disc(rings, radius);
+            let shape: Vec<f64> = shell
+                .positions
+                .iter()
+                .map(|x| {
+                    let at = zero * x.norm() / radius;
+                    if diameters == 0.0 {
+                        libm::j0(at)
+                    } else {
+                        libm::j1(at) * libm::cos(libm::atan2(x.y, x.x))
+                    }
+                })
+                .collect();
+            for place in &mut shell.positions {
+                *place *= stretch;
+            }
+            let supports = vec![held(rim(rings), "xyz")];
+            let scene = FilmScene { supports, ..scene(shell, film) };
+            ring(rig, scene, &shape, share * radius, (1.0 / (400.0 * expected), 3))
+        };
+        let values = [run(8)?, run(16)?, run(32)?];
+        let errors = values.map(|value| value / expected - 1.0);
+        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+        let mode = format!("({diameters},{})", row[1]);
+        judged.push(
+            Row::new(&format!("frequency {mode}, finest mesh, Hz"), values[2], expected, raw)
+                .with_least_order(seen, least)
+                .with_errors(errors),
+        );
+        let limit = richardson(values[1], values[2]);
+        judged.push(Row::new(&format!("frequency {mode}, Richardson, Hz"), limit, expected, band));
+    }
+    Ok(judged)
+}
+
+/// Strains of a free disc spinning at this rate (1/s) bring each point out by this much, m.
+fn spun_out(film: &Film, radius: f64, rate: f64, r: f64) -> f64 {
+    let nu = film.poisson_ratio;
+    let scale = film.density * rate * rate * (1.0 - nu * nu) / (8.0 * film.youngs_modulus);
+    scale * r * ((3.0 + nu) / (1.0 + nu) * radius * radius - r * r)
+}
+
+/// A free disc that spins.
+pub fn spinning_disc(rig: &Rig) -> Outcome {
+    let [radius, rate, share, band] =
+        ["radius", "rate", "amplitude", "band"].map(|key| number(&format!("spinning_disc/{key}")));
+    let film = film();
+    let mut judged = Vec::new();
+    for row in rows("spinning_disc") {
+        let (diameters, expected) = (row[0], row[2]);
+        let run = |rings: u32| -> Result<f64, String> {
+            let mut shell = disc(rings, radius);
+            let shape: Vec<f64> = shell
+                .positions
+                .iter()
+                .map(|x| {
+                    if diameters == 0.0 {
+                        1.0 - 2.0 * x.norm_squared() / (radius * radius)
+                    } else {
+                        (x.x * x.x - x.y * x.y) / (radius * radius)
+                    }
+                })
+                .collect();
+            for place in &mut shell.positions {
+                let r = place.norm();
+                if r > 0.0 {
+                    *place *= 1.0 + spun_out(&film, radius, rate, r) / r;
+                }
+            }
+            let spin = Vector3::new(0.0, 0.0, rate);
+            let velocities = shell.positions.iter().map(|x| spin.cross(x)).collect();
+            let scene = FilmScene { velocities, ..scene(shell, film) };
+            let period = TAU / (expected * rate);
+            let found = ring(rig, scene, &shape, share * radius, (period / 400.0, 3))?;
+            Ok(found * TAU / rate)
+        };
+        let values = [run(4)?, run(8)?, run(16)?];
+        let errors = values.map(|value| value / expected - 1.0);
+        let quantity = format!("p/Omega of mode ({diameters},{})", row[1]);
+        judged.push(
+            Row::new(&quantity, values[2], expected, band)
+                .with_order(order(errors[1], errors[2]))
+                .with_errors(errors),
+        );
+    }
+    Ok(judged)
+}

@@ -1,0 +1,163 @@
+//! A rigid plate on a column of gas, through the explicit step.
+//!
+//! ```text
+//! injected:  x = C t^1.5,  C² = ṁ cp T_in/(M (0.75/(γ−1) + 1.125)),  T = T_in 2γ/(3γ−1)
+//! spring:    M ẍ = p0 A ((L0/x)^γ − 1)             T_lin = 2π √(M L0/(γ p0 A))
+//! ```
+//!
+//! The plate is film bound to a rigid plane; the walls enclose and are no film. Steps are shares of
+//! the plate's own stable step, halved from one to the next.
+
+use billow_solver::course::Phase;
+use billow_solver::film_scene::{Filling, FilmScene};
+use billow_solver::integrate::explicit::Explicit;
+use billow_solver::scene::{Film, GasSupply, Species};
+
+use super::piston_model;
+use super::reference::{number, rows};
+use super::rig::{advance, film, inflow, nitrogen, scene};
+use super::row::{order, own_order};
+use super::shapes_dynamic::column;
+use super::{Outcome, Rig, Row};
+
+/// A moving plate on gas.
+struct Piston {
+    area: f64,
+    height: f64,
+    mass: f64,
+    speed: f64,
+    force: f64,
+    supply: GasSupply,
+    temperature: f64,
+    cfl: f64,
+}
+
+impl Piston {
+    fn start(&self, rig: &Rig) -> Result<Explicit, String> {
+        let column = column(self.area, self.height);
+        let film = Film { ..film() };
+        let supports = column.piston(self.mass, film.area_density(), self.speed, self.force);
+        let supply = self.supply.clone();
+        let filling = Filling::Gas { supply, initial_temperature: self.temperature };
+        let mut scene = FilmScene { filling, supports, ..scene(column.shell, film) };
+        scene.solver.cfl = self.cfl;
+        rig.start(&scene)
+    }
+}
+
+/// Height of the plate, m.
+fn height(film: &Explicit) -> f64 {
+    film.state.places.z[4]
+}
+
+fn injection() -> Phase {
+    inflow(number("injected_piston/rate"), number("injected_piston/inflow_temperature"))
+}
+
+/// From the closed form at 1 ms to 50 ms, in steps halved twice.
+pub fn injected_piston(rig: &Rig) -> Outcome {
+    let [mass, rate, entering, c, start, end] =
+        ["mass", "rate", "inflow_temperature", "C", "start", "end"]
+            .map(|key| number(&format!("injected_piston/{key}")));
+    let cp = number("nitrogen/cp");
+    let gamma = cp / (cp - number("nitrogen/gas_constant"));
+    let run = |cfl: f64| -> Result<Explicit, String> {
+        let piston = Piston {
+            area: 0.5,
+            height: c * libm::pow(start, 1.5),
+            mass,
+            speed: 1.5 * c * start.sqrt(),
+            force: 0.0,
+            supply: GasSupply { initial_mass: rate * start, ..nitrogen() },
+            temperature: entering * 2.0 * gamma / (3.0 * gamma - 1.0),
+            cfl,
+        };
+        let mut film = piston.start(rig)?;
+        advance(&mut film, end - start, &injection())?;
+        Ok(film)
+    };
+    let runs = [run(0.16)?, run(0.08)?, run(0.04)?];
+    let expected = number("injected_piston/position_at_50_ms");
+    let errors = runs.each_ref().map(|film| height(film) / expected - 1.0);
+    let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+    let finest = &runs[2];
+    let enthalpy = rate * end * cp * entering;
+    let share = finest.kinetic_energy() / enthalpy;
+    Ok(vec![
+        Row::new("x at 50 ms, m", height(finest), expected, number("injected_piston/band"))
+            .with_least_order(seen, number("injected_piston/order"))
+            .with_errors(errors),
+        Row::new(
+            "kinetic energy over enthalpy let in",
+            share,
+            number("injected_piston/kinetic_share_of_enthalpy"),
+            number("injected_piston/offset_band"),
+        ),
+    ])
+}
+
+/// From rest on an empty dead volume, against the piston model at a tolerance of 1e-13.
+pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
+    let area = 0.1;
+    let volume = number("injected_piston/offset_volume");
+    let end = number("injected_piston/end");
+    let start = volume / area;
+    let run = |cfl: f64| -> Result<f64, String> {
+        let piston = Piston {
+            area,
+            height: start,
+            mass: number("injected_piston/mass"),
+            speed: 0.0,
+            force: 0.0,
+            supply: nitrogen(),
+            temperature: 293.0,
+            cfl,
+        };
+        let mut film = piston.start(rig)?;
+        advance(&mut film, end, &injection())?;
+        Ok(height(&film) - start)
+    };
+    let values = [run(0.04)?, run(0.02)?, run(0.01)?];
+    let expected = piston_model::from_dead_volume(area, volume, 1e-13)?;
+    let band = number("injected_piston/offset_band");
+    Ok(vec![Row::new("x at 50 ms, m", values[2], expected, band).with_order(own_order(values))])
+}
+
+/// Period of a mass on gas against a constant force, at three amplitudes.
+pub fn gas_spring(rig: &Rig) -> Outcome {
+    let gamma = number("gas_spring/gamma");
+    // cp/cv = γ exactly.
+    let species = Species { gas_constant: 296.8, cp: 296.8 * gamma / (gamma - 1.0) };
+    let (mass, length, area, pressure) = (0.4, 0.3, 0.02, 2000.0);
+    let linear = 2.0 * core::f64::consts::PI * (mass * length / (gamma * pressure * area)).sqrt();
+    let content = pressure * area * length / (species.gas_constant * 293.0);
+    let mut judged = Vec::new();
+    for row in rows("gas_spring") {
+        let (amplitude, ratio) = (row[0], row[1]);
+        let period = |cfl: f64| -> Result<f64, String> {
+            let piston = Piston {
+                area,
+                height: length * (1.0 + amplitude),
+                mass,
+                speed: 0.0,
+                force: -pressure * area,
+                supply: GasSupply { species, initial_mass: content, ..nitrogen() },
+                temperature: 293.0 * libm::pow(1.0 + amplitude, 1.0 - gamma),
+                cfl,
+            };
+            let mut film = piston.start(rig)?;
+            advance(&mut film, ratio * linear, &Phase::default())?;
+            // Back at rest after one period: what speed is left tells by how much it was missed.
+            let speed = film.velocities().z[4];
+            let force = film.force_on(&film.setting.supports.bodies[0]) - pressure * area;
+            Ok(ratio * linear - speed / (force / mass))
+        };
+        let values = [period(0.8)?, period(0.4)?, period(0.2)?];
+        let quantity = format!("period over linear period at amplitude {amplitude}");
+        judged.push(
+            Row::new(&quantity, values[2] / linear, ratio, number("gas_spring/band"))
+                .with_order(own_order(values)),
+        );
+    }
+    Ok(judged)
+}

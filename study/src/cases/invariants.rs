@@ -1,0 +1,126 @@
+//! What film must keep: a uniform strain, rigid motion, momentum; and a panel in pure shear.
+//!
+//! ```text
+//! patch:     F uniform  →  no force inside
+//! rotation:  x = R X + t  →  no strain, force or power
+//! momentum:  Σ m v and Σ m x × v of free film, in shares of Σ |m v|
+//! shear:     F = 1 + γ e1⊗e2  →  P12 = −Σ f·e1 X·e2/V
+//! ```
+
+use billow_solver::course::Phase;
+use billow_solver::film_scene::{Filling, FilmScene};
+use billow_solver::forces::membrane::strain;
+use billow_solver::integrate::explicit::Explicit;
+use billow_solver::scene::{Film, GasSupply};
+use nalgebra::{Rotation3, Vector3};
+
+use super::reference::number;
+use super::rig::{advance, film, nitrogen, scene};
+use super::row::worse;
+use super::shapes_dynamic::{icosphere, pattern, sheet};
+use super::{Outcome, Rig, Row};
+
+/// A sheet under a uniform strain has no force inside.
+pub fn patch(rig: &Rig) -> Outcome {
+    let (width, height, band) = (0.2, 0.15, number("patch/band"));
+    let mut shell = sheet(5, 4, width, height);
+    let inside: Vec<usize> = (0..shell.positions.len())
+        .filter(|node| {
+            let x = shell.positions[*node];
+            x.x > 0.0 && x.y > 0.0 && x.x < width - 1e-9 && x.y < height - 1e-9
+        })
+        .collect();
+    for x in &mut shell.positions {
+        *x = Vector3::new(1.004 * x.x + 0.002 * x.y, 1.003 * x.y, 0.0);
+    }
+    let film = rig.start(&scene(shell, film()))?;
+    let scale = number("film/youngs_modulus") * number("film/thickness") * 0.04;
+    let force = inside.iter().map(|node| film.forces.film.get(*node).norm()).fold(0.0, worse);
+    let expected = 0.5 * (1.004 * 1.004 - 1.0);
+    let off = (0..film.model.elements())
+        .map(|element| (strain(&film.model, &film.state.places, element).xx - expected).abs())
+        .fold(0.0, worse);
+    Ok(vec![
+        Row::at_most("force inside, of E t h", force / scale, band),
+        Row::at_most("strain off the uniform one", off, band),
+    ])
+}
+
+/// A rigid motion strains nothing.
+pub fn rigid_rotation(rig: &Rig) -> Outcome {
+    let axis = Vector3::new(1.0, -2.0, 0.5);
+    let turn = Rotation3::new(axis);
+    let mut shell = icosphere(2, 0.5);
+    let spin = |x: &Vector3<f64>| (turn * x).cross(&axis) * 100.0 + Vector3::new(5.0, 0.0, 1.0);
+    let velocities: Vec<Vector3<f64>> = shell.positions.iter().map(spin).collect();
+    for x in &mut shell.positions {
+        *x = turn * *x + Vector3::new(3.0, -1.0, 2.0);
+    }
+    let film = Film { compression: 1.0, viscosity: 0.1, ..film() };
+    let scale = film.youngs_modulus * film.thickness * 0.1;
+    let film = rig.start(&FilmScene { velocities: velocities.clone(), ..scene(shell, film) })?;
+    let force = film.forces.film.iter().map(|force| force.norm()).fold(0.0, worse);
+    let power: f64 = film.forces.viscous.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
+    let band = number("patch/band");
+    Ok(vec![
+        Row::at_most("force, of E t h", force / scale, band),
+        Row::at_most("strain energy, of E t h^2", film.strain_energy() / (scale * 0.1), band),
+        Row::at_most("viscous power, of E t h m/s", power.abs() / scale, band),
+    ])
+}
+
+/// Σ m v, Σ m x × v and Σ |m v|.
+fn momentum(film: &Explicit) -> (Vector3<f64>, Vector3<f64>, f64) {
+    // The places half a step ago, where these velocities are.
+    let back = -0.5 * film.state.last_step;
+    let (mut sum, mut moment, mut size) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+    for (node, mass) in film.model.mass.iter().enumerate() {
+        let velocity = film.state.velocities.get(node);
+        sum += velocity * *mass;
+        moment += (film.state.places.get(node) + velocity * back).cross(&velocity) * *mass;
+        size += velocity.norm() * mass;
+    }
+    (sum, moment, size)
+}
+
+/// A sphere of film and gas, thrown and spun, keeps both momenta over 1e5 steps.
+pub fn momenta(rig: &Rig) -> Outcome {
+    let shell = icosphere(1, 0.5);
+    let (spin, throw) = (Vector3::new(2.0, -3.0, 5.0), Vector3::new(0.3, 0.1, -0.2));
+    let kicks = pattern(shell.positions.len(), 5);
+    let velocity = |(x, kick): (&Vector3<f64>, Vector3<f64>)| spin.cross(x) + kick * 0.5 + throw;
+    let velocities = shell.positions.iter().zip(kicks).map(velocity).collect();
+    let filling = Filling::Gas {
+        supply: GasSupply { initial_mass: 5e-3, ..nitrogen() },
+        initial_temperature: 293.0,
+    };
+    let film = Film { viscosity: 0.1, ..film() };
+    let mut film = rig.start(&FilmScene { velocities, filling, ..scene(shell, film) })?;
+    let before = momentum(&film);
+    let target = 1e5 * film.stable_step();
+    advance(&mut film, target, &Phase::default())?;
+    let after = momentum(&film);
+    let band = number("momentum/band");
+    let share = |off: Vector3<f64>| off.norm() / before.2;
+    Ok(vec![
+        Row::at_least("steps", film.state.steps as f64, 1e5),
+        Row::at_most("momentum gained, of sum |m v|", share(after.0 - before.0), band),
+        Row::at_most("moment gained, of sum |m v|, m", share(after.1 - before.1), band),
+    ])
+}
+
+/// Simple shear without stretch across, wrinkled: the stress of the tension field.
+pub fn shear_panel(rig: &Rig) -> Outcome {
+    let gamma = number("shear_panel/gamma");
+    let reference = sheet(6, 4, 0.3, 0.2);
+    let mut shell = reference.clone();
+    for x in &mut shell.positions {
+        x.x += gamma * x.y;
+    }
+    let film = rig.start(&scene(shell, film()))?;
+    let volume: f64 = film.model.volume.iter().sum();
+    let pull = film.forces.film.iter().zip(&reference.positions);
+    let stress = -pull.map(|(force, x)| force.x * x.y).sum::<f64>() / volume;
+    let (expected, band) = (number("shear_panel/P12"), number("shear_panel/band"));
+    Ok(vec![Row::new("P12, Pa", stress, expected, band)])
+}

@@ -1,0 +1,166 @@
+//! The piston model on the gas cases it stands for: the same closed forms, without film.
+
+use billow_solver::course::Phase;
+use billow_solver::deployment::Model;
+use billow_solver::gas::{Gas, GasState};
+use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
+use billow_solver::ladder::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
+use billow_solver::scene::{GasSupply, Species, Stepping};
+
+use super::reference::{number, rows};
+use super::rig::{inflow, nitrogen};
+use super::row::order;
+use super::{Outcome, Rig, Row};
+
+fn control(stepping: Stepping) -> Control {
+    Control { stepping, step_limit: 10_000_000 }
+}
+
+fn adaptive(tolerance: f64) -> Control {
+    control(Stepping::Adaptive(tolerance))
+}
+
+/// A piston on V = A z + V0 without an end.
+fn tube(area: f64, offset: f64, mass: f64, gas: Gas) -> Piston {
+    let volume = VolumeLaw::Uniform { area, offset };
+    Piston { volume, mass, weight: 0.0, end: EndFilm::none(), gas }
+}
+
+fn advance(run: &mut PistonRun, target: f64, phase: &Phase) -> Result<(), String> {
+    run.advance(target, phase)
+        .map_err(|failure| format!("{:?} at {} s: {}", failure.kind, failure.time, failure.place))
+}
+
+fn injection() -> Phase {
+    inflow(number("injected_piston/rate"), number("injected_piston/inflow_temperature"))
+}
+
+/// Filling of a rigid tank: a packed piston.
+pub fn tank_filling(_: &Rig) -> Outcome {
+    let [initial, start, entering, band] =
+        ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
+            .map(|key| number(&format!("tank_filling/{key}")));
+    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let state = PistonState { height: 1.0, speed: 0.0, gas: gas.at_temperature(initial, start) };
+    let mut run = PistonRun::new(tube(0.0, 0.3, 1.0, gas), 0.0, state, adaptive(DEFAULT_TOLERANCE));
+    let phase = Phase { packed: true, ..inflow(5e-3, entering) };
+    let mut judged = Vec::new();
+    for row in rows("tank_filling") {
+        advance(&mut run, (row[0] - initial) / 5e-3, &phase)?;
+        let quantity = format!("T at {} kg, K", row[0]);
+        judged.push(Row::new(&quantity, run.sample(&phase).temperature, row[1], band));
+    }
+    Ok(judged)
+}
+
+/// The injected piston from 1 ms on its closed form.
+pub fn injected_piston(_: &Rig) -> Outcome {
+    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let [mass, rate, entering, c, start, end] =
+        ["mass", "rate", "inflow_temperature", "C", "start", "end"]
+            .map(|key| number(&format!("injected_piston/{key}")));
+    let gamma = gas.gamma();
+    let run = |control: Control| -> Result<f64, String> {
+        let state = PistonState {
+            height: c * libm::pow(start, 1.5),
+            speed: 1.5 * c * start.sqrt(),
+            gas: gas.at_temperature(rate * start, entering * 2.0 * gamma / (3.0 * gamma - 1.0)),
+        };
+        let mut run = PistonRun::new(tube(0.7, 0.0, mass, gas), start, state, control);
+        advance(&mut run, end, &injection())?;
+        Ok(run.state().height)
+    };
+    let expected = number("injected_piston/position_at_50_ms");
+    let band = number("injected_piston/band");
+    let exact = run(adaptive(1e-13))?;
+    let steps = [4e-4, 2e-4].map(|step| run(control(Stepping::Fixed(step))));
+    let [coarse, fine] = steps;
+    let seen = order(coarse? - exact, fine? - exact);
+    Ok(vec![
+        Row::new("x at 50 ms, adaptive, m", run(adaptive(DEFAULT_TOLERANCE))?, expected, band),
+        Row::new("x at 50 ms, fixed step, m", run(control(Stepping::Fixed(2e-5)))?, expected, band)
+            .with_least_order(seen, number("injected_piston/order")),
+    ])
+}
+
+/// Way at 50 ms of a piston that starts at rest on this empty volume (m³), m.
+pub fn from_dead_volume(area: f64, volume: f64, tolerance: f64) -> Result<f64, String> {
+    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    // At z = 0 the height is not yet above zero, so z counts from 0.1 m on.
+    let shift = 0.1;
+    let piston = tube(area, volume - area * shift, number("injected_piston/mass"), gas);
+    let state = PistonState { height: shift, speed: 0.0, gas: GasState::default() };
+    let mut run = PistonRun::new(piston, 0.0, state, adaptive(tolerance));
+    advance(&mut run, number("injected_piston/end"), &injection())?;
+    Ok(run.state().height - shift)
+}
+
+/// Way at 50 ms by the classical Runge-Kutta rule on the balance of energy, U = Ḣ t − M ẋ²/2, with
+/// Richardson's extrapolation: independent of the solver's integrator and of its gas.
+fn extrapolated(area: f64, volume: f64) -> f64 {
+    let [mass, rate, entering, end] = ["mass", "rate", "inflow_temperature", "end"]
+        .map(|key| number(&format!("injected_piston/{key}")));
+    let cp = number("nitrogen/cp");
+    let excess = cp / (cp - number("nitrogen/gas_constant")) - 1.0;
+    let power = rate * cp * entering;
+    let acceleration = |t: f64, x: f64, v: f64| {
+        excess * (power * t - 0.5 * mass * v * v) / (area * x + volume) * area / mass
+    };
+    let classical = |n: u32| {
+        let h = end / f64::from(n);
+        let (mut x, mut v) = (0.0, 0.0);
+        for i in 0..n {
+            let t = f64::from(i) * h;
+            let (v1, a1) = (v, acceleration(t, x, v));
+            let half = t + 0.5 * h;
+            let v2 = v + 0.5 * h * a1;
+            let a2 = acceleration(half, x + 0.5 * h * v1, v2);
+            let v3 = v + 0.5 * h * a2;
+            let a3 = acceleration(half, x + 0.5 * h * v2, v3);
+            let v4 = v + h * a3;
+            let a4 = acceleration(t + h, x + h * v3, v4);
+            x += h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+            v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+        }
+        x
+    };
+    let (coarse, fine) = (classical(20_000), classical(40_000));
+    fine + (fine - coarse) / 15.0
+}
+
+/// The injected piston from rest on an empty dead volume.
+pub fn injected_piston_dead_volume(_: &Rig) -> Outcome {
+    let (area, volume) = (0.1, number("injected_piston/offset_volume"));
+    let value = from_dead_volume(area, volume, DEFAULT_TOLERANCE)?;
+    let band = number("injected_piston/offset_band");
+    Ok(vec![Row::new("x at 50 ms, m", value, extrapolated(area, volume), band)])
+}
+
+/// Periods of a mass on gas.
+pub fn gas_spring(_: &Rig) -> Outcome {
+    let gamma = number("gas_spring/gamma");
+    let species = Species { gas_constant: 296.8, cp: 296.8 * gamma / (gamma - 1.0) };
+    let gas = Gas::new(&GasSupply { species, ..nitrogen() }, 293.0, 1.0);
+    let (mass, length, area, pressure) = (0.4, 0.3, 0.02, 2000.0);
+    let linear = 2.0 * core::f64::consts::PI * (mass * length / (gamma * pressure * area)).sqrt();
+    let mut judged = Vec::new();
+    for row in rows("gas_spring") {
+        let (amplitude, ratio) = (row[0], row[1]);
+        let temperature = 293.0 * libm::pow(1.0 + amplitude, 1.0 - gamma);
+        let content = pressure * area * length / (species.gas_constant * 293.0);
+        let piston = Piston { weight: -pressure * area, ..tube(area, 0.0, mass, gas) };
+        let state = PistonState {
+            height: length * (1.0 + amplitude),
+            speed: 0.0,
+            gas: gas.at_temperature(content, temperature),
+        };
+        let mut run = PistonRun::new(piston, 0.0, state, adaptive(1e-10));
+        advance(&mut run, ratio * linear, &Phase::default())?;
+        // Back at rest after one period: what speed is left tells by how much it was missed.
+        let force = pressure * area * (libm::pow(1.0 + amplitude, -gamma) - 1.0);
+        let period = ratio * linear - run.state().speed / (force / mass);
+        let quantity = format!("period over linear period at amplitude {amplitude}");
+        judged.push(Row::new(&quantity, period / linear, ratio, number("gas_spring/band")));
+    }
+    Ok(judged)
+}

@@ -1,0 +1,69 @@
+//! The square airbag: two square sheets sewn at the edge and inflated.
+//!
+//! A quarter of the upper sheet between planes of symmetry; the seam stays in z = 0 and is free in
+//! it. There are several minima of energy near each other: the potential energy tells which is
+//! found, and lower is better.
+
+use billow_solver::film_scene::{Filling, FilmScene};
+use billow_solver::resultants::resultants;
+use billow_solver::scene::Film;
+
+use super::reference::{number, rows};
+use super::rig::{held, scene};
+use super::shapes_static::{grid, nodes_where};
+use super::static_rest::{at_rest, film};
+use super::{Outcome, Rig, Row};
+
+/// Energy, height and volume on three meshes.
+pub fn square_airbag(_: &Rig) -> Outcome {
+    let [diagonal, youngs_modulus, poisson_ratio, thickness, pressure, volume] =
+        ["diagonal", "youngs_modulus", "poisson_ratio", "thickness", "overpressure", "volume"]
+            .map(|key| number(&format!("square_airbag/{key}")));
+    let [energy_band, height_band, volume_band] = ["energy_band", "height_band", "volume_band"]
+        .map(|key| number(&format!("square_airbag/{key}")));
+    let side = 0.5 * diagonal / 2.0_f64.sqrt();
+    let film = Film { youngs_modulus, poisson_ratio, thickness, ..film() };
+    let mut judged = Vec::new();
+    for row in rows("square_airbag") {
+        // The rows' first column counts cells.
+        let cells = (1_u32..).find(|cells| f64::from(*cells) >= row[0]).unwrap_or(1);
+        let shell = grid(cells, cells, side, side);
+        let seam = nodes_where(&shell, |x| x.x >= side || x.y >= side);
+        let supports = vec![
+            held(nodes_where(&shell, |x| x.x <= 0.0), "x"),
+            held(nodes_where(&shell, |x| x.y <= 0.0), "y"),
+            held(seam, "z"),
+        ];
+        let filling = Filling::Pressure(pressure);
+        let (state, word) = at_rest(&FilmScene { filling, supports, ..scene(shell, film) })?;
+        let name = |what: &str| format!("{what}, {cells} cells");
+        let corner = state.places.get(state.places.len() - 1);
+        let inward = 2.0_f64.sqrt() * side - corner.xy().norm();
+        let stress = resultants(&state.model, &state.places, 0).principal[0] / thickness * 1e-6;
+        judged.push(
+            Row::at_most(
+                &name("potential energy above the row's, J"),
+                state.potential_energy - row[1],
+                energy_band,
+            )
+            .with_note(&format!(
+                "{:.6} J; u_A {inward:.6} m, S1(M) {stress:.4} MPa; {word}",
+                state.potential_energy
+            )),
+        );
+        judged.push(
+            Row::at_most(
+                &name("w_M off the row's, m"),
+                (state.places.z[0] - row[2]).abs(),
+                height_band,
+            )
+            .with_note(&format!("{:.6} m", state.places.z[0])),
+        );
+        let whole = 8.0 * state.volume;
+        judged.push(
+            Row::at_most(&name("volume off the target, m3"), (whole - volume).abs(), volume_band)
+                .with_note(&format!("{whole:.6} m3")),
+        );
+    }
+    Ok(judged)
+}

@@ -1,0 +1,100 @@
+//! Discs under pressure: one clamped, two sewn together.
+//!
+//! The clamped disc's pressure follows its surface. The balloon is its upper half, whose rim slides
+//! in the plane of symmetry; far from taut, its film shortens round the rim by a quarter.
+
+use billow_solver::film_scene::{Filling, FilmScene};
+use billow_solver::resultants::resultants;
+use billow_solver::scene::Film;
+
+use super::reference::{number, rows};
+use super::rig::{held, scene};
+use super::row::order;
+use super::shapes_dynamic::{disc, rim};
+use super::static_rest::{at_rest, film, mean};
+use super::{Outcome, Rig, Row};
+
+/// Thickness of the clamped disc's film, m; only E t counts.
+const THICKNESS: f64 = 1e-4;
+
+/// Height, volume and membrane force of a clamped disc under pressure.
+pub fn clamped_disc(_: &Rig) -> Outcome {
+    let [size, force, least] =
+        ["size_band", "force_band", "order"].map(|key| number(&format!("clamped_disc/{key}")));
+    let mut judged = Vec::new();
+    for row in rows("clamped_disc") {
+        let (radius, pressure) = (row[0], row[3]);
+        let film = Film {
+            youngs_modulus: row[1] / THICKNESS,
+            poisson_ratio: row[2],
+            thickness: THICKNESS,
+            ..film()
+        };
+        let run = |rings: u32| -> Result<[f64; 3], String> {
+            let filling = Filling::Pressure(pressure);
+            let supports = vec![held(rim(rings), "xyz")];
+            let scene = FilmScene { filling, supports, ..scene(disc(rings, radius), film) };
+            let (state, _) = at_rest(&scene)?;
+            // The first six elements lie round the centre.
+            let pull = |element| {
+                let own = resultants(&state.model, &state.places, element).principal;
+                0.5 * (own[0] + own[1])
+            };
+            let middle = (0..6).map(pull).sum::<f64>() / 6.0;
+            Ok([state.places.z[0], state.volume, middle])
+        };
+        let values = [run(8)?, run(16)?, run(32)?];
+        let names = ["w0, m", "volume, m3", "N0, N/m"];
+        for (at, (name, band)) in names.into_iter().zip([size, size, force]).enumerate() {
+            let expected = row[4 + at];
+            let errors = values.map(|value| value[at] / expected - 1.0);
+            let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+            judged.push(
+                Row::new(&format!("{name}, at {pressure} Pa"), values[2][at], expected, band)
+                    .with_least_order(seen, least)
+                    .with_errors(errors),
+            );
+        }
+    }
+    Ok(judged)
+}
+
+/// Radius, thickness and volume of the balloon.
+pub fn mylar_balloon(_: &Rig) -> Outcome {
+    let [radius, size, bulk] =
+        ["radius", "size_band", "volume_band"].map(|key| number(&format!("mylar_balloon/{key}")));
+    let mut judged = Vec::new();
+    for row in rows("mylar_balloon") {
+        let pressure = row[0];
+        let run = |rings: u32| -> Result<([f64; 3], String), String> {
+            let filling = Filling::Pressure(pressure);
+            let supports = vec![held(rim(rings), "z")];
+            let scene = FilmScene { filling, supports, ..scene(disc(rings, radius), film()) };
+            let (state, word) = at_rest(&scene)?;
+            let middle = mean(&state, &rim(rings), |x| x.x);
+            let across = mean(&state, &rim(rings), |x| x.y);
+            let wide = mean(&state, &rim(rings), |x| {
+                let (x, y) = (x.x - middle, x.y - across);
+                (x * x + y * y).sqrt()
+            });
+            let cube = radius * radius * radius;
+            let sizes =
+                [wide / radius, 2.0 * state.places.z[0] / radius, 2.0 * state.volume / cube];
+            Ok((sizes, word))
+        };
+        let (finest, word) = run(48)?;
+        let values = [run(12)?.0, run(24)?.0, finest];
+        let names = ["r/a", "thickness/a", "V/a3"];
+        for (at, (name, band)) in names.into_iter().zip([size, size, bulk]).enumerate() {
+            let expected = row[1 + at];
+            let errors = values.map(|value| value[at] / expected - 1.0);
+            judged.push(
+                Row::new(&format!("{name} at {pressure} Pa"), values[2][at], expected, band)
+                    .with_order(order(errors[1], errors[2]))
+                    .with_errors(errors)
+                    .with_note(&word),
+            );
+        }
+    }
+    Ok(judged)
+}

@@ -1,0 +1,142 @@
+//! Closed shells under pressure: sphere, cylinder, cone.
+//!
+//! ```text
+//! sphere    p = (t/R) E/(1−ν) (λ²−1)/λ
+//! cylinder  S_axial t = p R λ_hoop²/(2 λ_axial),  S_hoop t = p R λ_axial
+//! cone      N_hoop = p r/cos φ,  N_meridional = p r/(2 cos φ)
+//! ```
+//!
+//! Stretches are those of mean radii against the same mesh unloaded. The cylinder's end is a rigid
+//! plane pushed by p π (R λ_hoop)², the cone's a rigid disc pushed by p π r²; the cone's forces are
+//! true ones (per width as it is) over its middle third, each at its own radius.
+
+use core::f64::consts::PI;
+
+use billow_solver::film_scene::{Filling, FilmScene, FilmSupport, Hold, PlaneBody};
+use billow_solver::resultants::resultants;
+use nalgebra::Vector3;
+
+use super::reference::{number, rows};
+use super::rig::{held, scene};
+use super::row::{order, worse};
+use super::shapes_dynamic::icosphere;
+use super::shapes_static::{revolved, ring};
+use super::static_rest::{at_rest, film, mean};
+use super::{Outcome, Rig, Row};
+
+/// Radius of a sphere at rest.
+pub fn sphere(_: &Rig) -> Outcome {
+    let [radius, band, least] =
+        ["radius", "band", "order"].map(|key| number(&format!("static_sphere/{key}")));
+    let mut judged = Vec::new();
+    for row in rows("static_sphere") {
+        let (pressure, expected) = (row[0], row[1]);
+        let run = |level: u32| -> Result<f64, String> {
+            let filling = Filling::Pressure(pressure);
+            let scene = FilmScene { filling, ..scene(icosphere(level, radius), film()) };
+            let (state, _) = at_rest(&scene)?;
+            let loaded: f64 = state.places.iter().map(|x| x.norm()).sum();
+            let unloaded: f64 = scene.shell.positions.iter().map(Vector3::norm).sum();
+            Ok(loaded / unloaded - 1.0)
+        };
+        let values = [run(2)?, run(3)?, run(4)?];
+        let errors = values.map(|value| value / expected - 1.0);
+        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+        judged.push(
+            Row::new(&format!("lambda - 1 at {pressure} Pa"), values[2], expected, band)
+                .with_least_order(seen, least)
+                .with_errors(errors),
+        );
+    }
+    Ok(judged)
+}
+
+/// A plate on these nodes, pushed along z.
+fn plate(nodes: Vec<u32>, force: f64) -> FilmSupport {
+    let hold = Hold::Body(PlaneBody { normal: Vector3::z(), mass: 1.0, velocity: 0.0, force });
+    FilmSupport { name: "plate".to_owned(), nodes, hold, motion: None }
+}
+
+/// Both stretches of a cylinder with closed ends.
+pub fn cylinder(_: &Rig) -> Outcome {
+    let [radius, length, pressure, axial, hoop, band, least] =
+        ["radius", "length", "overpressure", "axial", "hoop", "band", "order"]
+            .map(|key| number(&format!("static_cylinder/{key}")));
+    let wide = radius * (1.0 + hoop);
+    let run = |along: u32| -> Result<[f64; 2], String> {
+        let around = 8 * along;
+        let shell = revolved(along, around, |k| [radius, length * f64::from(k) / f64::from(along)]);
+        let top = ring(along, around);
+        let supports =
+            vec![held(ring(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
+        let filling = Filling::Pressure(pressure);
+        let (state, _) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let all: Vec<u32> = (0..(along + 1) * around).collect();
+        Ok([
+            mean(&state, &all, |x| x.xy().norm()) / radius - 1.0,
+            mean(&state, &top, |x| x.z) / length - 1.0,
+        ])
+    };
+    let values = [run(3)?, run(6)?, run(12)?];
+    let row = |at: usize, name: &str, expected: f64| {
+        let errors = values.map(|value| value[at] / expected - 1.0);
+        let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
+        Row::new(name, values[2][at], expected, band)
+            .with_least_order(seen, least)
+            .with_errors(errors)
+    };
+    Ok(vec![row(0, "lambda_hoop - 1", hoop), row(1, "lambda_axial - 1", axial)])
+}
+
+/// Membrane forces of a cone away from its ends.
+pub fn cone(_: &Rig) -> Outcome {
+    let [bottom, top, height, pressure, band] =
+        ["bottom_radius", "top_radius", "height", "overpressure", "band"]
+            .map(|key| number(&format!("cone/{key}")));
+    let slope = (bottom - top) / height;
+    let cos = 1.0 / (1.0 + slope * slope).sqrt();
+    let run = |along: u32| -> Result<[[f64; 2]; 2], String> {
+        let around = 4 * along;
+        let shell = revolved(along, around, |k| {
+            let at = f64::from(k) / f64::from(along);
+            [bottom + (top - bottom) * at, height * at]
+        });
+        let supports = vec![
+            held(ring(0, around), "xyz"),
+            held(ring(along, around), "xy"),
+            plate(ring(along, around), pressure * PI * top * top),
+        ];
+        let filling = Filling::Pressure(pressure);
+        let (state, _) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (mut sum, mut worst, mut count) = ([0.0; 2], [0.0; 2], 0.0);
+        for (element, triangle) in state.model.triangles.iter().enumerate() {
+            let corners = triangle.map(|node| state.places.get(node as usize));
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            if (middle.z / height - 0.5).abs() < 1.0 / 6.0 {
+                // The mean distance of the surface itself, not of the chord.
+                let radius = corners.iter().map(|x| x.xy().norm()).sum::<f64>() / 3.0;
+                let hoop = pressure * radius / cos;
+                let own = resultants(&state.model, &state.places, element).cauchy;
+                for (at, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
+                    sum[at] += own[at] / expected;
+                    worst[at] = worse(worst[at], (own[at] / expected - 1.0).abs());
+                }
+                count += 1.0;
+            }
+        }
+        Ok([sum.map(|sum| sum / count), worst])
+    };
+    let values = [run(12)?, run(24)?, run(48)?];
+    let mut judged = Vec::new();
+    for (at, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
+        let errors = values.map(|[mean, _]| mean[at] - 1.0);
+        judged.push(
+            Row::new(&format!("{name}/(closed form), mean"), values[2][0][at], 1.0, band)
+                .with_order(order(errors[1], errors[2]))
+                .with_errors(errors),
+        );
+        let farthest = values[2][1][at];
+        judged.push(Row::at_most(&format!("{name}, farthest element"), farthest, band));
+    }
+    Ok(judged)
+}

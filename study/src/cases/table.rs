@@ -1,0 +1,187 @@
+//! The table of cases.
+
+use super::{
+    Case, Outcome, Rig, Tier, capsule_run, damping, drum, forces, gas_piston, gas_vessel,
+    invariants, piston_model, sphere_motion, static_airbag, static_discs, static_end_state,
+    static_shells, static_wrinkling, step_limit,
+};
+
+const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, compares, tier: Tier::Quick, body }
+}
+
+const fn long(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, compares, tier: Tier::Long, body }
+}
+
+/// Every case, in the order they are told.
+pub const CASES: &[Case] = &[
+    quick(
+        "tank_filling",
+        "temperature of a rigid vessel filled from vacuum, with the first law",
+        gas_vessel::tank_filling,
+    ),
+    quick(
+        "blow_down",
+        "temperature and pressure of a vessel emptying through a choked orifice, with the closed form",
+        gas_vessel::blow_down,
+    ),
+    quick(
+        "cooling",
+        "temperature of a vessel cooled by its film, with the exponential",
+        gas_vessel::cooling,
+    ),
+    quick(
+        "gas_spring",
+        "period of a plate on adiabatic gas, with a quadrature",
+        gas_piston::gas_spring,
+    ),
+    quick(
+        "injected_piston",
+        "way of a plate driven by a constant inflow into vacuum, with the self-similar solution",
+        gas_piston::injected_piston,
+    ),
+    quick(
+        "injected_piston_dead_volume",
+        "the same from rest on an empty dead volume, with a high-order integration",
+        gas_piston::injected_piston_dead_volume,
+    ),
+    quick(
+        "piston_model_tank_filling",
+        "tank_filling by the piston model",
+        piston_model::tank_filling,
+    ),
+    quick("piston_model_gas_spring", "gas_spring by the piston model", piston_model::gas_spring),
+    quick(
+        "piston_model_injected",
+        "injected_piston by the piston model",
+        piston_model::injected_piston,
+    ),
+    quick(
+        "piston_model_dead_volume",
+        "injected_piston_dead_volume by the piston model, with the classical Runge-Kutta rule",
+        piston_model::injected_piston_dead_volume,
+    ),
+    quick(
+        "stretched_disc",
+        "frequencies of a drum, with the zeros of Bessel functions",
+        drum::stretched_disc,
+    ),
+    quick(
+        "spinning_disc",
+        "frequencies of a free disc held flat by its spin, with the closed form",
+        drum::spinning_disc,
+    ),
+    quick(
+        "breathing_sphere",
+        "frequency of a sphere on adiabatic gas about its rest, with its linear equation",
+        sphere_motion::breathing_sphere,
+    ),
+    long(
+        "released_sphere",
+        "turning points of a sphere let go unstretched, with a quadrature",
+        sphere_motion::released_sphere,
+    ),
+    quick(
+        "strip_damping",
+        "decrement of a strip's mode under film viscosity, with 2 pi zeta omega/omega_e",
+        damping::strip_decrement,
+    ),
+    quick(
+        "free_flight_damping",
+        "speed of free flight under mass damping, with exp(-c t)",
+        damping::free_flight,
+    ),
+    quick("patch", "film under a uniform strain, with no force inside", invariants::patch),
+    quick(
+        "rigid_rotation",
+        "film turned and spun as a rigid body, with no strain, force or power",
+        invariants::rigid_rotation,
+    ),
+    quick(
+        "momentum",
+        "momentum and moment of free film and gas over 1e5 steps, with those of the start",
+        invariants::momenta,
+    ),
+    quick(
+        "force_energy",
+        "every conservative force, with finite differences of its energy in each regime",
+        forces::force_energy,
+    ),
+    quick(
+        "path_energy",
+        "work of film along a path through all regimes, with the change of its energy",
+        forces::path_energy,
+    ),
+    quick(
+        "dissipation",
+        "power, net force and moment of viscosity, with the power told and nought",
+        forces::dissipation,
+    ),
+    quick(
+        "step_limit",
+        "measured limit of the step and element bound, with 2/omega_max of the assembled stiffness",
+        step_limit::step_limit,
+    ),
+    quick(
+        "shear_panel",
+        "stress of a wrinkled panel in simple shear, with the tension field's",
+        invariants::shear_panel,
+    ),
+    quick(
+        "sphere_ledger",
+        "energy of a sphere that meets every term at once, with its works",
+        capsule_run::sphere_ledger,
+    ),
+    quick(
+        "capsule_ledger",
+        "energy of the paper's capsule deployed without contact, with its works",
+        capsule_run::capsule_ledger,
+    ),
+    quick(
+        "static_sphere",
+        "stretch of a sphere at rest, with the closed form",
+        static_shells::sphere,
+    ),
+    quick(
+        "static_cylinder",
+        "stretches of a cylinder with closed ends, with the closed form",
+        static_shells::cylinder,
+    ),
+    quick(
+        "cone",
+        "membrane forces of a cone away from its ends, with the closed form",
+        static_shells::cone,
+    ),
+    quick(
+        "clamped_disc",
+        "a clamped disc under a pressure that follows it, with a boundary value problem",
+        static_discs::clamped_disc,
+    ),
+    quick(
+        "mylar_balloon",
+        "two discs sewn together and inflated, with the meridian's equation",
+        static_discs::mylar_balloon,
+    ),
+    quick(
+        "square_airbag",
+        "two squares sewn together and inflated, with another program on the same meshes",
+        static_airbag::square_airbag,
+    ),
+    quick(
+        "beam",
+        "moment of a pulled and bent strip, wrinkled in part, with the closed form",
+        static_wrinkling::beam,
+    ),
+    quick(
+        "annulus_torsion",
+        "torque and wrinkles of a twisted annulus, with a boundary value problem",
+        static_wrinkling::annulus_torsion,
+    ),
+    quick(
+        "end_state",
+        "end state of the capsule with circular caps, with the axisymmetric tension field",
+        static_end_state::circular,
+    ),
+    quick("end_state_aligned", "the same on a mesh along its meridians", static_end_state::aligned),
+];

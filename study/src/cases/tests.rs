@@ -1,0 +1,64 @@
+use super::*;
+
+fn pool(threads: usize) -> ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
+}
+
+fn sound(_: &Rig) -> Outcome {
+    Ok(vec![Row::new("x", 1.0005, 1.0, 1e-3)])
+}
+
+fn failing(_: &Rig) -> Outcome {
+    Err("no such thing".to_owned())
+}
+
+fn panicking(_: &Rig) -> Outcome {
+    panic!("nought divided by {}", 0)
+}
+
+fn case(name: &'static str, body: fn(&Rig) -> Outcome) -> Case {
+    Case { name, compares: "nothing", tier: Tier::Quick, body }
+}
+
+#[test]
+fn every_case_leaves_a_row_in_the_order_asked_for() {
+    let cases = [
+        case("a", panicking),
+        case("b", sound),
+        case("c", failing),
+        case("d", sound),
+        case("e", |_| Ok(Vec::new())),
+    ];
+    let all: Vec<&Case> = cases.iter().collect();
+    for threads in [1, 2] {
+        let judged = run_all(&pool(threads), &all, &Rig::default(), &|_| ());
+        let names: Vec<&str> = judged.iter().map(|j| j.name).collect();
+        assert_eq!(names, ["a", "b", "c", "d", "e"]);
+        let pass: Vec<bool> = judged.iter().map(Judged::pass).collect();
+        assert_eq!(pass, [false, true, false, true, false]);
+        assert_eq!(judged[0].rows[0].note, "panicked: nought divided by 0");
+        assert_eq!(judged[2].rows[0].note, "no such thing");
+    }
+}
+
+#[test]
+fn names_are_told_apart() {
+    let mut names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), CASES.len());
+}
+
+#[test]
+fn rows_judge_as_they_say() {
+    assert!(Row::new("x", 0.999, 1.0, 1.1e-3).pass);
+    assert!(!Row::new("x", 0.999, 1.0, 0.9e-3).pass);
+    assert!(!Row::new("x", f64::NAN, 1.0, 1e9).pass);
+    assert!(Row::at_most("x", 1e-13, 1e-12).pass && !Row::at_most("x", 2e-12, 1e-12).pass);
+    assert!(!Row::at_most("x", f64::NAN, 1e-12).pass);
+    assert!(Row::at_least("x", 1.9, 1.8).pass && !Row::at_least("x", 1.7, 1.8).pass);
+    let slow = Row::new("x", 1.0, 1.0, 1e-3).with_least_order(1.7, 1.8);
+    assert!(!slow.pass && slow.order == Some(1.7) && slow.note.contains("1.8"));
+    assert!(!Row::new("x", 1.0, 1.0, 1e-3).with_least_order(f64::NAN, 1.8).pass);
+    assert!(!Row::new("x", 2.0, 1.0, 1e-3).with_least_order(2.0, 1.8).pass);
+}

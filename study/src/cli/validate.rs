@@ -1,0 +1,143 @@
+//! `billow validate`: the reference cases, judged.
+
+use std::io::Write;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::print::print_rows;
+use super::{Format, Global};
+use crate::cases::{self, CASES, Case, Judged, Rig, Tier};
+use crate::error::{Error, InputError, Result};
+use crate::keys;
+use crate::value::Value;
+
+/// Arguments of `billow validate`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Run this case only; may be given again.
+    #[arg(long = "case", value_name = "NAME")]
+    pub cases: Vec<String>,
+    /// Leave out the long cases.
+    #[arg(long)]
+    pub quick: bool,
+    /// List the cases and what each compares; run nothing.
+    #[arg(long)]
+    pub list: bool,
+}
+
+/// Runs `billow validate`.
+///
+/// # Errors
+/// When a case is not known, or one is out of band.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let chosen = chosen(&args.cases)?;
+    if args.list {
+        return list(&chosen, global.format(), out);
+    }
+    let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
+    let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
+    let pool = super::run::pool(global)?;
+    let (total, ended) = (cases.len(), AtomicUsize::new(0));
+    let telling = Mutex::new(());
+    let judged = cases::run_all(&pool, &cases, &Rig::default(), &|judged| {
+        let _turn = telling.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
+        if !global.quiet {
+            let verdict = if judged.pass() { "in band" } else { "OUT OF BAND" };
+            let Judged { name, seconds, .. } = judged;
+            eprintln!("billow: {number}/{total} {name}: {verdict}, {seconds:.1} s");
+        }
+    });
+    if !skipped.is_empty() && !global.quiet {
+        let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
+        eprintln!("billow: skipped by --quick: {}", names.join(", "));
+    }
+    print(&judged, global.format(), out)?;
+    let outside: Vec<&str> = judged.iter().filter(|j| !j.pass()).map(|j| j.name).collect();
+    if outside.is_empty() {
+        return Ok(());
+    }
+    Err(Error::JobsFailed(format!(
+        "{} of {total} cases out of band: {}",
+        outside.len(),
+        outside.join(", ")
+    )))
+}
+
+/// The cases of these names, in the table's order; all where none is named.
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
+    for name in names {
+        if !CASES.iter().any(|case| case.name == name) {
+            let known = || CASES.iter().map(|case| case.name);
+            let near = keys::nearest(name, known());
+            return Err(Error::Input(InputError {
+                file: "--case".to_owned(),
+                key: String::new(),
+                value: name.clone(),
+                problem: "there is no such case".to_owned(),
+                allowed: known().collect::<Vec<_>>().join(", "),
+                hint: near.map(|near| format!("did you mean {near}?")).unwrap_or_default(),
+            }));
+        }
+    }
+    let named = |case: &&Case| names.is_empty() || names.iter().any(|name| name == case.name);
+    Ok(CASES.iter().filter(named).collect())
+}
+
+fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
+    let text = |text: &str| Value::Text(text.to_owned());
+    let tier = |case: &Case| if case.tier == Tier::Quick { "quick" } else { "long" };
+    let rows: Vec<Vec<Value>> = cases
+        .iter()
+        .map(|case| vec![text(case.name), text(tier(case)), text(case.compares)])
+        .collect();
+    print_rows(&["case", "tier", "compares"], &rows, format, out)
+}
+
+/// Prints the rows of the cases, one a quantity; the seconds are those of the whole case.
+///
+/// # Errors
+/// When the output cannot be written.
+pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<()> {
+    let rows: Vec<Vec<Value>> = judged
+        .iter()
+        .flat_map(|case| case.rows.iter().map(move |row| (case, row)))
+        .map(|(case, row)| {
+            let number = |value: f64| {
+                if value.is_finite() { Value::Number(value) } else { Value::Null }
+            };
+            let maybe = |value: Option<f64>| value.map_or(Value::Null, number);
+            vec![
+                Value::Text(case.name.to_owned()),
+                Value::Text(row.quantity.clone()),
+                number(row.value),
+                maybe(row.reference),
+                number(row.error),
+                maybe(row.order),
+                number(row.band),
+                if format == Format::Table {
+                    Value::Text(if row.pass { "yes" } else { "NO" }.to_owned())
+                } else {
+                    Value::Bool(row.pass)
+                },
+                number(case.seconds),
+                Value::Text(row.note.clone()),
+            ]
+        })
+        .collect();
+    let value = if format == Format::Table { "billow" } else { "value" };
+    let columns = [
+        "case",
+        "quantity",
+        value,
+        "reference",
+        "error",
+        "order",
+        "band",
+        "pass",
+        "seconds",
+        "note",
+    ];
+    print_rows(&columns, &rows, format, out)
+}
