@@ -285,7 +285,7 @@ pub struct Table {
     pub keys: Vec<&'static Key>,
     /// Its objects and what they are about.
     pub sections: &'static [(&'static str, &'static str)],
-    /// Keys of its top level that hold more than one value, beside the sections.
+    /// Paths of the keys that hold more than one value, beside the sections.
     pub structured: &'static [&'static str],
     index: HashMap<&'static str, usize>,
     /// Leaf names that only one key has; a key of the top level owns its name.
@@ -334,7 +334,8 @@ impl Table {
     pub fn children(&self, prefix: &str) -> Vec<&'static str> {
         let mut names: Vec<&'static str> = Vec::new();
         let sections = self.sections.iter().map(|(path, _)| *path);
-        for path in sections.chain(self.keys.iter().map(|key| key.path)) {
+        let keys = self.keys.iter().map(|key| key.path);
+        for path in sections.chain(keys).chain(self.structured.iter().copied()) {
             let rest = match prefix {
                 "" => Some(path),
                 _ => path.strip_prefix(prefix).and_then(|rest| rest.strip_prefix('.')),
@@ -343,9 +344,6 @@ impl Table {
             if !names.contains(&name) {
                 names.push(name);
             }
-        }
-        if prefix.is_empty() {
-            names.extend(self.structured);
         }
         names
     }

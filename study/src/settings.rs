@@ -112,7 +112,7 @@ impl Settings {
                 }
                 Some(at) => self.values[at] = read(table.keys[at], value, &path, source)?,
                 None if section => self.read(&path, value, source)?,
-                None if prefix.is_empty() && table.structured.contains(&name.as_str()) => {}
+                None if table.structured.contains(&path.as_str()) => {}
                 None => return Err(unknown(table, prefix, &path, name, value, source)),
             }
         }

@@ -23,8 +23,8 @@ const SECTIONS: &[(&str, &str)] = &[
     ("solver", "How it is computed."),
 ];
 
-/// Keys of the top level that hold more than one value, beside the sections.
-const STRUCTURED: &[&str] = &["mesh", "supports", "start", "gravity", "outputs"];
+/// Keys that hold more than one value, beside the sections.
+const STRUCTURED: &[&str] = &["mesh", "gas.windows", "supports", "start", "gravity", "outputs"];
 
 /// Keys of the study that a scene has too.
 fn shared(path: &str) -> bool {

@@ -1,6 +1,7 @@
 //! `outputs`: what is followed, by the names the user gives it; and `start`: velocities.
 
 use billow_solver::film_scene::FilmOutputs;
+use billow_solver::history::Track;
 use billow_solver::mesh_io::obj_reader;
 use nalgebra::Vector3;
 
@@ -20,6 +21,21 @@ pub struct Followed {
     pub nodes: Vec<String>,
     /// Names of the elements.
     pub elements: Vec<String>,
+}
+
+impl Followed {
+    /// Gives the series of a run these names.
+    pub fn name(&self, tracks: &mut [Track]) {
+        let nodes = self.nodes.iter();
+        let nodes =
+            nodes.flat_map(|name| ["x", "y", "z"].map(|axis| format!("node_{name}_{axis}")));
+        let elements = self.elements.iter();
+        let elements =
+            elements.flat_map(|name| ["N1", "N2"].map(|own| format!("element_{name}_{own}")));
+        for (track, name) in tracks.iter_mut().zip(nodes.chain(elements)) {
+            track.name = name;
+        }
+    }
 }
 
 /// Most samples of one run: more would be a slip of the unit.
