@@ -2,6 +2,8 @@
 //!
 //! ```text
 //! N = t S                      per reference width: principal values N1 ≥ N2
+//! P = t F S                    per reference width, as the force is: P1² + P2² = t² tr(S C S),
+//!                              P1 P2 = J N1 N2
 //! T = t F S Fᵀ/J               per width as it is:  T1 + T2 = t S:C/J,  T1 T2 = N1 N2
 //! C = FᵀF = 1 + 2E,  J² = det C
 //! ```
@@ -22,6 +24,9 @@ pub struct Resultants {
     pub regime: Regime,
     /// Principal second Piola-Kirchhoff membrane forces, per reference width, the larger first.
     pub principal: [f64; 2],
+    /// Principal nominal (first Piola-Kirchhoff) membrane forces, per reference width, in size, the
+    /// larger first.
+    pub nominal: [f64; 2],
     /// Principal true (Cauchy) membrane forces, per width as it is, the larger first; nought where
     /// the element has no area left.
     pub cauchy: [f64; 2],
@@ -36,6 +41,13 @@ pub fn resultants(model: &FilmModel, places: &Field, element: usize) -> Resultan
     let principal = [first * thickness, second * thickness];
     let [xx, yy, xy] = [1.0 + 2.0 * strain.xx, 1.0 + 2.0 * strain.yy, 2.0 * strain.xy];
     let area = (xx * yy - xy * xy).max(0.0).sqrt();
+    // S C S, with S as three numbers.
+    let [p, q] = [[stress.xx, stress.xy], [stress.xy, stress.yy]];
+    let squared = |[a, b]: [f64; 2]| a * a * xx + 2.0 * a * b * xy + b * b * yy;
+    let half = 0.5 * thickness * thickness * (squared(p) + squared(q));
+    let product = area * principal[0] * principal[1];
+    let rest = (half * half - product * product).max(0.0).sqrt();
+    let nominal = [(half + rest).sqrt(), (half - rest).max(0.0).sqrt()];
     let cauchy = if area > 0.0 {
         let contracted = stress.xx * xx + stress.yy * yy + 2.0 * stress.xy * xy;
         let mean = 0.5 * thickness * contracted / area;
@@ -44,7 +56,7 @@ pub fn resultants(model: &FilmModel, places: &Field, element: usize) -> Resultan
     } else {
         [0.0; 2]
     };
-    Resultants { regime: model.material.regime(strain), principal, cauchy }
+    Resultants { regime: model.material.regime(strain), principal, nominal, cauchy }
 }
 
 /// Thickness of an element where it is free of stress, m.
@@ -96,6 +108,9 @@ mod tests {
         let n = (green * 0.7 + Matrix2::identity() * (0.3 * green.trace())) * k;
         let wide = Matrix3x2::new(gradient.m11, gradient.m12, gradient.m21, gradient.m22, 0.0, 0.0);
         let t = wide * n * wide.transpose() / gradient.determinant();
+        let nominal = (gradient * n).singular_values();
+        assert!((own.nominal[0] - nominal.max()).abs() < 1e-9 * nominal.max());
+        assert!((own.nominal[1] - nominal.min()).abs() < 1e-9 * nominal.max());
         let (n, t) = (n.symmetric_eigenvalues(), t.symmetric_eigenvalues());
         assert!((own.principal[0] - n.max()).abs() < 1e-9 * n.max());
         assert!((own.principal[1] - n.min()).abs() < 1e-9 * n.max());

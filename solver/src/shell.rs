@@ -7,7 +7,7 @@
 //!
 //! A closed shell needs no closing faces. An open one is closed by those of its own (the walls of
 //! a cylinder behind a piston), or by a fan over each free boundary loop: about the loop's mean where
-//! the loop lies in a plane, else about the origin. That is exact wherever the missing surface is
+//! the loop lies in a plane that misses the origin, else about the origin. That is exact wherever the missing surface is
 //! plane, or made of symmetry planes through the origin.
 
 use std::collections::BTreeMap;
@@ -155,7 +155,10 @@ impl Shell {
                 normal += (a - mean).cross(&(b - mean));
             }
             let off = places().map(|x| (x - mean).dot(&normal).abs()).fold(0.0, f64::max);
-            if off <= PLANE * size * normal.norm() { mean } else { Vector3::zeros() }
+            let slack = PLANE * size * normal.norm();
+            // A plane through the origin closes about it: film that starts flat between symmetry
+            // planes lies in one, and leaves it.
+            if off <= slack && mean.dot(&normal).abs() > slack { mean } else { Vector3::zeros() }
         };
         self.boundary().into_iter().map(|path| (apex(&path), path)).collect()
     }

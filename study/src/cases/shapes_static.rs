@@ -6,8 +6,10 @@ use billow_solver::shell::Shell;
 use nalgebra::{Vector2, Vector3};
 
 /// Rings of nodes, each of `around`, joined by two elements a cell; ring k at radius and height
-/// `place(k)` of `rings` + 1. Outward is away from the axis where heights rise.
-pub fn revolved(rings: u32, around: u32, place: impl Fn(u32) -> [f64; 2]) -> Shell {
+/// `place(k)` of `rings` + 1. Outward is away from the axis where heights rise. Diagonals lean one
+/// way, so that every node bears the same; or both in turn (`crossed`), so that the mesh has no turn
+/// of its own.
+pub fn revolved(rings: u32, around: u32, crossed: bool, place: impl Fn(u32) -> [f64; 2]) -> Shell {
     let mut positions = Vec::new();
     for ring in 0..=rings {
         let [radius, height] = place(ring);
@@ -22,8 +24,7 @@ pub fn revolved(rings: u32, around: u32, place: impl Fn(u32) -> [f64; 2]) -> She
         for i in 0..around {
             let [a, b] = [at(ring, i), at(ring, i + 1)];
             let [c, d] = [at(ring + 1, i + 1), at(ring + 1, i)];
-            // Diagonals lean both ways in turn, so that the mesh has no turn of its own.
-            if (ring + i) % 2 == 0 {
+            if !crossed || (ring + i) % 2 == 0 {
                 triangles.extend([[a, b, c], [a, c, d]]);
             } else {
                 triangles.extend([[a, b, d], [b, c, d]]);
@@ -88,7 +89,7 @@ pub fn capped(fine: u32, [bottom, top]: [f64; 2], height: f64) -> Capped {
     // Towards a cap's rim alone.
     let out = |k: u32| libm::sin(0.25 * TAU * f64::from(k) / f64::from(fine));
     let rings = 2 * (fine - 1) + side;
-    let shell = revolved(rings, around, |k| {
+    let shell = revolved(rings, around, false, |k| {
         if k < fine {
             [bottom * out(k + 1), 0.0]
         } else if k <= fine - 1 + side {

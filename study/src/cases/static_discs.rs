@@ -1,6 +1,6 @@
 //! Discs under pressure: one clamped, two sewn together.
 //!
-//! The clamped disc's pressure follows its surface. The balloon is its upper half, whose rim slides
+//! The clamped disc's pressure follows its surface; N0 is nominal, per reference width. The balloon is its upper half, whose rim slides
 //! in the plane of symmetry; far from taut, its film shortens round the rim by a quarter.
 
 use billow_solver::film_scene::{Filling, FilmScene};
@@ -37,7 +37,7 @@ pub fn clamped_disc(_: &Rig) -> Outcome {
             let (state, _) = at_rest(&scene)?;
             // The first six elements lie round the centre.
             let pull = |element| {
-                let own = resultants(&state.model, &state.places, element).principal;
+                let own = resultants(&state.model, &state.places, element).nominal;
                 0.5 * (own[0] + own[1])
             };
             let middle = (0..6).map(pull).sum::<f64>() / 6.0;

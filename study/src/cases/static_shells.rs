@@ -65,7 +65,8 @@ pub fn cylinder(_: &Rig) -> Outcome {
     let wide = radius * (1.0 + hoop);
     let run = |along: u32| -> Result<[f64; 2], String> {
         let around = 8 * along;
-        let shell = revolved(along, around, |k| [radius, length * f64::from(k) / f64::from(along)]);
+        let shell =
+            revolved(along, around, false, |k| [radius, length * f64::from(k) / f64::from(along)]);
         let top = ring(along, around);
         let supports =
             vec![held(ring(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
@@ -97,7 +98,7 @@ pub fn cone(_: &Rig) -> Outcome {
     let cos = 1.0 / (1.0 + slope * slope).sqrt();
     let run = |along: u32| -> Result<[[f64; 2]; 2], String> {
         let around = 4 * along;
-        let shell = revolved(along, around, |k| {
+        let shell = revolved(along, around, false, |k| {
             let at = f64::from(k) / f64::from(along);
             [bottom + (top - bottom) * at, height * at]
         });

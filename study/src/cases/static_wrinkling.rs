@@ -93,7 +93,7 @@ fn twist(rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
         .map(|key| number(&format!("annulus_torsion/{key}")));
     let around = 6 * rings;
     let at = |k: u32| inner + (outer - inner) * f64::from(k) / f64::from(rings);
-    let shell = revolved(rings, around, |k| [at(k), 0.0]);
+    let shell = revolved(rings, around, true, |k| [at(k), 0.0]);
     let mut pulled = shell.clone();
     for place in &mut pulled.positions {
         let r = place.norm();
