@@ -89,7 +89,7 @@ pub enum Command {
     Solve(solve::Args),
     /// Print the summary table of a study's results.
     Table(table::Args),
-    /// Print the JSON Schema of the study file.
+    /// Print the JSON Schema of the study file or the scene file.
     Schema(schema::Args),
     /// Run the reference cases and judge them; exit code 1 if one is out of band.
     Validate(validate::Args),

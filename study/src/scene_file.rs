@@ -19,6 +19,7 @@ use billow_solver::film_scene::{FilmScene, FilmSolver};
 use billow_solver::ladder::SceneError;
 use billow_solver::ladder::film::{self, Rings};
 use billow_solver::simd;
+use billow_solver::supports::Mover;
 use nalgebra::Vector3;
 use serde_json::json;
 
@@ -44,6 +45,8 @@ const LARGEST_MESH: u64 = 1 << 30;
 pub struct SceneFile {
     /// What is run.
     pub film: FilmScene,
+    /// What moves beside the supports' own motions: the ring of an erected capsule to its place.
+    pub seating: Vec<Mover>,
     /// What makes it a capsule.
     pub rings: Option<Rings>,
     /// What is followed, by name.
@@ -112,6 +115,15 @@ impl SceneFile {
         let mut shape = shape::read(tree, &settings, reader)?;
         let filling = filling::read(tree, &settings, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &settings, &shape, &reader.source)?;
+        let mut seating = supports::seating(&supports, &shape);
+        if statics {
+            for mover in std::mem::take(&mut seating) {
+                for (node, place) in mover.places(mover.motion.to) {
+                    let own = &mut shape.shell.positions[node as usize];
+                    *own += mover.held * (place - *own);
+                }
+            }
+        }
         let velocities = outputs::velocities(tree.get("start"), &shape, reader)?;
         let (outputs, followed) = outputs::read(tree.get("outputs"), &shape, &reader.source)?;
         let end_time = end_time(&settings, &reader.source)?;
@@ -147,6 +159,7 @@ impl SceneFile {
         let identity = json!({"physics_version": PHYSICS_VERSION, "input": json});
         Ok(Self {
             film,
+            seating,
             rings: shape.rings,
             followed,
             numbering: shape.numbering,

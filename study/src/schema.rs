@@ -1,7 +1,9 @@
-//! The JSON Schema (2020-12) of the study file, built from the table of keys.
+//! The JSON Schemas (2020-12) of the study file and the scene file, built from their tables of keys.
 //!
 //! It says what one value may be; what values may stand together (a fit and what it needs, a key
 //! given or varied) the program itself checks.
+
+mod scene;
 
 use std::fmt::Write as _;
 
@@ -13,6 +15,8 @@ use crate::keys::{
 use crate::units::Dimension;
 use crate::value::{Value, json_value};
 
+pub use scene::scene_schema;
+
 /// A number as a text begins with it.
 const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*";
 
@@ -22,7 +26,10 @@ const COMPOUND: &str = r"[^\s0-9][^\s]*[/^*·0-9 ].*";
 /// A number with a unit of the dimension after it, as JSON Schema can say it.
 fn quantity_pattern(dimension: Dimension) -> String {
     let symbols = crate::units::symbols(dimension).join("|");
-    let alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
+    let mut alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
+    if dimension.units().iter().any(|unit| unit.starts_with("1/")) {
+        alone.push_str(r"1\s*/.+|");
+    }
     format!(r"{NUMBER}({alone}{COMPOUND})\s*$")
 }
 
@@ -122,7 +129,10 @@ fn property(key: &Key) -> Json {
         Default::Absent(meaning) => {
             let _ = write!(description, " Default: {meaning}.");
         }
-        Default::Required => description.push_str(" Required, here or under grid."),
+        Default::Required if keys::find(key.path).is_some() => {
+            description.push_str(" Required; in a study, here or under grid.");
+        }
+        Default::Required => description.push_str(" Required."),
         _ => {}
     }
     if let Kind::Quantity(quantity) = key.kind

@@ -165,7 +165,9 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         Error::from(refused("", "", &error.to_string(), ""))
     };
     let Some(path) = &pauses.resume else {
-        return Ok((FilmRun::of(&scene.film, rings).map_err(unsound)?, Run::default()));
+        let mut model = FilmRun::of(&scene.film, rings).map_err(unsound)?;
+        model.film.setting.supports.movers.extend(scene.seating.iter().cloned());
+        return Ok((model, Run::default()));
     };
     let refuse = |problem: String| Error::Disk { path: path.clone(), problem };
     let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
@@ -183,7 +185,8 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         };
         refuse(format!("{error}{next}"))
     })?;
-    let model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(unsound)?;
+    let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(unsound)?;
+    model.film.setting.supports.movers.extend(scene.seating.iter().cloned());
     Ok((model, checkpoint.run))
 }
 

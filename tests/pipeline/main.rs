@@ -8,6 +8,7 @@ mod folding;
 mod planning;
 mod resume;
 mod running;
+mod solving;
 mod storage;
 mod study_files;
 mod support;

@@ -98,6 +98,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         places: Vec::new(),
         centres: Vec::new(),
         folded: false,
+        seats: None,
         file,
     })
 }
@@ -154,7 +155,7 @@ fn closing_groups(object: &Object<'_>, surface: &Surface) -> Result<Vec<bool>> {
     known.sort_unstable();
     known.dedup();
     if let Some(stranger) = named.iter().find(|name| !known.contains(*name)) {
-        let problem = format!("{stranger:?} is no group or object of {}", "positions");
+        let problem = format!("{stranger:?} is no group or object of positions");
         let allowed =
             if known.is_empty() { "the file names none".to_owned() } else { known.join(", ") };
         return Err(object.error("closure", problem, allowed).into());

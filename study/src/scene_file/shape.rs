@@ -6,6 +6,7 @@ use billow_solver::ladder::film::capsule::part_nodes;
 use billow_solver::mesh::{Mesh, Part, Shape as State};
 use billow_solver::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::shell::Shell;
+use nalgebra::Vector3;
 
 use super::{Reader, mesh};
 use crate::error::{InputError, Result};
@@ -26,6 +27,8 @@ pub(super) struct Shape {
     pub centres: Vec<(&'static str, u32)>,
     /// Whether it starts folded.
     pub folded: bool,
+    /// Where the nodes of an erected capsule are stowed: where its bottom ring is held.
+    pub seats: Option<Vec<Vector3<f64>>>,
     /// Its file, as errors call it; empty for a design.
     pub file: String,
 }
@@ -106,6 +109,12 @@ fn capsule(settings: &Settings, source: &Source) -> std::result::Result<Shape, I
     let pattern = FoldPattern::new(&design).map_err(fold_error)?;
     let state = if erected { State::Erected } else { State::Stowed(design.stowed_height) };
     let mesh = Mesh::new(&pattern, design.subdivisions, state).map_err(fold_error)?;
+    let seats = if erected && design.caps == Caps::Polygon {
+        let stowed = State::Stowed(design.stowed_height);
+        Some(Mesh::new(&pattern, design.subdivisions, stowed).map_err(fold_error)?.positions)
+    } else {
+        None
+    };
     let sorted = |nodes: &[u32]| {
         let mut nodes = nodes.to_vec();
         nodes.sort_unstable();
@@ -122,6 +131,7 @@ fn capsule(settings: &Settings, source: &Source) -> std::result::Result<Shape, I
         ],
         centres: vec![("bottom_centre", mesh.bottom_centre), ("top_centre", mesh.top_centre)],
         folded: !erected,
+        seats,
         numbering: numbered(mesh),
         file: String::new(),
     })

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use billow_solver::film_scene::{FilmSupport, Hold, Motion, PlaneBody, Profile, Turn};
+use billow_solver::supports::Mover;
 use nalgebra::Vector3;
 
 use super::object::Object;
@@ -12,6 +13,34 @@ use crate::keys::{BODY_KEYS, MOVE_KEYS, ROTATION_KEYS, SUPPORT_KEYS};
 use crate::settings::{Settings, list};
 use crate::source::Source;
 use crate::study_file::Json;
+
+/// How long an erected capsule's bottom ring takes to where it is held, s.
+const SEATING_TIME: f64 = 0.01;
+
+/// The way of an erected capsule's bottom ring, where it is held, to the stowed N-gon: a design's
+/// bottom ring is held there whatever its shape. None where it moves otherwise.
+pub(super) fn seating(supports: &[FilmSupport], shape: &Shape) -> Vec<Mover> {
+    let Some(seats) = &shape.seats else { return Vec::new() };
+    let bottom = |support: &&FilmSupport| {
+        let mut places = shape.places.iter().filter(|(name, _)| name.starts_with("bottom_"));
+        support.motion.is_none() && places.any(|(_, nodes)| *nodes == support.nodes)
+    };
+    let place = |node: &u32| shape.shell.positions[*node as usize];
+    let mover = |support: &FilmSupport| Mover {
+        nodes: support.nodes.clone(),
+        start: support.nodes.iter().map(place).collect(),
+        held: support.hold.projector(),
+        motion: Motion {
+            from: 0.0,
+            to: SEATING_TIME,
+            profile: Profile::Smooth,
+            translation: Vector3::zeros(),
+            turn: None,
+        },
+        beside: support.nodes.iter().map(|node| seats[*node as usize] - place(node)).collect(),
+    };
+    supports.iter().filter(bottom).map(mover).collect()
+}
 
 /// Reads `supports`; a capsule stands on its bottom ring where none are given.
 pub(super) fn read(
