@@ -1,5 +1,6 @@
 //! What happens when: the part of a scene that is no model's own.
 
+use crate::film_scene::{Filling, FilmScene};
 use crate::gas::{Inflow, Schedule};
 use crate::scene::{Scene, Thresholds};
 
@@ -39,6 +40,24 @@ impl Course {
             schedule: Schedule::new(&scene.gas.windows),
             ambient_pressure: scene.gas.ambient_pressure,
             thresholds: scene.outputs.thresholds,
+        }
+    }
+
+    /// The course of a film's scene; it has no verdict and so the usual thresholds.
+    pub fn of_film(scene: &FilmScene) -> Self {
+        let (schedule, ambient_pressure) = match &scene.filling {
+            Filling::Pressure(_) => (Schedule::new(&[]), 0.0),
+            Filling::Gas { supply, .. } => {
+                (Schedule::new(&supply.windows), supply.ambient_pressure)
+            }
+        };
+        Self {
+            end_time: scene.solver.end_time,
+            sample_interval: scene.outputs.sample_interval,
+            release_time: scene.release_time,
+            schedule,
+            ambient_pressure,
+            thresholds: Thresholds::default(),
         }
     }
 

@@ -1,12 +1,17 @@
 //! The course of a run, whatever model computes it: step, sample, audit, stop; and what it gives
 //! back.
+//!
+//! [`run`] goes from start to end in one call. A [`Run`] is the same loop held in the hand: it can be
+//! paused after any step, stored ([`crate::checkpoint`]), and goes on to the same bits.
+
+use serde::{Deserialize, Serialize};
 
 use crate::audit::{self, Audit};
 use crate::course::{Course, Phase};
-use crate::history::{History, Sample};
+use crate::history::{History, Sample, Track};
 use crate::measures::{self, Measures, Reference};
 
-/// A model in the middle of a run. [`run`] asks it for nothing else, so every rung of the ladder
+/// A model in the middle of a run. [`Run`] asks it for nothing else, so every rung of the ladder
 /// has the same windows, samples, ledger, measures and verdict.
 pub trait Model {
     /// Advances to the time `target` (s) exactly, during which the phase does not change.
@@ -15,12 +20,39 @@ pub trait Model {
     /// [`Failure`] when the run stops short; the state is that of the last accepted step.
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure>;
 
+    /// Advances towards `target` as [`Self::advance`], by at most `steps` steps, which it counts
+    /// down; whether it got there. A model that cannot be paused goes on to the target.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    fn advance_at_most(
+        &mut self,
+        target: f64,
+        phase: &Phase,
+        _steps: &mut u64,
+    ) -> Result<bool, Failure> {
+        self.advance(target, phase).map(|()| true)
+    }
+
     /// Itself now. The mass let in ([`crate::ledger::GasBooks::mass_in`]) is left to the loop,
     /// which takes it from the schedule.
     fn sample(&self, phase: &Phase) -> Sample;
 
-    /// Static states of its design.
-    fn reference(&self) -> Reference;
+    /// Static states of its design; a film that is no capsule has none, and so no verdict.
+    fn reference(&self) -> Option<Reference>;
+
+    /// Whether it has a bottom and a top ring, and so their heights in its samples.
+    fn has_rings(&self) -> bool {
+        true
+    }
+
+    /// Names of what it follows beside its samples.
+    fn tracks(&self) -> Vec<Track> {
+        Vec::new()
+    }
+
+    /// Values of what it follows now, in the order of [`Self::tracks`].
+    fn follow(&self, _values: &mut Vec<f64>) {}
 
     /// Largest principal second Piola-Kirchhoff film stress so far, Pa.
     fn film_stress(&self) -> f64;
@@ -43,77 +75,110 @@ pub trait Model {
 /// the residual is known only at the end. Its history is kept whole for whoever looks for the
 /// cause; it has no verdict.
 pub fn run(model: &mut dyn Model, course: &Course, observer: &mut dyn Observer) -> Deployment {
-    let breaks = course.breaks();
-    let mut samples = Vec::new();
-    let mut stop = Stop::Done;
-    let mut time = 0.0;
-    let mut phase = course.phase(0.0, next_break(&breaks, 0.0, course.end_time));
-    for index in 0.. {
-        let target = course.sample_time(index);
-        if let Err(failure) = advance(model, course, &breaks, &mut time, target, &mut phase) {
-            stop = Stop::Failed(failure);
-            break;
-        }
-        let mut sample = model.sample(&phase);
-        sample.gas.mass_in = course.schedule.mass_until(target);
-        samples.push(sample);
-        let progress = Progress {
-            time: target,
-            end_time: course.end_time,
-            z_centre: sample.z_centre,
-            pressure: sample.pressure,
-        };
-        if !observer.sample(progress) {
-            stop = Stop::Cancelled;
-            break;
-        }
-        if target >= course.end_time {
-            break;
+    let mut run = Run::default();
+    loop {
+        if let Some(stop) = run.advance(model, course, u64::MAX, observer) {
+            return run.finish(model, course, stop);
         }
     }
-    finish(model, course, &samples, stop)
+}
+
+/// How far a run is: with the model's own state it says all that follows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    /// Samples so far.
+    samples: Vec<Sample>,
+    /// What the model follows, at each of them.
+    tracks: Vec<Vec<f64>>,
+    /// The last break or sample landed on, s.
+    time: f64,
+}
+
+impl Run {
+    /// Goes on by about `steps` steps of the model; how the run ended, or `None` where it pauses.
+    /// Pausing changes no bit of what follows.
+    pub fn advance(
+        &mut self,
+        model: &mut dyn Model,
+        course: &Course,
+        mut steps: u64,
+        observer: &mut dyn Observer,
+    ) -> Option<Stop> {
+        let breaks = course.breaks();
+        // A pause never lies between a landing and its sample, so but for the first sample the phase
+        // is that of the way just gone.
+        let mut phase = course.phase(0.0, next_break(&breaks, 0.0, course.end_time));
+        loop {
+            let target = course.sample_time(self.samples.len() as u64);
+            while self.time < target {
+                let to = next_break(&breaks, self.time, target).min(target);
+                phase = course.phase(self.time, to);
+                match model.advance_at_most(to, &phase, &mut steps) {
+                    Ok(true) => self.time = to,
+                    Ok(false) => return None,
+                    Err(failure) => return Some(Stop::Failed(failure)),
+                }
+            }
+            let mut sample = model.sample(&phase);
+            sample.gas.mass_in = course.schedule.mass_until(target);
+            let mut followed = Vec::new();
+            model.follow(&mut followed);
+            self.samples.push(sample);
+            self.tracks.push(followed);
+            let height = if model.has_rings() { sample.z_centre } else { sample.z_max };
+            let progress = Progress {
+                time: target,
+                end_time: course.end_time,
+                z_centre: height,
+                pressure: sample.pressure,
+            };
+            if !observer.sample(progress) {
+                return Some(Stop::Cancelled);
+            }
+            if target >= course.end_time {
+                return Some(Stop::Done);
+            }
+        }
+    }
+
+    /// Samples so far.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// What a run that ended so leaves.
+    pub fn finish(self, model: &dyn Model, course: &Course, mut stop: Stop) -> Deployment {
+        let mut history = History::of(&self.samples);
+        if !model.has_rings() {
+            history = history.without_rings();
+        }
+        let audit = Audit::of(&history, model.counts_passages());
+        if stop == Stop::Done
+            && let Some(time) = audit::first_drift(&history)
+        {
+            let place = format!("energy ledger, residual above {}", audit::RESIDUAL_BOUND);
+            stop = Stop::Failed(Failure { kind: FailureKind::Drifted, time, place });
+        }
+        let measures = match stop {
+            Stop::Cancelled => Measures::default(),
+            Stop::Done | Stop::Failed(_) => {
+                let stress = model.film_stress();
+                let done = stop == Stop::Done;
+                measures::measure(&history, model.reference().as_ref(), course, stress, done)
+            }
+        };
+        let mut tracks = model.tracks();
+        for (at, track) in tracks.iter_mut().enumerate() {
+            track.values = self.tracks.iter().map(|row| row[at]).collect();
+        }
+        let (steps, elements) = (model.steps(), model.elements());
+        Deployment { history, tracks, measures, audit, stop, steps, elements }
+    }
 }
 
 fn next_break(breaks: &[f64], time: f64, end: f64) -> f64 {
     breaks.iter().copied().find(|at| *at > time).unwrap_or(end)
-}
-
-/// Advances from break to break up to `target`; leaves the phase the model was last in.
-fn advance(
-    model: &mut dyn Model,
-    course: &Course,
-    breaks: &[f64],
-    time: &mut f64,
-    target: f64,
-    phase: &mut Phase,
-) -> Result<(), Failure> {
-    while *time < target {
-        let to = next_break(breaks, *time, target).min(target);
-        *phase = course.phase(*time, to);
-        model.advance(to, phase)?;
-        *time = to;
-    }
-    Ok(())
-}
-
-fn finish(model: &dyn Model, course: &Course, samples: &[Sample], mut stop: Stop) -> Deployment {
-    let history = History::of(samples);
-    let audit = Audit::of(&history, model.counts_passages());
-    if stop == Stop::Done
-        && let Some(time) = audit::first_drift(&history)
-    {
-        let place = format!("energy ledger, residual above {}", audit::RESIDUAL_BOUND);
-        stop = Stop::Failed(Failure { kind: FailureKind::Drifted, time, place });
-    }
-    let measures = match stop {
-        Stop::Cancelled => Measures::default(),
-        Stop::Done | Stop::Failed(_) => {
-            let stress = model.film_stress();
-            let done = stop == Stop::Done;
-            measures::measure(&history, &model.reference(), course, stress, done)
-        }
-    };
-    Deployment { history, measures, audit, stop, steps: model.steps(), elements: model.elements() }
 }
 
 /// The result of one run.
@@ -121,6 +186,8 @@ fn finish(model: &dyn Model, course: &Course, samples: &[Sample], mut stop: Stop
 pub struct Deployment {
     /// Time series, up to the end or to the moment the run stopped.
     pub history: History,
+    /// What was followed beside it.
+    pub tracks: Vec<Track>,
     /// What the history says, in single numbers.
     pub measures: Measures,
     /// What the history is worth.
@@ -205,7 +272,7 @@ pub struct Progress {
     pub time: f64,
     /// Simulated time at the end, s.
     pub end_time: f64,
-    /// Height of the top centre, m.
+    /// Height of the top centre, or of the highest node where there is none, m.
     pub z_centre: f64,
     /// Gas pressure, Pa.
     pub pressure: f64,

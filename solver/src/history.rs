@@ -1,9 +1,12 @@
 //! Time histories: one column a quantity, one row a sample.
 
+use serde::{Deserialize, Serialize};
+
 use crate::ledger::{GasBooks, Ledger};
 
 /// What a model shows of itself at one moment.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Sample {
     /// Time since the start of the run, s.
     pub time: f64,
@@ -70,10 +73,29 @@ impl Sample {
 
 /// The series a run leaves, sampled at [`crate::scene::Outputs::sample_interval`]. Every column
 /// has the length of `time`.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct History {
     /// Columns in the order of [`COLUMNS`].
     columns: Vec<Vec<f64>>,
+    /// Whether [`RING_COLUMNS`] are among them.
+    rings: bool,
+}
+
+/// Columns of a capsule alone: film without rings has none of them.
+pub const RING_COLUMNS: [&str; 3] = ["z_centre", "z_rim", "vz"];
+
+/// A series of one more quantity than [`COLUMNS`], at the same times: a node's place, an element's
+/// resultant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    /// Name, as in the file.
+    pub name: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Meaning, one line.
+    pub meaning: &'static str,
+    /// One value a sample.
+    pub values: Vec<f64>,
 }
 
 /// Name, unit and meaning of a history column.
@@ -124,10 +146,28 @@ columns! {
     "intersections" ["1"] "intersections of the mesh at this sample",
 }
 
+impl Default for History {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl History {
     /// An empty history.
     pub fn new() -> Self {
-        Self { columns: vec![Vec::new(); COLUMNS.len()] }
+        Self { columns: vec![Vec::new(); COLUMNS.len()], rings: true }
+    }
+
+    /// The same without [`RING_COLUMNS`].
+    #[must_use]
+    pub fn without_rings(mut self) -> Self {
+        self.rings = false;
+        for (column, values) in COLUMNS.iter().zip(&mut self.columns) {
+            if RING_COLUMNS.contains(&column.name) {
+                values.clear();
+            }
+        }
+        self
     }
 
     /// The history of a series of samples, with both residuals judged over the whole of it.
@@ -153,7 +193,7 @@ impl History {
         }
     }
 
-    /// The column of that name.
+    /// The column of that name; empty where it is left out.
     ///
     /// # Panics
     /// When no column has that name: names are fixed at compile time, so that is a mistake in code.
@@ -174,6 +214,7 @@ impl History {
 
     /// Columns with their names, in stored order.
     pub fn iter(&self) -> impl Iterator<Item = (&'static HistoryColumn, &[f64])> {
-        COLUMNS.iter().zip(self.columns.iter().map(Vec::as_slice))
+        let all = COLUMNS.iter().zip(self.columns.iter().map(Vec::as_slice));
+        all.filter(|(column, _)| self.rings || !RING_COLUMNS.contains(&column.name))
     }
 }

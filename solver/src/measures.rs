@@ -100,31 +100,49 @@ impl Verdict {
     }
 }
 
-/// Measures a history against its reference. `film_stress` (Pa) is the model's own, taken at every
-/// step; ratios and verdict exist only for a run that is `done`.
+/// Measures a history against its reference; without one, what needs none. `film_stress` (Pa) is the
+/// model's own, taken at every step; ratios and verdict exist only for a run that is `done`.
 pub fn measure(
     history: &History,
-    reference: &Reference,
+    reference: Option<&Reference>,
     course: &Course,
     film_stress: f64,
     done: bool,
 ) -> Measures {
     let column = |name: &str| history.column(name);
-    let (time, volume, z_rim) = (column("time"), column("volume"), column("z_rim"));
-    let (vz, kinetic) = (column("vz"), column("kinetic_energy"));
+    let (time, vz, kinetic) = (column("time"), column("vz"), column("kinetic_energy"));
     let last = |name: &str| column(name).last().copied();
     let Some(final_pressure) = last("pressure") else { return Measures::default() };
-    let (v_ref, h_ref) = reference.at(final_pressure - course.ambient_pressure);
+    let peak_vz = peak(vz);
+    let peak_kinetic = peak(kinetic);
+    let overpressure = final_pressure - course.ambient_pressure;
+    let judged =
+        reference.map(|reference| judge(history, reference.at(overpressure), course, done));
+    Measures {
+        peak_vz: peak_vz.map(|(_, value)| value),
+        t_peak_vz: peak_vz.map(|(index, _)| time[index]),
+        peak_kinetic_energy: peak_kinetic.map(|(_, value)| value),
+        t_settled: peak_kinetic.and_then(|(index, value)| settled(time, kinetic, index, value)),
+        final_z_rim: last("z_rim"),
+        final_volume: last("volume"),
+        final_pressure: Some(final_pressure),
+        final_temperature: last("temperature"),
+        film_stress: Some(film_stress),
+        peak_lid_force: peak(column("lid_force")).map(|(_, value)| value),
+        ..judged.unwrap_or_default()
+    }
+}
 
+/// What a history says against `V_ref` and `H_ref`.
+fn judge(history: &History, (v_ref, h_ref): (f64, f64), course: &Course, done: bool) -> Measures {
+    let column = |name: &str| history.column(name);
+    let (time, volume, z_rim) = (column("time"), column("volume"), column("z_rim"));
     let reached =
         |values: &[f64], threshold: f64| first_hold(time, values, threshold, REACHED_HOLD);
     let t_deployed = deployed_since(time, volume, z_rim, course, (v_ref, h_ref));
-    let ringing = t_deployed.and_then(|start| ringing::ringing(time, vz, start));
-    let peak_vz = peak(vz);
-    let peak_kinetic = peak(kinetic);
+    let ringing = t_deployed.and_then(|start| ringing::ringing(time, column("vz"), start));
     let judged = done.then(|| LastTenth::new(time, volume, z_rim, (v_ref, h_ref)));
     let verdict = judged.map(|tenth| tenth.judge(&course.thresholds));
-
     Measures {
         verdict: verdict.map(|(verdict, _)| verdict),
         close: verdict.is_some_and(|(_, close)| close),
@@ -137,19 +155,10 @@ pub fn measure(
         t_50_volume: reached(volume, 0.5 * v_ref),
         t_90_volume: reached(volume, 0.9 * v_ref),
         t_deployed,
-        peak_vz: peak_vz.map(|(_, value)| value),
-        t_peak_vz: peak_vz.map(|(index, _)| time[index]),
-        peak_kinetic_energy: peak_kinetic.map(|(_, value)| value),
         overshoot: peak(z_rim).map(|(_, value)| value / h_ref - 1.0),
         ringing_rms: ringing.map(|(rms, _)| rms),
         ringing_frequency: ringing.and_then(|(_, line)| line),
-        t_settled: peak_kinetic.and_then(|(index, value)| settled(time, kinetic, index, value)),
-        final_z_rim: last("z_rim"),
-        final_volume: last("volume"),
-        final_pressure: Some(final_pressure),
-        final_temperature: last("temperature"),
-        film_stress: Some(film_stress),
-        peak_lid_force: peak(column("lid_force")).map(|(_, value)| value),
+        ..Measures::default()
     }
 }
 

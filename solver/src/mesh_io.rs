@@ -2,3 +2,4 @@
 
 pub mod fold;
 pub mod obj;
+pub mod obj_reader;

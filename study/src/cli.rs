@@ -16,6 +16,7 @@ mod plan;
 pub mod print;
 mod run;
 mod schema;
+mod solve;
 mod table;
 pub mod validate;
 
@@ -84,9 +85,11 @@ pub enum Command {
     Plan(plan::Args),
     /// Run what is missing of a study.
     Run(run::Args),
+    /// Solve one scene, a capsule or any mesh, without a study.
+    Solve(solve::Args),
     /// Print the summary table of a study's results.
     Table(table::Args),
-    /// Print the JSON Schema of the study file.
+    /// Print the JSON Schema of the study file or the scene file.
     Schema(schema::Args),
     /// Run the reference cases and judge them; exit code 1 if one is out of band.
     Validate(validate::Args),
@@ -123,6 +126,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Fold(args) => fold::run(args, &cli.global, out),
         Command::Plan(args) => plan::run(args, &cli.global, out),
         Command::Run(args) => run::run(args, &cli.global, out),
+        Command::Solve(args) => solve::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),
         Command::Validate(args) => validate::run(args, &cli.global, out),

@@ -191,7 +191,9 @@ pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<
         let _ = files.remove(&temporary);
     }
     written?;
-    files.sync_folder(path.parent().unwrap_or(Path::new(".")))
+    // A bare name's parent is the empty path, which no system opens.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    files.sync_folder(folder.unwrap_or(Path::new(".")))
 }
 
 /// Writes a whole file unless it holds these bytes already. Says whether it wrote.

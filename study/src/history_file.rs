@@ -1,11 +1,14 @@
-//! The only door to HDF5: one file a job.
+//! The only door to HDF5: one file a job, or a scene that was solved by itself.
 //!
 //! ```text
 //! /            format, version, program_version, commit, physics_version, job, scene, status,
 //!              stop_time, stop_place, content_hash, complete (written last)
 //! /history/    time (a dimension scale), z_centre, … : f64, one value a sample,
-//!              each with units and long_name
+//!              each with units and long_name; of film without rings no z_centre, z_rim, vz; of a scene
+//!              node_NAME_x, …, element_NAME_N1, … for what it follows
 //! ```
+//!
+//! A scene's `job` is the first half of its fingerprint.
 //!
 //! The file is built in memory and written in one go, so no reader ever sees a half. It holds no
 //! time of day: the same job run by the same program gives the same bytes. `xarray.open_dataset(path,
@@ -15,7 +18,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use billow_solver::deployment::{Deployment, Stop};
-use billow_solver::history::{COLUMNS, History};
+use billow_solver::history::{COLUMNS, History, RING_COLUMNS, Track};
 use hdf5::dataset::DatasetCreate;
 use hdf5::file::LinkCreationOrder;
 use hdf5::types::VarLenUnicode;
@@ -46,10 +49,17 @@ static DOOR: Mutex<()> = Mutex::new(());
 /// SHA-256 of the names, shapes and values of a history, in lower-case hexadecimal digits: the same
 /// for the same results, whatever program or machine stored them.
 pub fn content_hash(history: &History) -> String {
+    hash_of(history, &[])
+}
+
+/// The same with what was followed beside it.
+pub fn hash_of(history: &History, tracks: &[Track]) -> String {
     let mut hash = Sha256::new();
-    for (column, values) in history.iter() {
-        hash.update((column.name.len() as u64).to_le_bytes());
-        hash.update(column.name.as_bytes());
+    let columns = history.iter().map(|(column, values)| (column.name, values));
+    let tracks = tracks.iter().map(|track| (track.name.as_str(), track.values.as_slice()));
+    for (name, values) in columns.chain(tracks) {
+        hash.update((name.len() as u64).to_le_bytes());
+        hash.update(name.as_bytes());
         hash.update((values.len() as u64).to_le_bytes());
         for value in values {
             hash.update(value.to_bits().to_le_bytes());
@@ -81,17 +91,30 @@ pub fn encode(
     hash: &str,
 ) -> std::result::Result<Vec<u8>, String> {
     let scene = serde_json::to_string(&job.scene).map_err(|error| error.to_string())?;
-    let _door = DOOR.lock().unwrap_or_else(PoisonError::into_inner);
-    build(job, &scene, deployment, hash).map_err(|error| error.to_string())
+    encode_scene(&job.id, &scene, deployment, hash)
 }
 
-fn build(job: &Job, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::Result<Vec<u8>> {
+/// The bytes of the history file of a run of any scene, given as JSON.
+///
+/// # Errors
+/// What HDF5 says, in words.
+pub fn encode_scene(
+    id: &JobId,
+    scene: &str,
+    deployment: &Deployment,
+    hash: &str,
+) -> std::result::Result<Vec<u8>, String> {
+    let _door = DOOR.lock().unwrap_or_else(PoisonError::into_inner);
+    build(id, scene, deployment, hash).map_err(|error| error.to_string())
+}
+
+fn build(id: &JobId, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::Result<Vec<u8>> {
     let ordered = LinkCreationOrder::Indexed;
     // The oldest superblock: HDF5 1.10 gives the image of a newer one with a wrong checksum.
     let file = File::with_options()
         .with_fapl(|access| access.core_options(64 * 1024, false))
         .with_fcpl(|creation| creation.obj_track_times(false).link_creation_order(ordered))
-        .create(job.id.as_str())?;
+        .create(id.as_str())?;
     let (status, stop_time, stop_place) = match &deployment.stop {
         Stop::Done => (row::DONE, None, None),
         Stop::Cancelled => ("cancelled", None, None),
@@ -105,7 +128,7 @@ fn build(job: &Job, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::R
     writer.text(&file, "program_version", provenance::PROGRAM_VERSION)?;
     writer.text(&file, "commit", provenance::COMMIT)?;
     number_attribute(&file, "physics_version", provenance::PHYSICS_VERSION)?;
-    writer.text(&file, "job", job.id.as_str())?;
+    writer.text(&file, "job", id.as_str())?;
     writer.text(&file, "scene", scene)?;
     writer.text(&file, "status", status)?;
     if let Some(time) = stop_time {
@@ -119,12 +142,17 @@ fn build(job: &Job, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::R
         .create_group_builder()
         .with_gcpl(|creation| creation.link_creation_order(ordered))
         .create("history")?;
-    write_history(&writer, &group, &deployment.history)?;
+    write_history(&writer, &group, &deployment.history, &deployment.tracks)?;
     number_attribute(&file, "complete", 1_u8)?;
     raw::image(&file)
 }
 
-fn write_history(writer: &raw::Writer, group: &Group, history: &History) -> hdf5::Result<()> {
+fn write_history(
+    writer: &raw::Writer,
+    group: &Group,
+    history: &History,
+    tracks: &[Track],
+) -> hdf5::Result<()> {
     let samples = history.len();
     let mut create = DatasetCreate::build();
     create.obj_track_times(false);
@@ -132,12 +160,17 @@ fn write_history(writer: &raw::Writer, group: &Group, history: &History) -> hdf5
         create.chunk(samples.min(CHUNK)).shuffle().deflate(DEFLATE);
     }
     let columns = raw::Columns::new(samples, create.finish()?)?;
-    let mut datasets = Vec::with_capacity(COLUMNS.len());
-    for (column, values) in history.iter() {
-        let dataset = columns.write(group, column.name, values)?;
-        writer.text(&dataset, "units", column.unit)?;
-        writer.text(&dataset, "long_name", column.meaning)?;
-        datasets.push((column.name, dataset));
+    let mut datasets = Vec::with_capacity(COLUMNS.len() + tracks.len());
+    let own =
+        history.iter().map(|(column, values)| (column.name, column.unit, column.meaning, values));
+    let followed = tracks
+        .iter()
+        .map(|track| (track.name.as_str(), track.unit, track.meaning, track.values.as_slice()));
+    for (name, unit, meaning, values) in own.chain(followed) {
+        let dataset = columns.write(group, name, values)?;
+        writer.text(&dataset, "units", unit)?;
+        writer.text(&dataset, "long_name", meaning)?;
+        datasets.push((name, dataset));
     }
     if let Some(((name, time), others)) = datasets.split_first() {
         writer.attach(group, (name, time), others)?;
@@ -214,8 +247,13 @@ fn damaged(path: &Path, error: &hdf5::Error) -> Error {
 fn read_history(file: &File) -> hdf5::Result<History> {
     let group = file.group("history")?;
     let mut columns = Vec::with_capacity(COLUMNS.len());
+    let rings = RING_COLUMNS.iter().any(|name| group.link_exists(name));
     for column in COLUMNS {
-        columns.push(group.dataset(column.name)?.read_raw::<f64>()?);
+        if rings || !RING_COLUMNS.contains(&column.name) {
+            columns.push(group.dataset(column.name)?.read_raw::<f64>()?);
+        } else {
+            columns.push(vec![0.0; columns[0].len()]);
+        }
     }
     let samples = columns[0].len();
     if columns.iter().any(|column| column.len() != samples) {
@@ -229,7 +267,7 @@ fn read_history(file: &File) -> hdf5::Result<History> {
         }
         history.push(&values);
     }
-    Ok(history)
+    Ok(if rings { history } else { history.without_rings() })
 }
 
 fn read_text(location: &Location, name: &str) -> hdf5::Result<String> {

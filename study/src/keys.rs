@@ -1,6 +1,7 @@
-//! The keys of a study file: the one table behind reading, errors, defaults, `billow schema` and
-//! the names an expression knows.
+//! The keys of a study file and of a scene file: the tables behind reading, errors, defaults,
+//! `billow schema` and the names an expression knows.
 
+mod scene;
 mod table;
 
 use std::collections::HashMap;
@@ -11,6 +12,11 @@ use crate::study_file::Json;
 use crate::units::{self, Dimension};
 use crate::value::{Value, short_number};
 
+pub use scene::{
+    BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS,
+    SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
+};
+pub(crate) use scene::{FLAT, GRAVITY, NEAR};
 pub use table::{KEYS, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
 
 /// One key that holds one value.
@@ -39,6 +45,10 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// Any text.
     Text,
+    /// True or false.
+    Flag,
+    /// Three such quantities, x, y, z: [`Key::read_vector`].
+    Vector(Quantity),
 }
 
 /// The numbers a quantity may take.
@@ -108,6 +118,8 @@ impl Key {
             Kind::Integer(min, max) => format!("a whole number, {min} to {max}"),
             Kind::Choice(words) => words.join(", "),
             Kind::Text => "a text".to_owned(),
+            Kind::Flag => "true or false".to_owned(),
+            Kind::Vector(quantity) => format!("a list of three: {}", quantity.allowed()),
         }
     }
 
@@ -155,7 +167,46 @@ impl Key {
                 ))
             }
             (Kind::Text, Json::Text(text)) => Ok(Value::Text(text.clone())),
+            (Kind::Flag, Json::Bool(flag)) => Ok(Value::Bool(*flag)),
+            (Kind::Flag, other) => refuse(format!("is {}, not true or false", other.kind())),
             (_, other) => refuse(format!("is {}, not a text", other.kind())),
+        }
+    }
+}
+
+impl Key {
+    /// Reads three numbers, or texts with their units; a part that is `null` is none.
+    ///
+    /// # Errors
+    /// When it is no list of three, or one of them is of another type or dimension or out of range.
+    pub fn read_parts(&self, json: &Json) -> Result<[Option<f64>; 3], Refusal> {
+        let refuse = |problem: String| Refusal { problem, allowed: self.allowed() };
+        let (Kind::Vector(quantity), Json::List(items)) = (self.kind, json) else {
+            return Err(refuse(format!("is {}, not a list of three", json.kind())));
+        };
+        let mut parts = [None; 3];
+        if items.len() != 3 {
+            return Err(refuse(format!("has {} of three parts", items.len())));
+        }
+        for (part, item) in parts.iter_mut().zip(items) {
+            if *item != Json::Null {
+                *part = quantity.number(&quantity.read(item).map_err(refuse)?);
+            }
+        }
+        Ok(parts)
+    }
+
+    /// Reads three numbers, or texts with their units.
+    ///
+    /// # Errors
+    /// As [`Self::read_parts`], and a part that is `null`.
+    pub fn read_vector(&self, json: &Json) -> Result<[f64; 3], Refusal> {
+        match self.read_parts(json)? {
+            [Some(x), Some(y), Some(z)] => Ok([x, y, z]),
+            _ => {
+                let problem = "has a part that is null".to_owned();
+                Err(Refusal { problem, allowed: self.allowed() })
+            }
         }
     }
 }
@@ -182,7 +233,7 @@ impl Quantity {
         text
     }
 
-    fn read(&self, json: &Json) -> Result<Value, String> {
+    pub(crate) fn read(&self, json: &Json) -> Result<Value, String> {
         let number = match json {
             Json::Integer(number) => *number as f64,
             Json::Number(number) => *number,
@@ -225,32 +276,98 @@ pub(crate) fn whole(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0).then_some(number as i64)
 }
 
-static INDEX: LazyLock<HashMap<&'static str, usize>> =
-    LazyLock::new(|| KEYS.iter().enumerate().map(|(at, key)| (key.path, at)).collect());
+/// The keys of one kind of file that hold one value, with what finds them.
+#[derive(Debug)]
+pub struct Table {
+    /// What the file is, with its article.
+    pub what: &'static str,
+    /// The keys, in the order of the documentation.
+    pub keys: Vec<&'static Key>,
+    /// Its objects and what they are about.
+    pub sections: &'static [(&'static str, &'static str)],
+    /// Paths of the keys that hold more than one value, beside the sections.
+    pub structured: &'static [&'static str],
+    index: HashMap<&'static str, usize>,
+    /// Leaf names that only one key has; a key of the top level owns its name.
+    leaves: HashMap<&'static str, usize>,
+}
 
-/// Leaf names that only one key has; a key of the top level owns its name.
-static LEAVES: LazyLock<HashMap<&'static str, usize>> = LazyLock::new(|| {
-    let mut leaves: HashMap<&'static str, Vec<usize>> = HashMap::new();
-    for (at, key) in KEYS.iter().enumerate() {
-        leaves.entry(key.leaf()).or_default().push(at);
+impl Table {
+    fn new(
+        what: &'static str,
+        keys: Vec<&'static Key>,
+        sections: &'static [(&'static str, &'static str)],
+        structured: &'static [&'static str],
+    ) -> Self {
+        let index = keys.iter().enumerate().map(|(at, key)| (key.path, at)).collect();
+        let mut leaves: HashMap<&'static str, Vec<usize>> = HashMap::new();
+        for (at, key) in keys.iter().enumerate() {
+            leaves.entry(key.leaf()).or_default().push(at);
+        }
+        let leaves = leaves.into_iter().filter(|(_, at)| at.len() == 1);
+        let leaves = leaves.map(|(leaf, at)| (leaf, at[0])).collect();
+        Self { what, keys, sections, structured, index, leaves }
     }
-    leaves.into_iter().filter(|(_, at)| at.len() == 1).map(|(leaf, at)| (leaf, at[0])).collect()
+
+    /// Position of a dotted path.
+    pub fn index(&self, path: &str) -> Option<usize> {
+        self.index.get(path).copied()
+    }
+
+    /// Position of a dotted path or a leaf name only one key has.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.index(name).or_else(|| self.leaves.get(name).copied())
+    }
+
+    /// The shortest name that [`Self::find`] finds the key by.
+    pub fn short_name(&self, at: usize) -> &'static str {
+        let key = self.keys[at];
+        if self.leaves.get(key.leaf()) == Some(&at) { key.leaf() } else { key.path }
+    }
+
+    /// Whether a path is that of an object.
+    pub fn is_section(&self, path: &str) -> bool {
+        self.sections.iter().any(|(section, _)| *section == path)
+    }
+
+    /// Names of the keys and sections right below a path.
+    pub fn children(&self, prefix: &str) -> Vec<&'static str> {
+        let mut names: Vec<&'static str> = Vec::new();
+        let sections = self.sections.iter().map(|(path, _)| *path);
+        let keys = self.keys.iter().map(|key| key.path);
+        for path in sections.chain(keys).chain(self.structured.iter().copied()) {
+            let rest = match prefix {
+                "" => Some(path),
+                _ => path.strip_prefix(prefix).and_then(|rest| rest.strip_prefix('.')),
+            };
+            let Some(name) = rest.and_then(|rest| rest.split('.').next()) else { continue };
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
+    }
+}
+
+/// The keys of a study file, those of [`KEYS`] in their order.
+pub static STUDY: LazyLock<Table> = LazyLock::new(|| {
+    let structured = &["supports", "strategies", "grid"];
+    Table::new("a study", KEYS.iter().collect(), SECTIONS, structured)
 });
 
 /// Position in [`KEYS`] of a dotted path.
 pub fn index(path: &str) -> Option<usize> {
-    INDEX.get(path).copied()
+    STUDY.index(path)
 }
 
 /// Position in [`KEYS`] of a dotted path or a leaf name only one key has.
 pub fn find(name: &str) -> Option<usize> {
-    index(name).or_else(|| LEAVES.get(name).copied())
+    STUDY.find(name)
 }
 
 /// The shortest name that [`find`] finds the key by.
 pub fn short_name(at: usize) -> &'static str {
-    let key = &KEYS[at];
-    if LEAVES.get(key.leaf()) == Some(&at) { key.leaf() } else { key.path }
+    STUDY.short_name(at)
 }
 
 /// The known name nearest to a mistyped one, if any is near.

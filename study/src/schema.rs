@@ -1,15 +1,21 @@
-//! The JSON Schema (2020-12) of the study file, built from the table of keys.
+//! The JSON Schemas (2020-12) of the study file and the scene file, built from their tables of keys.
 //!
 //! It says what one value may be; what values may stand together (a fit and what it needs, a key
 //! given or varied) the program itself checks.
+
+mod scene;
 
 use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::keys::{self, Default, KEYS, Key, Kind, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::keys::{
+    self, Default, KEYS, Key, Kind, Quantity, STRATEGY_KEYS, STUDY, Table, WINDOW_KEYS,
+};
 use crate::units::Dimension;
 use crate::value::{Value, json_value};
+
+pub use scene::scene_schema;
 
 /// A number as a text begins with it.
 const NUMBER: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*";
@@ -20,7 +26,10 @@ const COMPOUND: &str = r"[^\s0-9][^\s]*[/^*·0-9 ].*";
 /// A number with a unit of the dimension after it, as JSON Schema can say it.
 fn quantity_pattern(dimension: Dimension) -> String {
     let symbols = crate::units::symbols(dimension).join("|");
-    let alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
+    let mut alone = if symbols.is_empty() { String::new() } else { format!("{symbols}|") };
+    if dimension.units().iter().any(|unit| unit.starts_with("1/")) {
+        alone.push_str(r"1\s*/.+|");
+    }
     format!(r"{NUMBER}({alone}{COMPOUND})\s*$")
 }
 
@@ -38,8 +47,8 @@ pub fn study_schema() -> Json {
     for key in KEYS.iter().filter(|key| !key.path.contains('.')) {
         properties.insert(key.path.to_owned(), property(key));
     }
-    for (section, _) in SECTIONS.iter().filter(|(path, _)| !path.contains('.')) {
-        properties.insert((*section).to_owned(), object(section));
+    for (section, _) in STUDY.sections.iter().filter(|(path, _)| !path.contains('.')) {
+        properties.insert((*section).to_owned(), object(&STUDY, section));
     }
     properties.insert("supports".to_owned(), supports());
     properties.insert("strategies".to_owned(), strategies());
@@ -56,21 +65,21 @@ pub fn study_schema() -> Json {
 }
 
 /// One section, with the sections within it.
-fn object(section: &str) -> Json {
+fn object(table: &Table, section: &str) -> Json {
     let mut properties = Map::new();
     let below = |path: &'static str| {
         path.strip_prefix(section)
             .and_then(|rest| rest.strip_prefix('.'))
             .filter(|rest| !rest.contains('.'))
     };
-    for key in KEYS {
+    for key in &table.keys {
         if let Some(name) = below(key.path) {
             properties.insert(name.to_owned(), property(key));
         }
     }
-    for (path, _) in SECTIONS {
+    for (path, _) in table.sections {
         if let Some(name) = below(path) {
-            let inner = object(path);
+            let inner = object(table, path);
             // A section that is a key as well (gas.species) is a word or an object.
             let whole = match properties.remove(name) {
                 Some(Json::Object(mut word)) => {
@@ -90,7 +99,7 @@ fn object(section: &str) -> Json {
             properties.insert(name.to_owned(), whole);
         }
     }
-    let doc = SECTIONS.iter().find(|(path, _)| *path == section).map_or("", |(_, doc)| doc);
+    let doc = table.sections.iter().find(|(path, _)| *path == section).map_or("", |(_, doc)| doc);
     let mut schema = json!({
         "title": title(section),
         "description": doc,
@@ -120,7 +129,10 @@ fn property(key: &Key) -> Json {
         Default::Absent(meaning) => {
             let _ = write!(description, " Default: {meaning}.");
         }
-        Default::Required => description.push_str(" Required, here or under grid."),
+        Default::Required if keys::find(key.path).is_some() => {
+            description.push_str(" Required; in a study, here or under grid.");
+        }
+        Default::Required => description.push_str(" Required."),
         _ => {}
     }
     if let Kind::Quantity(quantity) = key.kind
@@ -147,24 +159,33 @@ fn property(key: &Key) -> Json {
 /// What a key may hold.
 fn kind(key: &Key) -> Json {
     match key.kind {
-        Kind::Quantity(quantity) => {
-            let least = if quantity.above { "exclusiveMinimum" } else { "minimum" };
-            let mut number = json!({"type": "number", "maximum": quantity.max});
-            number[least] = json!(quantity.min);
-            let mut forms = vec![
-                number,
-                json!({"type": "string", "pattern": quantity_pattern(quantity.dimension)}),
-            ];
-            let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
-            if !words.is_empty() {
-                forms.push(json!({"enum": words}));
-            }
-            json!({"oneOf": forms})
-        }
+        Kind::Quantity(quantity) => json!({"oneOf": forms(quantity)}),
         Kind::Integer(min, max) => json!({"type": "integer", "minimum": min, "maximum": max}),
         Kind::Choice(words) => json!({"enum": words}),
         Kind::Text => json!({"type": "string"}),
+        Kind::Flag => json!({"type": "boolean"}),
+        Kind::Vector(quantity) => {
+            let mut part = forms(quantity);
+            if matches!(key.path, "min" | "max") {
+                part.push(json!({"type": "null"}));
+            }
+            json!({"type": "array", "items": {"oneOf": part}, "minItems": 3, "maxItems": 3})
+        }
     }
+}
+
+/// A quantity as a number, as a text with a unit, as a word.
+fn forms(quantity: Quantity) -> Vec<Json> {
+    let least = if quantity.above { "exclusiveMinimum" } else { "minimum" };
+    let mut number = json!({"type": "number", "maximum": quantity.max});
+    number[least] = json!(quantity.min);
+    let mut forms =
+        vec![number, json!({"type": "string", "pattern": quantity_pattern(quantity.dimension)})];
+    let words: Vec<&str> = quantity.words.iter().map(|(word, _)| *word).collect();
+    if !words.is_empty() {
+        forms.push(json!({"enum": words}));
+    }
+    forms
 }
 
 fn supports() -> Json {

@@ -11,7 +11,6 @@ mod expand;
 mod grid;
 mod overrides;
 mod resolve;
-mod source;
 mod strategy;
 mod supports;
 
@@ -21,15 +20,16 @@ use serde_json::{Map, json};
 
 use crate::error::InputError;
 use crate::job::Parameters;
-use crate::keys::Kind;
+use crate::keys::{Kind, STUDY};
 use crate::point::{Infeasible, Solved};
 use crate::study_file::{self, Json};
 use crate::value::json_value;
 use billow_solver::scene::Scene;
 
+use crate::source::Source;
 use base::Base;
 use grid::Grid;
-use source::Source;
+pub(crate) use overrides::apply as apply_overrides;
 pub(crate) use supports::PLACES;
 
 /// What a study may not exceed.
@@ -76,7 +76,7 @@ impl Study {
     /// # Errors
     /// [`crate::error::Error::Disk`] when the file cannot be read, [`crate::error::Error::Input`] when it is no sound study.
     pub fn load(path: &Path, sets: &[String]) -> crate::error::Result<Self> {
-        let bytes = study_file::read(path)?;
+        let bytes = study_file::read(path, "study file", "studies/first.json")?;
         let file = path.display().to_string();
         let text = study_file::text_of(&bytes, &file)?;
         let stem =
@@ -116,7 +116,7 @@ impl Study {
             let problem = format!("is {}, not an object", tree.kind());
             return Err(source.error("", "", problem, "one JSON object: {\"design\": …}"));
         }
-        overrides::apply(&mut tree, sets, &mut source)?;
+        overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let base = Base::read(&tree, &source)?;
         let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
         overrides::refuse_varied(&grid, &source)?;
@@ -142,7 +142,7 @@ impl Study {
         match column.map(|column| column.target.key().kind) {
             Some(Kind::Quantity(quantity)) => quantity.dimension.si(),
             Some(Kind::Integer(..)) => "1",
-            Some(Kind::Choice(_) | Kind::Text) | None => "",
+            Some(Kind::Choice(_) | Kind::Text | Kind::Flag | Kind::Vector(_)) | None => "",
         }
     }
 

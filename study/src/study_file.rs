@@ -224,27 +224,21 @@ pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, 
     Ok(text)
 }
 
-/// The bytes of a study file.
+/// The bytes of a study or scene file; `what` it is to be, `example` one that ships.
 ///
 /// # Errors
 /// [`Error::Disk`] when it cannot be read, or is larger than [`LARGEST_FILE`].
-pub fn read(path: &Path) -> Result<Vec<u8>> {
+pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
     let disk = |problem: String| Error::Disk { path: path.to_owned(), problem };
     let unreadable = |error: std::io::Error| {
         let next = match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                "; give the path of a study file, as studies/first.json"
-            }
-            _ => "",
+            std::io::ErrorKind::NotFound => format!("; give the path of a {what}, as {example}"),
+            _ => String::new(),
         };
-        disk(format!("cannot read the study file: {error}{next}"))
+        disk(format!("cannot read the {what}: {error}{next}"))
     };
     files::read_at_most(path, LARGEST_FILE).map_err(unreadable)?.ok_or_else(|| {
-        disk(format!(
-            "larger than the {} MiB a study file may have; vary keys under grid instead of listing \
-             points",
-            LARGEST_FILE >> 20
-        ))
+        disk(format!("larger than the {} MiB a {what} may have", LARGEST_FILE >> 20))
     })
 }
 

@@ -224,7 +224,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
 fn the_reference_stretches_a_little_with_pressure() {
     use billow_solver::deployment::Model;
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
-    let reference = run.reference();
+    let reference = run.reference().expect("a capsule has one");
     let height = |pressure: f64| reference.at(pressure).1;
     assert!(height(1.0) > 1.0 && height(1000.0) > height(100.0));
     // z = H + p V_e/(H k), k about 2π E t r/H.

@@ -10,6 +10,7 @@ mod physics_version;
 mod planning;
 mod resume;
 mod running;
+mod solving;
 mod storage;
 mod study_files;
 mod support;

@@ -39,8 +39,8 @@ impl Model for Recorder {
         Sample { time, volume: 1.0, z_rim: 1.0, ledger, ..Sample::default() }
     }
 
-    fn reference(&self) -> Reference {
-        Reference::new(vec![[1.0, 1.0, 1.0]])
+    fn reference(&self) -> Option<Reference> {
+        Some(Reference::new(vec![[1.0, 1.0, 1.0]]))
     }
 
     fn film_stress(&self) -> f64 {

@@ -364,12 +364,16 @@ impl Explicit {
         }
     }
 
-    /// The gas's side of the ledger; the mass let in is the loop's.
+    /// The gas's side of the ledger; the mass let in is the loop's. A fixed overpressure has none.
     pub fn books(&self) -> GasBooks {
+        let gas_work = match self.setting.interior {
+            Interior::Gas(_) => self.state.works.gas,
+            Interior::Overpressure(_) => 0.0,
+        };
         GasBooks {
             mass: self.state.gas.mass,
             internal_energy: self.state.gas.internal_energy,
-            gas_work: self.state.works.gas,
+            gas_work,
             ..self.state.books
         }
     }

@@ -1,22 +1,26 @@
-//! The film of a capsule, explicit in time, **without contact**: film passes through film.
+//! Film of any shape, explicit in time, **without contact**: film passes through film.
 //!
-//! Tension-field triangles ([`crate::forces`]) on the mesh of the pattern, one gas volume, central
-//! differences ([`crate::integrate::explicit`]). For unfolded shapes and for validation. A folded
-//! capsule let go in it is a check of energy, not a deployment: its passages and intersections are
-//! not counted and come out as `None`, no scene can name it as its model, and
-//! [`crate::scene::Solver::model`] and `stepping` are not read here.
+//! Tension-field triangles ([`crate::forces`]), a pressure or one gas volume, central differences
+//! ([`crate::integrate::explicit`]). A capsule is one such film, with rings. For unfolded shapes and
+//! for validation. A folded capsule let go in it is a check of energy, not a deployment: its passages
+//! and intersections are not counted and come out as `None`, no [`Scene`] can name it as its model,
+//! and [`crate::scene::Solver::model`] and `stepping` are not read here.
 //!
 //! While packed every node is held where it is stowed; the gas presses on the lid. The lid's force
 //! is the one that does the work of a uniform stretch of the stack, Σ `f_z` z/h: what a lone piston
-//! would feel.
+//! would feel. Film that is no capsule has no lid to press on.
+
+use nalgebra::Vector3;
 
 use super::SceneError;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
-use crate::history::Sample;
-use crate::integrate::explicit::{Explicit, Interior};
+use crate::film_scene::FilmScene;
+use crate::history::{Sample, Track};
+use crate::integrate::explicit::{Explicit, Interior, State};
 use crate::measures::Reference;
-use crate::mesh::Shape;
+use crate::mesh::{Mesh, Shape};
+use crate::resultants::resultants;
 use crate::scene::Scene;
 use crate::state::Field;
 
@@ -41,39 +45,111 @@ pub fn solve(
     Ok(deployment::run(&mut run, &Course::new(scene), observer))
 }
 
-/// A capsule of film in the middle of a run.
+/// Film in the middle of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmRun {
     /// The film.
     pub film: Explicit,
-    top_ring: Vec<u32>,
-    top_centre: u32,
-    stowed_height: f64,
-    reference: Reference,
+    rings: Option<Rings>,
+    reference: Option<Reference>,
+    nodes: Vec<u32>,
+    elements: Vec<u32>,
+    /// Boundary loops of an open film with what their fans are spun about, m.
+    fans: Vec<(Vector3<f64>, Vec<u32>)>,
+    /// `T_film`, K.
+    temperature: f64,
+}
+
+/// What makes film a capsule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rings {
+    /// Nodes of the top ring.
+    pub top_ring: Vec<u32>,
+    /// Centre node of the top cap.
+    pub top_centre: u32,
+    /// Height of the stack while it is packed, m.
+    pub stowed_height: f64,
+}
+
+impl Rings {
+    /// The rings of a capsule's mesh, packed at this height (m).
+    pub fn of(mesh: &Mesh, stowed_height: f64) -> Self {
+        let (top_ring, top_centre) = (mesh.top_ring.clone(), mesh.top_centre);
+        Self { top_ring, top_centre, stowed_height }
+    }
 }
 
 impl FilmRun {
-    /// The scene's film, stowed, at time 0.
+    /// A scene's film at time 0; with `rings` a capsule.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] when the film is none, or a number is out of range.
+    pub fn of(scene: &FilmScene, rings: Option<Rings>) -> Result<Self, SceneError> {
+        Ok(Self::with(capsule::start(scene)?, scene, rings))
+    }
+
+    /// A scene's film in a state stored of it, to go on bit for bit.
+    ///
+    /// # Errors
+    /// As [`Self::of`]; a state of another film.
+    pub fn resume(
+        scene: &FilmScene,
+        rings: Option<Rings>,
+        state: State,
+    ) -> Result<Self, SceneError> {
+        let (model, setting, _) = capsule::constants(scene)?;
+        let bodies = setting.supports.bodies.len();
+        let fits = [&state.places, &state.velocities].iter().all(|field| {
+            [&field.x, &field.y, &field.z].iter().all(|column| column.len() == model.nodes())
+        });
+        if !fits || state.planes.len() != bodies {
+            let problem = "the state is that of another film".to_owned();
+            return Err(SceneError::Invalid { key: "mesh".to_owned(), problem });
+        }
+        Ok(Self::with(Explicit::resume(model, setting, state), scene, rings))
+    }
+
+    fn with(film: Explicit, scene: &FilmScene, rings: Option<Rings>) -> Self {
+        let (nodes, elements) = (scene.outputs.nodes.clone(), scene.outputs.elements.clone());
+        let temperature = scene.film.temperature;
+        let fans = scene.shell.fans();
+        Self { film, rings, reference: None, nodes, elements, fans, temperature }
+    }
+
+    /// The scene's capsule, stowed, at time 0.
     ///
     /// # Errors
     /// As [`solve`].
     pub fn from_scene(scene: &Scene, cfl: f64, reference: Reference) -> Result<Self, SceneError> {
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let (film, mesh) = capsule::film_scene(scene, stowed, cfl)?;
-        Ok(Self {
-            film: capsule::start(&film)?,
-            top_ring: mesh.top_ring,
-            top_centre: mesh.top_centre,
-            stowed_height: scene.design.stowed_height,
-            reference,
-        })
+        let run = Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))?;
+        Ok(Self { reference: Some(reference), ..run })
     }
 
-    fn lid_force(&self) -> f64 {
+    fn lid_force(&self, rings: &Rings) -> f64 {
         let lift: f64 = (0..self.film.model.nodes())
             .map(|node| self.film.force(node).z * self.film.state.places.z[node])
             .sum();
-        (lift / self.stowed_height).max(0.0)
+        (lift / rings.stowed_height).max(0.0)
+    }
+
+    /// Enclosed volume, m³; that of an open film between it and the fans over its free edges.
+    pub fn volume(&self) -> f64 {
+        let place = |node: u32| self.film.state.places.get(node as usize);
+        let fan = |(apex, path): &(Vector3<f64>, Vec<u32>)| -> f64 {
+            let edge =
+                |k: usize| place(path[k]).dot(&place(path[(k + 1) % path.len()]).cross(apex));
+            (0..path.len()).map(edge).sum()
+        };
+        let own = self.film.state.volume;
+        if self.fans.is_empty() { own } else { own + self.fans.iter().map(fan).sum::<f64>() / 6.0 }
+    }
+
+    /// Largest height of any node with mass, m.
+    fn largest_height(&self) -> f64 {
+        let masses = self.film.model.mass.iter().zip(&self.film.state.places.z);
+        masses.filter(|(mass, _)| **mass > 0.0).map(|(_, z)| *z).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
@@ -87,29 +163,79 @@ impl Model for FilmRun {
         self.film.advance(target, phase)
     }
 
+    fn advance_at_most(
+        &mut self,
+        target: f64,
+        phase: &Phase,
+        steps: &mut u64,
+    ) -> Result<bool, Failure> {
+        self.film.advance_at_most(target, phase, steps)
+    }
+
     fn sample(&self, phase: &Phase) -> Sample {
         let film = &self.film;
-        let Interior::Gas(gas) = film.setting.interior else { unreachable!("made with gas") };
-        let centre = self.top_centre as usize;
+        let places = &film.state.places;
+        let (mut sample, mut lid_force) = (Sample::default(), 0.0);
+        if let Some(rings) = &self.rings {
+            let centre = rings.top_centre as usize;
+            sample.z_centre = places.z[centre];
+            sample.z_rim = mean_height(places, &rings.top_ring);
+            sample.vz = film.velocities().z[centre];
+            lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
+        }
         Sample {
             time: film.state.time,
-            z_centre: film.state.places.z[centre],
-            z_rim: mean_height(&film.state.places, &self.top_ring),
-            z_max: film.state.places.z.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            vz: film.velocities().z[centre],
-            volume: film.state.volume,
+            z_max: self.largest_height(),
+            volume: self.volume(),
             pressure: film.state.pressure,
-            temperature: gas.temperature(film.state.gas),
-            lid_force: if phase.packed { self.lid_force() } else { 0.0 },
+            temperature: match film.setting.interior {
+                Interior::Gas(gas) => gas.temperature(film.state.gas),
+                Interior::Overpressure(_) => self.temperature,
+            },
+            lid_force,
             ledger: film.ledger(),
             gas: film.books(),
-            passages: 0,
-            intersections: 0,
+            ..sample
         }
     }
 
-    fn reference(&self) -> Reference {
+    fn reference(&self) -> Option<Reference> {
         self.reference.clone()
+    }
+
+    fn has_rings(&self) -> bool {
+        self.rings.is_some()
+    }
+
+    fn tracks(&self) -> Vec<Track> {
+        let nodes = self.nodes.iter().flat_map(|node| {
+            ["x", "y", "z"].map(|axis| Track {
+                name: format!("node_{node}_{axis}"),
+                unit: "m",
+                meaning: "place of a followed node",
+                values: Vec::new(),
+            })
+        });
+        let elements = self.elements.iter().flat_map(|element| {
+            ["N1", "N2"].map(|name| Track {
+                name: format!("element_{element}_{name}"),
+                unit: "N/m",
+                meaning: "principal membrane force of a followed element, per reference width",
+                values: Vec::new(),
+            })
+        });
+        nodes.chain(elements).collect()
+    }
+
+    fn follow(&self, values: &mut Vec<f64>) {
+        for node in &self.nodes {
+            let place = self.film.state.places.get(*node as usize);
+            values.extend([place.x, place.y, place.z]);
+        }
+        for element in &self.elements {
+            let (model, places) = (&self.film.model, &self.film.state.places);
+            values.extend(resultants(model, places, *element as usize).principal);
+        }
     }
 
     fn film_stress(&self) -> f64 {

@@ -7,6 +7,7 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::fold::{Corner, FoldPattern};
 use crate::mesh::{Mesh, Part};
+use crate::mesh_io::obj_reader::{Face, Surface};
 
 /// A mesh as OBJ.
 pub fn mesh(mesh: &Mesh, title: &str) -> String {
@@ -21,6 +22,23 @@ pub fn mesh(mesh: &Mesh, title: &str) -> String {
             let _ = writeln!(text, "g {}", name(*part));
         }
         face(&mut text, triangle);
+    }
+    text
+}
+
+/// A surface as OBJ, its vertices at these places (m), in its own numbers.
+pub fn surface(surface: &Surface, places: &[Vector3<f64>], title: &str) -> String {
+    let mut text = header(title);
+    for place in places {
+        vertex(&mut text, *place);
+    }
+    let mut group = None;
+    for Face { corners, names, .. } in &surface.faces {
+        if group != Some(*names) {
+            group = Some(*names);
+            let _ = writeln!(text, "g {}", surface.names[*names].join(" "));
+        }
+        face(&mut text, corners);
     }
     text
 }
@@ -108,7 +126,8 @@ fn face(text: &mut String, nodes: &[u32]) {
     text.push('\n');
 }
 
-fn name(part: Part) -> String {
+/// Name of the group of a piece of film.
+pub fn name(part: Part) -> String {
     match part {
         Part::Storey(storey) => format!("storey_{storey}"),
         Part::BottomCap => "bottom_cap".to_owned(),

@@ -72,7 +72,11 @@ fn plural(count: usize, word: &str) -> String {
     format!("{word}{}", if count == 1 { "" } else { "s" })
 }
 
-fn threads(global: &Global) -> Result<Option<NonZero<usize>>> {
+/// The number of threads asked for.
+///
+/// # Errors
+/// Where nought is asked for.
+pub fn threads(global: &Global) -> Result<Option<NonZero<usize>>> {
     let Some(threads) = global.threads else { return Ok(None) };
     let refused = || InputError {
         file: "--threads".to_owned(),

@@ -8,15 +8,15 @@ use crate::units::Dimension;
 
 use Default::{Absent, Integer, Number, Required, Word};
 
-const fn from(dimension: Dimension, min: f64, max: f64) -> Kind {
+pub(super) const fn from(dimension: Dimension, min: f64, max: f64) -> Kind {
     Kind::Quantity(Quantity { dimension, min, above: false, max, words: &[] })
 }
 
-const fn above(dimension: Dimension, min: f64, max: f64) -> Kind {
+pub(super) const fn above(dimension: Dimension, min: f64, max: f64) -> Kind {
     Kind::Quantity(Quantity { dimension, min, above: true, max, words: &[] })
 }
 
-const fn key(
+pub(super) const fn key(
     path: &'static str,
     kind: Kind,
     default: Default,
@@ -43,9 +43,9 @@ pub const SECTIONS: &[(&str, &str)] = &[
 const LARGEST: i64 = 9_007_199_254_740_991;
 
 const RADIUS: Kind = above(Dimension::Length, 0.0, 100.0);
-const FRACTION: Kind = above(Dimension::Number, 0.0, 1.0);
-const KELVIN: Kind = from(Dimension::Temperature, 1.0, 5000.0);
-const CLOCK: Kind = from(Dimension::Time, 0.0, 1e6);
+pub(super) const FRACTION: Kind = above(Dimension::Number, 0.0, 1.0);
+pub(super) const KELVIN: Kind = from(Dimension::Temperature, 1.0, 5000.0);
+pub(super) const CLOCK: Kind = from(Dimension::Time, 0.0, 1e6);
 
 /// Every key that holds one value.
 #[rustfmt::skip]

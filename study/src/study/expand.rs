@@ -3,15 +3,16 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::base::{Base, read};
+use super::base::Base;
 use super::grid::{Axis, Column, Grid, Target};
 use super::resolve::{self, Fold};
-use super::source::Source;
 use super::{Limits, StudyPoint};
 use crate::error::InputError;
 use crate::expression::{Type, Variable};
 use crate::keys::{self, KEYS, Key, Kind};
 use crate::point::Solved;
+use crate::settings::{design, read};
+use crate::source::Source;
 use crate::study_file::Json;
 use crate::units::Dimension;
 use crate::value::{Value, json_value};
@@ -179,7 +180,8 @@ pub(super) fn variables(grid: &Grid, base: &Base) -> Vec<Variable> {
             Kind::Text if key.path == "strategy" => {
                 Type::Text(Some(base.strategies.keys().cloned().collect()))
             }
-            Kind::Text => Type::Text(None),
+            // No key of a study is a flag or a vector.
+            Kind::Text | Kind::Flag | Kind::Vector(_) => Type::Text(None),
         };
         variables.push(Variable { name, kind });
     }
@@ -343,7 +345,7 @@ impl Expansion<'_> {
             }
             error
         };
-        let design = resolve::design(&point.settings, self.source).map_err(place)?;
+        let design = design(&point.settings, self.source).map_err(place)?;
         let fold = Rc::clone(
             self.folds
                 .entry(resolve::design_key(&design))

@@ -1,12 +1,13 @@
 //! The grid of a study: axes (single or zipped), single points, a filter.
 
 use super::Limits;
-use super::base::{Base, list, object, read};
+use super::base::Base;
 use super::expand;
-use super::source::Source;
 use crate::error::InputError;
 use crate::expression::Expression;
-use crate::keys::{self, KEYS, Key, Kind, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::keys::{self, KEYS, Key, Kind, STRATEGY_KEYS, STUDY, WINDOW_KEYS};
+use crate::settings::{list, object, read};
+use crate::source::Source;
 use crate::study_file::Json;
 use crate::value::Value;
 
@@ -76,7 +77,7 @@ impl Grid {
         let Some(json) = json else { return Ok(grid) };
         let mut filter = None;
         let mut points = None;
-        for (name, value) in object(json, "grid", source)? {
+        for (name, value) in object(json, &STUDY, "grid", source)? {
             match name.as_str() {
                 "zip" => {
                     let allowed = "a list of objects of lists of equal length";

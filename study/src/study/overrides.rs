@@ -1,15 +1,16 @@
 //! `--set key=value`: overrides written into the tree of the file before it is read.
 
 use super::grid::{Grid, Target};
-use super::source::Source;
 use crate::error::InputError;
-use crate::keys::{self, KEYS};
+use crate::keys::{self, KEYS, Table};
+use crate::source::Source;
 use crate::study_file::{self, Json};
 
 /// Applies the overrides, in order, and notes their flags in `source`.
-pub(super) fn apply(
+pub(crate) fn apply(
     tree: &mut Json,
     sets: &[String],
+    table: &Table,
     source: &mut Source,
 ) -> Result<(), InputError> {
     for set in sets {
@@ -19,7 +20,8 @@ pub(super) fn apply(
             key: String::new(),
             value: String::new(),
             problem: problem.to_owned(),
-            allowed: "--set key=value, as in --set film.thickness='30 um' or --set 'grid.N=[5, 6]'"
+            allowed: "--set key=value, as in --set film.thickness='30 um' or, in a study, --set \
+                      'grid.N=[5, 6]'"
                 .to_owned(),
             hint: String::new(),
         };
@@ -29,15 +31,17 @@ pub(super) fn apply(
         let name = name.trim();
         let value =
             study_file::parse(value, &flag).unwrap_or_else(|_| Json::Text(value.trim().to_owned()));
-        if let Some(axis) = name.strip_prefix("grid.") {
+        if let Some(axis) =
+            name.strip_prefix("grid.").filter(|_| table.structured.contains(&"grid"))
+        {
             set_axis(tree, axis, value);
             source.sets.push((name.to_owned(), flag));
             continue;
         }
-        let path = keys::find(name).map_or(name, |at| KEYS[at].path);
+        let path = table.find(name).map_or(name, |at| table.keys[at].path);
         let mut place = &mut *tree;
         for part in path.split('.') {
-            place = step(place, part).ok_or_else(|| refuse("names no place in the study"))?;
+            place = step(place, part).ok_or_else(|| refuse("names no place in the file"))?;
         }
         *place = value;
         source.sets.push((path.to_owned(), flag));

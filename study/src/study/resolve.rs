@@ -1,17 +1,17 @@
 //! From the settings of a point to its scene.
 
-use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign, FoldError, FoldPattern};
+use billow_solver::fold::{FoldDesign, FoldError, FoldPattern};
 use billow_solver::scene::{
-    Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
-    Species, Stepping, Thresholds,
+    Contact, GasSupply, InflowWindow, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
 };
 
-use super::base::{Base, Settings};
-use super::source::{Source, shown};
+use super::base::Base;
 use super::strategy::Strategy;
 use crate::error::InputError;
-use crate::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::keys::{STRATEGY_KEYS, WINDOW_KEYS};
 use crate::point::Infeasible;
+use crate::settings::{film, gas_laws, missing, number, unsigned};
+use crate::source::{Source, shown};
 use crate::value::Value;
 
 /// A design's pattern, or why it has none.
@@ -60,49 +60,6 @@ pub(super) fn design_key(design: &FoldDesign) -> DesignKey {
     ]
 }
 
-fn missing(path: &str, source: &Source) -> InputError {
-    let key = keys::index(path).map(|at| &KEYS[at]);
-    let leaf = key.map_or(path, |key| key.leaf());
-    let allowed = key.map_or_else(String::new, Key::allowed);
-    let mut error = source.error(path, "", "missing", allowed);
-    error.hint = format!("give it here, or vary {leaf} under grid");
-    error
-}
-
-fn number(settings: &Settings, path: &str, source: &Source) -> Result<f64, InputError> {
-    settings.number(path).ok_or_else(|| missing(path, source))
-}
-
-fn whole(settings: &Settings, path: &str, source: &Source) -> Result<u32, InputError> {
-    let number = settings.integer(path).and_then(|number| u32::try_from(number).ok());
-    number.ok_or_else(|| missing(path, source))
-}
-
-/// The fold design of a point.
-pub(super) fn design(settings: &Settings, source: &Source) -> Result<FoldDesign, InputError> {
-    Ok(FoldDesign {
-        fit: match settings.text("design.fit") {
-            "angles" => Fit::Angles,
-            "height" => Fit::Height,
-            _ => Fit::Cone,
-        },
-        panels: whole(settings, "design.N", source)?,
-        storeys: whole(settings, "design.M", source)?,
-        bottom_radius: number(settings, "design.bottom_radius", source)?,
-        top_radius: settings.number("design.top_radius"),
-        height: settings.number("design.height"),
-        half_angle: settings.number("design.half_angle"),
-        alpha1_over_phi: settings.number("design.alpha1_over_phi"),
-        chirality: match settings.text("design.chirality") {
-            "alternate" => Chirality::Alternate,
-            _ => Chirality::Same,
-        },
-        stowed_height: number(settings, "design.stowed_height", source)?,
-        subdivisions: whole(settings, "design.subdivisions", source)?,
-        caps: Caps::Polygon,
-    })
-}
-
 /// Most samples of one run: more would be a slip of the unit.
 const MOST_SAMPLES: f64 = 1e6;
 
@@ -127,7 +84,7 @@ pub(super) fn scene(
     let name = settings.text("strategy");
     let Some(strategy) = point.strategies.get(name) else {
         point.check_strategy(name, "strategy", source)?;
-        return Err(missing("strategy", source));
+        return Err(missing(settings, "strategy", source));
     };
     let release_time = strategy_number(strategy, "release_time");
     if release_time >= end_time {
@@ -143,28 +100,12 @@ pub(super) fn scene(
     let windows = windows(point, name, strategy, if stored { 0.0 } else { residual }, source)?;
     Ok(Scene {
         design,
-        film: Film {
-            youngs_modulus: get("film.youngs_modulus")?,
-            poisson_ratio: get("film.poisson_ratio")?,
-            density: get("film.density")?,
-            thickness: get("film.thickness")?,
-            compression: get("film.compression")?,
-            viscosity: get("film.viscosity")?,
-            temperature: get("film.temperature")?,
-        },
+        film: film(settings, source)?,
         gas: GasSupply {
-            species: species(settings, source)?,
             initial_mass: strategy_number(strategy, "preinflation_mass")
                 + if stored { residual } else { 0.0 },
             windows,
-            ambient_pressure: get("gas.ambient_pressure")?,
-            heat_transfer: match settings.get("gas.heat_transfer") {
-                Value::Number(coefficient) => HeatTransfer::Coefficient(*coefficient),
-                Value::Text(word) if word == "isothermal" => HeatTransfer::Isothermal,
-                _ => HeatTransfer::Coefficient(0.0),
-            },
-            leak_area: get("gas.leak_area")?,
-            discharge_coefficient: get("gas.discharge_coefficient")?,
+            ..gas_laws(settings, source)?
         },
         supports: point.supports.clone(),
         contact: Contact {
@@ -194,11 +135,6 @@ pub(super) fn scene(
         },
         seed: unsigned(settings, "seed", source)?,
     })
-}
-
-fn unsigned(settings: &Settings, path: &str, source: &Source) -> Result<u64, InputError> {
-    let number = settings.integer(path).and_then(|number| u64::try_from(number).ok());
-    number.ok_or_else(|| missing(path, source))
 }
 
 /// The value of a strategy's own key; those all have defaults.
@@ -273,35 +209,4 @@ fn windows(
             .then(a.temperature.total_cmp(&b.temperature))
     });
     Ok(windows)
-}
-
-/// The named species: ideal gases, R = 8.314462618 J/(mol K) over the molar mass (CODATA 2018), cp
-/// at 300 K and low pressure (NIST-JANAF; air: dry air). Nitrogen is that of the reference cases.
-const SPECIES: [(&str, f64, f64); 6] = [
-    ("nitrogen", 296.803_052, 1_038.810_68),
-    ("air", 287.055, 1_005.0),
-    ("helium", 2_077.264, 5_193.16),
-    ("argon", 208.132, 520.33),
-    ("carbon_dioxide", 188.924, 846.0),
-    ("hydrogen", 4_124.48, 14_310.0),
-];
-
-/// The named species, or the gas of its own; a constant given beside a name takes its place.
-fn species(settings: &Settings, source: &Source) -> Result<Species, InputError> {
-    let name = settings.maybe_text("gas.species");
-    let named = SPECIES.iter().find(|(known, ..)| name == Some(*known));
-    let pick = |path: &str, named: Option<f64>| {
-        settings.number(path).or(named).ok_or_else(|| missing(path, source))
-    };
-    let gas_constant = pick("gas.species.gas_constant", named.map(|species| species.1))?;
-    let cp = pick("gas.species.cp", named.map(|species| species.2))?;
-    if cp <= gas_constant {
-        return Err(source.error(
-            "gas.species.cp",
-            &shown(cp),
-            "leaves no heat capacity at constant volume",
-            format!("above the gas constant, {gas_constant} J/(kg K)"),
-        ));
-    }
-    Ok(Species { gas_constant, cp })
 }

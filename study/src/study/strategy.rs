@@ -2,10 +2,10 @@
 
 use serde_json::{Map, json};
 
-use super::base::{list, read};
-use super::source::Source;
 use crate::error::InputError;
 use crate::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::settings::{list, read};
+use crate::source::Source;
 use crate::study_file::Json;
 use crate::value::{Value, json_value};
 

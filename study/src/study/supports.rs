@@ -2,9 +2,9 @@
 
 use billow_solver::scene::{Support, SupportPlace};
 
-use super::base::list;
-use super::source::Source;
 use crate::error::InputError;
+use crate::settings::list;
+use crate::source::Source;
 use crate::study_file::Json;
 
 /// Names of the places a support acts on.

@@ -39,6 +39,8 @@ pub enum Dimension {
     Energy,
     /// Per time.
     Frequency,
+    /// Angle per time.
+    AngularVelocity,
     /// Force.
     Force,
     /// Heat per mass and temperature.
@@ -49,7 +51,7 @@ pub enum Dimension {
 
 impl Dimension {
     /// Every dimension.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Number,
         Self::Length,
         Self::Area,
@@ -65,6 +67,7 @@ impl Dimension {
         Self::Acceleration,
         Self::Energy,
         Self::Frequency,
+        Self::AngularVelocity,
         Self::Force,
         Self::SpecificHeat,
         Self::HeatTransfer,
@@ -88,6 +91,7 @@ impl Dimension {
             Self::Acceleration => [1, 0, -2, 0, 0],
             Self::Energy => [2, 1, -2, 0, 0],
             Self::Frequency => [0, 0, -1, 0, 0],
+            Self::AngularVelocity => [0, 0, -1, 0, 1],
             Self::Force => [1, 1, -2, 0, 0],
             Self::SpecificHeat => [2, 0, -2, -1, 0],
             Self::HeatTransfer => [0, 1, -3, -1, 0],
@@ -112,6 +116,7 @@ impl Dimension {
             Self::Acceleration => "an acceleration",
             Self::Energy => "an energy",
             Self::Frequency => "a frequency",
+            Self::AngularVelocity => "an angular velocity",
             Self::Force => "a force",
             Self::SpecificHeat => "a specific heat",
             Self::HeatTransfer => "a heat transfer coefficient",
@@ -136,6 +141,7 @@ impl Dimension {
             Self::Acceleration => &["m/s2", "mm/s2"],
             Self::Energy => &["J", "mJ", "kJ"],
             Self::Frequency => &["Hz", "kHz", "1/s"],
+            Self::AngularVelocity => &["rad/s", "deg/s"],
             Self::Force => &["N", "mN", "kN"],
             Self::SpecificHeat => &["J/(kg K)", "kJ/(kg K)"],
             Self::HeatTransfer => &["W/(m2 K)", "mW/(cm2 K)"],

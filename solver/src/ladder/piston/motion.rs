@@ -253,14 +253,14 @@ impl Model for PistonRun {
 
     /// z = H + p (dV/dz)/k: above H the volume is linear. Gravity is left out, so that a design has
     /// one reference on the ground and in orbit.
-    fn reference(&self) -> Reference {
+    fn reference(&self) -> Option<Reference> {
         let end = &self.piston.end;
         let slope = self.piston.volume.slope(end.free_length);
         let state = |pressure: f64| {
             let height = end.free_length + pressure * slope / end.stiffness;
             [pressure, self.piston.volume.volume(height), height]
         };
-        Reference::new(REFERENCE_PRESSURES.map(state).to_vec())
+        Some(Reference::new(REFERENCE_PRESSURES.map(state).to_vec()))
     }
 
     fn film_stress(&self) -> f64 {

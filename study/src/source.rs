@@ -2,10 +2,11 @@
 
 use crate::error::InputError;
 
-/// Origin of the values of a study.
+/// Origin of the values of a study or a scene.
 #[derive(Debug, Clone)]
-pub(super) struct Source {
-    file: String,
+pub(crate) struct Source {
+    /// The file, as errors call it.
+    pub file: String,
     /// Dotted key and the flag that set it.
     pub sets: Vec<(String, String)>,
 }
@@ -40,7 +41,7 @@ impl Source {
 }
 
 /// A number as a study file would have it: in shortest digits, small ones with an exponent.
-pub(super) fn shown(number: f64) -> String {
+pub(crate) fn shown(number: f64) -> String {
     let text = format!("{number:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }

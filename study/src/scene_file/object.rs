@@ -1,0 +1,138 @@
+//! Reading an object of a scene by the table of its keys.
+
+use nalgebra::Vector3;
+
+use crate::error::InputError;
+use crate::keys::{self, Key, Refusal};
+use crate::settings::read;
+use crate::source::Source;
+use crate::study_file::Json;
+use crate::value::Value;
+
+/// An object whose keys are all known.
+pub(super) struct Object<'a> {
+    json: &'a Json,
+    /// Where it stands, as in `supports[0]`.
+    pub at: String,
+    keys: &'static [Key],
+    source: &'a Source,
+}
+
+impl<'a> Object<'a> {
+    /// The object at a place. `what` it is, with its article; `more` the keys beside those of the
+    /// table.
+    pub fn new(
+        json: &'a Json,
+        at: &str,
+        what: &str,
+        keys: &'static [Key],
+        more: &[&str],
+        source: &'a Source,
+    ) -> Result<Self, InputError> {
+        let names = || keys.iter().map(|key| key.path).chain(more.iter().copied());
+        let allowed = || names().collect::<Vec<_>>().join(", ");
+        let Json::Object(members) = json else {
+            let problem = format!("is {}, not an object", json.kind());
+            return Err(source.error(at, &json.brief(), problem, allowed()));
+        };
+        for (name, value) in members {
+            if !names().any(|known| known == name) {
+                let near = keys::nearest(name, names())
+                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                let problem = format!("is no key of {what}{near}");
+                return Err(source.error(
+                    &format!("{at}.{name}"),
+                    &value.brief(),
+                    problem,
+                    allowed(),
+                ));
+            }
+        }
+        Ok(Self { json, at: at.to_owned(), keys, source })
+    }
+
+    /// What a key is given; `null` is nothing.
+    pub fn given(&self, name: &str) -> Option<&'a Json> {
+        self.json.get(name).filter(|json| **json != Json::Null)
+    }
+
+    /// An error about a key.
+    pub fn error(
+        &self,
+        name: &str,
+        problem: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> InputError {
+        let value = self.given(name).map(Json::brief).unwrap_or_default();
+        self.source.error(&format!("{}.{name}", self.at), &value, problem, allowed)
+    }
+
+    fn key(&self, name: &str) -> &'static Key {
+        match self.keys.iter().find(|key| key.path == name) {
+            Some(key) => key,
+            None => unreachable!("no key {name}"),
+        }
+    }
+
+    /// The error of a key that is not given.
+    pub fn missing(&self, name: &str) -> InputError {
+        let allowed = self.keys.iter().find(|key| key.path == name).map(Key::allowed);
+        self.error(name, "missing", allowed.unwrap_or_default())
+    }
+
+    fn value(&self, name: &str) -> Result<Value, InputError> {
+        let key = self.key(name);
+        match self.given(name) {
+            Some(json) => read(key, json, &format!("{}.{name}", self.at), self.source),
+            None => Ok(key.default_value()),
+        }
+    }
+
+    /// A number, given or by default.
+    pub fn number(&self, name: &str) -> Result<Option<f64>, InputError> {
+        match self.value(name)? {
+            Value::Number(number) => Ok(Some(number)),
+            _ => Ok(None),
+        }
+    }
+
+    /// A number that must be there.
+    pub fn needed(&self, name: &str) -> Result<f64, InputError> {
+        self.number(name)?.ok_or_else(|| self.missing(name))
+    }
+
+    /// A word or a text, given or by default.
+    pub fn text(&self, name: &str) -> Result<Option<String>, InputError> {
+        match self.value(name)? {
+            Value::Text(text) => Ok(Some(text)),
+            _ => Ok(None),
+        }
+    }
+
+    fn refused(&self, name: &str, refusal: Refusal) -> InputError {
+        self.error(name, refusal.problem, refusal.allowed)
+    }
+
+    /// Three numbers, where given.
+    pub fn vector(&self, name: &str) -> Result<Option<Vector3<f64>>, InputError> {
+        let Some(json) = self.given(name) else { return Ok(None) };
+        let read = self.key(name).read_vector(json);
+        read.map(|vector| Some(vector.into())).map_err(|refusal| self.refused(name, refusal))
+    }
+
+    /// Three numbers or `null`s, where given.
+    pub fn parts(&self, name: &str) -> Result<[Option<f64>; 3], InputError> {
+        let Some(json) = self.given(name) else { return Ok([None; 3]) };
+        self.key(name).read_parts(json).map_err(|refusal| self.refused(name, refusal))
+    }
+
+    /// A direction that must be there, as a unit vector.
+    pub fn direction(&self, name: &str) -> Result<Vector3<f64>, InputError> {
+        let vector = self.vector(name)?.ok_or_else(|| self.missing(name))?;
+        if vector.norm() > 0.0 {
+            Ok(vector.normalize())
+        } else {
+            Err(self.error(name, "has no direction", "a vector of any length but 0"))
+        }
+    }
+}
