@@ -21,6 +21,7 @@
 //! Inflatable Capsule Structures" unless a comment says otherwise.
 
 pub mod audit;
+pub mod contact;
 pub mod course;
 pub mod deployment;
 pub mod film_scene;

@@ -185,13 +185,15 @@ pub struct NodeForces {
     pub viscous: Field,
     /// ∂V/∂x, m².
     pub area: Field,
+    /// Of contact, N.
+    pub contact: Field,
 }
 
 impl NodeForces {
     /// Room for a model's nodes.
     pub fn new(model: &FilmModel) -> Self {
         let zeros = || Field::zeros(model.nodes());
-        Self { film: zeros(), viscous: zeros(), area: zeros() }
+        Self { film: zeros(), viscous: zeros(), area: zeros(), contact: zeros() }
     }
 }
 

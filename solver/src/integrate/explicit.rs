@@ -19,6 +19,7 @@
 
 use nalgebra::Vector3;
 
+use crate::contact::Law;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
@@ -71,6 +72,8 @@ pub struct Setting {
     pub step_limit: u64,
     /// Instruction set; the bits are the same on each.
     pub path: Path,
+    /// Film against film; none lets film pass through film.
+    pub contact: Option<Law>,
     /// A deliberate fault: tests only.
     pub mutation: Option<Mutation>,
 }
@@ -87,6 +90,7 @@ impl Setting {
             cfl: DEFAULT_CFL,
             step_limit: u64::MAX,
             path: Path::best(),
+            contact: None,
             mutation: None,
         }
     }
@@ -124,6 +128,9 @@ impl Explicit {
         let planes = setting.supports.bodies.iter().map(|body| body.plane.velocity).collect();
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
+        if let Some(law) = &film.setting.contact {
+            law.search(&film.state.places, &mut film.state.meeting);
+        }
         let sums = film.pass();
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
@@ -208,8 +215,13 @@ impl Explicit {
             }
             Interior::Overpressure(_) => 0.0,
         };
-        let share = self.setting.cfl * stable_share(self.setting.viscosity);
-        share * 2.0 / (film * film + gas).sqrt()
+        let share = stable_share(self.setting.viscosity) * 2.0;
+        let alone = self.setting.cfl * share / (film * film + gas).sqrt();
+        match &self.setting.contact {
+            // Contact counts for stability only: what is well below its limit resolves it too.
+            Some(law) => alone.min(share / (film * film + gas + law.frequency_squared()).sqrt()),
+            None => alone,
+        }
     }
 
     /// A step in which nothing moves.
@@ -221,6 +233,7 @@ impl Explicit {
     /// A step that ends at the time `until` (s).
     fn step(&mut self, length: f64, until: f64, inflow: Inflow) -> Result<(), Failure> {
         self.kick(0.5 * (self.state.last_step + length), length, until);
+        self.keep_apart(length)?;
         self.share_work(length);
         let fastest = self.drift(length);
         let sums = self.pass();
@@ -246,6 +259,12 @@ impl Explicit {
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
+        if self.setting.contact.is_some() {
+            let along: f64 = (0..self.model.nodes())
+                .map(|node| self.forces.contact.get(node).dot(&self.state.velocities.get(node)))
+                .sum();
+            self.state.works.contact += half * along;
+        }
         self.state.works.support -= half * self.support_power();
         if let Interior::Overpressure(pressure) = self.setting.interior {
             let sweep: f64 = (0..self.model.nodes())
@@ -253,6 +272,21 @@ impl Explicit {
                 .sum();
             self.state.works.gas += half * pressure * sweep;
         }
+    }
+
+    /// Looks for pairs the drift to come could bring together, and keeps them apart.
+    fn keep_apart(&mut self, length: f64) -> Result<(), Failure> {
+        let Some(law) = &self.setting.contact else { return Ok(()) };
+        let state = &mut self.state;
+        let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        law.prepare(&state.places, &mut state.meeting, speed * length);
+        let (model, supports) = (&self.model, &self.setting.supports);
+        let State { places, velocities, meeting, .. } = state;
+        let kept = law.guard(model, supports, places, velocities, length, meeting);
+        kept.map_err(|pair| {
+            let place = format!("{pair:?} could not be kept apart");
+            self.failure(FailureKind::Interpenetrated, &place)
+        })
     }
 
     /// The gas, while the volume goes to `volume` (m³).
@@ -290,6 +324,7 @@ impl Explicit {
     #[inline]
     pub fn force(&self, node: usize) -> Vector3<f64> {
         self.forces.film.get(node)
+            + self.forces.contact.get(node)
             + self.forces.area.get(node) * self.overpressure()
             + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
@@ -321,6 +356,13 @@ impl Explicit {
         sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
+        }
+        if let Some(law) = &self.setting.contact {
+            for column in [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z] {
+                column.fill(0.0);
+            }
+            let (places, meeting) = (&self.state.places, &mut self.state.meeting);
+            law.meet(places, &self.model.mass, &mut self.forces.contact, meeting);
         }
         sums
     }
@@ -358,9 +400,8 @@ impl Explicit {
             support_work: works.support,
             viscous_work: works.viscous,
             damping_work: works.damping,
-            // No contact yet.
-            contact: 0.0,
-            friction_work: 0.0,
+            contact: -works.contact,
+            friction_work: self.state.meeting.taken,
         }
     }
 

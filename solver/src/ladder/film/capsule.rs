@@ -116,6 +116,7 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Setting, GasState), Sc
         cfl: solver.cfl,
         step_limit: solver.step_limit,
         path: solver.path,
+        contact: None,
         mutation: None,
     };
     Ok((model, setting, gas))

@@ -1,0 +1,188 @@
+//! Film against film: it is pushed apart, and never passes through itself.
+//!
+//! ```text
+//! pair energy  ½ k (o − d)²  while d < o        force k (o − d) along the line between closest points
+//! k = κ ω² m                                      ω: the film's fastest mode; m: mass of the pair
+//! ```
+//!
+//! Symbols: d distance of a node from a feature of the film (element, edge, node), or of two edges, m;
+//! o the pair's offset, m: the contact distance, or the gap it had where it became a pair sideways or
+//! was closer from the start, so that becoming a pair creates no energy.
+//!
+//! - A node meets a feature where the feature is a nearest part of its neighbourhood: an edge or
+//!   node counts only if every element there agrees that it is nearest, and then once. A contact that
+//!   slides to a bordering feature keeps offset and stiffness.
+//! - Two edges meet where their closest points lie inside both, at half the distance.
+//! - **Search.** All pairs nearer than a radius are listed; a pair far off is not looked at again
+//!   before the largest displacement of any node could have brought it near; the list is made anew
+//!   before that displacement could have brought in a pair that is not on it.
+//! - **Guard.** Before nodes move, each near pair is swept along its straight paths. A pair that
+//!   would close more than nine tenths of its distance has its approach taken out by an impulse that
+//!   keeps momentum; what energy that takes is counted. So no accepted step lets film through.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::state::Field;
+
+pub mod active;
+pub mod distance;
+pub mod guard;
+pub mod intersections;
+pub mod search;
+pub mod sweep;
+pub mod topology;
+mod tree;
+
+use distance::{Closest, point_triangle, segment_segment};
+use topology::Topology;
+
+/// The two kinds of pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A node and an element.
+    NodeTriangle,
+    /// Two edges.
+    EdgeEdge,
+}
+
+/// Two primitives that may meet: node and element, or two edges, the lower first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Pair {
+    /// Kind.
+    pub kind: Kind,
+    /// Node, or lower edge.
+    pub first: u32,
+    /// Element, or higher edge.
+    pub second: u32,
+}
+
+impl Pair {
+    /// Its four nodes; the first [`Self::left`] are of the one side.
+    #[inline]
+    pub fn nodes(self, topology: &Topology) -> [u32; 4] {
+        match self.kind {
+            Kind::NodeTriangle => {
+                let [a, b, c] = topology.triangles[self.second as usize];
+                [self.first, a, b, c]
+            }
+            Kind::EdgeEdge => {
+                let [a, b] = topology.edges[self.first as usize];
+                let [c, d] = topology.edges[self.second as usize];
+                [a, b, c, d]
+            }
+        }
+    }
+
+    /// Nodes of the first side.
+    pub fn left(self) -> usize {
+        match self.kind {
+            Kind::NodeTriangle => 1,
+            Kind::EdgeEdge => 2,
+        }
+    }
+
+    /// Closest points of the pair at these places of its nodes.
+    #[inline]
+    pub fn closest(self, x: &[Vector3<f64>; 4]) -> Closest {
+        match self.kind {
+            Kind::NodeTriangle => point_triangle(x),
+            Kind::EdgeEdge => segment_segment(x),
+        }
+    }
+}
+
+/// The vectors of four nodes.
+#[inline]
+pub fn at(field: &Field, nodes: [u32; 4]) -> [Vector3<f64>; 4] {
+    nodes.map(|node| field.get(node as usize))
+}
+
+/// What contact is made of: constant during a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// What borders on what.
+    pub topology: Topology,
+    /// Distance at which film is held apart, m.
+    pub distance: f64,
+    /// k over the mass of the pair: κ ω², 1/s².
+    pub stiffness: f64,
+    /// Pairs nearer than this are listed by a search, m.
+    pub radius: f64,
+    /// Whether edges meet edges: `false` in tests of the audit only.
+    pub edges: bool,
+    /// What displacement bounds are multiplied by: 1 but in tests of the audit.
+    pub bounds: f64,
+}
+
+/// κ: a pair alone shortens the stable step by a twentieth.
+const STIFFNESS: f64 = 0.1;
+/// Share of the mean edge length within which pairs are listed.
+const RADIUS: f64 = 0.1;
+
+impl Law {
+    /// Contact of film of these elements, at this distance (m), whose fastest mode is ω (rad/s) and
+    /// whose edges have this mean length (m).
+    pub fn new(topology: Topology, distance: f64, frequency: f64, edge: f64) -> Self {
+        Self {
+            topology,
+            distance,
+            stiffness: STIFFNESS * frequency * frequency,
+            radius: (RADIUS * edge).max(4.0 * distance),
+            edges: true,
+            bounds: 1.0,
+        }
+    }
+
+    /// What contact adds to the square of any mode's frequency at most, where pairs lie as in stacked
+    /// film: a node meets one element either side, and six of its own elements meet nodes, rad²/s².
+    pub fn frequency_squared(&self) -> f64 {
+        5.0 * self.stiffness
+    }
+
+    /// Distance at which a kind of pair is held apart, m.
+    pub fn distance_of(&self, kind: Kind) -> f64 {
+        match kind {
+            Kind::NodeTriangle => self.distance,
+            Kind::EdgeEdge => 0.5 * self.distance,
+        }
+    }
+}
+
+/// A near pair and how far apart it was when last looked at, m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Near {
+    /// The pair.
+    pub pair: Pair,
+    /// Its distance, m.
+    pub gap: f64,
+}
+
+/// What changes of contact: with places and velocities it says all that follows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Meeting {
+    /// Largest displacement any node can have had since the last search, m.
+    pub travelled: f64,
+    /// Pairs looked at every step, in order.
+    pub near: Vec<Near>,
+    /// Pairs not to be looked at before `travelled` reaches their number, m.
+    pub far: Vec<Vec<Pair>>,
+    /// First of `far` not yet looked at.
+    pub reached: usize,
+    /// Contacts now, in order.
+    pub contacts: Vec<active::Contact>,
+    /// Room for the next contacts.
+    #[serde(skip)]
+    spare: Vec<active::Contact>,
+    /// Searches so far.
+    pub searches: u64,
+    /// Approaches taken out so far.
+    pub impulses: u64,
+    /// Energy they took, J.
+    pub taken: f64,
+    /// Smallest distance of any near pair now, m.
+    pub smallest_gap: f64,
+}
