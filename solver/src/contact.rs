@@ -1,7 +1,8 @@
 //! Film against film: it is pushed apart, and never passes through itself.
 //!
 //! ```text
-//! pair energy  ½ k (o − d)²  while d < o        force k (o − d) along the line between closest points
+//! pair energy  ½ k (o − d)² + ½ k' (o/2 − d)²   each term while its bracket is positive, k' = 6 k;
+//!              force along the line between the closest points
 //! k = κ ω² m                                      ω: the film's fastest mode; m: mass of the pair
 //! ```
 //!
@@ -138,7 +139,7 @@ impl Law {
     /// What contact adds to the square of any mode's frequency at most, where pairs lie as in stacked
     /// film: a node meets one element either side, and six of its own elements meet nodes, rad²/s².
     pub fn frequency_squared(&self) -> f64 {
-        5.0 * self.stiffness
+        (5.0 + 2.0 * active::INNER) * self.stiffness
     }
 
     /// Distance at which a kind of pair is held apart, m.

@@ -27,6 +27,9 @@ pub struct Contact {
     pub energy: f64,
 }
 
+/// By how much stiffer a contact is in the inner half of its offset.
+pub(super) const INNER: f64 = 6.0;
+
 /// Most elements looked at for one node; beyond, the farther ones of the list are left to the guard.
 const MOST: usize = 64;
 
@@ -187,12 +190,15 @@ impl Law {
             let pressed = contact.offset - gap;
             contact.energy = 0.0;
             if pressed > 0.0 && gap > 0.0 {
-                let force: Vector3<f64> = between * (contact.stiffness * pressed / gap);
+                let deep = (pressed - 0.5 * contact.offset).max(0.0);
+                let push = contact.stiffness * (pressed + INNER * deep);
+                let force: Vector3<f64> = between * (push / gap);
                 for (node, weight) in nodes.iter().zip(weights) {
                     let node = *node as usize;
                     forces.set(node, forces.get(node) + force * weight);
                 }
-                contact.energy = 0.5 * contact.stiffness * pressed * pressed;
+                contact.energy =
+                    0.5 * contact.stiffness * (pressed * pressed + INNER * deep * deep);
                 energy += contact.energy;
             }
         }

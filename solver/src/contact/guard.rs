@@ -4,7 +4,8 @@
 //! approach  w = n·Σ w_i v_i < 0          impulse  j = −w/(Σ w_i² n·P n/m_i)          v_i += j w_i P n/m_i
 //! ```
 //!
-//! Momentum is kept but where a support holds; the energy ½ m w² is taken and counted.
+//! Momentum is kept but where a support holds. An impulse is a force over one kick, so what it takes is
+//! its trapezoid, −½ J·(v⁻ + v⁺): nothing where it only bears what presses on a pair at rest.
 
 use nalgebra::Vector3;
 
@@ -25,7 +26,7 @@ const MOST_ROUNDS: u32 = 60;
 
 impl Law {
     /// Takes out of the velocities (m/s) whatever would carry a near pair through itself in a drift of
-    /// `length` (s).
+    /// `length` (s). `before`: velocities before the kick.
     ///
     /// # Errors
     /// The pair that could not be kept apart.
@@ -34,10 +35,12 @@ impl Law {
         model: &FilmModel,
         supports: &Supports,
         places: &Field,
+        before: &Field,
         velocities: &mut Field,
         length: f64,
         meeting: &mut Meeting,
     ) -> Result<(), Pair> {
+        let mut stopped = Vec::new();
         for round in 0..MOST_ROUNDS {
             let mut touched = None;
             for k in 0..meeting.near.len() {
@@ -50,13 +53,22 @@ impl Law {
                 }
                 touched = Some(own.pair);
                 meeting.impulses += 1;
-                meeting.taken += if round < ROUNDS {
-                    self.bounce(model, supports, own.pair, nodes, &x, velocities)
+                let kicked = at(velocities, nodes);
+                if round < ROUNDS {
+                    self.bounce(model, supports, own.pair, nodes, &x, velocities);
                 } else {
-                    stick(model, supports, nodes, velocities)
-                };
+                    stick(model, supports, nodes, velocities);
+                }
+                for (node, kicked) in nodes.iter().zip(kicked) {
+                    let push = (velocities.get(*node as usize) - kicked) * model.mass[*node as usize];
+                    stopped.push((*node as usize, push));
+                }
             }
             if touched.is_none() {
+                let work = |(node, push): &(usize, Vector3<f64>)| {
+                    push.dot(&(before.get(*node) + velocities.get(*node)))
+                };
+                meeting.taken -= 0.5 * stopped.iter().map(work).sum::<f64>();
                 return Ok(());
             }
             if round + 1 == MOST_ROUNDS
@@ -87,7 +99,7 @@ impl Law {
         clear_until(x, moves, left, KEPT * gap, |x| pair.closest(x)) >= 1.0
     }
 
-    /// Takes the approach of a pair out; the energy it took, J.
+    /// Takes the approach of a pair out.
     fn bounce(
         &self,
         model: &FilmModel,
@@ -96,7 +108,7 @@ impl Law {
         nodes: [u32; 4],
         x: &[Vector3<f64>; 4],
         velocities: &mut Field,
-    ) -> f64 {
+    ) {
         let closest = pair.closest(x);
         let normal = closest.between / closest.squared.sqrt();
         let mobile = nodes.map(|node| {
@@ -112,7 +124,8 @@ impl Law {
         let helps = approach < 0.0 && mobility > 0.0;
         if !helps {
             // It turns into the other on the way: nothing along the line now would stop it.
-            return stick(model, supports, nodes, velocities);
+            stick(model, supports, nodes, velocities);
+            return;
         }
         let impulse = -approach / mobility;
         for k in 0..4 {
@@ -120,17 +133,11 @@ impl Law {
             let push = mobile[k] * (impulse * closest.weights[k]);
             velocities.set(node, velocities.get(node) + push);
         }
-        0.5 * impulse * -approach
     }
 }
 
-/// Gives four nodes their common velocity, in what is free; the energy it took, J.
-fn stick(
-    model: &FilmModel,
-    supports: &Supports,
-    nodes: [u32; 4],
-    velocities: &mut Field,
-) -> f64 {
+/// Gives four nodes their common velocity, in what is free.
+fn stick(model: &FilmModel, supports: &Supports, nodes: [u32; 4], velocities: &mut Field) {
     let (mut momentum, mut mass) = (Vector3::zeros(), 0.0);
     for node in nodes {
         let node = node as usize;
@@ -138,13 +145,10 @@ fn stick(
         mass += model.mass[node];
     }
     let common = momentum / mass;
-    let mut taken = 0.0;
     for node in nodes {
         let node = node as usize;
         let old = velocities.get(node);
         let new = old + supports.projector(node) * (common - old);
-        taken += 0.5 * model.mass[node] * (old.norm_squared() - new.norm_squared());
         velocities.set(node, new);
     }
-    taken
 }

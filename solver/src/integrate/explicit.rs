@@ -282,7 +282,7 @@ impl Explicit {
         law.prepare(&state.places, &mut state.meeting, speed * length);
         let (model, supports) = (&self.model, &self.setting.supports);
         let State { places, velocities, meeting, .. } = state;
-        let kept = law.guard(model, supports, places, velocities, length, meeting);
+        let kept = law.guard(model, supports, places, &self.next, velocities, length, meeting);
         kept.map_err(|pair| {
             let place = format!("{pair:?} could not be kept apart");
             self.failure(FailureKind::Interpenetrated, &place)
