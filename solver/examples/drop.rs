@@ -22,7 +22,9 @@ fn main(){
  println!("distance {:.3e}",law.distance);
  if with {setting.contact=Some(law);}
  let v0=Field::zeros(places.len());
- let mut f=Explicit::new(model,setting,places,v0,gas);
+ let mut law2=setting.contact.clone(); if let Some(l)=&mut law2 { if std::env::var("NOEDGE").is_ok(){l.edges=false;} if let Ok(b)=std::env::var("BOUNDS"){l.bounds=b.parse().unwrap();} if let Ok(b)=std::env::var("DIST"){l.distance*=b.parse::<f64>().unwrap();} } setting.contact=law2;
+ let mut f=Explicit::new(model,setting,places.clone(),v0,gas);
+ if with { use billow_solver::audit::passages::*; f.watch=Some(Watch::new(if n<3 {Watchfulness::EVERY_STEP}else{Watchfulness::FRAMES},&places)); }
  let p=Phase{packed:false,inflow:Inflow{mass:5e-3,mass_temperature:5e-3*293.0}};
  let t=std::time::Instant::now(); let e0=f.ledger();
  let mut next=0.0; let dtout=end/30.0;

@@ -67,6 +67,9 @@ impl Passage {
     }
 }
 
+/// Share of their lengths within which two edges count as meeting where both are in one plane.
+const MEET: f64 = 1e-6;
+
 type Four = [Vector3<f64>; 4];
 
 fn between(x: &Four, y: &Four, t: f64) -> Four {
@@ -134,7 +137,10 @@ fn edges_inside([a, b, c, d]: &Four) -> bool {
     }
     let s = (c - a).cross(&(d - c)).dot(&normal) / below;
     let t = (c - a).cross(&(b - a)).dot(&normal) / below;
-    (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)
+    // Edges on one line have no sound crossing: the points must be one.
+    let apart = (a + (b - a) * s) - (c + (d - c) * t);
+    let size = (b - a).norm() + (d - c).norm();
+    (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) && apart.norm() <= MEET * size
 }
 
 /// Box of some nodes along the straight way from one place to another.

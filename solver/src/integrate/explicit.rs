@@ -19,6 +19,7 @@
 
 use nalgebra::Vector3;
 
+use crate::audit::passages::Watch;
 use crate::contact::Law;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
@@ -112,6 +113,8 @@ pub struct Explicit {
     pub state: State,
     /// Forces on nodes now: a function of the state.
     pub forces: NodeForces,
+    /// Who counts passages; nobody where film has no contact.
+    pub watch: Option<Watch>,
     elements: ElementForces,
     next: Field,
 }
@@ -154,7 +157,7 @@ impl Explicit {
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
         let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
-        Self { model, setting, state, forces, elements, next }
+        Self { model, setting, state, forces, watch: None, elements, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -252,7 +255,20 @@ impl Explicit {
         self.step_gas(volume, length, inflow);
         self.share_work(length);
         self.state.last_step = length;
-        Ok(())
+        self.look()
+    }
+
+    /// Lets the audit see the places now.
+    fn look(&mut self) -> Result<(), Failure> {
+        let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) else { return Ok(()) };
+        if watch.step(&law.topology, &self.state.places) {
+            return Ok(());
+        }
+        let place = match watch.first {
+            Some((_, passage)) => format!("{passage:?}"),
+            None => "film".to_owned(),
+        };
+        Err(self.failure(FailureKind::Interpenetrated, &place))
     }
 
     /// Half a step's work of what acts at the nodes now along the velocities now: on moving supports,
