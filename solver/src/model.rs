@@ -58,6 +58,8 @@ pub struct FilmModel {
     pub material: Material,
     /// ρ, kg/m³.
     pub density: f64,
+    /// t, m.
+    pub thickness: f64,
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The same by corner, eight elements a block; the last is filled up with elements of no volume.
@@ -116,6 +118,7 @@ impl FilmModel {
         let mut model = Self {
             material,
             density: film.density,
+            thickness: film.thickness,
             triangles: triangles.to_vec(),
             blocks: Vec::with_capacity(triangles.len().div_ceil(WIDTH)),
             closure: closure.to_vec(),

@@ -266,7 +266,8 @@ impl Watchfulness {
 
     /// Whether each step of a block is looked at (SplitMix64 of seed and number).
     fn closely(&self, block: u64) -> bool {
-        let mut z = self.seed.wrapping_add(block.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut z =
+            self.seed.wrapping_add(block.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         (z ^ (z >> 31)) % self.every_step_of_one_in == 0
@@ -364,8 +365,7 @@ mod tests {
         let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
         assert_eq!(passages(&topology, &from, &to), [Passage::Node { node: 3, element: 0 }]);
         // Beside it.
-        let (topology, from, to) =
-            scene(&corner.map(|x| x + v(1.0, 0.0, 0.0)), v(0.0, 0.0, -0.2));
+        let (topology, from, to) = scene(&corner.map(|x| x + v(1.0, 0.0, 0.0)), v(0.0, 0.0, -0.2));
         assert!(passages(&topology, &from, &to).is_empty());
         // An edge over an edge, no node through anything.
         let edge = [v(0.5, -0.2, 0.1), v(0.5, 0.2, 0.1), v(0.5, 0.0, 2.0)];

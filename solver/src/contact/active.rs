@@ -23,12 +23,37 @@ pub struct Contact {
     pub offset: f64,
     /// k, N/m.
     pub stiffness: f64,
+    /// d when last looked at, m.
+    pub gap: f64,
+    /// Largest adhesive force, N.
+    pub adhesion: f64,
     /// Energy now, J.
     pub energy: f64,
 }
 
-/// By how much stiffer a contact is in the inner half of its offset.
-pub(super) const INNER: f64 = 6.0;
+impl Contact {
+    /// Energy stored at a gap (m), J.
+    pub fn stored(&self, gap: f64) -> f64 {
+        let pressed = (self.offset - gap).max(0.0);
+        self.stiffness * pressed * pressed * pressed / (6.0 * self.offset)
+    }
+
+    /// The adhesive force at a gap (m) less than `range` (m) beyond the offset, N.
+    pub fn pull(&self, gap: f64, range: f64) -> f64 {
+        let part = (gap - self.offset) / range;
+        if self.adhesion > 0.0 && part > 0.0 && part < 1.0 {
+            4.0 * self.adhesion * part * (1.0 - part)
+        } else {
+            0.0
+        }
+    }
+
+    /// The force that pushes the pair apart at a gap (m), N.
+    pub fn force(&self, gap: f64) -> f64 {
+        let pressed = (self.offset - gap).max(0.0);
+        0.5 * self.stiffness * pressed * pressed / self.offset
+    }
+}
 
 /// Most elements looked at for one node; beyond, the farther ones of the list are left to the guard.
 const MOST: usize = 64;
@@ -44,7 +69,8 @@ impl Law {
         meeting: &mut Meeting,
     ) -> f64 {
         let mut near = core::mem::take(&mut meeting.near);
-        let mut old = core::mem::replace(&mut meeting.contacts, core::mem::take(&mut meeting.spare));
+        let mut old =
+            core::mem::replace(&mut meeting.contacts, core::mem::take(&mut meeting.spare));
         meeting.contacts.clear();
         meeting.smallest_gap = f64::INFINITY;
         let mut from = 0;
@@ -65,7 +91,7 @@ impl Law {
             from = to;
         }
         near.retain(|own| {
-            let stays = own.gap < self.distance + 8.0 * self.bin();
+            let stays = own.gap < self.distance + self.adhesion.range + 8.0 * self.bin();
             if !stays {
                 self.place(meeting, own.pair, own.gap, 0.0);
             }
@@ -94,7 +120,8 @@ impl Law {
         let node = near[0].pair.first;
         let mut found: [Option<(Feature, Pair, f64, f64)>; MOST] = [None; MOST];
         let mut count = 0;
-        let square = self.distance * self.distance;
+        let far = self.distance + self.adhesion.range;
+        let square = far * far;
         for own in near.iter_mut() {
             let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
             let before = own.gap;
@@ -109,26 +136,38 @@ impl Law {
         }
         let found = &found[..count];
         let mine = range_of(old, Kind::NodeTriangle, node);
+        let agreed_on = |feature: Feature| {
+            let agreed = found.iter().flatten().filter(|other| other.0 == feature).count();
+            agreed == self.topology.elements_at(feature) as usize
+        };
         for (k, entry) in found.iter().enumerate() {
             let Some((feature, pair, gap, before)) = *entry else { continue };
             let same = |other: &&Option<(Feature, Pair, f64, f64)>| {
                 other.is_some_and(|other| other.0 == feature)
             };
             let first = !found[..k].iter().any(|other| same(&other));
-            let agreed = found.iter().filter(same).count();
-            if !first || agreed != self.topology.elements_at(feature) as usize {
+            if !first || !agreed_on(feature) {
                 continue;
             }
-            let kept = mine.iter().find(|old| old.feature == feature).or_else(|| {
-                let bordering = mine.iter().filter(|old| self.topology.border(old.feature, feature));
-                bordering.max_by(|a, b| a.offset.total_cmp(&b.offset))
-            });
-            let (offset, stiffness) = kept.map_or_else(
-                || (self.first_offset(pair.kind, before, gap), self.pair_stiffness(pair, mass)),
-                |kept| (kept.offset, kept.stiffness),
-            );
+            let left = || {
+                let bordering = mine.iter().filter(|old| {
+                    self.topology.border(old.feature, feature) && !agreed_on(old.feature)
+                });
+                bordering.max_by(|a, b| (a.offset - a.gap).total_cmp(&(b.offset - b.gap)))
+            };
+            let (offset, stiffness) =
+                if let Some(own) = mine.iter().find(|old| old.feature == feature) {
+                    (own.offset, own.stiffness)
+                } else if let Some(left) = left() {
+                    // It slid over a border: as deep as it was, so that nothing is gained by it.
+                    (gap + (left.offset - left.gap).max(0.0), left.stiffness)
+                } else {
+                    (self.first_offset(pair.kind, before, gap), self.pair_stiffness(pair, mass))
+                };
             let offset = offset.max(gap.min(self.distance));
-            meeting.contacts.push(Contact { pair, feature, offset, stiffness, energy: 0.0 });
+            let adhesion = self.adhesion.pressure * mass[node as usize] / self.area_density;
+            let contact = Contact { pair, feature, offset, stiffness, gap, adhesion, energy: 0.0 };
+            meeting.contacts.push(contact);
         }
     }
 
@@ -159,7 +198,9 @@ impl Law {
             |kept| (kept.offset, kept.stiffness),
         );
         let offset = offset.max(own.gap.min(distance));
-        let contact = Contact { pair: own.pair, feature: 0, offset, stiffness, energy: 0.0 };
+        let (pair, gap) = (own.pair, own.gap);
+        let contact =
+            Contact { pair, feature: 0, offset, stiffness, gap, adhesion: 0.0, energy: 0.0 };
         meeting.contacts.push(contact);
     }
 
@@ -174,7 +215,9 @@ impl Law {
     fn pair_stiffness(&self, pair: Pair, mass: &[f64]) -> f64 {
         let mass = pair.nodes(&self.topology).map(|node| mass[node as usize]);
         let mobility = match pair.kind {
-            Kind::NodeTriangle => 1.0 / mass[0] + (1.0 / mass[1] + 1.0 / mass[2] + 1.0 / mass[3]) / 9.0,
+            Kind::NodeTriangle => {
+                1.0 / mass[0] + (1.0 / mass[1] + 1.0 / mass[2] + 1.0 / mass[3]) / 9.0
+            }
             Kind::EdgeEdge => mass.iter().map(|mass| 0.25 / mass).sum(),
         };
         self.stiffness / mobility
@@ -187,18 +230,15 @@ impl Law {
             let nodes = contact.pair.nodes(&self.topology);
             let Closest { weights, between, squared } = contact.pair.closest(&at(places, nodes));
             let gap = squared.sqrt();
-            let pressed = contact.offset - gap;
             contact.energy = 0.0;
-            if pressed > 0.0 && gap > 0.0 {
-                let deep = (pressed - 0.5 * contact.offset).max(0.0);
-                let push = contact.stiffness * (pressed + INNER * deep);
+            let push = contact.force(gap) - contact.pull(gap, self.adhesion.range);
+            if push != 0.0 && gap > 0.0 {
                 let force: Vector3<f64> = between * (push / gap);
                 for (node, weight) in nodes.iter().zip(weights) {
                     let node = *node as usize;
                     forces.set(node, forces.get(node) + force * weight);
                 }
-                contact.energy =
-                    0.5 * contact.stiffness * (pressed * pressed + INNER * deep * deep);
+                contact.energy = contact.stored(gap);
                 energy += contact.energy;
             }
         }

@@ -69,7 +69,8 @@ pub fn point_triangle(x: &[Vector3<f64>; 4]) -> Closest {
         let edge = |i: usize, j: usize| {
             let way = x[j] - x[i];
             let length = way.norm_squared();
-            let t = if length > 0.0 { (way.dot(&(p - x[i])) / length).clamp(0.0, 1.0) } else { 0.0 };
+            let t =
+                if length > 0.0 { (way.dot(&(p - x[i])) / length).clamp(0.0, 1.0) } else { 0.0 };
             let mut weights = [1.0, 0.0, 0.0, 0.0];
             weights[i] -= 1.0 - t;
             weights[j] -= t;
@@ -88,7 +89,8 @@ pub fn segment_segment(x: &[Vector3<f64>; 4]) -> Closest {
     let (u, v, r) = (b - a, d - c, a - c);
     let (uu, vv, uv) = (u.norm_squared(), v.norm_squared(), u.dot(&v));
     let (ur, vr) = (u.dot(&r), v.dot(&r));
-    let share = |above: f64, below: f64| if below > 0.0 { (above / below).clamp(0.0, 1.0) } else { 0.0 };
+    let share =
+        |above: f64, below: f64| if below > 0.0 { (above / below).clamp(0.0, 1.0) } else { 0.0 };
     let determinant = uu * vv - uv * uv;
     // Nearly parallel: any place along the overlap will do; start from one end.
     let mut s =

@@ -60,7 +60,8 @@ impl Law {
                     stick(model, supports, nodes, velocities);
                 }
                 for (node, kicked) in nodes.iter().zip(kicked) {
-                    let push = (velocities.get(*node as usize) - kicked) * model.mass[*node as usize];
+                    let push =
+                        (velocities.get(*node as usize) - kicked) * model.mass[*node as usize];
                     stopped.push((*node as usize, push));
                 }
             }

@@ -8,7 +8,8 @@ use crate::state::Field;
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
 pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
-    let corners = |element: u32| topology.triangles[element as usize].map(|n| places.get(n as usize));
+    let corners =
+        |element: u32| topology.triangles[element as usize].map(|n| places.get(n as usize));
     let boxes: Vec<Bounds> =
         (0..topology.triangles.len() as u32).map(|own| Bounds::of(&corners(own))).collect();
     let tree = Tree::new(&boxes);

@@ -17,7 +17,7 @@ const BINS: f64 = 64.0;
 impl Law {
     /// How far nodes may travel before the list has to be made anew, m.
     fn reach(&self) -> f64 {
-        0.5 * (self.radius - self.distance) * self.bounds
+        0.5 * (self.radius - self.distance - self.adhesion.range) * self.bounds
     }
 
     pub(super) fn bin(&self) -> f64 {
@@ -85,7 +85,8 @@ impl Law {
 
     /// Puts a pair this far apart (m) where it belongs, given the displacement of the step to come.
     pub(super) fn place(&self, meeting: &mut Meeting, pair: Pair, distance: f64, step: f64) {
-        let due = meeting.travelled + 0.5 * self.bounds * (distance - self.distance);
+        let due = meeting.travelled
+            + 0.5 * self.bounds * (distance - self.distance - self.adhesion.range);
         if due <= meeting.travelled + step + self.bin() {
             meeting.near.push(Near { pair, gap: distance });
             return;

@@ -27,9 +27,8 @@ pub fn clear_until(
 ) -> f64 {
     let mean = (moves[0] + moves[1] + moves[2] + moves[3]) * 0.25;
     let own = moves.map(|u| u - mean);
-    let largest = |side: &[Vector3<f64>]| {
-        side.iter().map(Vector3::norm_squared).fold(0.0, f64::max).sqrt()
-    };
+    let largest =
+        |side: &[Vector3<f64>]| side.iter().map(Vector3::norm_squared).fold(0.0, f64::max).sqrt();
     let speed = largest(&own[..left]) + largest(&own[left..]);
     if speed == 0.0 {
         return 1.0;
@@ -68,7 +67,8 @@ mod tests {
     #[test]
     fn a_node_shot_through_is_stopped_before() {
         let x = node_at(0.2, 0.3, 0.1);
-        let down = [Vector3::new(0.0, 0.0, -10.0), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
+        let down =
+            [Vector3::new(0.0, 0.0, -10.0), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
         let time = clear_until(&x, &down, 1, 0.01, point_triangle);
         assert!(time <= 0.009 + 1e-12 && time > 0.008, "{time}");
     }
@@ -78,7 +78,8 @@ mod tests {
         let x = node_at(0.2, 0.3, 0.1);
         let all = [Vector3::new(5.0, 5.0, -30.0); 4];
         assert_eq!(clear_until(&x, &all, 1, 0.01, point_triangle).to_bits(), 1.0_f64.to_bits());
-        let along = [Vector3::new(0.5, 0.1, 0.0), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
+        let along =
+            [Vector3::new(0.5, 0.1, 0.0), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
         assert!(clear_until(&x, &along, 1, 0.01, point_triangle) > 0.999);
     }
 

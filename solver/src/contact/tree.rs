@@ -75,9 +75,8 @@ impl Tree {
     }
 
     fn grow(&mut self, boxes: &[Bounds], centres: &[Vector3<f64>], own: &mut [u32], from: usize) {
-        let bounds = own[1..]
-            .iter()
-            .fold(boxes[own[0] as usize], |all, at| all.with(boxes[*at as usize]));
+        let bounds =
+            own[1..].iter().fold(boxes[own[0] as usize], |all, at| all.with(boxes[*at as usize]));
         let here = self.nodes.len();
         let (first, last) = (from as u32, (from + own.len()) as u32);
         self.nodes.push(Branch { bounds, from: first, to: last, second: 0 });

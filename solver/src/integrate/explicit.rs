@@ -132,9 +132,12 @@ impl Explicit {
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
         if let Some(law) = &film.setting.contact {
-            law.search(&film.state.places, &mut film.state.meeting);
+            let places = &film.state.places;
+            law.search(places, &mut film.state.meeting);
+            let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
+            film.state.meeting.plates = start.collect();
         }
-        let sums = film.pass();
+        let sums = film.pass_at(0.0);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
             Interior::Gas(gas) => {
@@ -150,7 +153,7 @@ impl Explicit {
     /// Goes on from a state of the same film under the same setting, bit for bit.
     pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
         let mut film = Self::with(model, setting, state);
-        let _ = film.pass();
+        let _ = film.pass_at(film.state.time);
         film
     }
 
@@ -236,10 +239,12 @@ impl Explicit {
     /// A step that ends at the time `until` (s).
     fn step(&mut self, length: f64, until: f64, inflow: Inflow) -> Result<(), Failure> {
         self.kick(0.5 * (self.state.last_step + length), length, until);
-        self.keep_apart(length)?;
+        self.keep_apart(0.5 * (self.state.last_step + length), length)?;
         self.share_work(length);
         let fastest = self.drift(length);
-        let sums = self.pass();
+        self.plate_work(until);
+        let sums = self.pass_at(until);
+        self.plate_work(until);
         let volume = sums.six_volumes / 6.0;
         // No NaN passes either of these.
         let sound = fastest < self.model.wave_speed() * self.model.wave_speed();
@@ -260,7 +265,9 @@ impl Explicit {
 
     /// Lets the audit see the places now.
     fn look(&mut self) -> Result<(), Failure> {
-        let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) else { return Ok(()) };
+        let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) else {
+            return Ok(());
+        };
         if watch.step(&law.topology, &self.state.places) {
             return Ok(());
         }
@@ -291,14 +298,20 @@ impl Explicit {
     }
 
     /// Looks for pairs the drift to come could bring together, and keeps them apart.
-    fn keep_apart(&mut self, length: f64) -> Result<(), Failure> {
+    fn keep_apart(&mut self, kick: f64, length: f64) -> Result<(), Failure> {
         let Some(law) = &self.setting.contact else { return Ok(()) };
         let state = &mut self.state;
         let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         law.prepare(&state.places, &mut state.meeting, speed * length);
         let (model, supports) = (&self.model, &self.setting.supports);
         let State { places, velocities, meeting, .. } = state;
+        law.rub(model, supports, places, &self.next, velocities, kick, meeting);
         let kept = law.guard(model, supports, places, &self.next, velocities, length, meeting);
+        for plate in &law.plates {
+            let before = &self.next;
+            let time = state.time;
+            meeting.taken += plate.guard(places, model, supports, before, velocities, time, length);
+        }
         kept.map_err(|pair| {
             let place = format!("{pair:?} could not be kept apart");
             self.failure(FailureKind::Interpenetrated, &place)
@@ -362,8 +375,19 @@ impl Explicit {
         fastest
     }
 
-    /// Element and node passes at the places now.
-    fn pass(&mut self) -> Sums {
+    /// Half a step's work of the plates, by their force now, on the way to `until` (s).
+    fn plate_work(&mut self, until: f64) {
+        let Some(law) = &self.setting.contact else { return };
+        let state = &mut self.state;
+        for (plate, pressed) in law.plates.iter().zip(&state.meeting.plates) {
+            let work = 0.5 * pressed.force * plate.way(state.time, until);
+            state.works.support += work;
+            state.works.contact -= work;
+        }
+    }
+
+    /// Element and node passes at the places now, which are those of `time` (s).
+    fn pass_at(&mut self, time: f64) -> Sums {
         let (model, state) = (&self.model, &self.state);
         let path = self.setting.path;
         let mut sums =
@@ -374,11 +398,17 @@ impl Explicit {
             self.suffer(&mut sums);
         }
         if let Some(law) = &self.setting.contact {
-            for column in [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z] {
+            for column in
+                [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z]
+            {
                 column.fill(0.0);
             }
             let (places, meeting) = (&self.state.places, &mut self.state.meeting);
             law.meet(places, &self.model.mass, &mut self.forces.contact, meeting);
+            let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
+            for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
+                plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
+            }
         }
         sums
     }
@@ -417,7 +447,7 @@ impl Explicit {
             viscous_work: works.viscous,
             damping_work: works.damping,
             contact: -works.contact,
-            friction_work: self.state.meeting.taken,
+            friction_work: self.state.meeting.rubbed + self.state.meeting.taken,
         }
     }
 
