@@ -39,7 +39,6 @@ pub mod pressure;
 pub mod search;
 pub mod sweep;
 pub mod topology;
-mod tree;
 
 use distance::{Closest, point_triangle, segment_segment};
 use plates::Plate;

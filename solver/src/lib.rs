@@ -43,6 +43,7 @@ pub mod shell;
 pub mod simd;
 pub mod state;
 pub mod supports;
+pub mod tree;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! All points move in straight lines from t = 0 to t = 1, so the left sides are cubics; their roots
-//! are bracketed by those of their derivatives. Candidates come from a grid of cells of its own.
+//! are bracketed by those of their derivatives. Candidates come from boxes of its own.
 //! [`passages`] looks at one straight motion; [`Watch`] at a run: every step of a block of steps
 //! where asked, else the straight way from the first to the last of a block, and then, for a pair
 //! that seems to pass on it, at each of its steps.
@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 
 use crate::contact::topology::Topology;
 use crate::state::Field;
+use crate::tree::{Bounds, Tree};
 
 /// One passage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -144,72 +145,12 @@ fn edges_inside([a, b, c, d]: &Four) -> bool {
 }
 
 /// Box of some nodes along the straight way from one place to another.
-fn swept(from: &Field, to: &Field, nodes: &[u32]) -> [Vector3<f64>; 2] {
-    let places = nodes.iter().flat_map(|node| [from.get(*node as usize), to.get(*node as usize)]);
-    let mut low = Vector3::repeat(f64::INFINITY);
-    let mut high = Vector3::repeat(f64::NEG_INFINITY);
-    for place in places {
-        low = low.inf(&place);
-        high = high.sup(&place);
-    }
-    [low, high]
-}
-
-/// Boxes in the cells of a grid, sorted by cell.
-struct Cells {
-    size: f64,
-    entries: Vec<([i64; 3], u32)>,
-}
-
-impl Cells {
-    fn new(boxes: &[[Vector3<f64>; 2]]) -> Self {
-        let mean: f64 =
-            boxes.iter().map(|[low, high]| (high - low).max()).sum::<f64>() / boxes.len() as f64;
-        let mut cells = Self { size: if mean > 0.0 { mean } else { 1.0 }, entries: Vec::new() };
-        for (own, bounds) in (0..).zip(boxes) {
-            let mut entries = core::mem::take(&mut cells.entries);
-            cells.each(bounds, |cell| entries.push((cell, own)));
-            cells.entries = entries;
-        }
-        cells.entries.sort_unstable();
-        cells
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "places over the size of an element")]
-    fn cell(&self, place: &Vector3<f64>) -> [i64; 3] {
-        [0, 1, 2].map(|k| (place[k] / self.size).floor() as i64)
-    }
-
-    fn each(&self, [low, high]: &[Vector3<f64>; 2], mut visit: impl FnMut([i64; 3])) {
-        let (low, high) = (self.cell(low), self.cell(high));
-        for i in low[0]..=high[0] {
-            for j in low[1]..=high[1] {
-                for k in low[2]..=high[2] {
-                    visit([i, j, k]);
-                }
-            }
-        }
-    }
-
-    /// Boxes that meet this one, each once.
-    fn meeting(
-        &self,
-        boxes: &[[Vector3<f64>; 2]],
-        own: &[Vector3<f64>; 2],
-        mut found: impl FnMut(u32),
-    ) {
-        self.each(own, |cell| {
-            let from = self.entries.partition_point(|(other, _)| *other < cell);
-            for (_, other) in self.entries[from..].iter().take_while(|(other, _)| *other == cell) {
-                let [low, high] = &boxes[*other as usize];
-                let meets = (0..3).all(|k| low[k] <= own[1][k] && own[0][k] <= high[k]);
-                // Counted in the cell of the lowest corner they share, and nowhere else.
-                if meets && self.cell(&low.sup(&own[0])) == cell {
-                    found(*other);
-                }
-            }
-        });
-    }
+fn swept(from: &Field, to: &Field, nodes: &[u32]) -> Bounds {
+    let first = Bounds::of(&[from.get(nodes[0] as usize), to.get(nodes[0] as usize)]);
+    nodes[1..].iter().fold(first, |bounds, node| {
+        let node = *node as usize;
+        bounds.with(Bounds::of(&[from.get(node), to.get(node)]))
+    })
 }
 
 /// Every passage on the straight way between two places of all nodes, in order.
@@ -219,26 +160,29 @@ pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
         return found;
     }
     let boxes: Vec<_> = topology.triangles.iter().map(|nodes| swept(from, to, nodes)).collect();
-    let cells = Cells::new(&boxes);
+    let tree = Tree::new(&boxes);
     let mut test = |passage: Passage| {
         if passage.happens(topology, from, to) {
             found.push(passage);
         }
     };
     for node in 0..from.len() as u32 {
-        cells.meeting(&boxes, &swept(from, to, &[node]), |element| {
-            if !topology.triangles[element as usize].contains(&node) {
+        let own = swept(from, to, &[node]);
+        tree.query(&own, |element| {
+            let at = element as usize;
+            if boxes[at].meets(&own) && !topology.triangles[at].contains(&node) {
                 test(Passage::Node { node, element });
             }
         });
     }
     let boxes: Vec<_> = topology.edges.iter().map(|nodes| swept(from, to, nodes)).collect();
-    let cells = Cells::new(&boxes);
+    let tree = Tree::new(&boxes);
     for (edge, own) in (0_u32..).zip(&boxes) {
         let [a, b] = topology.edges[edge as usize];
-        cells.meeting(&boxes, own, |other| {
+        tree.query(own, |other| {
             let [c, d] = topology.edges[other as usize];
-            if other > edge && a != c && a != d && b != c && b != d {
+            let apart = a != c && a != d && b != c && b != d;
+            if other > edge && apart && boxes[other as usize].meets(own) {
                 test(Passage::Edge { edge, other });
             }
         });
@@ -402,7 +346,7 @@ mod tests {
     }
 
     proptest! {
-        /// The grid finds what looking at all pairs finds.
+        /// The boxes find what looking at all pairs finds.
         #[test]
         fn nothing_is_missed(
             places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::topology::Topology;
-use super::tree::{Bounds, Tree};
 use crate::state::Field;
+use crate::tree::{Bounds, Tree};
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
 pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {

@@ -7,9 +7,9 @@
 //! `travelled` grows by the largest node displacement of each step. Far pairs lie in bins by their
 //! due number; a bin is opened before a step that could pass it.
 
-use super::tree::{Bounds, Tree};
 use super::{Kind, Law, Meeting, Near, Pair, at};
 use crate::state::Field;
+use crate::tree::{Bounds, Tree};
 
 /// Bins the travel between two searches is divided into.
 const BINS: f64 = 64.0;

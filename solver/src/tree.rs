@@ -31,7 +31,9 @@ impl Bounds {
         Self { low: self.low.add_scalar(-way), high: self.high.add_scalar(way) }
     }
 
-    fn with(self, other: Self) -> Self {
+    /// Smallest box round both.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
