@@ -244,6 +244,7 @@ pub struct Meeting {
     pub taken: f64,
     /// Energy friction took, J.
     pub rubbed: f64,
-    /// Smallest distance of any near pair now, m.
+    /// Smallest distance of any near pair now, m; infinite where none is near.
+    #[serde(skip)]
     pub smallest_gap: f64,
 }

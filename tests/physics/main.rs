@@ -12,6 +12,7 @@
 mod allocation;
 mod capsule;
 mod conservation;
+mod contact_capsule;
 mod contact_cases;
 mod explicit_bits;
 mod explicit_cases;
