@@ -175,6 +175,12 @@ impl Law {
         law
     }
 
+    /// Makes film adhere; pairs are listed that much farther out.
+    pub fn adhere(&mut self, adhesion: Adhesion) {
+        self.radius += adhesion.range - self.adhesion.range;
+        self.adhesion = adhesion;
+    }
+
     /// Contact of film of these elements, at this distance (m), whose fastest mode is ω (rad/s) and
     /// whose edges have this mean length (m).
     pub fn new(topology: Topology, distance: f64, frequency: f64, edge: f64) -> Self {

@@ -1,10 +1,11 @@
 //! The folded capsule deployed with contact: nothing passes, and the audit would see it if it did.
 
-use billow_solver::audit::passages::{Watch, Watchfulness};
+use billow_solver::audit::passages::Watchfulness;
 use billow_solver::contact::Law;
 use billow_solver::contact::intersections::intersections;
 use billow_solver::course::Phase;
 use billow_solver::deployment::{Failure, FailureKind};
+use billow_solver::film_scene::FilmContact;
 use billow_solver::fold::Chirality;
 use billow_solver::gas::Inflow;
 use billow_solver::integrate::explicit::Explicit;
@@ -32,16 +33,13 @@ fn capsule(case: &Case, adjust: impl Fn(&mut Law)) -> Explicit {
     scene.design.chirality = case.chirality;
     scene.film.compression = case.compression;
     let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
+    let (mut film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
+    film.contact = Some(FilmContact { watch: case.watch, ..FilmContact::default() });
     let (model, mut setting, gas) = capsule::constants(&film).unwrap();
     let places = Field::of(&film.shell.positions);
-    let mut law = Law::of_film(&model, &places, None);
-    adjust(&mut law);
-    setting.contact = Some(law);
+    setting.contact.as_mut().map(adjust);
     let still = Field::zeros(places.len());
-    let mut film = Explicit::new(model, setting, places.clone(), still, gas);
-    film.watch = Some(Watch::new(case.watch, &places));
-    film
+    Explicit::new(model, setting, places, still, gas)
 }
 
 fn deploy(film: &mut Explicit, end: f64) -> Result<f64, Failure> {

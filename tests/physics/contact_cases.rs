@@ -1,6 +1,6 @@
 //! Film against film and against plates: what must not pass does not, and nothing is created.
 
-use billow_solver::audit::passages::{Watch, Watchfulness};
+use billow_solver::audit::passages::Watchfulness;
 use billow_solver::contact::intersections::intersections;
 use billow_solver::contact::plates::Plate;
 use billow_solver::contact::{Adhesion, Law};
@@ -45,9 +45,8 @@ fn film(
     setting.contact = Some(Law::of_film(&model, &places, Some(distance)));
     adjust(&mut setting);
     let velocities: Vec<_> = (0..piece.nodes.len()).map(velocity).collect();
-    let mut film = Explicit::new(model, setting, places.clone(), Field::of(&velocities), gas);
-    film.watch = Some(Watch::new(Watchfulness::EVERY_STEP, &places));
-    film
+    setting.watch = Some(Watchfulness::EVERY_STEP);
+    Explicit::new(model, setting, places, Field::of(&velocities), gas)
 }
 
 fn topology(film: &Explicit) -> &billow_solver::contact::topology::Topology {
@@ -135,7 +134,7 @@ fn adhesion_holds_up_to_its_pull_off_pressure() {
             setting.gravity = Vector3::new(0.0, 0.0, lift / density);
             setting.mass_damping = 200.0;
             let law = setting.contact.as_mut().unwrap();
-            law.adhesion = Adhesion { pressure, range: 1e-3 };
+            law.adhere(Adhesion { pressure, range: 1e-3 });
         };
         let mut film = film(&piece, OPEN, GasState::default(), 1e-3, adjust, |_| Vector3::zeros());
         film.advance(0.05, &free()).unwrap();

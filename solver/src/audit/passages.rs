@@ -233,10 +233,11 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Starts at these places (m).
-    pub fn new(how: Watchfulness, places: &Field) -> Self {
+    /// Starts at these places (m), after so many steps of the run.
+    pub fn new(how: Watchfulness, places: &Field, steps: u64) -> Self {
         let frames = vec![places.clone(); how.block as usize + 1];
-        Self { how, block: 0, frames, used: 1, passages: 0, first: None }
+        let block = steps / u64::from(how.block);
+        Self { how, block, frames, used: 1, passages: 0, first: None }
     }
 
     /// Takes note of the places (m) after a step; looks at a block when it is full. Whether nothing has
@@ -323,7 +324,7 @@ mod tests {
         let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
         let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
         let count = |how: Watchfulness| {
-            let mut watch = Watch::new(how, &from);
+            let mut watch = Watch::new(how, &from, 0);
             watch.step(&topology, &to);
             watch.step(&topology, &from);
             watch.look(&topology);
@@ -331,7 +332,7 @@ mod tests {
         };
         assert_eq!(count(Watchfulness::EVERY_STEP), 2);
         assert_eq!(count(Watchfulness { every_step_of_one_in: 1, ..Watchfulness::FRAMES }), 2);
-        let mut watch = Watch::new(Watchfulness::FRAMES, &from);
+        let mut watch = Watch::new(Watchfulness::FRAMES, &from, 0);
         assert!(!Watchfulness::FRAMES.closely(0));
         watch.step(&topology, &to);
         watch.look(&topology);

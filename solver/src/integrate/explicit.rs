@@ -19,7 +19,7 @@
 
 use nalgebra::Vector3;
 
-use crate::audit::passages::Watch;
+use crate::audit::passages::{Watch, Watchfulness};
 use crate::contact::Law;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
@@ -75,6 +75,8 @@ pub struct Setting {
     pub path: Path,
     /// Film against film; none lets film pass through film.
     pub contact: Option<Law>,
+    /// How closely passages are watched for; `None`: not at all.
+    pub watch: Option<Watchfulness>,
     /// A deliberate fault: tests only.
     pub mutation: Option<Mutation>,
 }
@@ -92,6 +94,7 @@ impl Setting {
             step_limit: u64::MAX,
             path: Path::best(),
             contact: None,
+            watch: None,
             mutation: None,
         }
     }
@@ -160,7 +163,8 @@ impl Explicit {
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
         let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
-        Self { model, setting, state, forces, watch: None, elements, next }
+        let watch = setting.watch.map(|how| Watch::new(how, &state.places, state.steps));
+        Self { model, setting, state, forces, watch, elements, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.

@@ -2,7 +2,10 @@
 
 use nalgebra::Vector3;
 
-use crate::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold};
+use crate::contact::{Adhesion, Law};
+use crate::film_scene::{
+    Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold,
+};
 use crate::fold::FoldPattern;
 use crate::gas::{Gas, GasState};
 use crate::integrate::explicit::{Explicit, Interior, Setting};
@@ -32,6 +35,7 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
             initial_temperature: scene.film.temperature,
         },
         supports: scene.supports.iter().map(|support| on_capsule(support, &mesh)).collect(),
+        contact: None,
         gravity: Vector3::new(0.0, 0.0, scene.gravity),
         release_time: scene.release_time,
         solver: FilmSolver {
@@ -116,10 +120,23 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Setting, GasState), Sc
         cfl: solver.cfl,
         step_limit: solver.step_limit,
         path: solver.path,
-        contact: None,
+        contact: scene.contact.as_ref().map(|contact| law(contact, &model, &places)),
+        watch: scene.contact.as_ref().map(|contact| contact.watch),
         mutation: None,
     };
     Ok((model, setting, gas))
+}
+
+/// The law of a scene's contact.
+fn law(contact: &FilmContact, model: &FilmModel, places: &Field) -> Law {
+    let mut law = Law::of_film(model, places, contact.distance);
+    law.friction = contact.friction;
+    if contact.adhesion > 0.0 {
+        let range = contact.adhesion_range.unwrap_or(law.distance);
+        law.adhere(Adhesion { pressure: contact.adhesion, range });
+    }
+    law.plates.clone_from(&contact.plates);
+    law
 }
 
 fn check_cfl(cfl: f64) -> Result<(), SceneError> {
