@@ -147,7 +147,7 @@ const STIFFNESS: f64 = 0.8;
 const RADIUS: f64 = 0.1;
 
 /// Share of the smallest gap that is the contact distance where none is given.
-const OF_GAP: f64 = 0.4;
+pub const OF_GAP: f64 = 0.4;
 /// Most of the mean edge length it can be then: in unfolded film the smallest gap is an element's height.
 const OF_EDGE: f64 = 0.02;
 

@@ -21,6 +21,7 @@ use crate::scene::Scene;
 use crate::state::Field;
 
 pub mod capsule;
+mod imperfection;
 mod statics;
 
 pub use statics::{Relaxation, StaticState, erected, static_reference, static_states};

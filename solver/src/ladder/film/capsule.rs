@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::{Adhesion, Law};
+use super::imperfection::imperfect;
+use crate::contact::{self, Adhesion, Law};
 use crate::film_scene::{
     Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold,
 };
@@ -18,6 +19,9 @@ use crate::simd::Path;
 use crate::state::Field;
 use crate::supports::Supports;
 
+/// Amplitude of the imperfection of a stowed capsule, as a share of its smallest gap.
+const IMPERFECTION: f64 = 0.1;
+
 /// A scene's capsule in one of its shapes, at this share of the stable step; and its mesh.
 ///
 /// # Errors
@@ -25,7 +29,15 @@ use crate::supports::Supports;
 pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, Mesh), SceneError> {
     scene.validate()?;
     let pattern = FoldPattern::new(&scene.design)?;
-    let mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
+    let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
+    if scene.seed != 0 && matches!(shape, Shape::Stowed(_)) {
+        let places = Field::of(&mesh.positions);
+        let model = FilmModel::of_shell(&scene.film, &Shell::of_mesh(&mesh)).map_err(|error| {
+            SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
+        })?;
+        let gap = Law::of_film(&model, &places, None).distance / contact::OF_GAP;
+        imperfect(&mut mesh.positions, scene.seed, IMPERFECTION * gap);
+    }
     let film = FilmScene {
         shell: Shell::of_mesh(&mesh),
         velocities: Vec::new(),
