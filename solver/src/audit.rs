@@ -1,5 +1,7 @@
 //! What a result is worth: energy, gas, intersections.
 
+pub mod passages;
+
 use crate::history::History;
 
 /// Energy ledger residual above which a run has drifted and is no result.

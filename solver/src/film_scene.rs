@@ -5,6 +5,8 @@
 
 use nalgebra::Vector3;
 
+use crate::audit::passages::Watchfulness;
+use crate::contact::plates::Plate;
 use crate::scene::{Film, GasSupply};
 use crate::shell::Shell;
 use crate::simd::Path;
@@ -22,6 +24,8 @@ pub struct FilmScene {
     pub filling: Filling,
     /// What holds the film, or moves it.
     pub supports: Vec<FilmSupport>,
+    /// Film against film; `None` lets film pass through film.
+    pub contact: Option<FilmContact>,
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
     /// Until when every node is held where it starts and only the gas goes on, s.
@@ -44,6 +48,37 @@ pub enum Filling {
         /// Its temperature at the start, K.
         initial_temperature: f64,
     },
+}
+
+/// How film meets film.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilmContact {
+    /// Contact distance, m; `None`: 0.4 of the smallest gap at the start
+    /// ([`crate::contact::Law::of_film`]).
+    pub distance: Option<f64>,
+    /// Coulomb friction coefficient.
+    pub friction: f64,
+    /// Pull-off pressure of adhesion, Pa.
+    pub adhesion: f64,
+    /// Its range beyond the contact distance, m; `None`: the contact distance.
+    pub adhesion_range: Option<f64>,
+    /// Rigid plates the film lies against.
+    pub plates: Vec<Plate>,
+    /// How closely passages are watched for.
+    pub watch: Watchfulness,
+}
+
+impl Default for FilmContact {
+    fn default() -> Self {
+        Self {
+            distance: None,
+            friction: 0.0,
+            adhesion: 0.0,
+            adhesion_range: None,
+            plates: Vec::new(),
+            watch: Watchfulness::FRAMES,
+        }
+    }
 }
 
 /// One support.

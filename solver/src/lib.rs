@@ -22,6 +22,7 @@
 
 pub mod audit;
 pub mod checkpoint;
+pub mod contact;
 pub mod course;
 pub mod deployment;
 pub mod film_scene;
@@ -45,6 +46,7 @@ pub mod simd;
 pub mod state;
 pub mod statics;
 pub mod supports;
+pub mod tree;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

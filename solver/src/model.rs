@@ -17,7 +17,7 @@ use crate::material::Material;
 use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
 use crate::shell::Shell;
-use crate::simd::WIDTH;
+use crate::simd::{Corners, WIDTH};
 
 mod frequency;
 
@@ -59,10 +59,12 @@ pub struct FilmModel {
     pub material: Material,
     /// ρ, kg/m³.
     pub density: f64,
+    /// t, m.
+    pub thickness: f64,
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The same by corner, eight elements a block; the last is filled up with elements of no volume.
-    pub blocks: Vec<[[u32; WIDTH]; 3]>,
+    pub blocks: Corners,
     /// Faces that close the volume and are no film.
     pub closure: Vec<[u32; 3]>,
     /// Dm⁻¹ of each element, row by row, 1/m; this and the next three columns are padded.
@@ -117,8 +119,9 @@ impl FilmModel {
         let mut model = Self {
             material,
             density: film.density,
+            thickness: film.thickness,
             triangles: triangles.to_vec(),
-            blocks: Vec::with_capacity(triangles.len().div_ceil(WIDTH)),
+            blocks: Corners::new(&[], nodes),
             closure: closure.to_vec(),
             inverse_shape: core::array::from_fn(|_| Vec::with_capacity(triangles.len())),
             volume: Vec::with_capacity(triangles.len()),
@@ -186,12 +189,7 @@ impl FilmModel {
 
     /// Groups the elements by eight; fills the last group with elements of no volume.
     fn pad(&mut self) {
-        for chunk in self.triangles.chunks(WIDTH) {
-            let node =
-                |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
-            self.blocks
-                .push([0, 1, 2].map(|corner| core::array::from_fn(|lane| node(corner, lane))));
-        }
+        self.blocks = Corners::new(&self.triangles, self.mass.len());
         let padded = self.padded();
         let columns = self.inverse_shape.iter_mut();
         for column in columns.chain([&mut self.volume, &mut self.viscous_time]) {
@@ -210,7 +208,7 @@ impl FilmModel {
 
     /// Number of elements with those of no volume.
     pub fn padded(&self) -> usize {
-        self.blocks.len() * WIDTH
+        self.blocks.blocks() * WIDTH
     }
 
     /// Number of nodes.

@@ -120,21 +120,20 @@ impl Lanes {
         column[at..at + WIDTH].copy_from_slice(&self.0);
     }
 
-    /// The numbers at these places of a column.
-    #[inline(always)]
-    pub fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self {
-        Self(core::array::from_fn(|lane| column[at[lane] as usize]))
-    }
-
     #[inline(always)]
     fn zip(self, other: Self, join: impl Fn(f64, f64) -> f64) -> Self {
-        Self(core::array::from_fn(|lane| join(self.0[lane], other.0[lane])))
+        // A plain loop: the array's own `map` and `from_fn` are not inlined into another instruction set.
+        let mut lanes = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            lanes[lane] = join(self.0[lane], other.0[lane]);
+        }
+        Self(lanes)
     }
 
     /// Square roots.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
+        self.zip(self, |a, _| a.sqrt())
     }
 
     /// Quotients.
@@ -203,7 +202,7 @@ impl Mul<f64> for Lanes {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        Self(self.0.map(|a| a * factor))
+        self.zip(self, |a, _| a * factor)
     }
 }
 
@@ -211,8 +210,70 @@ impl Neg for Lanes {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|a| -a))
+        self.zip(self, |a, _| -a)
     }
+}
+
+/// The corners of elements, eight elements a block, checked once to lie within a number of nodes so
+/// that a kernel need not check them again.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Corners {
+    nodes: usize,
+    blocks: Vec<[[u32; WIDTH]; 3]>,
+}
+
+impl Corners {
+    /// The corners of these triangles over `nodes` nodes; the last block is filled up with triangles of
+    /// one node thrice.
+    ///
+    /// # Panics
+    /// When a triangle names a node that is not there.
+    pub fn new(triangles: &[[u32; 3]], nodes: usize) -> Self {
+        assert!(triangles.iter().flatten().all(|node| (*node as usize) < nodes), "nodes there are");
+        let block = |chunk: &[[u32; 3]]| {
+            let node =
+                |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
+            [0, 1, 2].map(|corner| core::array::from_fn(|lane| node(corner, lane)))
+        };
+        Self { nodes, blocks: triangles.chunks(WIDTH).map(block).collect() }
+    }
+
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The nodes of one corner of a block's elements.
+    pub fn nodes(&self, block: usize, corner: usize) -> &[u32; WIDTH] {
+        &self.blocks[block][corner]
+    }
+
+    /// Three columns over the nodes, at one corner of a block's elements.
+    ///
+    /// # Panics
+    /// When a column is shorter than there are nodes.
+    #[inline(always)]
+    pub fn gather(&self, block: usize, corner: usize, [x, y, z]: [&[f64]; 3]) -> Vectors {
+        let whole = x.len() >= self.nodes && y.len() >= self.nodes && z.len() >= self.nodes;
+        assert!(whole, "one value a node");
+        let at = &self.blocks[block][corner];
+        Vectors { x: gather(x, at), y: gather(y, at), z: gather(z, at) }
+    }
+}
+
+/// The numbers at these places of a column, which must reach beyond each of them.
+#[inline(always)]
+#[expect(
+    unsafe_code,
+    reason = "places are checked when `Corners` is made, columns before each call"
+)]
+fn gather(column: &[f64], at: &[u32; WIDTH]) -> Lanes {
+    let mut lanes = [0.0; WIDTH];
+    for lane in 0..WIDTH {
+        // SAFETY: every place is below the length of the column: see `Corners::gather`.
+        lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
+    }
+    Lanes(lanes)
 }
 
 /// One vector of each of eight elements.

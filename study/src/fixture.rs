@@ -104,6 +104,7 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
     };
     Deployment {
         history,
+        tracks: Vec::new(),
         measures,
         audit: Audit { ledger_residual: 1e-12, ..Audit::default() },
         stop: Stop::Done,

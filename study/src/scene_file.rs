@@ -152,6 +152,7 @@ impl SceneFile {
                 path: simd,
             },
             outputs,
+            contact: None,
         };
         // Whatever of the film is none is found before anything runs.
         film::capsule::constants(&film).map_err(|error| scene_error(error, &reader.source))?;

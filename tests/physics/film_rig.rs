@@ -1,10 +1,12 @@
 //! Small films for the tests of the explicit solver.
 
 use billow_solver::course::Phase;
+use billow_solver::forces::membrane::{ElementForces, NodeForces, element_pass, node_pass};
 use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
 use billow_solver::model::FilmModel;
 use billow_solver::scene::Film;
+use billow_solver::simd::Path;
 use billow_solver::state::Field;
 use nalgebra::{Vector2, Vector3};
 
@@ -117,9 +119,29 @@ pub fn icosphere(level: u32, radius: f64) -> Piece {
     Piece::relaxed(nodes, triangles)
 }
 
+/// Film forces on nodes at these places and velocities, with the power viscosity takes.
+pub fn film_forces(model: &FilmModel, places: &Field, velocities: &Field) -> (NodeForces, f64) {
+    let mut elements = ElementForces::new(model);
+    let mut nodes = NodeForces::new(model);
+    let sums = element_pass(Path::best(), model, places, velocities, &mut elements);
+    node_pass(model, &elements, &mut nodes);
+    (nodes, sums.viscous_power)
+}
+
 /// Places of a piece under x = F X + t, and the field of them.
 pub fn mapped(piece: &Piece, mut map: impl FnMut(Vector3<f64>) -> Vector3<f64>) -> Field {
     Field::of(&piece.nodes.iter().map(|node| map(*node)).collect::<Vec<_>>())
+}
+
+/// A fixed pattern of vectors within ±1 a component.
+pub fn pattern(length: usize, seed: u64) -> Vec<Vector3<f64>> {
+    let mut state = seed;
+    let mut next = move || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    (0..length).map(|_| Vector3::new(next(), next(), next())).collect()
 }
 
 /// A piece of film at rest where it is stress free.

@@ -12,6 +12,9 @@
 mod allocation;
 mod capsule;
 mod conservation;
+mod contact_capsule;
+mod contact_cases;
+mod contact_tube;
 mod explicit_bits;
 mod explicit_cases;
 mod exports;

@@ -187,6 +187,7 @@ fn scene(shell: Shell, pressure: f64, supports: Vec<FilmSupport>) -> FilmScene {
             path: Path::best(),
         },
         outputs: FilmOutputs { sample_interval: 1.0, nodes: Vec::new(), elements: Vec::new() },
+        contact: None,
     }
 }
 

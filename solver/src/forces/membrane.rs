@@ -76,14 +76,16 @@ fn green_rate([f, g]: [Vectors; 2], [fr, gr]: [Vectors; 2]) -> PlaneLanes {
     PlaneLanes { xx: f.dot(fr), yy: g.dot(gr), xy: (f.dot(gr) + g.dot(fr)) * 0.5 }
 }
 
-/// A field at the corners of eight elements.
+/// A field at the corners of a block of eight elements.
 #[inline(always)]
-fn corners_of(field: &Field, nodes: &[[u32; WIDTH]; 3]) -> [Vectors; 3] {
-    nodes.each_ref().map(|nodes| Vectors {
-        x: Lanes::gather(&field.x, nodes),
-        y: Lanes::gather(&field.y, nodes),
-        z: Lanes::gather(&field.z, nodes),
-    })
+fn corners_of(model: &FilmModel, field: &Field, block: usize) -> [Vectors; 3] {
+    let columns = [&field.x[..], &field.y[..], &field.z[..]];
+    let corners = &model.blocks;
+    [
+        corners.gather(block, 0, columns),
+        corners.gather(block, 1, columns),
+        corners.gather(block, 2, columns),
+    ]
 }
 
 /// −A t F S Dm⁻ᵀ, and what balances it.
@@ -118,15 +120,21 @@ fn element_kernel(
     let material = model.material;
     let (mut volumes, mut power, mut largest) =
         (Lanes::default(), Lanes::default(), Lanes::splat(0.0));
-    for (block, nodes) in model.blocks.iter().enumerate() {
+    for block in 0..model.blocks.blocks() {
         let at = block * WIDTH;
-        let shape = model.inverse_shape.each_ref().map(|column| Lanes::load(column, at));
+        let [d11, d12, d21, d22] = &model.inverse_shape;
+        let shape = [
+            Lanes::load(d11, at),
+            Lanes::load(d12, at),
+            Lanes::load(d21, at),
+            Lanes::load(d22, at),
+        ];
         let volume = Lanes::load(&model.volume, at);
-        let corners = corners_of(positions, nodes);
+        let corners = corners_of(model, positions, block);
         let edge = edges(corners);
         let slope = gradient(shape, edge);
         let (stress, most) = material.stresses(green(slope));
-        let rate = green_rate(slope, gradient(shape, edges(corners_of(velocities, nodes))));
+        let rate = green_rate(slope, gradient(shape, edges(corners_of(model, velocities, block))));
         let viscous = viscous_stress(&material, Lanes::load(&model.viscous_time, at), rate);
 
         let elastic = corner_forces(shape, volume, slope, stress);
@@ -160,10 +168,12 @@ dispatch! {
 
 /// Green strain of an element at these positions (m).
 pub fn strain(model: &FilmModel, positions: &Field, element: usize) -> PlaneTensor {
-    let (block, lane) = (element / WIDTH, element % WIDTH);
-    let nodes = model.blocks[block].map(|nodes| [nodes[lane]; WIDTH]);
+    let [a, b, c] = model.triangles[element].map(|node| {
+        let place = positions.get(node as usize);
+        Vectors { x: Lanes::splat(place.x), y: Lanes::splat(place.y), z: Lanes::splat(place.z) }
+    });
     let shape = model.inverse_shape.each_ref().map(|column| Lanes::splat(column[element]));
-    green(gradient(shape, edges(corners_of(positions, &nodes)))).first()
+    green(gradient(shape, edges([a, b, c]))).first()
 }
 
 /// Strain energy at these positions (m), J.
@@ -185,13 +195,15 @@ pub struct NodeForces {
     pub viscous: Field,
     /// ∂V/∂x, m².
     pub area: Field,
+    /// Of contact, N.
+    pub contact: Field,
 }
 
 impl NodeForces {
     /// Room for a model's nodes.
     pub fn new(model: &FilmModel) -> Self {
         let zeros = || Field::zeros(model.nodes());
-        Self { film: zeros(), viscous: zeros(), area: zeros() }
+        Self { film: zeros(), viscous: zeros(), area: zeros(), contact: zeros() }
     }
 }
 

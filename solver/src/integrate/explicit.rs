@@ -19,6 +19,8 @@
 
 use nalgebra::Vector3;
 
+use crate::audit::passages::{Watch, Watchfulness};
+use crate::contact::Law;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
@@ -71,6 +73,10 @@ pub struct Setting {
     pub step_limit: u64,
     /// Instruction set; the bits are the same on each.
     pub path: Path,
+    /// Film against film; none lets film pass through film.
+    pub contact: Option<Law>,
+    /// How closely passages are watched for; `None`: not at all.
+    pub watch: Option<Watchfulness>,
     /// A deliberate fault: tests only.
     pub mutation: Option<Mutation>,
 }
@@ -87,6 +93,8 @@ impl Setting {
             cfl: DEFAULT_CFL,
             step_limit: u64::MAX,
             path: Path::best(),
+            contact: None,
+            watch: None,
             mutation: None,
         }
     }
@@ -108,6 +116,8 @@ pub struct Explicit {
     pub state: State,
     /// Forces on nodes now: a function of the state.
     pub forces: NodeForces,
+    /// Who counts passages; nobody where film has no contact.
+    pub watch: Option<Watch>,
     elements: ElementForces,
     next: Field,
 }
@@ -124,7 +134,13 @@ impl Explicit {
         let planes = setting.supports.bodies.iter().map(|body| body.plane.velocity).collect();
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
-        let sums = film.pass();
+        if let Some(law) = &film.setting.contact {
+            let places = &film.state.places;
+            law.search(places, &mut film.state.meeting);
+            let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
+            film.state.meeting.plates = start.collect();
+        }
+        let sums = film.pass_at(0.0);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
             Interior::Gas(gas) => {
@@ -140,14 +156,15 @@ impl Explicit {
     /// Goes on from a state of the same film under the same setting, bit for bit.
     pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
         let mut film = Self::with(model, setting, state);
-        let _ = film.pass();
+        let _ = film.pass_at(film.state.time);
         film
     }
 
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
         let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
-        Self { model, setting, state, forces, elements, next }
+        let watch = setting.watch.map(|how| Watch::new(how, &state.places, state.steps));
+        Self { model, setting, state, forces, watch, elements, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -208,8 +225,13 @@ impl Explicit {
             }
             Interior::Overpressure(_) => 0.0,
         };
-        let share = self.setting.cfl * stable_share(self.setting.viscosity);
-        share * 2.0 / (film * film + gas).sqrt()
+        let share = stable_share(self.setting.viscosity) * 2.0;
+        let alone = self.setting.cfl * share / (film * film + gas).sqrt();
+        match &self.setting.contact {
+            // Contact counts for stability only: what is well below its limit resolves it too.
+            Some(law) => alone.min(share / (film * film + gas + law.frequency_squared()).sqrt()),
+            None => alone,
+        }
     }
 
     /// A step in which nothing moves.
@@ -221,9 +243,12 @@ impl Explicit {
     /// A step that ends at the time `until` (s).
     fn step(&mut self, length: f64, until: f64, inflow: Inflow) -> Result<(), Failure> {
         self.kick(0.5 * (self.state.last_step + length), length, until);
+        self.keep_apart(0.5 * (self.state.last_step + length), length)?;
         self.share_work(length);
         let fastest = self.drift(length);
-        let sums = self.pass();
+        self.plate_work(until);
+        let sums = self.pass_at(until);
+        self.plate_work(until);
         let volume = sums.six_volumes / 6.0;
         // No NaN passes either of these.
         let sound = fastest < self.model.wave_speed() * self.model.wave_speed();
@@ -239,13 +264,34 @@ impl Explicit {
         self.step_gas(volume, length, inflow);
         self.share_work(length);
         self.state.last_step = length;
-        Ok(())
+        self.look()
+    }
+
+    /// Lets the audit see the places now.
+    fn look(&mut self) -> Result<(), Failure> {
+        let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) else {
+            return Ok(());
+        };
+        if watch.step(&law.topology, &self.state.places) {
+            return Ok(());
+        }
+        let place = match watch.first {
+            Some((_, passage)) => format!("{passage:?}"),
+            None => "film".to_owned(),
+        };
+        Err(self.failure(FailureKind::Interpenetrated, &place))
     }
 
     /// Half a step's work of what acts at the nodes now along the velocities now: on moving supports,
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
+        if self.setting.contact.is_some() {
+            let along: f64 = (0..self.model.nodes())
+                .map(|node| self.forces.contact.get(node).dot(&self.state.velocities.get(node)))
+                .sum();
+            self.state.works.contact += half * along;
+        }
         self.state.works.support -= half * self.support_power();
         if let Interior::Overpressure(pressure) = self.setting.interior {
             let sweep: f64 = (0..self.model.nodes())
@@ -253,6 +299,27 @@ impl Explicit {
                 .sum();
             self.state.works.gas += half * pressure * sweep;
         }
+    }
+
+    /// Looks for pairs the drift to come could bring together, and keeps them apart.
+    fn keep_apart(&mut self, kick: f64, length: f64) -> Result<(), Failure> {
+        let Some(law) = &self.setting.contact else { return Ok(()) };
+        let state = &mut self.state;
+        let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        law.prepare(&state.places, &mut state.meeting, speed * length);
+        let (model, supports) = (&self.model, &self.setting.supports);
+        let State { places, velocities, meeting, .. } = state;
+        law.rub(model, supports, places, &self.next, velocities, kick, meeting);
+        let kept = law.guard(model, supports, places, &self.next, velocities, length, meeting);
+        for plate in &law.plates {
+            let before = &self.next;
+            let time = state.time;
+            meeting.taken += plate.guard(places, model, supports, before, velocities, time, length);
+        }
+        kept.map_err(|pair| {
+            let place = format!("{pair:?} could not be kept apart");
+            self.failure(FailureKind::Interpenetrated, &place)
+        })
     }
 
     /// The gas, while the volume goes to `volume` (m³).
@@ -290,6 +357,7 @@ impl Explicit {
     #[inline]
     pub fn force(&self, node: usize) -> Vector3<f64> {
         self.forces.film.get(node)
+            + self.forces.contact.get(node)
             + self.forces.area.get(node) * self.overpressure()
             + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
@@ -311,8 +379,19 @@ impl Explicit {
         fastest
     }
 
-    /// Element and node passes at the places now.
-    fn pass(&mut self) -> Sums {
+    /// Half a step's work of the plates, by their force now, on the way to `until` (s).
+    fn plate_work(&mut self, until: f64) {
+        let Some(law) = &self.setting.contact else { return };
+        let state = &mut self.state;
+        for (plate, pressed) in law.plates.iter().zip(&state.meeting.plates) {
+            let work = 0.5 * pressed.force * plate.way(state.time, until);
+            state.works.support += work;
+            state.works.contact -= work;
+        }
+    }
+
+    /// Element and node passes at the places now, which are those of `time` (s).
+    fn pass_at(&mut self, time: f64) -> Sums {
         let (model, state) = (&self.model, &self.state);
         let path = self.setting.path;
         let mut sums =
@@ -321,6 +400,19 @@ impl Explicit {
         sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
+        }
+        if let Some(law) = &self.setting.contact {
+            for column in
+                [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z]
+            {
+                column.fill(0.0);
+            }
+            let (places, meeting) = (&self.state.places, &mut self.state.meeting);
+            law.meet(places, &self.model.mass, &mut self.forces.contact, meeting);
+            let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
+            for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
+                plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
+            }
         }
         sums
     }
@@ -358,9 +450,8 @@ impl Explicit {
             support_work: works.support,
             viscous_work: works.viscous,
             damping_work: works.damping,
-            // No contact yet.
-            contact: 0.0,
-            friction_work: 0.0,
+            contact: -works.contact,
+            friction_work: self.state.meeting.rubbed + self.state.meeting.taken,
         }
     }
 

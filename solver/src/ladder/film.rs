@@ -25,6 +25,7 @@ use crate::scene::Scene;
 use crate::state::Field;
 
 pub mod capsule;
+mod imperfection;
 mod statics;
 
 pub use crate::statics::Relaxation;

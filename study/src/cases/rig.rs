@@ -88,6 +88,7 @@ pub fn scene(shell: Shell, film: Film) -> FilmScene {
             path: Path::best(),
         },
         outputs: FilmOutputs { sample_interval: 1e-3, nodes: Vec::new(), elements: Vec::new() },
+        contact: None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::Meeting;
 use crate::gas::GasState;
 use crate::ledger::GasBooks;
 use crate::state::Field;
@@ -36,6 +37,8 @@ pub struct State {
     pub books: GasBooks,
     /// Σ m x at the start, kg m.
     pub start_moment: [f64; 3],
+    /// Contact of film with film.
+    pub meeting: Meeting,
     /// The way to the target being headed for, where a run was paused on it.
     pub stretch: Option<Stretch>,
 }
@@ -50,6 +53,8 @@ pub struct Works {
     pub ambient: f64,
     /// Of what holds or pushes the film and moves.
     pub support: f64,
+    /// Of contact on the film.
+    pub contact: f64,
     /// Taken by viscosity.
     pub viscous: f64,
     /// Taken by mass damping.
@@ -116,6 +121,7 @@ impl State {
             works: Works::default(),
             books: GasBooks::default(),
             start_moment: [0.0; 3],
+            meeting: Meeting::default(),
             stretch: None,
         }
     }

@@ -2,7 +2,11 @@
 
 use nalgebra::Vector3;
 
-use crate::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold};
+use super::imperfection::imperfect;
+use crate::contact::{self, Adhesion, Law};
+use crate::film_scene::{
+    Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold,
+};
 use crate::fold::FoldPattern;
 use crate::gas::{Gas, GasState};
 use crate::integrate::explicit::{Explicit, Interior, Setting};
@@ -15,6 +19,9 @@ use crate::simd::Path;
 use crate::state::Field;
 use crate::supports::Supports;
 
+/// Amplitude of the imperfection of a stowed capsule, as a share of its smallest gap.
+const IMPERFECTION: f64 = 0.1;
+
 /// A scene's capsule in one of its shapes, at this share of the stable step; and its mesh.
 ///
 /// # Errors
@@ -22,7 +29,15 @@ use crate::supports::Supports;
 pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, Mesh), SceneError> {
     scene.validate()?;
     let pattern = FoldPattern::new(&scene.design)?;
-    let mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
+    let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
+    if scene.seed != 0 && matches!(shape, Shape::Stowed(_)) {
+        let places = Field::of(&mesh.positions);
+        let model = FilmModel::of_shell(&scene.film, &Shell::of_mesh(&mesh)).map_err(|error| {
+            SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
+        })?;
+        let gap = Law::of_film(&model, &places, None).distance / contact::OF_GAP;
+        imperfect(&mut mesh.positions, scene.seed, IMPERFECTION * gap);
+    }
     let film = FilmScene {
         shell: Shell::of_mesh(&mesh),
         velocities: Vec::new(),
@@ -32,6 +47,7 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
             initial_temperature: scene.film.temperature,
         },
         supports: scene.supports.iter().map(|support| on_capsule(support, &mesh)).collect(),
+        contact: None,
         gravity: Vector3::new(0.0, 0.0, scene.gravity),
         release_time: scene.release_time,
         solver: FilmSolver {
@@ -116,9 +132,23 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Setting, GasState), Sc
         cfl: solver.cfl,
         step_limit: solver.step_limit,
         path: solver.path,
+        contact: scene.contact.as_ref().map(|contact| law(contact, &model, &places)),
+        watch: scene.contact.as_ref().map(|contact| contact.watch),
         mutation: None,
     };
     Ok((model, setting, gas))
+}
+
+/// The law of a scene's contact.
+fn law(contact: &FilmContact, model: &FilmModel, places: &Field) -> Law {
+    let mut law = Law::of_film(model, places, contact.distance);
+    law.friction = contact.friction;
+    if contact.adhesion > 0.0 {
+        let range = contact.adhesion_range.unwrap_or(law.distance);
+        law.adhere(Adhesion { pressure: contact.adhesion, range });
+    }
+    law.plates.clone_from(&contact.plates);
+    law
 }
 
 fn check_cfl(cfl: f64) -> Result<(), SceneError> {

@@ -1,0 +1,383 @@
+//! Whether film went through film: an audit that shares nothing with contact.
+//!
+//! ```text
+//! node and element:  (b − a) × (c − a)·(p − a) = 0 at a t where p lies inside the element
+//! two edges:         (b − a) × (d − c)·(c − a) = 0 at a t where the lines meet inside both
+//! ```
+//!
+//! All points move in straight lines from t = 0 to t = 1, so the left sides are cubics; their roots
+//! are bracketed by those of their derivatives. Candidates come from boxes of its own.
+//! [`passages`] looks at one straight motion; [`Watch`] at a run: every step of a block of steps
+//! where asked, else the straight way from the first to the last of a block, and then, for a pair
+//! that seems to pass on it, at each of its steps.
+
+use nalgebra::Vector3;
+
+use crate::contact::topology::Topology;
+use crate::state::Field;
+use crate::tree::{Bounds, Tree};
+
+/// One passage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Passage {
+    /// A node through an element.
+    Node {
+        /// Node.
+        node: u32,
+        /// Element.
+        element: u32,
+    },
+    /// An edge through an edge, the lower number first.
+    Edge {
+        /// Edge.
+        edge: u32,
+        /// The other.
+        other: u32,
+    },
+}
+
+impl Passage {
+    fn nodes(self, topology: &Topology) -> [u32; 4] {
+        match self {
+            Self::Node { node, element } => {
+                let [a, b, c] = topology.triangles[element as usize];
+                [node, a, b, c]
+            }
+            Self::Edge { edge, other } => {
+                let [a, b] = topology.edges[edge as usize];
+                let [c, d] = topology.edges[other as usize];
+                [a, b, c, d]
+            }
+        }
+    }
+
+    /// Whether the pair passes through itself on the straight way between two places of its nodes.
+    fn happens(self, topology: &Topology, from: &Field, to: &Field) -> bool {
+        let nodes = self.nodes(topology).map(|node| node as usize);
+        let (x, y) = (nodes.map(|node| from.get(node)), nodes.map(|node| to.get(node)));
+        match self {
+            Self::Node { .. } => {
+                let ways = [(2, 1), (3, 1), (0, 1)];
+                roots(&x, &y, ways).into_iter().flatten().any(|t| node_inside(&between(&x, &y, t)))
+            }
+            Self::Edge { .. } => {
+                let ways = [(1, 0), (3, 2), (2, 0)];
+                roots(&x, &y, ways).into_iter().flatten().any(|t| edges_inside(&between(&x, &y, t)))
+            }
+        }
+    }
+}
+
+/// Share of their lengths within which two edges count as meeting where both are in one plane.
+const MEET: f64 = 1e-6;
+
+type Four = [Vector3<f64>; 4];
+
+fn between(x: &Four, y: &Four, t: f64) -> Four {
+    core::array::from_fn(|k| x[k] + (y[k] - x[k]) * t)
+}
+
+/// Roots in [0, 1] of the cubic (u × v)·w, each the way between two of four points.
+fn roots(x: &Four, y: &Four, ways: [(usize, usize); 3]) -> [Option<f64>; 3] {
+    let [u, v, w] = ways.map(|(to, from)| x[to] - x[from]);
+    let [du, dv, dw] = ways.map(|(to, from)| (y[to] - x[to]) - (y[from] - x[from]));
+    let c0 = u.cross(&v).dot(&w);
+    let mixed = du.cross(&v) + u.cross(&dv);
+    let c1 = mixed.dot(&w) + u.cross(&v).dot(&dw);
+    let c2 = du.cross(&dv).dot(&w) + mixed.dot(&dw);
+    let c3 = du.cross(&dv).dot(&dw);
+    let value = |t: f64| ((c3 * t + c2) * t + c1) * t + c0;
+    // Between the roots of the derivative the cubic runs one way.
+    let (a, b, c) = (3.0 * c3, 2.0 * c2, c1);
+    let mut cuts = [0.0, 1.0, 1.0, 1.0];
+    let inside = b * b - 4.0 * a * c;
+    if inside > 0.0 {
+        let q = -0.5 * (b + inside.sqrt() * if b < 0.0 { -1.0 } else { 1.0 });
+        let mut turns = [q / a, c / q];
+        if turns[0] > turns[1] {
+            turns.swap(0, 1);
+        }
+        let valid = |t: f64| if t > 0.0 && t < 1.0 { Some(t) } else { None };
+        let mut at = 1;
+        for turn in turns.into_iter().filter_map(valid) {
+            cuts[at] = turn;
+            at += 1;
+        }
+    }
+    core::array::from_fn(|k| {
+        let (mut low, mut high) = (cuts[k], cuts[k + 1]);
+        let (first, last) = (value(low), value(high));
+        if low >= high || (first > 0.0) == (last > 0.0) {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if (value(middle) > 0.0) == (first > 0.0) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(0.5 * (low + high))
+    })
+}
+
+/// Whether the first point, in the plane of the others, lies inside them.
+fn node_inside([p, a, b, c]: &Four) -> bool {
+    let normal = (b - a).cross(&(c - a));
+    let side = |u: &Vector3<f64>, v: &Vector3<f64>| normal.dot(&(v - u).cross(&(p - u)));
+    side(a, b) >= 0.0 && side(b, c) >= 0.0 && side(c, a) >= 0.0
+}
+
+/// Whether two segments in one plane cross inside both.
+fn edges_inside([a, b, c, d]: &Four) -> bool {
+    let normal = (b - a).cross(&(d - c));
+    let below = normal.norm_squared();
+    if below == 0.0 {
+        return false;
+    }
+    let s = (c - a).cross(&(d - c)).dot(&normal) / below;
+    let t = (c - a).cross(&(b - a)).dot(&normal) / below;
+    // Edges on one line have no sound crossing: the points must be one.
+    let apart = (a + (b - a) * s) - (c + (d - c) * t);
+    let size = (b - a).norm() + (d - c).norm();
+    (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) && apart.norm() <= MEET * size
+}
+
+/// Box of some nodes along the straight way from one place to another.
+fn swept(from: &Field, to: &Field, nodes: &[u32]) -> Bounds {
+    let first = Bounds::of(&[from.get(nodes[0] as usize), to.get(nodes[0] as usize)]);
+    nodes[1..].iter().fold(first, |bounds, node| {
+        let node = *node as usize;
+        bounds.with(Bounds::of(&[from.get(node), to.get(node)]))
+    })
+}
+
+/// Every passage on the straight way between two places of all nodes, in order.
+pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
+    let mut found = Vec::new();
+    if topology.triangles.is_empty() {
+        return found;
+    }
+    let boxes: Vec<_> = topology.triangles.iter().map(|nodes| swept(from, to, nodes)).collect();
+    let tree = Tree::new(&boxes);
+    let mut test = |passage: Passage| {
+        if passage.happens(topology, from, to) {
+            found.push(passage);
+        }
+    };
+    for node in 0..from.len() as u32 {
+        let own = swept(from, to, &[node]);
+        tree.query(&own, |element| {
+            let at = element as usize;
+            if boxes[at].meets(&own) && !topology.triangles[at].contains(&node) {
+                test(Passage::Node { node, element });
+            }
+        });
+    }
+    let boxes: Vec<_> = topology.edges.iter().map(|nodes| swept(from, to, nodes)).collect();
+    let tree = Tree::new(&boxes);
+    for (edge, own) in (0_u32..).zip(&boxes) {
+        let [a, b] = topology.edges[edge as usize];
+        tree.query(own, |other| {
+            let [c, d] = topology.edges[other as usize];
+            let apart = a != c && a != d && b != c && b != d;
+            if other > edge && apart && boxes[other as usize].meets(own) {
+                test(Passage::Edge { edge, other });
+            }
+        });
+    }
+    found.sort_unstable();
+    found
+}
+
+/// How a run is watched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Watchfulness {
+    /// Steps between two audit frames, at least 1.
+    pub block: u32,
+    /// One block in so many is looked at step by step, chosen by the seed; 1 for all.
+    pub every_step_of_one_in: u64,
+    /// Seed of the choice.
+    pub seed: u64,
+}
+
+impl Watchfulness {
+    /// Every step: for small scenes.
+    pub const EVERY_STEP: Self = Self { block: 1, every_step_of_one_in: 1, seed: 0 };
+    /// Frames 50 steps apart, every step of one block in a hundred.
+    pub const FRAMES: Self = Self { block: 50, every_step_of_one_in: 100, seed: 0 };
+
+    /// Whether each step of a block is looked at (SplitMix64 of seed and number).
+    fn closely(&self, block: u64) -> bool {
+        let mut z =
+            self.seed.wrapping_add(block.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) % self.every_step_of_one_in == 0
+    }
+}
+
+/// Watches a run step by step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Watch {
+    how: Watchfulness,
+    block: u64,
+    /// Places at the audit frame and after each step since.
+    frames: Vec<Field>,
+    used: usize,
+    /// Passages so far.
+    pub passages: u64,
+    /// The first, and the block it was in.
+    pub first: Option<(u64, Passage)>,
+}
+
+impl Watch {
+    /// Starts at these places (m), after so many steps of the run.
+    pub fn new(how: Watchfulness, places: &Field, steps: u64) -> Self {
+        let frames = vec![places.clone(); how.block as usize + 1];
+        let block = steps / u64::from(how.block);
+        Self { how, block, frames, used: 1, passages: 0, first: None }
+    }
+
+    /// Takes note of the places (m) after a step; looks at a block when it is full. Whether nothing has
+    /// passed so far.
+    pub fn step(&mut self, topology: &Topology, places: &Field) -> bool {
+        let frame = &mut self.frames[self.used];
+        frame.x.copy_from_slice(&places.x);
+        frame.y.copy_from_slice(&places.y);
+        frame.z.copy_from_slice(&places.z);
+        self.used += 1;
+        if self.used == self.frames.len() {
+            self.look(topology);
+        }
+        self.passages == 0
+    }
+
+    /// Looks at what has not been looked at yet.
+    pub fn look(&mut self, topology: &Topology) {
+        let steps = self.used - 1;
+        if steps == 0 {
+            return;
+        }
+        let mut found = Vec::new();
+        if self.how.closely(self.block) {
+            for step in 0..steps {
+                found.extend(passages(topology, &self.frames[step], &self.frames[step + 1]));
+            }
+        } else {
+            for suspect in passages(topology, &self.frames[0], &self.frames[steps]) {
+                let happens = |step: &usize| {
+                    suspect.happens(topology, &self.frames[*step], &self.frames[step + 1])
+                };
+                found.extend((0..steps).filter(happens).map(|_| suspect));
+            }
+        }
+        if self.first.is_none() {
+            self.first = found.first().map(|passage| (self.block, *passage));
+        }
+        self.passages += found.len() as u64;
+        self.block += 1;
+        self.frames.swap(0, steps);
+        self.used = 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {
+        Vector3::new(x, y, z)
+    }
+
+    /// A triangle at rest, and a node or an edge that flies.
+    fn scene(flier: &[Vector3<f64>], way: Vector3<f64>) -> (Topology, Field, Field) {
+        let mut places = vec![v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)];
+        let still = places.len();
+        places.extend(flier);
+        let topology = Topology::new(places.len(), &[[0, 1, 2], [3, 4, 5]]);
+        let after: Vec<_> =
+            places.iter().enumerate().map(|(k, x)| if k < still { *x } else { x + way }).collect();
+        (topology, Field::of(&places), Field::of(&after))
+    }
+
+    #[test]
+    fn nodes_and_edges_through_film_are_counted() {
+        // A corner first, through the middle.
+        let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
+        let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
+        assert_eq!(passages(&topology, &from, &to), [Passage::Node { node: 3, element: 0 }]);
+        // Beside it.
+        let (topology, from, to) = scene(&corner.map(|x| x + v(1.0, 0.0, 0.0)), v(0.0, 0.0, -0.2));
+        assert!(passages(&topology, &from, &to).is_empty());
+        // An edge over an edge, no node through anything.
+        let edge = [v(0.5, -0.2, 0.1), v(0.5, 0.2, 0.1), v(0.5, 0.0, 2.0)];
+        let (topology, from, to) = scene(&edge, v(0.0, 0.0, -0.2));
+        let found = passages(&topology, &from, &to);
+        assert!(found.iter().any(|p| matches!(p, Passage::Edge { .. })), "{found:?}");
+    }
+
+    #[test]
+    fn a_way_there_and_back_is_found_step_by_step_only() {
+        let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
+        let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
+        let count = |how: Watchfulness| {
+            let mut watch = Watch::new(how, &from, 0);
+            watch.step(&topology, &to);
+            watch.step(&topology, &from);
+            watch.look(&topology);
+            watch.passages
+        };
+        assert_eq!(count(Watchfulness::EVERY_STEP), 2);
+        assert_eq!(count(Watchfulness { every_step_of_one_in: 1, ..Watchfulness::FRAMES }), 2);
+        let mut watch = Watch::new(Watchfulness::FRAMES, &from, 0);
+        assert!(!Watchfulness::FRAMES.closely(0));
+        watch.step(&topology, &to);
+        watch.look(&topology);
+        assert_eq!(watch.passages, 1);
+        assert!(watch.first.is_some());
+    }
+
+    #[test]
+    fn about_one_block_in_a_hundred_is_looked_at_closely() {
+        let close = (0..100_000).filter(|block| Watchfulness::FRAMES.closely(*block)).count();
+        assert!((900..1100).contains(&close), "{close}");
+    }
+
+    proptest! {
+        /// The boxes find what looking at all pairs finds.
+        #[test]
+        fn nothing_is_missed(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
+            ways in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
+        ) {
+            let topology = Topology::new(12, &[[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]]);
+            let from: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
+            let to: Vec<Vector3<f64>> =
+                from.iter().zip(ways).map(|(x, way)| x + Vector3::from(way)).collect();
+            let (from, to) = (Field::of(&from), Field::of(&to));
+            let mut all = Vec::new();
+            for node in 0..12 {
+                for element in 0..4 {
+                    let own = topology.triangles[element as usize].contains(&node);
+                    if !own {
+                        all.push(Passage::Node { node, element });
+                    }
+                }
+            }
+            let edges = topology.edges.len() as u32;
+            for edge in 0..edges {
+                for other in edge + 1..edges {
+                    let own = topology.edges[edge as usize];
+                    if !topology.edges[other as usize].iter().any(|node| own.contains(node)) {
+                        all.push(Passage::Edge { edge, other });
+                    }
+                }
+            }
+            all.retain(|passage| passage.happens(&topology, &from, &to));
+            prop_assert_eq!(passages(&topology, &from, &to), all);
+        }
+    }
+}
