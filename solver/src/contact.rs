@@ -34,6 +34,7 @@ pub mod distance;
 pub mod friction;
 pub mod guard;
 pub mod intersections;
+pub mod order;
 pub mod plates;
 pub mod pressure;
 pub mod search;

@@ -1,7 +1,14 @@
-//! A tree of boxes: which of many primitives come near a box.
+//! A tree of boxes: which of many primitives come near each other.
 //!
-//! Built anew at every search by halving along the longest side of the centres; ties go by number,
-//! so the same places give the same tree.
+//! ```text
+//!             1                 node k holds the boxes of 2k and 2k + 1
+//!        2         3
+//!      4   5     6   7          the last row: leaves of four primitives each, in a given order
+//! ```
+//!
+//! The order puts next to each other what is next to each other on the film, and stays that way
+//! however the film folds: so the tree is filled in one pass, without sorting. Both sides of a pair
+//! are sought in one walk down.
 
 use nalgebra::Vector3;
 
@@ -15,12 +22,19 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// The box of nothing, which meets none.
+    const NONE: Self = Self {
+        low: Vector3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        high: Vector3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+
     /// Smallest box round these points.
+    #[inline]
     pub fn of(points: &[Vector3<f64>]) -> Self {
         let mut bounds = Self { low: points[0], high: points[0] };
         for point in &points[1..] {
-            bounds.low = bounds.low.inf(point);
-            bounds.high = bounds.high.sup(point);
+            bounds.low = lower(bounds.low, *point);
+            bounds.high = higher(bounds.high, *point);
         }
         bounds
     }
@@ -33,101 +47,132 @@ impl Bounds {
 
     /// Smallest box round both.
     #[must_use]
+    #[inline]
     pub fn with(self, other: Self) -> Self {
-        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+        Self { low: lower(self.low, other.low), high: higher(self.high, other.high) }
     }
 
     /// Whether two boxes meet.
+    #[inline]
     pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+        let (a, b) = (self, other);
+        // All six at once: no branch but the last.
+        (a.low.x <= b.high.x)
+            & (b.low.x <= a.high.x)
+            & (a.low.y <= b.high.y)
+            & (b.low.y <= a.high.y)
+            & (a.low.z <= b.high.z)
+            & (b.low.z <= a.high.z)
     }
 }
 
-/// Primitives at a leaf, at most.
+#[inline]
+fn lower(a: Vector3<f64>, b: Vector3<f64>) -> Vector3<f64> {
+    let least = |a: f64, b: f64| if b < a { b } else { a };
+    Vector3::new(least(a.x, b.x), least(a.y, b.y), least(a.z, b.z))
+}
+
+#[inline]
+fn higher(a: Vector3<f64>, b: Vector3<f64>) -> Vector3<f64> {
+    let most = |a: f64, b: f64| if b > a { b } else { a };
+    Vector3::new(most(a.x, b.x), most(a.y, b.y), most(a.z, b.z))
+}
+
+/// Primitives at a leaf.
 const LEAF: usize = 4;
 
 /// A tree over the boxes of primitives.
-#[derive(Debug, Clone, Default)]
-pub struct Tree {
-    order: Vec<u32>,
-    nodes: Vec<Branch>,
+#[derive(Debug, Clone)]
+pub struct Tree<'a> {
+    /// Primitives, four at a leaf.
+    order: &'a [u32],
+    /// Their boxes, in that order.
+    own: Vec<Bounds>,
+    /// Boxes of the nodes; the first is none.
+    nodes: Vec<Bounds>,
+    /// Number of leaves, a power of two.
+    leaves: usize,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Branch {
-    bounds: Bounds,
-    from: u32,
-    to: u32,
-    /// Second child; 0 at a leaf. The first follows at once.
-    second: u32,
-}
-
-impl Tree {
-    /// The tree of these boxes.
-    pub fn new(boxes: &[Bounds]) -> Self {
-        let count = u32::try_from(boxes.len()).expect("under 2^32 primitives");
-        let mut tree = Self { order: (0..count).collect(), nodes: Vec::new() };
-        let centres: Vec<Vector3<f64>> = boxes.iter().map(|b| b.low + b.high).collect();
-        let mut order = core::mem::take(&mut tree.order);
-        if !order.is_empty() {
-            tree.grow(boxes, &centres, &mut order, 0);
+impl<'a> Tree<'a> {
+    /// The tree of these primitives, in this order, and their boxes.
+    pub fn new(order: &'a [u32], bounds: impl Fn(u32) -> Bounds) -> Self {
+        let own: Vec<Bounds> = order.iter().map(|primitive| bounds(*primitive)).collect();
+        let leaves = order.len().div_ceil(LEAF).next_power_of_two();
+        let mut nodes = vec![Bounds::NONE; 2 * leaves];
+        for (leaf, boxes) in own.chunks(LEAF).enumerate() {
+            nodes[leaves + leaf] = boxes.iter().fold(Bounds::NONE, |all, own| all.with(*own));
         }
-        tree.order = order;
-        tree
+        for node in (1..leaves).rev() {
+            nodes[node] = nodes[2 * node].with(nodes[2 * node + 1]);
+        }
+        Self { order, own, nodes, leaves }
     }
 
-    fn grow(&mut self, boxes: &[Bounds], centres: &[Vector3<f64>], own: &mut [u32], from: usize) {
-        let bounds =
-            own[1..].iter().fold(boxes[own[0] as usize], |all, at| all.with(boxes[*at as usize]));
-        let here = self.nodes.len();
-        let (first, last) = (from as u32, (from + own.len()) as u32);
-        self.nodes.push(Branch { bounds, from: first, to: last, second: 0 });
-        if own.len() <= LEAF {
-            return;
-        }
-        let spread: Vec<Vector3<f64>> = own.iter().map(|at| centres[*at as usize]).collect();
-        let spread = Bounds::of(&spread);
-        let axis = (spread.high - spread.low).imax();
-        let middle = own.len() / 2;
-        own.select_nth_unstable_by(middle, |a, b| {
-            centres[*a as usize][axis].total_cmp(&centres[*b as usize][axis]).then(a.cmp(b))
-        });
-        let (low, high) = own.split_at_mut(middle);
-        // Which of each half comes where is the selection's own business: put it in order.
-        low.sort_unstable();
-        high.sort_unstable();
-        self.grow(boxes, centres, low, from);
-        self.nodes[here].second = self.nodes.len() as u32;
-        self.grow(boxes, centres, high, from + middle);
+    /// First of a leaf's primitives, and the one after its last.
+    fn leaf(&self, node: usize) -> (usize, usize) {
+        let from = (node - self.leaves) * LEAF;
+        (from.min(self.order.len()), (from + LEAF).min(self.order.len()))
     }
 
-    /// Calls `found` with every primitive at a leaf whose box meets `bounds`.
-    pub fn query(&self, bounds: &Bounds, mut found: impl FnMut(u32)) {
-        let mut at = 0;
-        let mut later = [0_u32; 64];
-        let mut depth = 0;
-        if self.nodes.is_empty() {
-            return;
-        }
-        loop {
-            let branch = &self.nodes[at as usize];
-            let meets = branch.bounds.meets(bounds);
-            if meets && branch.second != 0 {
-                later[depth] = branch.second;
-                depth += 1;
-                at += 1;
-                continue;
-            }
-            if meets {
-                for own in &self.order[branch.from as usize..branch.to as usize] {
-                    found(*own);
+    /// Calls `found` once with every two different primitives whose boxes meet.
+    pub fn pairs(&self, mut found: impl FnMut(u32, u32)) {
+        let mut later = vec![(1_usize, 1_usize)];
+        while let Some((a, b)) = later.pop() {
+            if a == b {
+                if a < self.leaves {
+                    later.extend([(2 * a, 2 * a), (2 * a + 1, 2 * a + 1), (2 * a, 2 * a + 1)]);
+                } else {
+                    let (from, to) = self.leaf(a);
+                    for i in from..to {
+                        for j in i + 1..to {
+                            if self.own[i].meets(&self.own[j]) {
+                                found(self.order[i], self.order[j]);
+                            }
+                        }
+                    }
+                }
+            } else if self.nodes[a].meets(&self.nodes[b]) {
+                // Two different nodes are always of one row.
+                if a < self.leaves {
+                    for a in [2 * a, 2 * a + 1] {
+                        later.extend([(a, 2 * b), (a, 2 * b + 1)]);
+                    }
+                } else {
+                    self.leaf_pairs(a, self, b, &mut found);
                 }
             }
-            if depth == 0 {
-                return;
+        }
+    }
+
+    /// Calls `found` once with every primitive of this tree and every one of another whose boxes meet.
+    pub fn pairs_with(&self, other: &Tree<'_>, mut found: impl FnMut(u32, u32)) {
+        let mut later = vec![(1_usize, 1_usize)];
+        while let Some((a, b)) = later.pop() {
+            if !self.nodes[a].meets(&other.nodes[b]) {
+                continue;
             }
-            depth -= 1;
-            at = later[depth];
+            match (a < self.leaves, b < other.leaves) {
+                (true, true) => {
+                    for a in [2 * a, 2 * a + 1] {
+                        later.extend([(a, 2 * b), (a, 2 * b + 1)]);
+                    }
+                }
+                (true, false) => later.extend([(2 * a, b), (2 * a + 1, b)]),
+                (false, true) => later.extend([(a, 2 * b), (a, 2 * b + 1)]),
+                (false, false) => self.leaf_pairs(a, other, b, &mut found),
+            }
+        }
+    }
+
+    fn leaf_pairs(&self, a: usize, other: &Tree<'_>, b: usize, found: &mut impl FnMut(u32, u32)) {
+        let ((from, to), (first, last)) = (self.leaf(a), other.leaf(b));
+        for i in from..to {
+            for j in first..last {
+                if self.own[i].meets(&other.own[j]) {
+                    found(self.order[i], other.order[j]);
+                }
+            }
         }
     }
 }
@@ -136,29 +181,37 @@ impl Tree {
 mod tests {
     use super::*;
 
-    #[test]
-    fn finds_what_brute_force_finds() {
+    fn boxes(count: u32, step: u32) -> Vec<Bounds> {
         let at = |k: u32| {
-            let x = f64::from(k * 37 % 101);
+            let x = f64::from(k * 37 * step % 101);
             let y = f64::from(k * 53 % 97);
             let z = f64::from(k * 11 % 89);
             Vector3::new(x, y, z)
         };
-        let boxes: Vec<Bounds> =
-            (0..300).map(|k| Bounds::of(&[at(k), at(k) + Vector3::new(4.0, 2.0, 6.0)])).collect();
-        let tree = Tree::new(&boxes);
-        for (own, bounds) in boxes.iter().enumerate() {
-            let near = bounds.grown(5.0);
+        (0..count).map(|k| Bounds::of(&[at(k), at(k) + Vector3::new(9.0, 7.0, 11.0)])).collect()
+    }
+
+    #[test]
+    fn finds_what_brute_force_finds() {
+        for (count, more) in [(0, 3), (1, 0), (5, 9), (300, 77)] {
+            let (own, other) = (boxes(count, 1), boxes(more, 3));
+            let order: Vec<u32> = (0..count).rev().collect();
+            let others: Vec<u32> = (0..more).collect();
+            let tree = Tree::new(&order, |k| own[k as usize]);
             let mut found = Vec::new();
-            tree.query(&near, |other| {
-                if boxes[other as usize].meets(&near) {
-                    found.push(other as usize);
-                }
-            });
+            tree.pairs(|a, b| found.push([a.min(b), a.max(b)]));
             found.sort_unstable();
-            let brute: Vec<usize> = (0..300).filter(|k| boxes[*k].meets(&near)).collect();
-            assert_eq!(found, brute, "{own}");
+            let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+            let meet = |[a, b]: &[u32; 2]| own[*a as usize].meets(&own[*b as usize]);
+            assert_eq!(found, all.filter(meet).collect::<Vec<_>>(), "{count}");
+
+            let second = Tree::new(&others, |k| other[k as usize]);
+            let mut found = Vec::new();
+            tree.pairs_with(&second, |a, b| found.push([a, b]));
+            found.sort_unstable();
+            let all = (0..count).flat_map(|a| (0..more).map(move |b| [a, b]));
+            let meet = |[a, b]: &[u32; 2]| own[*a as usize].meets(&other[*b as usize]);
+            assert_eq!(found, all.filter(meet).collect::<Vec<_>>(), "{count} {more}");
         }
-        Tree::new(&[]).query(&boxes[0], |_| panic!("nothing is there"));
     }
 }

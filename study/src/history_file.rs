@@ -5,7 +5,8 @@
 //!              stop_time, stop_place, content_hash, complete (written last)
 //! /history/    time (a dimension scale), z_centre, … : f64, one value a sample,
 //!              each with units and long_name; of film without rings no z_centre, z_rim, vz; of a scene
-//!              node_NAME_x, …, element_NAME_N1, … for what it follows
+//!              node_NAME_x, …, element_NAME_N1, … for what it follows; of film with contact
+//!              interlayer_pressure, smallest_gap, …, plate_NAME_force
 //! ```
 //!
 //! A scene's `job` is the first half of its fingerprint.
@@ -14,6 +15,7 @@
 //! time of day: the same job run by the same program gives the same bytes. `xarray.open_dataset(path,
 //! engine="h5netcdf", group="history")` shows the columns over `time`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
@@ -199,6 +201,8 @@ pub struct StoredHistory {
     pub content_hash: String,
     /// The series.
     pub history: History,
+    /// What was followed beside it, by name.
+    pub tracks: BTreeMap<String, Vec<f64>>,
 }
 
 /// Reads a history file.
@@ -232,6 +236,7 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
         status: read_text(&file, "status").map_err(damaged)?,
         content_hash: read_text(&file, "content_hash").map_err(damaged)?,
         history: read_history(&file).map_err(damaged)?,
+        tracks: read_tracks(&file).map_err(damaged)?,
     })
 }
 
@@ -268,6 +273,17 @@ fn read_history(file: &File) -> hdf5::Result<History> {
         history.push(&values);
     }
     Ok(if rings { history } else { history.without_rings() })
+}
+
+fn read_tracks(file: &File) -> hdf5::Result<BTreeMap<String, Vec<f64>>> {
+    let group = file.group("history")?;
+    let followed = |name: &String| COLUMNS.iter().all(|column| column.name != name);
+    let mut tracks = BTreeMap::new();
+    for name in group.member_names()?.into_iter().filter(followed) {
+        let values = group.dataset(&name)?.read_raw::<f64>()?;
+        tracks.insert(name, values);
+    }
+    Ok(tracks)
 }
 
 fn read_text(location: &Location, name: &str) -> hdf5::Result<String> {

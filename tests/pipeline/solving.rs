@@ -14,14 +14,14 @@ fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
 }
 
-fn solve(folder: &Path, arguments: &[&str], simd: &str) -> Output {
+pub fn solve(folder: &Path, arguments: &[&str], simd: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
     command.arg("solve").args(arguments).current_dir(folder).env("BILLOW_SIMD", simd);
     command.output().unwrap()
 }
 
 /// The summary of a scene that is to be done, without its wall time.
-fn done(folder: &Path, arguments: &[&str], simd: &str) -> Value {
+pub fn done(folder: &Path, arguments: &[&str], simd: &str) -> Value {
     let output = solve(folder, arguments, simd);
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
     without_wall(&output)
@@ -34,7 +34,7 @@ fn without_wall(output: &Output) -> Value {
 }
 
 /// A folder with a scene file in it.
-fn desk(scene: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
+pub fn desk(scene: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
     for (name, text) in files {
@@ -43,7 +43,7 @@ fn desk(scene: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
     folder
 }
 
-fn number(summary: &Value, pointer: &str) -> f64 {
+pub fn number(summary: &Value, pointer: &str) -> f64 {
     summary.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer}"))
 }
 

@@ -167,37 +167,28 @@ fn swept(from: &Field, to: &Field, nodes: &[u32]) -> Bounds {
 /// Every passage on the straight way between two places of all nodes, in order.
 pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
     let mut found = Vec::new();
-    if topology.triangles.is_empty() {
-        return found;
-    }
-    let boxes: Vec<_> = topology.triangles.iter().map(|nodes| swept(from, to, nodes)).collect();
-    let tree = Tree::new(&boxes);
     let mut test = |passage: Passage| {
         if passage.happens(topology, from, to) {
             found.push(passage);
         }
     };
-    for node in 0..from.len() as u32 {
-        let own = swept(from, to, &[node]);
-        tree.query(&own, |element| {
-            let at = element as usize;
-            if boxes[at].meets(&own) && !topology.triangles[at].contains(&node) {
-                test(Passage::Node { node, element });
-            }
-        });
-    }
-    let boxes: Vec<_> = topology.edges.iter().map(|nodes| swept(from, to, nodes)).collect();
-    let tree = Tree::new(&boxes);
-    for (edge, own) in (0_u32..).zip(&boxes) {
-        let [a, b] = topology.edges[edge as usize];
-        tree.query(own, |other| {
-            let [c, d] = topology.edges[other as usize];
-            let apart = a != c && a != d && b != c && b != d;
-            if other > edge && apart && boxes[other as usize].meets(own) {
-                test(Passage::Edge { edge, other });
-            }
-        });
-    }
+    let order = &topology.order;
+    let nodes = Tree::new(&order.nodes, |node| swept(from, to, &[node]));
+    let elements =
+        Tree::new(&order.elements, |own| swept(from, to, &topology.triangles[own as usize]));
+    nodes.pairs_with(&elements, |node, element| {
+        if !topology.triangles[element as usize].contains(&node) {
+            test(Passage::Node { node, element });
+        }
+    });
+    let edges = Tree::new(&order.edges, |own| swept(from, to, &topology.edges[own as usize]));
+    edges.pairs(|one, two| {
+        let [a, b] = topology.edges[one as usize];
+        let [c, d] = topology.edges[two as usize];
+        if a != c && a != d && b != c && b != d {
+            test(Passage::Edge { edge: one.min(two), other: one.max(two) });
+        }
+    });
     found.sort_unstable();
     found
 }

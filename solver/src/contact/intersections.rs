@@ -8,23 +8,20 @@ use crate::tree::{Bounds, Tree};
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
 pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
-    let corners =
-        |element: u32| topology.triangles[element as usize].map(|n| places.get(n as usize));
-    let boxes: Vec<Bounds> =
-        (0..topology.triangles.len() as u32).map(|own| Bounds::of(&corners(own))).collect();
-    let tree = Tree::new(&boxes);
+    let place = |node: u32| places.get(node as usize);
+    let corners = |element: u32| topology.triangles[element as usize].map(place);
+    let ends = |edge: u32| topology.edges[edge as usize].map(place);
+    let order = &topology.order;
+    let edges = Tree::new(&order.edges, |edge| Bounds::of(&ends(edge)));
+    let elements = Tree::new(&order.elements, |element| Bounds::of(&corners(element)));
     let mut found = Vec::new();
-    for (edge, &[a, b]) in (0_u32..).zip(&topology.edges) {
-        let ends = [a, b].map(|node| places.get(node as usize));
-        let bounds = Bounds::of(&ends);
-        tree.query(&bounds, |element| {
-            let nodes = topology.triangles[element as usize];
-            let apart = !nodes.contains(&a) && !nodes.contains(&b);
-            if apart && boxes[element as usize].meets(&bounds) && pierces(ends, corners(element)) {
-                found.push((edge, element));
-            }
-        });
-    }
+    edges.pairs_with(&elements, |edge, element| {
+        let nodes = topology.triangles[element as usize];
+        let apart = !topology.edges[edge as usize].iter().any(|node| nodes.contains(node));
+        if apart && pierces(ends(edge), corners(element)) {
+            found.push((edge, element));
+        }
+    });
     found.sort_unstable();
     found
 }

@@ -42,10 +42,6 @@ impl Law {
     /// Calls `found` with every pair nearer than `radius` (m), and its distance (m).
     pub fn pairs_within(&self, places: &Field, radius: f64, mut found: impl FnMut(Pair, f64)) {
         let topology = &self.topology;
-        let corners = |element: usize| topology.triangles[element].map(|n| places.get(n as usize));
-        let boxes: Vec<Bounds> =
-            (0..topology.triangles.len()).map(|own| Bounds::of(&corners(own))).collect();
-        let tree = Tree::new(&boxes);
         let square = radius * radius;
         let mut test = |pair: Pair| {
             let near = pair.closest(&at(places, pair.nodes(topology)));
@@ -53,34 +49,31 @@ impl Law {
                 found(pair, near.squared.sqrt());
             }
         };
-        for node in 0..places.len() as u32 {
-            let around = Bounds::of(&[places.get(node as usize)]).grown(radius);
-            tree.query(&around, |element| {
-                let own = element as usize;
-                if boxes[own].meets(&around) && !topology.triangles[own].contains(&node) {
-                    test(Pair { kind: Kind::NodeTriangle, first: node, second: element });
-                }
-            });
-        }
+        // Each side is grown by half the radius.
+        let half = 0.5 * radius;
+        let place = |node: u32| places.get(node as usize);
+        let order = &topology.order;
+        let nodes = Tree::new(&order.nodes, |node| Bounds::of(&[place(node)]).grown(half));
+        let elements = Tree::new(&order.elements, |element| {
+            Bounds::of(&topology.triangles[element as usize].map(place)).grown(half)
+        });
+        nodes.pairs_with(&elements, |node, element| {
+            if !topology.triangles[element as usize].contains(&node) {
+                test(Pair { kind: Kind::NodeTriangle, first: node, second: element });
+            }
+        });
         if !self.edges {
             return;
         }
-        let boxes: Vec<Bounds> = topology
-            .edges
-            .iter()
-            .map(|edge| Bounds::of(&edge.map(|node| places.get(node as usize))))
-            .collect();
-        let tree = Tree::new(&boxes);
-        for (edge, &[a, b]) in (0_u32..).zip(&topology.edges) {
-            let around = boxes[edge as usize].grown(radius);
-            tree.query(&around, |other| {
-                let [c, d] = topology.edges[other as usize];
-                let apart = a != c && a != d && b != c && b != d;
-                if other > edge && apart && boxes[other as usize].meets(&around) {
-                    test(Pair { kind: Kind::EdgeEdge, first: edge, second: other });
-                }
-            });
-        }
+        let edges = Tree::new(&order.edges, |edge| {
+            Bounds::of(&topology.edges[edge as usize].map(place)).grown(half)
+        });
+        edges.pairs(|a, b| {
+            let [p, q] = topology.edges[a as usize];
+            if !topology.edges[b as usize].iter().any(|node| *node == p || *node == q) {
+                test(Pair { kind: Kind::EdgeEdge, first: a.min(b), second: a.max(b) });
+            }
+        });
     }
 
     /// Puts a pair this far apart (m) where it belongs, given the displacement of the step to come.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::order;
+
 /// A feature of the film a node can be nearest to.
 pub type Feature = u32;
 
@@ -14,10 +16,23 @@ pub struct Topology {
     pub edges: Vec<[u32; 2]>,
     /// Edges of each element: between its nodes 0-1, 1-2, 2-0.
     pub sides: Vec<[u32; 3]>,
+    /// An order in which neighbours on the film are near.
+    pub order: Order,
     /// Elements at each edge.
     at_edge: Vec<u32>,
     /// Elements at each node.
     at_node: Vec<u32>,
+}
+
+/// Elements, edges and nodes in an order in which neighbours on the film are near.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Order {
+    /// Elements.
+    pub elements: Vec<u32>,
+    /// Edges.
+    pub edges: Vec<u32>,
+    /// Nodes of the elements.
+    pub nodes: Vec<u32>,
 }
 
 impl Topology {
@@ -34,7 +49,7 @@ impl Topology {
         }
         let edges: Vec<[u32; 2]> = numbers.keys().copied().collect();
         let (mut at_edge, mut at_node) = (vec![0; edges.len()], vec![0; nodes]);
-        let sides = triangles
+        let sides: Vec<[u32; 3]> = triangles
             .iter()
             .map(|&[a, b, c]| {
                 for node in [a, b, c] {
@@ -47,7 +62,13 @@ impl Topology {
                 })
             })
             .collect();
-        Self { triangles: triangles.to_vec(), edges, sides, at_edge, at_node }
+        let elements = order::of_elements(&sides, edges.len());
+        let order = Order {
+            edges: order::of_parts(&elements, &sides, edges.len()),
+            nodes: order::of_parts(&elements, triangles, nodes),
+            elements,
+        };
+        Self { triangles: triangles.to_vec(), edges, sides, order, at_edge, at_node }
     }
 
     /// The feature of an element that a closest point with these weights (of its three nodes; nought

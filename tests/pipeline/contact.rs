@@ -1,0 +1,155 @@
+//! Contact through `billow solve`: scenes that touch, plates, the lid, and what is refused.
+
+use billow_study::history_file;
+use serde_json::{Value, json};
+
+use crate::solving::{desk, done, number, solve};
+use crate::support::stderr;
+
+/// The paper's capsule, coarse, for a short while.
+fn capsule(more: &Value) -> Value {
+    let mut scene = json!({
+        "design": {
+            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": 1,
+            "subdivisions": 2,
+        },
+        "film": {"compression": 0, "viscosity": 0.1},
+        "gas": {"windows": [{"from": 0, "rate": "5 g/s"}]},
+        "solver": {"end_time": "20 ms"},
+    });
+    for (key, value) in more.as_object().expect("an object") {
+        scene[key] = value.clone();
+    }
+    scene
+}
+
+/// A flat sheet of two by two cells, 0.2 m wide, at this height (m).
+fn sheet(height: f64) -> String {
+    let mut text = String::new();
+    for j in 0..3 {
+        for i in 0..3 {
+            let (x, y) = (0.1 * f64::from(i), 0.1 * f64::from(j));
+            text.push_str(&format!("v {x} {y} {height}\n"));
+        }
+    }
+    for j in 0..2 {
+        for i in 0..2 {
+            let a = 3 * j + i + 1;
+            text.push_str(&format!("f {a} {} {}\nf {a} {} {}\n", a + 1, a + 4, a + 4, a + 3));
+        }
+    }
+    text
+}
+
+#[test]
+fn a_folded_capsule_meets_itself_and_says_so() {
+    let folder = desk(&capsule(&json!({})), &[]);
+    let summary = done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
+    assert_eq!(summary["status"], "done");
+    assert_eq!((number(&summary, "/passages"), number(&summary, "/intersections")), (0.0, 0.0));
+    let contact = |key: &str| number(&summary, &format!("/contact/{key}"));
+    assert!(contact("distance") > 1e-4 && contact("smallest_gap") > 0.0);
+    assert!(contact("searches") > 1.0 && contact("pairs") > 0.0);
+    assert!(contact("interlayer_pressure") > 0.0 && contact("contact_area_fraction") > 0.01);
+    let peak = number(&summary, "/measures/peak_kinetic_energy");
+    assert!(
+        contact("not_returned").abs() < 0.01 * peak && number(&summary, "/ledger/residual") < 5e-3
+    );
+    let stored = history_file::read(&folder.path().join("a.h5")).expect("a history");
+    let tracks = [
+        "interlayer_pressure",
+        "interlayer_pressure_mean",
+        "contact_area_fraction",
+        "smallest_gap",
+        "contact_pairs",
+        "contact_searches",
+        "vz_centre",
+    ];
+    for name in tracks {
+        assert!(stored.tracks.contains_key(name), "{name}");
+    }
+
+    // Film that passes through film is counted nowhere, and told.
+    let free = ["scene.json", "--set", "contact.enabled=false"];
+    let output = solve(folder.path(), &free, "");
+    assert!(stderr(&output).contains("contact is off: film passes through film"));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("a summary");
+    assert!(summary["passages"].is_null() && summary["contact"].is_null());
+}
+
+#[test]
+fn a_packed_capsule_presses_on_its_lid_until_it_is_let_go() {
+    let packed = json!({"release_time": "10 ms"});
+    let folder = desk(&capsule(&packed), &[]);
+    done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
+    let stored = history_file::read(&folder.path().join("a.h5")).expect("a history");
+    let (time, force) = (stored.history.column("time"), stored.history.column("lid_force"));
+    let height = stored.history.column("z_max");
+    let pressed: f64 = time.iter().zip(force).filter(|(t, _)| **t < 0.01).map(|(_, f)| *f).sum();
+    assert!(pressed > 1.0);
+    assert!(time.iter().zip(force).all(|(t, f)| *t < 0.01 || *f == 0.0));
+    // It stays under the lid, and rises when that is gone.
+    let packed = |limit: f64| time.iter().zip(height).all(|(t, z)| *t > limit || *z < 0.044);
+    assert!(packed(0.01) && !packed(0.02));
+}
+
+#[test]
+fn film_comes_to_rest_on_a_plate_with_its_weight() {
+    let plate = json!({"name": "floor", "point": [0, 0, 0], "normal": [0, 0, 2]});
+    let scene = json!({
+        "mesh": {"positions": "sheet.obj"},
+        "gravity": -10,
+        "film": {"density": "1400 kg/m3", "thickness": "25.4 um"},
+        "contact": {"distance": "2 mm", "plates": [plate]},
+        "solver": {"end_time": "0.3 s", "mass_damping": 100},
+        "outputs": {"sample_interval": "10 ms"},
+    });
+    let folder = desk(&scene, &[("sheet.obj", &sheet(0.004))]);
+    let summary = done(folder.path(), &["scene.json", "-q"], "");
+    // 0.2 m square.
+    let weight = 0.04 * 1400.0 * 25.4e-6 * 10.0;
+    let force = number(&summary, "/contact/plates/floor");
+    assert!((force / weight - 1.0).abs() < 0.01, "{force} of {weight}");
+    assert!(number(&summary, "/extents/z/0") > 0.0);
+}
+
+#[test]
+fn what_cannot_touch_is_refused_or_told() {
+    let two = format!("{}{}", sheet(0.0), sheet(0.0).replace("f ", "#"));
+    let twice = two.clone() + "f 10 11 14\nf 10 14 13\n";
+    let mesh = json!({"mesh": {"positions": "sheet.obj"}, "solver": {"end_time": "1 ms"}});
+    let files = [("sheet.obj", twice.as_str())];
+    let with = |key: &str, value: Value| {
+        let mut scene = mesh.clone();
+        scene[key] = value;
+        let folder = desk(&scene, &files);
+        solve(folder.path(), &["scene.json"], "")
+    };
+    // Film on film has no side: by default it passes, and says so.
+    let output = with("gravity", json!(0));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("film lies on film at the start"));
+    let refused = [
+        (json!({"enabled": true}), "film lies on film at the start"),
+        (json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 0]}]}), "plates[0].normal"),
+        (json!({"plates": [{"point": [0, 0, 0]}]}), "plates[0].normal: missing"),
+        (json!({"plates": [{"name": "lid", "point": [0, 0, 0], "normal": [0, 0, 1]}]}), "not lid"),
+        (
+            json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 1],
+                "move": {"rotation": {"axis": [0, 0, 1], "angle": 1}}}]}),
+            "a plate does not turn",
+        ),
+        (json!({"distance": "-1 mm"}), "contact.distance"),
+        (json!({"distnce": "1 mm"}), "did you mean distance?"),
+    ];
+    for (contact, said) in refused {
+        let output = with("contact", contact);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(stderr(&output).contains(said), "{said}: {}", stderr(&output));
+    }
+    let folder =
+        desk(&capsule(&json!({"gas": {"pressure": 10}, "contact": {"enabled": true}})), &[]);
+    let output = solve(folder.path(), &["scene.json", "--set", "solver.static=true"], "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("a state of rest is looked for without contact"));
+}
