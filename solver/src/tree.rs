@@ -62,10 +62,18 @@ struct Branch {
     second: u32,
 }
 
+/// A place in a list as the elements count, in 32 bits.
+fn index(at: usize) -> u32 {
+    u32::try_from(at).expect("under 2^32")
+}
+
 impl Tree {
     /// The tree of these boxes.
+    ///
+    /// # Panics
+    /// At 2³² boxes.
     pub fn new(boxes: &[Bounds]) -> Self {
-        let count = u32::try_from(boxes.len()).expect("under 2^32 primitives");
+        let count = index(boxes.len());
         let mut tree = Self { order: (0..count).collect(), nodes: Vec::new() };
         let centres: Vec<Vector3<f64>> = boxes.iter().map(|b| b.low + b.high).collect();
         let mut order = core::mem::take(&mut tree.order);
@@ -80,7 +88,7 @@ impl Tree {
         let bounds =
             own[1..].iter().fold(boxes[own[0] as usize], |all, at| all.with(boxes[*at as usize]));
         let here = self.nodes.len();
-        let (first, last) = (from as u32, (from + own.len()) as u32);
+        let (first, last) = (index(from), index(from + own.len()));
         self.nodes.push(Branch { bounds, from: first, to: last, second: 0 });
         if own.len() <= LEAF {
             return;
@@ -97,7 +105,7 @@ impl Tree {
         low.sort_unstable();
         high.sort_unstable();
         self.grow(boxes, centres, low, from);
-        self.nodes[here].second = self.nodes.len() as u32;
+        self.nodes[here].second = index(self.nodes.len());
         self.grow(boxes, centres, high, from + middle);
     }
 

@@ -201,13 +201,11 @@ impl Key {
     /// # Errors
     /// As [`Self::read_parts`], and a part that is `null`.
     pub fn read_vector(&self, json: &Json) -> Result<[f64; 3], Refusal> {
-        match self.read_parts(json)? {
-            [Some(x), Some(y), Some(z)] => Ok([x, y, z]),
-            _ => {
-                let problem = "has a part that is null".to_owned();
-                Err(Refusal { problem, allowed: self.allowed() })
-            }
-        }
+        let [Some(x), Some(y), Some(z)] = self.read_parts(json)? else {
+            let problem = "has a part that is null".to_owned();
+            return Err(Refusal { problem, allowed: self.allowed() });
+        };
+        Ok([x, y, z])
     }
 }
 

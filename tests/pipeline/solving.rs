@@ -240,7 +240,7 @@ fn meshes_of_other_programs_are_taken() {
     near(volume(&json!({"positions": "cube.obj", "scale": 0.1}), &[cube_file]), 1e-3);
     near(volume(&json!({"positions": "cube.obj", "closure": ["lid"]}), &[cube_file]), 1.0);
     // Without its lid it is open, and a fan closes it; or faces of another file do.
-    let open: String = CUBE.lines().take(15).map(|line| format!("{line}\r\n")).collect();
+    let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\r\n");
     near(volume(&json!({"positions": "open.obj"}), &[("open.obj", &open)]), 1.0);
     let lid = [("open.obj", open.as_str()), ("lid.obj", "f 5 6 7 8\n")];
     near(volume(&json!({"positions": "open.obj", "closure": "lid.obj"}), &lid), 1.0);
@@ -250,7 +250,8 @@ fn meshes_of_other_programs_are_taken() {
     let mut apart = String::new();
     for face in faces.iter().filter(|line| line.starts_with("f ")) {
         for corner in face.split_whitespace().skip(1) {
-            apart += &format!("{}\n", vertices[corner.parse::<usize>().unwrap() - 1]);
+            apart += vertices[corner.parse::<usize>().unwrap() - 1];
+            apart += "\n";
         }
         apart += "f -4 -3 -2 -1\n";
     }

@@ -11,7 +11,7 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
     let corners =
         |element: u32| topology.triangles[element as usize].map(|n| places.get(n as usize));
     let boxes: Vec<Bounds> =
-        (0..topology.triangles.len() as u32).map(|own| Bounds::of(&corners(own))).collect();
+        (0_u32..).take(topology.triangles.len()).map(|own| Bounds::of(&corners(own))).collect();
     let tree = Tree::new(&boxes);
     let mut found = Vec::new();
     for (edge, &[a, b]) in (0_u32..).zip(&topology.edges) {
@@ -33,7 +33,8 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
 fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     let normal = (b - a).cross(&(c - a));
     let (start, end) = (normal.dot(&(p - a)), normal.dot(&(q - a)));
-    if start * end > 0.0 || start == end {
+    // Both on the plane, or both on one side of it.
+    if start * end > 0.0 || (start - end).abs() <= 0.0 {
         return false;
     }
     let hit = p + (q - p) * (start / (start - end));
