@@ -110,10 +110,14 @@ impl GasBooks {
 /// The share of its final value below which a divisor never falls.
 const DIVISOR_FLOOR: f64 = 0.01;
 
+/// Kinetic energy below which film is at rest, J: some hundred times k T. Rounding alone moves film
+/// that nothing loads (1e-27 J for a metre of it), and closes no ledger.
+const REST: f64 = 1e-18;
+
 /// Residual of the film's energy at every sample of a series.
 pub fn residuals(series: &[Ledger]) -> Vec<f64> {
     let Some(start) = series.first() else { return Vec::new() };
-    let mut peak_kinetic = 0.0_f64;
+    let mut peak_kinetic = REST;
     let moved: Vec<f64> = series
         .iter()
         .map(|ledger| {

@@ -123,6 +123,11 @@ impl Key {
         }
     }
 
+    /// The key as a file would have it, as in `"thickness": "25.4 um"`.
+    pub fn sample(&self) -> String {
+        format!("\"{}\": {}", self.leaf(), self.example)
+    }
+
     /// Reads a value: units to SI, 8.0 as the whole number 8 and 8 as the number 8.0, −0 as 0.
     ///
     /// # Errors

@@ -17,6 +17,8 @@ pub(crate) fn missing(settings: &Settings, path: &str, source: &Source) -> Input
     let mut error = source.error(path, "", "missing", allowed);
     if table.structured.contains(&"grid") {
         error.hint = format!("give it here, or vary {leaf} under grid");
+    } else if let Some(key) = key {
+        error.hint = format!("give it, as in {}", key.sample());
     }
     error
 }
