@@ -11,6 +11,7 @@ use billow_study::schema::scene_schema;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
+use crate::resume::signal;
 use crate::support::stderr;
 
 fn scenes() -> PathBuf {
@@ -240,8 +241,7 @@ fn a_signal_stores_the_run_and_says_how_to_go_on() {
     while !state.exists() {
         std::thread::sleep(Duration::from_millis(10));
     }
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
+    signal(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
     let error = stderr(&output);
