@@ -141,8 +141,12 @@ pub struct Adhesion {
     pub range: f64,
 }
 
-/// κ: with it contact leaves the step of a CFL number up to 0.54 as it is.
+/// κ at most: with it contact leaves the step of a CFL number up to 0.54 as it is.
 const STIFFNESS: f64 = 0.8;
+/// Least share of a step that contact leaves.
+const STEP_LEFT: f64 = 0.8;
+/// How many times the stiffness of one pair may act on a mode.
+const AT_ONCE: f64 = 3.0;
 /// Share of the mean edge length within which pairs are listed.
 const RADIUS: f64 = 0.1;
 
@@ -201,7 +205,14 @@ impl Law {
     /// What contact adds to the square of any mode's frequency at most, where a few pairs at a node are
     /// pressed to the full, rad²/s².
     pub fn frequency_squared(&self) -> f64 {
-        3.0 * self.stiffness
+        AT_ONCE * self.stiffness
+    }
+
+    /// Makes contact so soft that it takes at most a fifth of a step of this CFL number.
+    pub fn soften(&mut self, cfl: f64) {
+        let whole = 1.0 / (STEP_LEFT * cfl);
+        let allowed = (whole * whole - 1.0) / AT_ONCE;
+        self.stiffness *= (allowed / STIFFNESS).min(1.0);
     }
 
     /// Distance at which a kind of pair is held apart, m.

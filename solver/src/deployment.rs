@@ -66,6 +66,11 @@ pub trait Model {
     /// Whether it counts film passing through film, and intersections. A model without film has
     /// none to count, one without contact cannot.
     fn counts_passages(&self) -> bool;
+
+    /// Film through film counted so far.
+    fn passages(&self) -> u64 {
+        0
+    }
 }
 
 /// Runs a model through a course, from time 0.
@@ -136,6 +141,11 @@ impl Run {
             if !observer.sample(progress) {
                 return Some(Stop::Cancelled);
             }
+            if sample.intersections > 0 {
+                let place = format!("{} intersections of the mesh", sample.intersections);
+                let kind = FailureKind::Interpenetrated;
+                return Some(Stop::Failed(Failure { kind, time: target, place }));
+            }
             if target >= course.end_time {
                 return Some(Stop::Done);
             }
@@ -153,7 +163,9 @@ impl Run {
         if !model.has_rings() {
             history = history.without_rings();
         }
-        let audit = Audit::of(&history, model.counts_passages());
+        let mut audit = Audit::of(&history, model.counts_passages());
+        // A passage ends a run before the next sample could tell of it.
+        audit.passages = audit.passages.map(|counted| counted.max(model.passages()));
         if stop == Stop::Done
             && let Some(time) = audit::first_drift(&history)
         {

@@ -16,7 +16,7 @@ pub struct Sample {
     pub z_rim: f64,
     /// Largest height of any node, m.
     pub z_max: f64,
-    /// Velocity of the top centre node along z, m/s.
+    /// Mean velocity of the top ring along z, m/s.
     pub vz: f64,
     /// Enclosed volume, m³.
     pub volume: f64,
@@ -121,7 +121,7 @@ columns! {
     "z_centre" ["m"] "height of the top centre node",
     "z_rim" ["m"] "mean height of the top ring",
     "z_max" ["m"] "largest height of any node",
-    "vz" ["m/s"] "velocity of the top centre node along z",
+    "vz" ["m/s"] "mean velocity of the top ring along z",
     "volume" ["m3"] "enclosed volume",
     "pressure" ["Pa"] "gas pressure",
     "temperature" ["K"] "gas temperature (film temperature while there is no gas)",

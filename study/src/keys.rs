@@ -13,8 +13,8 @@ use crate::units::{self, Dimension};
 use crate::value::{Value, short_number};
 
 pub use scene::{
-    BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS,
-    SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
+    BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE,
+    SCENE_WINDOW_KEYS, SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
 pub(crate) use scene::{FLAT, GRAVITY, NEAR};
 pub use table::{KEYS, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};

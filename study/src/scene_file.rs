@@ -6,6 +6,7 @@
 //! Everything that can be wrong with a scene is found here, before anything runs.
 
 mod conflicts;
+mod contact;
 mod filling;
 mod mesh;
 mod object;
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use billow_solver::film_scene::{FilmScene, FilmSolver};
 use billow_solver::ladder::SceneError;
-use billow_solver::ladder::film::{self, Rings};
+use billow_solver::ladder::film::Rings;
 use billow_solver::simd;
 use billow_solver::supports::Mover;
 use nalgebra::Vector3;
@@ -132,14 +133,11 @@ impl SceneFile {
         let (outputs, followed) = outputs::read(tree.get("outputs"), &shape, &reader.source)?;
         let end_time = end_time(&settings, &reader.source)?;
         outputs::check_interval(outputs.sample_interval, end_time, &reader.source)?;
-        if tree.get("contact").is_some() {
-            notes.push(
-                "contact is not computed in this version: film passes through film".to_owned(),
-            );
-        } else if shape.folded {
-            notes.push("no contact in this version: film passes through film".to_owned());
+        let contact = contact::read(tree, &settings, &reader.source)?;
+        if contact.is_none() && !statics && shape.folded {
+            notes.push("contact is off: film passes through film, uncounted".to_owned());
         }
-        let film = FilmScene {
+        let mut film = FilmScene {
             shell: shape.shell,
             velocities,
             film: crate::settings::film(&settings, &reader.source)?,
@@ -156,10 +154,19 @@ impl SceneFile {
                 path: simd,
             },
             outputs,
-            contact: None,
+            contact,
         };
         // Whatever of the film is none is found before anything runs.
-        film::capsule::constants(&film).map_err(|error| scene_error(error, &reader.source))?;
+        let unsound = |error| scene_error(error, &reader.source);
+        if contact::lies_on_itself(&film).map_err(unsound)? {
+            let problem = "film lies on film at the start, so contact cannot tell its sides";
+            if tree.get("contact").is_some() {
+                let allowed = "a gap between layers, however small; or contact.enabled false";
+                return Err(reader.source.error("contact", "", problem, allowed).into());
+            }
+            notes.push(format!("{problem}: it is off, and film passes through film"));
+            film.contact = None;
+        }
         let json = json!({"scene": to_value(tree), "files": reader.hashes});
         let identity = json!({"physics_version": PHYSICS_VERSION, "input": json});
         Ok(Self {

@@ -78,6 +78,13 @@ impl Settings {
         self.maybe_text(path).unwrap_or_default()
     }
 
+    pub fn maybe_flag(&self, path: &str) -> Option<bool> {
+        match self.get(path) {
+            Value::Bool(flag) => Some(*flag),
+            _ => None,
+        }
+    }
+
     /// Whether a key is set to true.
     pub fn flag(&self, path: &str) -> bool {
         *self.get(path) == Value::Bool(true)

@@ -2,7 +2,7 @@
 //!
 //! | key | meaning |
 //! |---|---|
-//! | `status` | `done`; `paused`; `unstable`, `drifted`, `inverted_volume`, `step_limit`, `no_equilibrium`: no result |
+//! | `status` | `done`; `paused`; `unstable`, `drifted`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
 //! | `stop` | kind, time and place, where there is no result |
 //! | `volume` | enclosed, m³; of open film between it and the fans over its free edges |
 //! | `pressure`, `overpressure` | inside (of a fixed pressure: the overpressure); less the ambient one, Pa |
@@ -12,10 +12,15 @@
 //! | `resultants` | principal membrane forces of each element followed, the larger first, N/m: `N1`, `N2` second Piola-Kirchhoff, per reference width; `P1`, `P2` nominal (first Piola-Kirchhoff): the force itself, per reference width, in size; `T1`, `T2` true (Cauchy): the force itself, per width as it is. `S1`, `S2`: N over thickness, Pa; `regime` taut, wrinkled, slack |
 //! | `reactions` | of each support: `force` (N) it exerts on the film and its `moment` about the origin (N m); without inertia; a node of two supports counts in both |
 //! | `ledger` | every entry since the start, J, and its largest `residual`; `gas_residual` |
+//! | `passages`, `intersections` | film through film: counted over the run; largest number at a sample (at rest: at the end); null where contact is off |
+//! | `contact` | `distance` film is held apart at and `smallest_gap`, m; largest `interlayer_pressure`, Pa, and `contact_area_fraction`; `searches`; most `pairs` at once; `impulses` against passing; `not_returned` energy, J; force on each of `plates` at the end, N |
+//! | `measures` | largest `peak_vz` of the top ring (m/s) with its time, `peak_kinetic_energy` (J) |
 //! | `energies` | kinetic, strain and (at rest) potential, J |
 //! | `film_stress` | largest principal second Piola-Kirchhoff stress: over the run, or at rest, Pa |
 //! | `steps`, `end_time`, `elements`, `wall_seconds` | steps (at rest: Newton steps); time reached, s; elements; wall time, s |
 
+use billow_solver::contact::intersections::intersections;
+use billow_solver::contact::topology::Topology;
 use billow_solver::deployment::Stop;
 use billow_solver::integrate::explicit::Interior;
 use billow_solver::ladder::film::FilmRun;
@@ -145,6 +150,14 @@ fn in_motion(
             "residual": deployment.audit.ledger_residual,
             "gas_residual": deployment.audit.gas_residual,
         },
+        "passages": deployment.audit.passages,
+        "intersections": deployment.audit.intersections,
+        "contact": contact(run, deployment),
+        "measures": {
+            "peak_vz": deployment.measures.peak_vz,
+            "t_peak_vz": deployment.measures.t_peak_vz,
+            "peak_kinetic_energy": deployment.measures.peak_kinetic_energy,
+        },
         "energies": {"kinetic": ledger.kinetic, "strain": ledger.strain},
         "film_stress": explicit.state.film_stress,
         "steps": explicit.state.steps,
@@ -156,6 +169,32 @@ fn in_motion(
             json!({"kind": failure.kind.name(), "time": failure.time, "place": failure.place});
     }
     summary
+}
+
+/// What contact did, its extremes over the samples; `null` where it is off.
+fn contact(run: &FilmRun, deployment: &billow_solver::deployment::Deployment) -> Json {
+    let Some(law) = &run.film.setting.contact else { return Json::Null };
+    let meeting = &run.film.state.meeting;
+    let track = |name: &str| {
+        let own = deployment.tracks.iter().find(|track| track.name == name);
+        own.map(|track| track.values.as_slice()).unwrap_or_default()
+    };
+    let most = |name: &str| track(name).iter().copied().fold(0.0, f64::max);
+    let plates = law.plates.iter().zip(&meeting.plates);
+    let stored = meeting.contacts.iter().map(|contact| contact.energy).sum::<f64>()
+        + meeting.plates.iter().map(|plate| plate.energy).sum::<f64>();
+    json!({
+        "distance": law.distance,
+        "smallest_gap": track("smallest_gap").iter().copied().fold(law.radius, f64::min),
+        "interlayer_pressure": most("interlayer_pressure"),
+        "contact_area_fraction": most("contact_area_fraction"),
+        "searches": meeting.searches,
+        "pairs": most("contact_pairs"),
+        "impulses": meeting.impulses,
+        "not_returned": run.film.ledger().contact - stored + meeting.taken,
+        "plates": plates.map(|(plate, own)| (plate.name.clone(), own.force.into()))
+            .collect::<Map<_, _>>(),
+    })
 }
 
 fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> Json {
@@ -173,6 +212,7 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         let own = resultants(&rest.model, &rest.places, element);
         largest.max(own.principal[0] / thickness(&rest.model, element))
     });
+    let topology = Topology::new(rest.model.nodes(), &rest.model.triangles);
     let more = json!({
         "volume": rest.volume,
         "pressure": pressure,
@@ -180,6 +220,8 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         "temperature": scene.film.film.temperature,
         "gas_mass": 0.0,
         "reactions": reactions,
+        "passages": null,
+        "intersections": intersections(&topology, &rest.places).len(),
         "energies": {
             "kinetic": 0.0, "strain": rest.strain_energy, "potential": rest.potential_energy,
         },

@@ -82,8 +82,8 @@ fn preinflated() -> String {
 
 fn capsule() -> String {
     let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    let mut run =
-        FilmRun::from_scene(&paper_capsule(2, 0.003), DEFAULT_CFL, reference).expect("a capsule");
+    let mut run = FilmRun::from_scene(&paper_capsule(2, 0.003), DEFAULT_CFL, None, reference)
+        .expect("a capsule");
     let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
     run.advance(3e-3, &Phase { packed: false, inflow }).expect("it runs");
     end_state(&run.film)

@@ -11,6 +11,8 @@
 //! where asked, else the straight way from the first to the last of a block, and then, for a pair
 //! that seems to pass on it, at each of its steps.
 
+use core::fmt;
+
 use nalgebra::Vector3;
 
 use crate::contact::topology::Topology;
@@ -34,6 +36,15 @@ pub enum Passage {
         /// The other.
         other: u32,
     },
+}
+
+impl fmt::Display for Passage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Node { node, element } => write!(f, "node {node} through element {element}"),
+            Self::Edge { edge, other } => write!(f, "edge {edge} through edge {other}"),
+        }
+    }
 }
 
 impl Passage {
@@ -206,10 +217,11 @@ impl Watchfulness {
     /// Frames 50 steps apart, every step of one block in a hundred.
     pub const FRAMES: Self = Self { block: 50, every_step_of_one_in: 100, seed: 0 };
 
-    /// Whether each step of a block is looked at (`SplitMix64` of seed and number).
-    fn closely(&self, block: u64) -> bool {
+    /// Whether each step of the block after so many steps is looked at (`SplitMix64` of seed and
+    /// number).
+    fn closely(&self, steps: u64) -> bool {
         let mut z =
-            self.seed.wrapping_add(block.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+            self.seed.wrapping_add(steps.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         (z ^ (z >> 31)).is_multiple_of(self.every_step_of_one_in)
@@ -220,22 +232,22 @@ impl Watchfulness {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Watch {
     how: Watchfulness,
-    block: u64,
+    /// Steps of the run before the audit frame.
+    start: u64,
     /// Places at the audit frame and after each step since.
     frames: Vec<Field>,
     used: usize,
     /// Passages so far.
     pub passages: u64,
-    /// The first, and the block it was in.
-    pub first: Option<(u64, Passage)>,
+    /// The first, and where its first node was (m).
+    pub first: Option<(Passage, Vector3<f64>)>,
 }
 
 impl Watch {
     /// Starts at these places (m), after so many steps of the run.
     pub fn new(how: Watchfulness, places: &Field, steps: u64) -> Self {
         let frames = vec![places.clone(); how.block as usize + 1];
-        let block = steps / u64::from(how.block);
-        Self { how, block, frames, used: 1, passages: 0, first: None }
+        Self { how, start: steps, frames, used: 1, passages: 0, first: None }
     }
 
     /// Takes note of the places (m) after a step; looks at a block when it is full. Whether nothing has
@@ -259,7 +271,7 @@ impl Watch {
             return;
         }
         let mut found = Vec::new();
-        if self.how.closely(self.block) {
+        if self.how.closely(self.start) {
             for step in 0..steps {
                 found.extend(passages(topology, &self.frames[step], &self.frames[step + 1]));
             }
@@ -272,10 +284,13 @@ impl Watch {
             }
         }
         if self.first.is_none() {
-            self.first = found.first().map(|passage| (self.block, *passage));
+            self.first = found.first().map(|passage| {
+                let [node, ..] = passage.nodes(topology);
+                (*passage, self.frames[steps].get(node as usize))
+            });
         }
         self.passages += found.len() as u64;
-        self.block += 1;
+        self.start += steps as u64;
         self.frames.swap(0, steps);
         self.used = 1;
     }

@@ -37,6 +37,7 @@ use crate::state::Field;
 use crate::supports::Supports;
 
 mod kick;
+mod meet;
 mod state;
 
 pub use state::{State, Stretch, Works};
@@ -134,12 +135,7 @@ impl Explicit {
         let planes = setting.supports.bodies.iter().map(|body| body.plane.velocity).collect();
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
-        if let Some(law) = &film.setting.contact {
-            let places = &film.state.places;
-            law.search(places, &mut film.state.meeting);
-            let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
-            film.state.meeting.plates = start.collect();
-        }
+        film.meet_first();
         let sums = film.pass_at(0.0);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
@@ -195,6 +191,7 @@ impl Explicit {
         while let Some(until) = stretch.next_end() {
             if *steps == 0 {
                 self.state.stretch = Some(stretch);
+                self.look()?;
                 return Ok(false);
             }
             if self.state.steps >= self.setting.step_limit {
@@ -203,7 +200,7 @@ impl Explicit {
             }
             *steps -= 1;
             stretch.index += 1.0;
-            if phase.packed {
+            if phase.packed && self.setting.contact.is_none() {
                 self.wait(stretch.length, phase.inflow);
             } else {
                 self.step(stretch.length, until, phase.inflow)?;
@@ -211,6 +208,7 @@ impl Explicit {
             self.state.time = until;
             self.state.steps += 1;
         }
+        self.look()?;
         Ok(true)
     }
 
@@ -234,7 +232,7 @@ impl Explicit {
         }
     }
 
-    /// A step in which nothing moves.
+    /// A step in which nothing moves: film without contact, packed.
     fn wait(&mut self, length: f64, inflow: Inflow) {
         self.state.last_step = 0.0;
         self.step_gas(self.state.volume, length, inflow);
@@ -264,34 +262,14 @@ impl Explicit {
         self.step_gas(volume, length, inflow);
         self.share_work(length);
         self.state.last_step = length;
-        self.look()
-    }
-
-    /// Lets the audit see the places now.
-    fn look(&mut self) -> Result<(), Failure> {
-        let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) else {
-            return Ok(());
-        };
-        if watch.step(&law.topology, &self.state.places) {
-            return Ok(());
-        }
-        let place = match watch.first {
-            Some((_, passage)) => format!("{passage:?}"),
-            None => "film".to_owned(),
-        };
-        Err(self.failure(FailureKind::Interpenetrated, &place))
+        self.seen()
     }
 
     /// Half a step's work of what acts at the nodes now along the velocities now: on moving supports,
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
-        if self.setting.contact.is_some() {
-            let along: f64 = (0..self.model.nodes())
-                .map(|node| self.forces.contact.get(node).dot(&self.state.velocities.get(node)))
-                .sum();
-            self.state.works.contact += half * along;
-        }
+        self.contact_work(half);
         self.state.works.support -= half * self.support_power();
         if let Interior::Overpressure(pressure) = self.setting.interior {
             let sweep: f64 = (0..self.model.nodes())
@@ -299,27 +277,6 @@ impl Explicit {
                 .sum();
             self.state.works.gas += half * pressure * sweep;
         }
-    }
-
-    /// Looks for pairs the drift to come could bring together, and keeps them apart.
-    fn keep_apart(&mut self, kick: f64, length: f64) -> Result<(), Failure> {
-        let Some(law) = &self.setting.contact else { return Ok(()) };
-        let state = &mut self.state;
-        let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        law.prepare(&state.places, &mut state.meeting, speed * length);
-        let (model, supports) = (&self.model, &self.setting.supports);
-        let State { places, velocities, meeting, .. } = state;
-        law.rub(model, supports, places, &self.next, velocities, kick, meeting);
-        let kept = law.guard(model, supports, places, &self.next, velocities, length, meeting);
-        for plate in &law.plates {
-            let before = &self.next;
-            let time = state.time;
-            meeting.taken += plate.guard(places, model, supports, before, velocities, time, length);
-        }
-        kept.map_err(|pair| {
-            let place = format!("{pair:?} could not be kept apart");
-            self.failure(FailureKind::Interpenetrated, &place)
-        })
     }
 
     /// The gas, while the volume goes to `volume` (m³).
@@ -379,17 +336,6 @@ impl Explicit {
         fastest
     }
 
-    /// Half a step's work of the plates, by their force now, on the way to `until` (s).
-    fn plate_work(&mut self, until: f64) {
-        let Some(law) = &self.setting.contact else { return };
-        let state = &mut self.state;
-        for (plate, pressed) in law.plates.iter().zip(&state.meeting.plates) {
-            let work = 0.5 * pressed.force * plate.way(state.time, until);
-            state.works.support += work;
-            state.works.contact -= work;
-        }
-    }
-
     /// Element and node passes at the places now, which are those of `time` (s).
     fn pass_at(&mut self, time: f64) -> Sums {
         let (model, state) = (&self.model, &self.state);
@@ -401,19 +347,7 @@ impl Explicit {
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
         }
-        if let Some(law) = &self.setting.contact {
-            for column in
-                [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z]
-            {
-                column.fill(0.0);
-            }
-            let (places, meeting) = (&self.state.places, &mut self.state.meeting);
-            law.meet(places, &self.model.mass, &mut self.forces.contact, meeting);
-            let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
-            for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
-                plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
-            }
-        }
+        self.press(time);
         sums
     }
 

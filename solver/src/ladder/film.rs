@@ -1,37 +1,40 @@
-//! Film of any shape, explicit in time, **without contact**: film passes through film.
+//! Film of any shape, explicit in time, with contact or without.
 //!
 //! Tension-field triangles ([`crate::forces`]), a pressure or one gas volume, central differences
-//! ([`crate::integrate::explicit`]). A capsule is one such film, with rings. For unfolded shapes and
-//! for validation. A folded capsule let go in it is a check of energy, not a deployment: its passages
-//! and intersections are not counted and come out as `None`, no [`Scene`] can name it as its model,
-//! and [`crate::scene::Solver::model`] and `stepping` are not read here.
+//! ([`crate::integrate::explicit`]), film against film ([`crate::contact`]). A capsule is one such
+//! film, with rings. Passages are counted by an audit of its own and intersections at every sample;
+//! the first of either ends the run as `interpenetrated`. Without contact film passes through film:
+//! for unfolded shapes and for checks of energy; both counts come out as `None`.
+//! [`crate::scene::Solver::model`] and `stepping` are not read here.
 //!
-//! While packed every node is held where it is stowed; the gas presses on the lid. The lid's force
-//! is the one that does the work of a uniform stretch of the stack, Σ `f_z` z/h: what a lone piston
-//! would feel. Film that is no capsule has no lid to press on.
+//! While packed, film with contact lies between a base and a lid, two plates at the contact distance
+//! from it, and moves between them as the gas lets it; the lid's force is what it bears. Without
+//! contact every node is held where it is stowed, and the lid's force is the one that does the work of
+//! a uniform stretch of the stack, Σ `f_z` z/h; film that is no capsule has then no lid to press on.
 
 use nalgebra::Vector3;
 
 use super::SceneError;
+use crate::contact::intersections::intersections;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
-use crate::film_scene::FilmScene;
+use crate::film_scene::{FilmContact, FilmScene};
 use crate::history::{Sample, Track};
 use crate::integrate::explicit::{Explicit, Interior, State};
 use crate::measures::Reference;
 use crate::mesh::{Mesh, Shape};
-use crate::resultants::resultants;
 use crate::scene::Scene;
 use crate::state::Field;
 
 pub mod capsule;
 mod imperfection;
 mod statics;
+mod tracks;
 
 pub use crate::statics::Relaxation;
 pub use statics::{Erected, StaticState, erected, static_reference, static_states};
 
-/// Runs a scene as film without contact, at this share of the stable step, judged against
+/// Runs a scene as film with this contact, at this share of the stable step, judged against
 /// `reference` ([`static_reference`], or a stored one of the same design, film and supports).
 ///
 /// # Errors
@@ -39,10 +42,11 @@ pub use statics::{Erected, StaticState, erected, static_reference, static_states
 pub fn solve(
     scene: &Scene,
     cfl: f64,
+    contact: Option<FilmContact>,
     reference: Reference,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let mut run = FilmRun::from_scene(scene, cfl, reference)?;
+    let mut run = FilmRun::from_scene(scene, cfl, contact, reference)?;
     Ok(deployment::run(&mut run, &Course::new(scene), observer))
 }
 
@@ -117,18 +121,29 @@ impl FilmRun {
         Self { film, rings, reference: None, nodes, elements, fans, temperature }
     }
 
-    /// The scene's capsule, stowed, at time 0.
+    /// The scene's capsule, stowed, at time 0, with this contact.
     ///
     /// # Errors
     /// As [`solve`].
-    pub fn from_scene(scene: &Scene, cfl: f64, reference: Reference) -> Result<Self, SceneError> {
+    pub fn from_scene(
+        scene: &Scene,
+        cfl: f64,
+        contact: Option<FilmContact>,
+        reference: Reference,
+    ) -> Result<Self, SceneError> {
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let (film, mesh) = capsule::film_scene(scene, stowed, cfl)?;
+        let film = FilmScene { contact, ..film };
         let run = Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))?;
         Ok(Self { reference: Some(reference), ..run })
     }
 
+    /// Force on the lid while packed, N.
     fn lid_force(&self, rings: &Rings) -> f64 {
+        if let Some(law) = &self.film.setting.contact {
+            let plates = law.plates.iter().zip(&self.film.state.meeting.plates);
+            return plates.filter(|(p, _)| p.name == capsule::LID).map(|(_, own)| own.force).sum();
+        }
         let lift: f64 = (0..self.film.model.nodes())
             .map(|node| self.film.force(node).z * self.film.state.places.z[node])
             .sum();
@@ -154,9 +169,9 @@ impl FilmRun {
     }
 }
 
-/// Mean height of these nodes, m.
-fn mean_height(places: &Field, nodes: &[u32]) -> f64 {
-    nodes.iter().map(|node| places.z[*node as usize]).sum::<f64>() / nodes.len() as f64
+/// Mean of a field's z over these nodes.
+fn mean_z(field: &Field, nodes: &[u32]) -> f64 {
+    nodes.iter().map(|node| field.z[*node as usize]).sum::<f64>() / nodes.len() as f64
 }
 
 impl Model for FilmRun {
@@ -180,12 +195,18 @@ impl Model for FilmRun {
         if let Some(rings) = &self.rings {
             let centre = rings.top_centre as usize;
             sample.z_centre = places.z[centre];
-            sample.z_rim = mean_height(places, &rings.top_ring);
-            sample.vz = film.velocities().z[centre];
+            sample.z_rim = mean_z(places, &rings.top_ring);
+            sample.vz = mean_z(&film.velocities(), &rings.top_ring);
             lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
         }
+        let through = match &film.setting.contact {
+            Some(law) => intersections(&law.topology, places).len() as u64,
+            None => 0,
+        };
         Sample {
             time: film.state.time,
+            passages: self.passages(),
+            intersections: through,
             z_max: self.largest_height(),
             volume: self.volume(),
             pressure: film.state.pressure,
@@ -209,34 +230,11 @@ impl Model for FilmRun {
     }
 
     fn tracks(&self) -> Vec<Track> {
-        let nodes = self.nodes.iter().flat_map(|node| {
-            ["x", "y", "z"].map(|axis| Track {
-                name: format!("node_{node}_{axis}"),
-                unit: "m",
-                meaning: "place of a followed node",
-                values: Vec::new(),
-            })
-        });
-        let elements = self.elements.iter().flat_map(|element| {
-            ["N1", "N2"].map(|name| Track {
-                name: format!("element_{element}_{name}"),
-                unit: "N/m",
-                meaning: "principal membrane force of a followed element, per reference width",
-                values: Vec::new(),
-            })
-        });
-        nodes.chain(elements).collect()
+        tracks::names(self)
     }
 
     fn follow(&self, values: &mut Vec<f64>) {
-        for node in &self.nodes {
-            let place = self.film.state.places.get(*node as usize);
-            values.extend([place.x, place.y, place.z]);
-        }
-        for element in &self.elements {
-            let (model, places) = (&self.film.model, &self.film.state.places);
-            values.extend(resultants(model, places, *element as usize).principal);
-        }
+        tracks::values(self, values);
     }
 
     fn film_stress(&self) -> f64 {
@@ -252,6 +250,10 @@ impl Model for FilmRun {
     }
 
     fn counts_passages(&self) -> bool {
-        false
+        self.film.setting.contact.is_some()
+    }
+
+    fn passages(&self) -> u64 {
+        self.film.watch.as_ref().map_or(0, |watch| watch.passages)
     }
 }

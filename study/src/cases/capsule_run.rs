@@ -70,7 +70,8 @@ pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     let scene = paper_capsule(5, 0.3);
     // Nothing here is judged by its static states.
     let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    let mut run = FilmRun::from_scene(&scene, DEFAULT_CFL, unread).map_err(|e| e.to_string())?;
+    let mut run =
+        FilmRun::from_scene(&scene, DEFAULT_CFL, None, unread).map_err(|e| e.to_string())?;
     run.film = rig.faulty(run.film);
     let deployment = deployment::run(&mut run, &Course::new(&scene), &mut Unobserved);
     if deployment.stop != Stop::Done {

@@ -19,18 +19,20 @@ const SECTIONS: &[(&str, &str)] = &[
          Without it nothing presses.",
     ),
     ("gas.species", "A gas of its own: gas_constant and cp, both."),
-    ("contact", "Contact of film with film: not computed in this version."),
+    ("contact", "Film against film and against plates."),
     ("solver", "How it is computed."),
 ];
 
 /// Keys that hold more than one value, beside the sections.
-const STRUCTURED: &[&str] = &["mesh", "gas.windows", "supports", "start", "gravity", "outputs"];
+const STRUCTURED: &[&str] =
+    &["mesh", "gas.windows", "contact.plates", "supports", "start", "gravity", "outputs"];
 
 /// Keys of the study that a scene has too.
 fn shared(path: &str) -> bool {
     let own = ["design.caps", "gas.mass_flow_rate", "gas.inflow_temperature", "gas.burst_rate"];
     let sections = ["design.", "film.", "gas.", "contact."];
     path == "solver.step_limit"
+        || path == "seed"
         || (sections.iter().any(|section| path.starts_with(section))
             && !own.contains(&path)
             && !path.starts_with("gas.residual"))
@@ -64,7 +66,8 @@ static OWN_KEYS: &[Key] = &[
     key("version", Kind::Integer(1, 1), Integer(1), "1",
         "Version of the file format; a newer one is refused."),
     key("release_time", CLOCK, Number(0.0), "\"1 s\"",
-        "Until when every node is held where it starts and only the gas goes on."),
+        "Until when the film is packed: between a base and a lid at the contact distance from it, or, \
+        without contact, with every node held where it starts."),
 
     key("design.caps", Kind::Choice(&["polygon", "circular"]), Word("polygon"), "\"polygon\"",
         "Shape of the end caps: N-gons sewn to the ring fold lines, or discs (shape erected only)."),
@@ -82,6 +85,12 @@ static OWN_KEYS: &[Key] = &[
         "Absolute pressure inside at the start, in place of initial_mass."),
     key("gas.initial_temperature", KELVIN, Absent("film.temperature"), "\"293 K\"",
         "Temperature of the gas inside at the start."),
+
+    key("contact.enabled", Kind::Flag, Absent("true; false where solver.static is true"), "true",
+        "Whether film is kept from passing through film; false lets it pass, uncounted."),
+    key("contact.adhesion_range", above(Dimension::Length, 0.0, 0.1),
+        Absent("contact.distance"), "\"1 mm\"",
+        "How far beyond the contact distance adhesion pulls."),
 
     key("solver.end_time", above(Dimension::Time, 0.0, 1e6), Absent("needed unless static"),
         "\"0.3 s\"", "Simulated time."),
@@ -139,6 +148,16 @@ pub static SUPPORT_KEYS: &[Key] = &[
         "\"1 mm\"", "How far from the plane a node still belongs to it."),
     key("fix", Kind::Text, Absent("needed, but for plane: its normal component"), "\"xyz\"",
         "Displacement components held: letters of xyz, each once."),
+];
+
+/// The keys of a rigid plate that hold one value.
+#[rustfmt::skip]
+pub static PLATE_KEYS: &[Key] = &[
+    key("name", Kind::Text, Absent("plate, numbered where there are several"), "\"floor\"",
+        "Name its force is told by."),
+    key("point", PLACE, Required, "[0, 0, 0]", "A point of it at the start."),
+    key("normal", DIRECTION, Required, "[0, 0, 1]", "Normal towards the film, of any length."),
+    key("until", CLOCK, Absent("it stays"), "\"0.1 s\"", "When it is gone."),
 ];
 
 /// The keys of `body`: a rigid plane that moves along its normal.

@@ -69,7 +69,7 @@ pub const COLUMNS: &[RowColumn] = &[
     number("t_50_volume", "s", "first time at half the static volume that holds 5 ms"),
     number("t_90_volume", "s", "first time at nine tenths of the static volume that holds 5 ms"),
     number("t_deployed", "s", "first time from which both deployed thresholds hold 20 ms"),
-    number("peak_vz", "m/s", "largest velocity of the top centre along z"),
+    number("peak_vz", "m/s", "largest mean velocity of the top ring along z"),
     number("t_peak_vz", "s", "time of peak_vz"),
     number("peak_kinetic_energy", "J", "largest kinetic energy of the film"),
     number("overshoot", "1", "largest z_rim over the static height, less 1"),

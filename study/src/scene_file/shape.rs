@@ -2,7 +2,7 @@
 
 use billow_solver::fold::{Caps, FoldError, FoldPattern};
 use billow_solver::ladder::film::Rings;
-use billow_solver::ladder::film::capsule::part_nodes;
+use billow_solver::ladder::film::capsule::{imperfect, part_nodes};
 use billow_solver::mesh::{Mesh, Part, Shape as State};
 use billow_solver::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::shell::Shell;
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::{Reader, mesh};
 use crate::error::{InputError, Result};
-use crate::settings::{Settings, design};
+use crate::settings::{Settings, design, film, unsigned};
 use crate::source::Source;
 use crate::study_file::Json;
 use crate::value::short_number;
@@ -108,7 +108,12 @@ fn capsule(settings: &Settings, source: &Source) -> std::result::Result<Shape, I
     };
     let pattern = FoldPattern::new(&design).map_err(fold_error)?;
     let state = if erected { State::Erected } else { State::Stowed(design.stowed_height) };
-    let mesh = Mesh::new(&pattern, design.subdivisions, state).map_err(fold_error)?;
+    let mut mesh = Mesh::new(&pattern, design.subdivisions, state).map_err(fold_error)?;
+    if !erected {
+        let seed = unsigned(settings, "seed", source)?;
+        imperfect(&mut mesh, &film(settings, source)?, seed)
+            .map_err(|error| source.error("seed", "", error.to_string(), ""))?;
+    }
     let seats = if erected && design.caps == Caps::Polygon {
         let stowed = State::Stowed(design.stowed_height);
         Some(Mesh::new(&pattern, design.subdivisions, stowed).map_err(fold_error)?.positions)

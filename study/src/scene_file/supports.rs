@@ -272,7 +272,7 @@ fn components(object: &Object<'_>) -> Result<[bool; 3], InputError> {
     Err(object.error("fix", problem, "letters of \"xyz\", each once"))
 }
 
-fn motion(
+pub(super) fn motion(
     json: &Json,
     at: &str,
     settings: &Settings,

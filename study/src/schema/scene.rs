@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json, json};
 use super::{forms, members, object, property};
 use crate::keys::{
     BODY_KEYS, Default, FLAT, GRAVITY, Key, Kind, MESH_KEYS, MOVE_KEYS, NEAR, OUTPUT_KEYS,
-    ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS, SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
+    PLATE_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS, SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
 
 /// The schema of a scene file.
@@ -24,6 +24,7 @@ pub fn scene_schema() -> Json {
         "type": "array",
         "items": window,
     });
+    properties["contact"]["properties"]["plates"] = plates();
     properties.insert("mesh".to_owned(), mesh());
     properties.insert("supports".to_owned(), supports());
     properties.insert("start".to_owned(), start());
@@ -98,10 +99,7 @@ fn mesh() -> Json {
 fn supports() -> Json {
     let doc = "A rigid plane of this mass that moves along its normal as a free body.";
     let body = table("body", doc, BODY_KEYS, []);
-    let doc = "A rotation about an axis.";
-    let rotation = table("rotation", doc, ROTATION_KEYS, []);
-    let doc = "A prescribed motion of what is held.";
-    let motion = table("move", doc, MOVE_KEYS, [("rotation", rotation)]);
+    let motion = motion("A prescribed motion of what is held.");
     let nodes = json!({
         "title": "nodes",
         "description": "Vertices by number, 0 for the first of the file.",
@@ -118,6 +116,22 @@ fn supports() -> Json {
                         held in xyz; a mesh is free.",
         "type": "array",
         "items": support,
+    })
+}
+
+fn motion(doc: &str) -> Json {
+    let rotation = table("rotation", "A rotation about an axis.", ROTATION_KEYS, []);
+    table("move", doc, MOVE_KEYS, [("rotation", rotation)])
+}
+
+fn plates() -> Json {
+    let motion = motion("A prescribed motion of the plate: a translation.");
+    json!({
+        "title": "plates",
+        "description": "Rigid plates the film lies against, on the side their normal points to. \
+                        Default: none.",
+        "type": "array",
+        "items": table("plate", "A rigid plate.", PLATE_KEYS, [("move", motion)]),
     })
 }
 

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::imperfection::imperfect;
+use super::imperfection;
+use crate::contact::plates::Plate;
 use crate::contact::{self, Adhesion, Law};
 use crate::film_scene::{
     Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold,
@@ -13,7 +14,7 @@ use crate::integrate::explicit::{Explicit, Interior, Setting};
 use crate::ladder::SceneError;
 use crate::mesh::{Mesh, Part, Shape};
 use crate::model::FilmModel;
-use crate::scene::{Scene, Support, SupportPlace};
+use crate::scene::{Film, Scene, Support, SupportPlace};
 use crate::shell::Shell;
 use crate::simd::Path;
 use crate::state::Field;
@@ -22,7 +23,29 @@ use crate::supports::Supports;
 /// Amplitude of the imperfection of a stowed capsule, as a share of its smallest gap.
 const IMPERFECTION: f64 = 0.1;
 
-/// A scene's capsule in one of its shapes, at this share of the stable step; and its mesh.
+/// Puts the imperfection of a seed on a stowed capsule; 0 is none.
+///
+/// # Errors
+/// [`SceneError::Invalid`] when the capsule makes no film.
+pub fn imperfect(mesh: &mut Mesh, film: &Film, seed: u64) -> Result<(), SceneError> {
+    if seed == 0 {
+        return Ok(());
+    }
+    let places = Field::of(&mesh.positions);
+    let model = FilmModel::of_shell(film, &Shell::of_mesh(mesh)).map_err(|error| {
+        SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
+    })?;
+    let gap = Law::of_film(&model, &places, None).distance / contact::OF_GAP;
+    imperfection::imperfect(&mut mesh.positions, seed, IMPERFECTION * gap);
+    Ok(())
+}
+
+/// Name of the plate that holds film packed from above.
+pub const LID: &str = "lid";
+/// Name of the plate that holds film packed from below.
+pub const BASE: &str = "base";
+
+/// A scene's capsule in one of its shapes, without contact, at this share of the stable step; and its mesh.
 ///
 /// # Errors
 /// [`SceneError`] when the scene is not sound or the capsule cannot be made.
@@ -30,13 +53,8 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
     scene.validate()?;
     let pattern = FoldPattern::new(&scene.design)?;
     let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
-    if scene.seed != 0 && matches!(shape, Shape::Stowed(_)) {
-        let places = Field::of(&mesh.positions);
-        let model = FilmModel::of_shell(&scene.film, &Shell::of_mesh(&mesh)).map_err(|error| {
-            SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
-        })?;
-        let gap = Law::of_film(&model, &places, None).distance / contact::OF_GAP;
-        imperfect(&mut mesh.positions, scene.seed, IMPERFECTION * gap);
+    if matches!(shape, Shape::Stowed(_)) {
+        imperfect(&mut mesh, &scene.film, scene.seed)?;
     }
     let film = FilmScene {
         shell: Shell::of_mesh(&mesh),
@@ -132,22 +150,49 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Setting, GasState), Sc
         cfl: solver.cfl,
         step_limit: solver.step_limit,
         path: solver.path,
-        contact: scene.contact.as_ref().map(|contact| law(contact, &model, &places)),
+        contact: scene.contact.as_ref().map(|_| law(scene, &model, &places)),
         watch: scene.contact.as_ref().map(|contact| contact.watch),
         mutation: None,
     };
     Ok((model, setting, gas))
 }
 
-/// The law of a scene's contact.
-fn law(contact: &FilmContact, model: &FilmModel, places: &Field) -> Law {
+/// How film of a capsule's scene meets film.
+pub fn contact(scene: &Scene) -> FilmContact {
+    FilmContact {
+        distance: scene.contact.distance,
+        friction: scene.contact.friction,
+        adhesion: scene.contact.adhesion,
+        ..FilmContact::default()
+    }
+}
+
+/// The law of a scene's contact; until its release the film lies packed between base and lid.
+fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> Law {
+    let contact = scene.contact.clone().unwrap_or_default();
     let mut law = Law::of_film(model, places, contact.distance);
+    law.soften(scene.solver.cfl);
     law.friction = contact.friction;
     if contact.adhesion > 0.0 {
         let range = contact.adhesion_range.unwrap_or(law.distance);
         law.adhere(Adhesion { pressure: contact.adhesion, range });
     }
-    law.plates.clone_from(&contact.plates);
+    law.plates = contact.plates;
+    if scene.release_time > 0.0 {
+        let (low, high) = places
+            .z
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)));
+        let plate = |name: &str, z: f64, normal: Vector3<f64>| Plate {
+            name: name.to_owned(),
+            point: Vector3::new(0.0, 0.0, z),
+            normal,
+            motion: None,
+            until: scene.release_time,
+        };
+        law.plates.push(plate(BASE, low - law.distance, Vector3::z()));
+        law.plates.push(plate(LID, high + law.distance, -Vector3::z()));
+    }
     law
 }
 

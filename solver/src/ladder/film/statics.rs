@@ -11,7 +11,7 @@ use core::ops::ControlFlow;
 use nalgebra::Vector3;
 
 use super::capsule::film_scene;
-use super::mean_height;
+use super::mean_z;
 use crate::film_scene::{Filling, Motion, Profile};
 use crate::fold::FoldPattern;
 use crate::forces::membrane::strain_energy;
@@ -128,7 +128,7 @@ impl Erected {
         Ok(StaticState {
             overpressure,
             volume: volume(&self.model, &rest.places),
-            z_rim: mean_height(&rest.places, &self.mesh.top_ring),
+            z_rim: mean_z(&rest.places, &self.mesh.top_ring),
             strain_energy: strain_energy(&self.model, &rest.places),
             iterations: rest.iterations,
             residual: rest.residual,

@@ -1,0 +1,100 @@
+//! The step's part that keeps film off film and off plates, and lets the audit see it.
+
+use super::{Explicit, State};
+use crate::deployment::{Failure, FailureKind};
+
+impl Explicit {
+    /// The pairs and plates of the start.
+    pub(super) fn meet_first(&mut self) {
+        let Some(law) = &self.setting.contact else { return };
+        let places = &self.state.places;
+        law.search(places, &mut self.state.meeting);
+        let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
+        self.state.meeting.plates = start.collect();
+    }
+
+    /// Forces of contact at the places now, which are those of `time` (s).
+    pub(super) fn press(&mut self, time: f64) {
+        let Some(law) = &self.setting.contact else { return };
+        for column in
+            [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z]
+        {
+            column.fill(0.0);
+        }
+        let (places, meeting) = (&self.state.places, &mut self.state.meeting);
+        law.meet(places, &self.model.mass, &mut self.forces.contact, meeting);
+        let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
+        for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
+            plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
+        }
+    }
+
+    /// Work of contact over `half` a step (s), by its forces and the velocities now.
+    pub(super) fn contact_work(&mut self, half: f64) {
+        if self.setting.contact.is_some() {
+            let along: f64 = (0..self.model.nodes())
+                .map(|node| self.forces.contact.get(node).dot(&self.state.velocities.get(node)))
+                .sum();
+            self.state.works.contact += half * along;
+        }
+    }
+
+    /// Looks for pairs the drift to come could bring together, and keeps them apart.
+    pub(super) fn keep_apart(&mut self, kick: f64, length: f64) -> Result<(), Failure> {
+        let Some(law) = &self.setting.contact else { return Ok(()) };
+        let state = &mut self.state;
+        let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        law.prepare(&state.places, &mut state.meeting, speed * length);
+        let (model, supports) = (&self.model, &self.setting.supports);
+        let State { places, velocities, meeting, .. } = state;
+        law.rub(model, supports, places, &self.next, velocities, kick, meeting);
+        let kept = law.guard(model, supports, places, &self.next, velocities, length, meeting);
+        for plate in &law.plates {
+            let before = &self.next;
+            let time = state.time;
+            meeting.taken += plate.guard(places, model, supports, before, velocities, time, length);
+        }
+        kept.map_err(|pair| {
+            let place = format!("{pair:?} could not be kept apart");
+            self.failure(FailureKind::Interpenetrated, &place)
+        })
+    }
+
+    /// Half a step's work of the plates, by their force now, on the way to `until` (s).
+    pub(super) fn plate_work(&mut self, until: f64) {
+        let Some(law) = &self.setting.contact else { return };
+        let state = &mut self.state;
+        for (plate, pressed) in law.plates.iter().zip(&state.meeting.plates) {
+            let work = 0.5 * pressed.force * plate.way(state.time, until);
+            state.works.support += work;
+            state.works.contact -= work;
+        }
+    }
+
+    /// Lets the audit see the places after a step.
+    pub(super) fn seen(&mut self) -> Result<(), Failure> {
+        if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
+            watch.step(&law.topology, &self.state.places);
+        }
+        self.nothing_passed()
+    }
+
+    /// Has the audit look at all steps it has seen.
+    pub(super) fn look(&mut self) -> Result<(), Failure> {
+        if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
+            watch.look(&law.topology);
+        }
+        self.nothing_passed()
+    }
+
+    fn nothing_passed(&self) -> Result<(), Failure> {
+        match self.watch.as_ref().and_then(|watch| watch.first) {
+            None => Ok(()),
+            Some((passage, at)) => {
+                let [x, y, z] = [at.x, at.y, at.z];
+                let place = format!("{passage}, near ({x:.4}, {y:.4}, {z:.4}) m");
+                Err(self.failure(FailureKind::Interpenetrated, &place))
+            }
+        }
+    }
+}
