@@ -109,13 +109,15 @@ impl GasBooks {
 
 /// The share of its final value below which a divisor never falls.
 const DIVISOR_FLOOR: f64 = 0.01;
-/// What is nothing, J or kg: film at rest is left with rounding of this order at most.
-const NOTHING: f64 = 1e-18;
+
+/// Kinetic energy below which film is at rest, J: some hundred times k T. Rounding alone moves film
+/// that nothing loads (1e-27 J for a metre of it), and closes no ledger.
+const REST: f64 = 1e-18;
 
 /// Residual of the film's energy at every sample of a series.
 pub fn residuals(series: &[Ledger]) -> Vec<f64> {
     let Some(start) = series.first() else { return Vec::new() };
-    let mut peak_kinetic = 0.0_f64;
+    let mut peak_kinetic = REST;
     let moved: Vec<f64> = series
         .iter()
         .map(|ledger| {
@@ -142,7 +144,7 @@ fn relative(defects: &[f64], moved: &[f64]) -> Vec<f64> {
     let floor = DIVISOR_FLOOR * moved.last().copied().unwrap_or(0.0);
     let ratio = |(defect, moved): (&f64, &f64)| {
         // Nothing moved and nothing amiss is no error; something amiss where nothing moved is.
-        if *defect == 0.0 { 0.0 } else { defect.abs() / moved.max(floor).max(NOTHING) }
+        if *defect == 0.0 { 0.0 } else { defect.abs() / moved.max(floor) }
     };
     defects.iter().zip(moved).map(ratio).collect()
 }

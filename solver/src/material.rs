@@ -205,6 +205,7 @@ impl PlaneLanes {
     }
 
     /// Each times its own number.
+    #[must_use]
     #[inline(always)]
     pub fn scale(self, factor: Lanes) -> Self {
         Self { xx: self.xx * factor, yy: self.yy * factor, xy: self.xy * factor }

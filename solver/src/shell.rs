@@ -165,6 +165,9 @@ impl Shell {
 
     /// Closes every boundary loop by a fan of closing faces; gives the nodes added for their tips,
     /// which bear no film and must be held.
+    ///
+    /// # Panics
+    /// At 2³² nodes.
     pub fn close(&mut self) -> Vec<u32> {
         let mut tips = Vec::new();
         for (apex, path) in self.fans() {

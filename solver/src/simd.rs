@@ -1,6 +1,6 @@
 //! Eight elements at a time: plain arithmetic on `[f64; 8]`, compiled for several instruction sets.
 //!
-//! A kernel is written once over [`Lanes`] and is `#[inline(always)]`; [`dispatch!`] instantiates it
+//! A kernel is written once over [`Lanes`] and is `#[inline(always)]`; `dispatch!` instantiates it
 //! under `#[target_feature]` and picks at run time. Every lane does the same additions,
 //! multiplications, divisions and square roots in the same order on every path, nothing is
 //! contracted to a fused multiply-add, and sums over lanes are one fixed tree: the bits are equal,
@@ -120,6 +120,7 @@ impl Lanes {
         column[at..at + WIDTH].copy_from_slice(&self.0);
     }
 
+    #[expect(clippy::needless_range_loop, reason = "iterators are not inlined either")]
     #[inline(always)]
     fn zip(self, other: Self, join: impl Fn(f64, f64) -> f64) -> Self {
         // A plain loop: the array's own `map` and `from_fn` are not inlined into another instruction set.
@@ -131,24 +132,28 @@ impl Lanes {
     }
 
     /// Square roots.
+    #[must_use]
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.zip(self, |a, _| a.sqrt())
     }
 
     /// Quotients.
+    #[must_use]
     #[inline(always)]
     pub fn over(self, other: Self) -> Self {
         self.zip(other, |a, b| a / b)
     }
 
     /// The larger of each pair.
+    #[must_use]
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
 
     /// `yes` where this is above 0, else `no`.
+    #[must_use]
     #[inline(always)]
     pub fn if_positive(self, yes: Self, no: Self) -> Self {
         Self(core::array::from_fn(|lane| if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] }))
@@ -295,6 +300,7 @@ impl Vectors {
     }
 
     /// Vector products.
+    #[must_use]
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
@@ -305,6 +311,7 @@ impl Vectors {
     }
 
     /// Each vector times its own number.
+    #[must_use]
     #[inline(always)]
     pub fn scale(self, factor: Lanes) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }

@@ -145,7 +145,10 @@ impl Supports {
             }
             let axes = (0..3).all(|k| {
                 let row: Vec<f64> = (0..3).map(|l| projector[(k, l)]).collect();
-                row.iter().enumerate().all(|(l, p)| *p == 0.0 || (l == k && *p == 1.0))
+                // Exactly 0, or 1 on the diagonal: anything else is oblique.
+                row.iter()
+                    .enumerate()
+                    .all(|(l, p)| p.abs() <= 0.0 || (l == k && (p - 1.0).abs() <= 0.0))
             });
             if axes {
                 all.free.set(node as usize, projector.diagonal());

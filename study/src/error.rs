@@ -23,6 +23,14 @@ pub enum Error {
     /// A signal ended the command: exit code 128 + its number.
     #[error("stopped by signal {0}; what is finished is kept, the same command goes on from here")]
     Signal(i32),
+    /// A signal ended a single run: exit code 128 + its number.
+    #[error("stopped by signal {signal}; {next}")]
+    Interrupted {
+        /// Number of the signal.
+        signal: i32,
+        /// What is kept and how to go on.
+        next: String,
+    },
     /// The reader of our output went away: quiet, exit code 0.
     #[error("output closed")]
     OutputClosed,
@@ -77,7 +85,9 @@ impl Error {
         match self {
             Self::Input(_) | Self::Disk { .. } => ExitCode::from(2),
             Self::JobsFailed(_) => ExitCode::from(1),
-            Self::Signal(number) => ExitCode::from(u8::try_from(128 + number).unwrap_or(u8::MAX)),
+            Self::Signal(number) | Self::Interrupted { signal: number, .. } => {
+                ExitCode::from(u8::try_from(128 + number).unwrap_or(u8::MAX))
+            }
             Self::OutputClosed => ExitCode::SUCCESS,
         }
     }

@@ -174,6 +174,21 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
 }
 
+/// Whether a file could be written there: before a long run, not after it.
+///
+/// # Errors
+/// Its folder is none, or it is itself a folder.
+pub fn check_place(path: &Path) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if !fs::metadata(folder.unwrap_or(Path::new(".")))?.is_dir() {
+        return Err(io::ErrorKind::NotADirectory.into());
+    }
+    match fs::metadata(path) {
+        Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        _ => Ok(()),
+    }
+}
+
 /// Writes a whole file, or leaves what was there: temporary name in the same folder, sync, rename,
 /// sync of the folder.
 ///
@@ -232,6 +247,9 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "\n  next: make the folder writable, or choose another with --results DIR"
+        }
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
+            "\n  next: name a file in a folder that is there"
         }
         _ => "",
     };

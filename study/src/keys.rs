@@ -123,6 +123,11 @@ impl Key {
         }
     }
 
+    /// The key as a file would have it, as in `"thickness": "25.4 um"`.
+    pub fn sample(&self) -> String {
+        format!("\"{}\": {}", self.leaf(), self.example)
+    }
+
     /// Reads a value: units to SI, 8.0 as the whole number 8 and 8 as the number 8.0, −0 as 0.
     ///
     /// # Errors
@@ -201,13 +206,11 @@ impl Key {
     /// # Errors
     /// As [`Self::read_parts`], and a part that is `null`.
     pub fn read_vector(&self, json: &Json) -> Result<[f64; 3], Refusal> {
-        match self.read_parts(json)? {
-            [Some(x), Some(y), Some(z)] => Ok([x, y, z]),
-            _ => {
-                let problem = "has a part that is null".to_owned();
-                Err(Refusal { problem, allowed: self.allowed() })
-            }
-        }
+        let [Some(x), Some(y), Some(z)] = self.read_parts(json)? else {
+            let problem = "has a part that is null".to_owned();
+            return Err(Refusal { problem, allowed: self.allowed() });
+        };
+        Ok([x, y, z])
     }
 }
 

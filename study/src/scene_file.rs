@@ -5,6 +5,7 @@
 //! ```
 //! Everything that can be wrong with a scene is found here, before anything runs.
 
+mod conflicts;
 mod contact;
 mod filling;
 mod mesh;
@@ -62,6 +63,8 @@ pub struct SceneFile {
     pub notes: Vec<String>,
 }
 
+const BESIDE: &str = "\n  next: paths in a scene are relative to the scene file";
+
 /// Where a scene's values and files come from.
 pub(crate) struct Reader {
     source: Source,
@@ -76,7 +79,7 @@ impl Reader {
         let path = self.folder.join(name);
         let disk = |problem: String| Error::Disk { path: path.clone(), problem };
         let bytes = files::read_at_most(&path, LARGEST_MESH)
-            .map_err(|error| disk(format!("cannot read what {key} names: {error}")))?
+            .map_err(|error| disk(format!("cannot read what {key} names: {error}{BESIDE}")))?
             .ok_or_else(|| disk(format!("larger than {} MiB", LARGEST_MESH >> 20)))?;
         self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
         String::from_utf8(bytes).map_err(|error| {
@@ -116,6 +119,7 @@ impl SceneFile {
         let mut shape = shape::read(tree, &settings, reader)?;
         let filling = filling::read(tree, &settings, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &settings, &shape, &reader.source)?;
+        conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
             for mover in std::mem::take(&mut seating) {

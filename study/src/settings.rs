@@ -157,8 +157,11 @@ pub(crate) fn check_version(tree: &Json, source: &Source) -> Result<(), InputErr
 
 /// Reads one value of a key at a place.
 pub(crate) fn read(key: &Key, json: &Json, at: &str, source: &Source) -> Result<Value, InputError> {
-    key.read(json)
-        .map_err(|refusal| source.error(at, &json.brief(), refusal.problem, refusal.allowed))
+    key.read(json).map_err(|refusal| {
+        let mut error = source.error(at, &json.brief(), refusal.problem, refusal.allowed);
+        error.hint = format!("write it as in {}", key.sample());
+        error
+    })
 }
 
 /// The members of an object.

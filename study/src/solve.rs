@@ -82,7 +82,9 @@ fn rest(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
     match statics::solve(&scene.film, &mut watch) {
         Ok(solution) => Ok((row::DONE, Ended::Rest(Box::new(solution)))),
         Err(StaticError::NoState(failure)) => match (failure.kind, stop.requested()) {
-            (StaticFailureKind::Stopped, Some(signal)) => Err(Error::Signal(signal)),
+            (StaticFailureKind::Stopped, Some(signal)) => {
+                Err(Error::Interrupted { signal, next: "nothing is stored".to_owned() })
+            }
             _ => Ok(("no_equilibrium", Ended::NoRest(failure))),
         },
         Err(error) => Err(refused("", "solver.static", &error.to_string(), "").into()),
@@ -140,7 +142,14 @@ fn motion(
             stored = model.steps();
         }
         if let Some(signal) = signal {
-            return Err(Error::Signal(signal));
+            let next = match &pauses.checkpoint {
+                Some(path) => {
+                    let (steps, path) = (model.steps(), path.display());
+                    format!("step {steps} is stored; go on with --resume {path}")
+                }
+                None => "nothing is stored without --checkpoint FILE".to_owned(),
+            };
+            return Err(Error::Interrupted { signal, next });
         }
         if over {
             break None;

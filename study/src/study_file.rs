@@ -219,7 +219,10 @@ pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, 
     let text = std::str::from_utf8(bytes)
         .map_err(|error| refuse(format!("not UTF-8 from byte {} on", error.valid_up_to()), ""))?;
     if text.trim().is_empty() {
-        return Err(refuse("empty".to_owned(), "start from a file in studies/"));
+        return Err(refuse(
+            "empty".to_owned(),
+            "start from a file in studies/ (or, for one scene, scenes/)",
+        ));
     }
     Ok(text)
 }

@@ -9,7 +9,7 @@
 //! | `temperature`, `gas_mass` | of the gas: K (of the film where there is none), kg |
 //! | `extents` | x, y, z: least and largest place of the film's nodes, m |
 //! | `nodes` | place of each node followed, m |
-//! | `resultants` | of each element followed: `N1` ≥ `N2` principal second Piola-Kirchhoff membrane forces per reference width, `T1` ≥ `T2` true (Cauchy) ones per width now, N/m; `S1`, `S2` N over thickness, Pa; `regime` taut, wrinkled, slack |
+//! | `resultants` | principal membrane forces of each element followed, the larger first, N/m: `N1`, `N2` second Piola-Kirchhoff, per reference width; `P1`, `P2` nominal (first Piola-Kirchhoff): the force itself, per reference width, in size; `T1`, `T2` true (Cauchy): the force itself, per width as it is. `S1`, `S2`: N over thickness, Pa; `regime` taut, wrinkled, slack |
 //! | `reactions` | of each support: `force` (N) it exerts on the film and its `moment` about the origin (N m); without inertia; a node of two supports counts in both |
 //! | `ledger` | every entry since the start, J, and its largest `residual`; `gas_residual` |
 //! | `passages`, `intersections` | film through film: counted over the run; largest number at a sample (at rest: at the end); null where contact is off |
@@ -72,6 +72,7 @@ fn film(scene: &SceneFile, model: &FilmModel, places: &Field) -> Json {
         let own = resultants(model, places, *element as usize);
         let thickness = thickness(model, *element as usize);
         let [n1, n2] = own.principal;
+        let [p1, p2] = own.nominal;
         let [t1, t2] = own.cauchy;
         let regime = match own.regime {
             Regime::Taut => "taut",
@@ -79,7 +80,7 @@ fn film(scene: &SceneFile, model: &FilmModel, places: &Field) -> Json {
             Regime::Slack => "slack",
         };
         let value = json!({
-            "N1": n1, "N2": n2, "T1": t1, "T2": t2,
+            "N1": n1, "N2": n2, "P1": p1, "P2": p2, "T1": t1, "T2": t2,
             "S1": n1 / thickness, "S2": n2 / thickness, "regime": regime,
         });
         (name.clone(), value)

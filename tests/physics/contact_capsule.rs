@@ -86,7 +86,8 @@ fn a_finer_capsule_deploys_without_a_passage() {
 /// Each fault lets film through, and the audit says so.
 #[test]
 fn the_audit_sees_what_a_fault_lets_through() {
-    let faults: [(&str, fn(&mut Law)); 3] = [
+    type Fault = (&'static str, fn(&mut Law));
+    let faults: [Fault; 3] = [
         ("edges do not meet", |law| law.edges = false),
         ("bounds ten times too wide", |law| law.bounds = 10.0),
         ("film is drawn together", |law| {

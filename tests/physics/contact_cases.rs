@@ -149,9 +149,9 @@ fn plate(height: f64, up: bool, motion: Option<Motion>) -> Plate {
     Plate { name: "plate".to_owned(), point, normal, motion, until: f64::INFINITY }
 }
 
-fn drop_by(way: f64, to: f64) -> Option<Motion> {
+fn drop_by(way: f64, to: f64) -> Motion {
     let translation = Vector3::new(0.0, 0.0, way);
-    Some(Motion { from: 0.0, to, profile: Profile::Smooth, translation, turn: None })
+    Motion { from: 0.0, to, profile: Profile::Smooth, translation, turn: None }
 }
 
 #[test]
@@ -163,8 +163,8 @@ fn a_bag_squeezed_to_a_tenth_lets_nothing_through() {
     let adjust = |setting: &mut Setting| {
         let law = setting.contact.as_mut().unwrap();
         law.plates = vec![
-            plate(-radius - 5e-3, true, drop_by(0.9 * radius, time)),
-            plate(radius + 5e-3, false, drop_by(-0.9 * radius, time)),
+            plate(-radius - 5e-3, true, Some(drop_by(0.9 * radius, time))),
+            plate(radius + 5e-3, false, Some(drop_by(-0.9 * radius, time))),
         ];
     };
     let start = gas.at_temperature(2e-7, 293.0);

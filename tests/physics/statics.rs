@@ -123,7 +123,7 @@ fn over_a_closed_film_nothing_of_the_pressure_is_left_out() {
             push[*node as usize] -= forces.fixed_rows::<3>(3 * corner);
         }
     }
-    let size = push.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    let size = push.iter().map(nalgebra::Vector3::norm).fold(0.0, f64::max);
     for node in 0..places.len() {
         let slope = (ahead[node] - behind[node]) / 2e-7;
         assert!((push[node] - slope).norm() < 1e-5 * size, "{node}");

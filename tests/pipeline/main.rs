@@ -11,6 +11,7 @@ mod physics_version;
 mod planning;
 mod resume;
 mod running;
+mod scene_files;
 mod solving;
 mod storage;
 mod study_files;

@@ -43,7 +43,7 @@ fn wait_for(desk: &Desk, child: &mut Child, jobs: usize) -> bool {
     }
 }
 
-fn signal(child: &Child, name: &str) {
+pub(crate) fn signal(child: &Child, name: &str) {
     // The shell's own: a bare system has no kill program.
     let kill = format!("kill {name} {}", child.id());
     let sent = Command::new("sh").args(["-c", &kill]).status().unwrap();

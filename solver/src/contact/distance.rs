@@ -97,7 +97,7 @@ pub fn segment_segment(x: &[Vector3<f64>; 4]) -> Closest {
         if determinant > 1e-12 * uu * vv { share(uv * vr - ur * vv, determinant) } else { 0.0 };
     let t_free = if vv > 0.0 { (uv * s + vr) / vv } else { 0.0 };
     let t = t_free.clamp(0.0, 1.0);
-    if t != t_free || vv == 0.0 {
+    if !(0.0..=1.0).contains(&t_free) || vv <= 0.0 {
         s = share(uv * t - ur, uu);
     }
     Closest::of([1.0 - s, s, t - 1.0, -t], x)

@@ -30,6 +30,7 @@ impl Law {
     ///
     /// # Errors
     /// The pair that could not be kept apart.
+    #[expect(clippy::too_many_arguments, reason = "one pass over what moves")]
     pub fn guard(
         &self,
         model: &FilmModel,
@@ -55,7 +56,7 @@ impl Law {
                 meeting.impulses += 1;
                 let kicked = at(velocities, nodes);
                 if round < ROUNDS {
-                    self.bounce(model, supports, own.pair, nodes, &x, velocities);
+                    bounce(model, supports, own.pair, nodes, &x, velocities);
                 } else {
                     stick(model, supports, nodes, velocities);
                 }
@@ -99,41 +100,40 @@ impl Law {
         }
         clear_until(x, moves, left, KEPT * gap, |x| pair.closest(x)) >= 1.0
     }
+}
 
-    /// Takes the approach of a pair out.
-    fn bounce(
-        &self,
-        model: &FilmModel,
-        supports: &Supports,
-        pair: Pair,
-        nodes: [u32; 4],
-        x: &[Vector3<f64>; 4],
-        velocities: &mut Field,
-    ) {
-        let closest = pair.closest(x);
-        let normal = closest.between / closest.squared.sqrt();
-        let mobile = nodes.map(|node| {
-            let node = node as usize;
-            supports.projector(node) * normal * model.inverse_mass[node]
-        });
-        let (mut approach, mut mobility) = (0.0, 0.0);
-        for k in 0..4 {
-            let weight = closest.weights[k];
-            approach += weight * normal.dot(&velocities.get(nodes[k] as usize));
-            mobility += weight * weight * normal.dot(&mobile[k]);
-        }
-        let helps = approach < 0.0 && mobility > 0.0;
-        if !helps {
-            // It turns into the other on the way: nothing along the line now would stop it.
-            stick(model, supports, nodes, velocities);
-            return;
-        }
-        let impulse = -approach / mobility;
-        for k in 0..4 {
-            let node = nodes[k] as usize;
-            let push = mobile[k] * (impulse * closest.weights[k]);
-            velocities.set(node, velocities.get(node) + push);
-        }
+/// Takes the approach of a pair out.
+fn bounce(
+    model: &FilmModel,
+    supports: &Supports,
+    pair: Pair,
+    nodes: [u32; 4],
+    x: &[Vector3<f64>; 4],
+    velocities: &mut Field,
+) {
+    let closest = pair.closest(x);
+    let normal = closest.between / closest.squared.sqrt();
+    let mobile = nodes.map(|node| {
+        let node = node as usize;
+        supports.projector(node) * normal * model.inverse_mass[node]
+    });
+    let (mut approach, mut mobility) = (0.0, 0.0);
+    for k in 0..4 {
+        let weight = closest.weights[k];
+        approach += weight * normal.dot(&velocities.get(nodes[k] as usize));
+        mobility += weight * weight * normal.dot(&mobile[k]);
+    }
+    let helps = approach < 0.0 && mobility > 0.0;
+    if !helps {
+        // It turns into the other on the way: nothing along the line now would stop it.
+        stick(model, supports, nodes, velocities);
+        return;
+    }
+    let impulse = -approach / mobility;
+    for k in 0..4 {
+        let node = nodes[k] as usize;
+        let push = mobile[k] * (impulse * closest.weights[k]);
+        velocities.set(node, velocities.get(node) + push);
     }
 }
 

@@ -45,6 +45,9 @@ const PASSING: Settling = Settling { residual: 1e-2, step: 1e-3, iterations: 80 
 ///
 /// # Errors
 /// [`StaticFailure`] of the last attempt.
+///
+/// # Panics
+/// Never: there is at least one attempt.
 pub fn settle(
     loaded: &Loaded<'_>,
     places: &Field,

@@ -53,6 +53,9 @@ pub struct Factor {
 
 impl Elimination {
     /// For this film with these unknowns, cut where its nodes are now (m).
+    ///
+    /// # Panics
+    /// At 2³² unknowns.
     pub fn new(model: &FilmModel, unknowns: &Unknowns, places: &Field) -> Self {
         let faces: Vec<[u32; 3]> = model.triangles.iter().chain(&model.closure).copied().collect();
         let free = |node: u32| !unknowns.own[node as usize].is_empty();
@@ -81,7 +84,9 @@ impl Elimination {
             rank[*unknown as usize] = at;
         }
         for (index, unknowns) in own.iter().enumerate() {
-            unknowns.iter().for_each(|unknown| set[*unknown as usize] = index);
+            for unknown in unknowns {
+                set[*unknown as usize] = index;
+            }
         }
         let moves = |face: &[u32; 3]| -> Vec<Move> {
             let corner = |(corner, node): (usize, &u32)| {

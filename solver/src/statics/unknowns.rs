@@ -89,6 +89,11 @@ impl Unknowns {
         self.mass.len()
     }
 
+    /// Whether all is held.
+    pub fn is_empty(&self) -> bool {
+        self.mass.is_empty()
+    }
+
     /// Forces along the unknowns, N, of these forces on nodes.
     pub fn gather(&self, forces: &Field) -> Vec<f64> {
         let mut along = self.force.clone();

@@ -26,7 +26,7 @@ pub fn square_airbag(_: &Rig) -> Outcome {
     let (mut judged, mut whole) = (Vec::new(), f64::NAN);
     for row in rows("square_airbag") {
         // The rows' first column counts cells.
-        let cells = (1_u32..).find(|cells| f64::from(*cells) >= row[0]).unwrap_or(1);
+        let cells = (1_u32..=1 << 12).find(|cells| f64::from(*cells) >= row[0]).unwrap_or(1);
         let shell = grid(cells, cells, side, side);
         let seam = nodes_where(&shell, |x| x.x >= side || x.y >= side);
         let supports = vec![

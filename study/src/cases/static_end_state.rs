@@ -84,12 +84,12 @@ fn inflate(known: &Known) -> Result<([[f64; 5]; 2], String), String> {
 }
 
 /// Rows of three meshes against the table.
-fn judge(meshes: [Known; 3]) -> Outcome {
+fn judge(meshes: &[Known; 3]) -> Outcome {
     let (rows, bands) = (rows("end_state"), numbers("end_state/bands"));
     let difference_band = number("end_state/difference_band");
     let mut found = Vec::new();
     let mut words = Vec::new();
-    for known in &meshes {
+    for known in meshes {
         let (sizes, word) = inflate(known)?;
         found.push(sizes);
         words.push(word);
@@ -132,7 +132,7 @@ fn judge(meshes: [Known; 3]) -> Outcome {
 
 /// Circular caps, on the pattern's own mesh.
 pub fn circular(_: &Rig) -> Outcome {
-    judge([pattern(7)?, pattern(14)?, pattern(28)?])
+    judge(&[pattern(7)?, pattern(14)?, pattern(28)?])
 }
 
 /// The pattern's own mesh, erected.
@@ -151,7 +151,7 @@ fn pattern(subdivisions: u32) -> Result<Known, String> {
 pub fn aligned(_: &Rig) -> Outcome {
     let [bottom, top, height] =
         ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
-    judge([8, 16, 32].map(|fine| {
+    judge(&[8, 16, 32].map(|fine| {
         let capped = capped(fine, [bottom, top], height);
         Known { shell: capped.shell, rims: capped.rims, poles: capped.poles }
     }))

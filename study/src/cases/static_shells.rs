@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Stretches are those of mean radii against the same mesh unloaded. The cylinder's end is a rigid
-//! plane pushed by p π (R λ_hoop)², the cone's a rigid disc pushed by p π r²; the cone's forces are
+//! plane pushed by `p π (R λ_hoop)²`, the cone's a rigid disc pushed by `p π r²`; the cone's forces are
 //! true ones (per width as it is) over its middle third, each at its own radius.
 
 use core::f64::consts::PI;

@@ -10,7 +10,7 @@ use billow_solver::simd;
 use super::print::print_rows;
 use super::{Format, Global, output_error};
 use crate::error::{Error, InputError, Result};
-use crate::files::{Disk, disk_error, write_atomic};
+use crate::files::{Disk, check_place, disk_error, write_atomic};
 use crate::history_file;
 use crate::job::JobId;
 use crate::row;
@@ -112,8 +112,11 @@ fn instruction_set() -> Result<simd::Path> {
     }))
 }
 
-/// What a state of rest has none of is not asked for.
+/// What cannot be written, or what a state of rest has none of, is not asked for.
 fn check_files(args: &Args, scene: &SceneFile) -> Result<()> {
+    for path in [&args.out, &args.shape, &args.checkpoint].into_iter().flatten() {
+        check_place(path).map_err(|error| disk_error(path, &error))?;
+    }
     let pausing = args.checkpoint.is_some() || args.resume.is_some();
     let flag = match (&args.out, pausing) {
         (Some(_), _) => "--out",

@@ -76,8 +76,12 @@ impl<'a> Object<'a> {
 
     /// The error of a key that is not given.
     pub fn missing(&self, name: &str) -> InputError {
-        let allowed = self.keys.iter().find(|key| key.path == name).map(Key::allowed);
-        self.error(name, "missing", allowed.unwrap_or_default())
+        let Some(key) = self.keys.iter().find(|key| key.path == name) else {
+            return self.error(name, "missing", "");
+        };
+        let mut error = self.error(name, "missing", key.allowed());
+        error.hint = format!("give it, as in {}", key.sample());
+        error
     }
 
     fn value(&self, name: &str) -> Result<Value, InputError> {
@@ -110,7 +114,9 @@ impl<'a> Object<'a> {
     }
 
     fn refused(&self, name: &str, refusal: Refusal) -> InputError {
-        self.error(name, refusal.problem, refusal.allowed)
+        let mut error = self.error(name, refusal.problem, refusal.allowed);
+        error.hint = format!("write it as in {}", self.key(name).sample());
+        error
     }
 
     /// Three numbers, where given.

@@ -280,10 +280,8 @@ pub(super) fn motion(
 ) -> Result<Motion, InputError> {
     let object = Object::new(json, at, "a move", MOVE_KEYS, &["rotation"], source)?;
     let from = object.needed("from")?;
-    let to = match (object.number("to")?, settings.number("solver.end_time")) {
-        (Some(to), _) | (None, Some(to)) => to,
-        (None, None) => return Err(object.missing("to")),
-    };
+    let to = object.number("to")?.or_else(|| settings.number("solver.end_time"));
+    let to = to.ok_or_else(|| object.missing("to"))?;
     if to <= from {
         let problem = "the move ends before it begins";
         return Err(object.error("to", problem, format!("above its `from`, {from} s")));

@@ -13,10 +13,12 @@ pub(crate) fn missing(settings: &Settings, path: &str, source: &Source) -> Input
     let table = settings.table();
     let key = table.index(path).map(|at| table.keys[at]);
     let leaf = key.map_or(path, |key| key.leaf());
-    let allowed = key.map_or_else(String::new, |key| key.allowed());
+    let allowed = key.map_or_else(String::new, crate::keys::Key::allowed);
     let mut error = source.error(path, "", "missing", allowed);
     if table.structured.contains(&"grid") {
         error.hint = format!("give it here, or vary {leaf} under grid");
+    } else if let Some(key) = key {
+        error.hint = format!("give it, as in {}", key.sample());
     }
     error
 }

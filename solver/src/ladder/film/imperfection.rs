@@ -53,7 +53,6 @@ pub fn imperfect(places: &mut [Vector3<f64>], seed: u64, amplitude: f64) {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
 

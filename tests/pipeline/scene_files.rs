@@ -1,0 +1,229 @@
+//! Scene files: meshes of other programs, and what is wrong with broken scenes, flags and files.
+
+use billow_study::keys::{
+    BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS,
+    SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
+};
+use billow_study::schema::scene_schema;
+use serde_json::{Value, json};
+
+use crate::solving::{CUBE, capsule, cube, desk, done, number, solve};
+use crate::support::stderr;
+
+#[test]
+fn the_schema_has_every_key() {
+    let schema = scene_schema();
+    let has = |place: &str, key: &str| {
+        let found = schema.pointer(&format!("{place}/properties/{key}"));
+        let found = found.unwrap_or_else(|| panic!("{key} of {place} is missing"));
+        assert!(found["description"].as_str().is_some_and(|text| text.len() > 5), "{key}");
+    };
+    for key in &SCENE.keys {
+        let (section, leaf) = key.path.rsplit_once('.').unwrap_or(("", key.path));
+        // A species is a word or an object of its own.
+        if section == "gas.species" {
+            assert!(schema["properties"]["gas"].to_string().contains(&format!("{leaf:?}")));
+            continue;
+        }
+        let place = if section.is_empty() { "" } else { &format!("/properties/{section}") };
+        has(place, leaf);
+    }
+    let support = "/properties/supports/items";
+    for (place, keys) in [
+        ("/properties/mesh".to_owned(), MESH_KEYS),
+        ("/properties/gas/properties/windows/items".to_owned(), SCENE_WINDOW_KEYS),
+        (support.to_owned(), SUPPORT_KEYS),
+        (format!("{support}/properties/body"), BODY_KEYS),
+        (format!("{support}/properties/move"), MOVE_KEYS),
+        (format!("{support}/properties/move/properties/rotation"), ROTATION_KEYS),
+        ("/properties/start".to_owned(), START_KEYS),
+        ("/properties/start/properties/spin".to_owned(), SPIN_KEYS),
+        ("/properties/outputs".to_owned(), OUTPUT_KEYS),
+    ] {
+        for key in keys {
+            has(&place, key.path);
+        }
+    }
+    for (place, key) in [
+        ("/properties/mesh", "reference"),
+        ("/properties/mesh", "closure"),
+        (support, "nodes"),
+        ("/properties/outputs", "nodes"),
+        ("/properties/outputs", "elements"),
+        ("", "gravity"),
+    ] {
+        has(place, key);
+    }
+}
+
+#[test]
+fn meshes_of_other_programs_are_taken() {
+    let gas = json!({"initial_pressure": "0.1 Pa"});
+    let volume = |mesh: &Value, files: &[(&str, &str)]| {
+        let scene = cube(mesh, &gas);
+        assert!(jsonschema::validator_for(&scene_schema()).unwrap().is_valid(&scene));
+        number(&done(desk(&scene, files).path(), &["scene.json", "-q"], ""), "/volume")
+    };
+    let cube_file = ("cube.obj", CUBE);
+    let near =
+        |volume: f64, expected: f64| assert!((volume / expected - 1.0).abs() < 3e-3, "{volume}");
+    near(volume(&json!({"positions": "cube.obj"}), &[cube_file]), 1.0);
+    near(volume(&json!({"positions": "cube.obj", "scale": 0.1}), &[cube_file]), 1e-3);
+    near(volume(&json!({"positions": "cube.obj", "closure": ["lid"]}), &[cube_file]), 1.0);
+    // Without its lid it is open, and a fan closes it; or faces of another file do.
+    let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\r\n");
+    near(volume(&json!({"positions": "open.obj"}), &[("open.obj", &open)]), 1.0);
+    let lid = [("open.obj", open.as_str()), ("lid.obj", "f 5 6 7 8\n")];
+    near(volume(&json!({"positions": "open.obj", "closure": "lid.obj"}), &lid), 1.0);
+    // Every face with vertices of its own: joined where asked.
+    let (vertices, faces): (Vec<&str>, Vec<&str>) =
+        CUBE.lines().partition(|line| line.starts_with("v "));
+    let mut apart = String::new();
+    for face in faces.iter().filter(|line| line.starts_with("f ")) {
+        for corner in face.split_whitespace().skip(1) {
+            apart += vertices[corner.parse::<usize>().unwrap() - 1];
+            apart += "\n";
+        }
+        apart += "f -4 -3 -2 -1\n";
+    }
+    let apart = [("apart.obj", apart.as_str())];
+    near(volume(&json!({"positions": "apart.obj", "weld": 0}), &apart), 1.0);
+    near(volume(&json!({"positions": "apart.obj", "weld": "1 um"}), &apart), 1.0);
+    let scene = cube(&json!({"positions": "apart.obj"}), &gas);
+    let output = solve(desk(&scene, &apart).path(), &["scene.json"], "");
+    assert_eq!(output.status.code(), Some(2));
+    let error = stderr(&output);
+    assert!(error.contains("leaks") && error.contains("mesh.weld"), "{error}");
+    // A reference cut apart, as flattening programs leave it, and the same face by face.
+    let flat = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n".repeat(6)
+        + "f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\nf 17 18 19 20\nf 21 22 23 24\n";
+    let files = [cube_file, ("flat.obj", flat.as_str())];
+    near(volume(&json!({"positions": "cube.obj", "reference": "flat.obj"}), &files), 1.0);
+    let square = json!([[0, 0], ["1 m", 0], [1, "100 cm"], [0, 1]]);
+    let inline = json!([square, square, square, square, square, square]);
+    near(volume(&json!({"positions": "cube.obj", "reference": inline}), &[cube_file]), 1.0);
+}
+
+#[test]
+fn what_is_wrong_is_said_once_and_where() {
+    let inward: String = CUBE
+        .lines()
+        .map(|line| match line.strip_prefix("f ") {
+            Some(rest) => {
+                let mut corners: Vec<&str> = rest.split_whitespace().collect();
+                corners.reverse();
+                format!("f {}\n", corners.join(" "))
+            }
+            None => format!("{line}\n"),
+        })
+        .collect();
+    let nan = CUBE.replace("v 1 0 0", "v nan 0 0");
+    let wild = CUBE.to_owned() + "f 1 2 99\n";
+    let twisted = CUBE.replace("f 5 6 7 8", "f 8 7 6 5");
+    let files: Vec<(&str, &str)> = vec![
+        ("cube.obj", CUBE),
+        ("inward.obj", &inward),
+        ("twisted.obj", &twisted),
+        ("stl.obj", "solid x\n"),
+        ("none.obj", "v 0 0 0\n"),
+        ("nan.obj", &nan),
+        ("wild.obj", &wild),
+        ("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"),
+    ];
+    let sound = cube(&json!({"positions": "cube.obj"}), &json!({"initial_pressure": "0.1 Pa"}));
+    let body = json!({"on": "plane", "point": [0, 0, 1], "normal": [0, 0, 1], "body": {"mass": 1}});
+    let held_twice = json!([body, {"on": "nodes", "nodes": [4], "fix": "z"}]);
+    let moved_twice = json!([
+        {"on": "all", "fix": "yx"},
+        {"name": "lid", "on": "box", "min": [null, null, 1], "fix": "x",
+         "move": {"translation": ["1 mm", 0, 0]}},
+    ]);
+    let cases: Vec<(&str, Value, &[&str])> = vec![
+        ("/mesh/positions", json!("inward.obj"), &["mesh.positions", "wound inward", "flip"]),
+        ("/mesh/positions", json!("twisted.obj"), &["wind against each other", "vertices"]),
+        ("/mesh/positions", json!("stl.obj"), &["stl.obj", "line 1", "no keyword"]),
+        ("/mesh/positions", json!("none.obj"), &["no faces"]),
+        ("/mesh/positions", json!("gone.obj"), &["gone.obj", "mesh.positions", "next: paths"]),
+        ("/mesh/positions", json!("nan.obj"), &["nan.obj", "line 3", "no finite number"]),
+        ("/mesh/positions", json!("wild.obj"), &["wild.obj", "line 18", "vertex 99 of 9"]),
+        ("/mesh/positions", json!("line.obj"), &["line 5", "no area"]),
+        ("/mesh/positions", json!(null), &["mesh.positions: missing", "next: give it", "bag.obj"]),
+        ("/mesh/closure", json!(["lids"]), &["\"lids\"", "box, lid"]),
+        ("/mesh/closure", json!(["box"]), &["every face"]),
+        ("/mesh/weld", json!(2), &["mesh.weld", "out of range"]),
+        ("/mesh/weld", json!(1), &["welding leaves a face without area"]),
+        ("/mesh/reference", json!([[[0, 0], [1, 0], [1, 1]]]), &["has 1 faces", "6 of film"]),
+        ("/mesh/postions", json!("x"), &["did you mean positions?"]),
+        ("/design", json!({}), &["both design and mesh"]),
+        ("/gas/pressure", json!(5), &["stands beside a fixed pressure"]),
+        ("/gas/presure", json!(5), &["did you mean pressure?"]),
+        ("/gas/initial_mass", json!(1), &["beside initial_mass"]),
+        ("/gas/windows", json!([{"from": 2, "to": 1, "rate": 1}]), &["windows[0].to", "before"]),
+        ("/gas/windows", json!([{"from": 0}]), &["windows[0].rate", "missing"]),
+        ("/film", json!({"thickness": "1 kg"}), &["film.thickness", "is a mass", "next: write it"]),
+        ("/supports", json!([{"on": "ring", "which": "top", "fix": "x"}]), &["no rings"]),
+        ("/supports", json!([{"on": "box", "min": [5, 5, 5], "fix": "x"}]), &["selects nothing"]),
+        ("/supports", json!([{"on": "nodes", "nodes": [8], "fix": "x"}]), &["vertex 8", "no face"]),
+        ("/supports", json!([{"on": "nodes", "nodes": [9], "fix": "x"}]), &["vertex 9 of 9"]),
+        ("/supports", json!([{"on": "all", "fix": "xx"}]), &["supports[0].fix"]),
+        ("/supports", json!([{"on": "all", "min": [0, 0, 0], "fix": "x"}]), &["belongs to"]),
+        ("/supports", json!([{"on": "boundary", "fix": "x"}]), &["free edges"]),
+        (
+            "/supports",
+            json!([{"on": "plane", "point": [0, 0, 0], "normal": [0, 0, 0]}]),
+            &["no direction"],
+        ),
+        ("/supports", held_twice, &["supports[1]", "vertex 4", "0.0, 1.0]", "and moves otherwise"]),
+        ("/supports", moved_twice, &["\"lid\"", "vertex 4", "along [1.0"]),
+        ("/outputs/nodes", json!([99]), &["outputs.nodes", "vertex 99"]),
+        ("/outputs/elements", json!({"a": 99}), &["outputs.elements", "triangle 99 of 12"]),
+        ("/outputs/nodes", json!([{"a b": 1}]), &["is no name"]),
+        ("/solver/static", json!(true), &["no fixed pressure"]),
+        ("/solver/static", json!("yes"), &["solver.static", "true or false"]),
+        ("/solver/cfl", json!(2), &["solver.cfl"]),
+        ("/gravity", json!([0, 0]), &["gravity", "2 of three"]),
+        ("/version", json!(2), &["newer format"]),
+        ("/start", json!({"velocities": "none.obj"}), &["has 1 vertices; the mesh has 9"]),
+        ("/sead", json!(1), &["is no key of a scene"]),
+    ];
+    for (pointer, value, expected) in cases {
+        let mut scene = sound.clone();
+        let (parent, leaf) = pointer.rsplit_once('/').unwrap();
+        scene.pointer_mut(parent).unwrap()[leaf] = value.clone();
+        let output = solve(desk(&scene, &files).path(), &["scene.json"], "");
+        let error = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{pointer} = {value}: {error}");
+        assert!(output.stdout.is_empty(), "{pointer} = {value}");
+        for part in expected {
+            assert!(error.contains(part), "{pointer} = {value}: {part:?} not in {error}");
+        }
+        assert_eq!(error.matches("billow: ").count(), 1, "{error}");
+    }
+    assert!(solve(desk(&sound, &files).path(), &["scene.json", "-q"], "").status.success());
+}
+
+#[test]
+fn flags_that_cannot_be_are_refused() {
+    let folder = desk(&capsule(), &[("rest.json", ""), ("broken", "{\"format\": 1}")]);
+    for (arguments, simd, expected) in [
+        (&["scene.json"][..], "neon", "scalar"),
+        (&["scene.json", "--resume", "gone"], "", "gone"),
+        (&["scene.json", "--resume", "broken"], "", "no sound checkpoint"),
+        (&["scene.json", "--every", "5"], "", "--checkpoint"),
+        (&["scene.json", "--threads", "0"], "", "--threads"),
+        (&["gone.json"], "", "scenes/sphere.json"),
+        (&["scene.json", "--out", "none/a.h5"], "", "next: name a file in a folder"),
+        (&["scene.json", "--checkpoint", "."], "", "next: name a file in a folder"),
+    ] {
+        let output = solve(folder.path(), arguments, simd);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+    }
+    // A checkpoint is of its own scene.
+    let pause = ["scene.json", "-q", "--stop-after", "9", "--checkpoint", "state"];
+    done(folder.path(), &pause, "");
+    let other = ["scene.json", "-q", "--resume", "state", "--set", "film.viscosity=0.05"];
+    let output = solve(folder.path(), &other, "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("of another scene"), "{}", stderr(&output));
+}
