@@ -54,6 +54,10 @@ impl Bounds {
 
     /// Whether two boxes meet.
     #[inline]
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "six comparisons are cheaper than six branches"
+    )]
     pub fn meets(&self, other: &Self) -> bool {
         let (a, b) = (self, other);
         // All six at once: no branch but the last.

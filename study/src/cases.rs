@@ -37,6 +37,7 @@ mod sphere_motion;
 mod static_airbag;
 mod static_discs;
 mod static_end_state;
+mod static_polygon;
 mod static_rest;
 mod static_shells;
 mod static_wrinkling;

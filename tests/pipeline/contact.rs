@@ -1,5 +1,7 @@
 //! Contact through `billow solve`: scenes that touch, plates, the lid, and what is refused.
 
+use std::fmt::Write as _;
+
 use billow_study::history_file;
 use serde_json::{Value, json};
 
@@ -29,13 +31,13 @@ fn sheet(height: f64) -> String {
     for j in 0..3 {
         for i in 0..3 {
             let (x, y) = (0.1 * f64::from(i), 0.1 * f64::from(j));
-            text.push_str(&format!("v {x} {y} {height}\n"));
+            let _ = writeln!(text, "v {x} {y} {height}");
         }
     }
     for j in 0..2 {
         for i in 0..2 {
             let a = 3 * j + i + 1;
-            text.push_str(&format!("f {a} {} {}\nf {a} {} {}\n", a + 1, a + 4, a + 4, a + 3));
+            let _ = writeln!(text, "f {a} {} {}\nf {a} {} {}", a + 1, a + 4, a + 4, a + 3);
         }
     }
     text

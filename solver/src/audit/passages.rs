@@ -109,10 +109,8 @@ fn roots(x: &Four, y: &Four, ways: [(usize, usize); 3]) -> [Option<f64>; 3] {
             turns.swap(0, 1);
         }
         let valid = |t: f64| if t > 0.0 && t < 1.0 { Some(t) } else { None };
-        let mut at = 1;
-        for turn in turns.into_iter().filter_map(valid) {
-            cuts[at] = turn;
-            at += 1;
+        for (cut, turn) in cuts[1..].iter_mut().zip(turns.into_iter().filter_map(valid)) {
+            *cut = turn;
         }
     }
     core::array::from_fn(|k| {
@@ -210,14 +208,14 @@ impl Watchfulness {
     /// Frames 50 steps apart, every step of one block in a hundred.
     pub const FRAMES: Self = Self { block: 50, every_step_of_one_in: 100, seed: 0 };
 
-    /// Whether each step of the block after so many steps is looked at (SplitMix64 of seed and
-    /// number).
+    /// Whether each step of the block after so many steps is looked at (`SplitMix64` of seed
+    /// and number).
     fn closely(&self, steps: u64) -> bool {
         let mut z =
             self.seed.wrapping_add(steps.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) % self.every_step_of_one_in == 0
+        (z ^ (z >> 31)).is_multiple_of(self.every_step_of_one_in)
     }
 }
 
@@ -373,7 +371,7 @@ mod tests {
                     }
                 }
             }
-            let edges = topology.edges.len() as u32;
+            let edges = u32::try_from(topology.edges.len()).unwrap();
             for edge in 0..edges {
                 for other in edge + 1..edges {
                     let own = topology.edges[edge as usize];

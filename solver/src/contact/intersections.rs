@@ -30,7 +30,8 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
 fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     let normal = (b - a).cross(&(c - a));
     let (start, end) = (normal.dot(&(p - a)), normal.dot(&(q - a)));
-    if start * end > 0.0 || start == end {
+    // Both on the plane, or both on one side of it.
+    if start * end > 0.0 || (start - end).abs() <= 0.0 {
         return false;
     }
     let hit = p + (q - p) * (start / (start - end));

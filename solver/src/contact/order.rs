@@ -18,7 +18,7 @@ pub fn of_elements(sides: &[[u32; 3]], edges: usize) -> Vec<u32> {
         }
     }
     let mut walk = Walk { sides, at_edge, part: vec![0; sides.len()], met: Vec::new() };
-    let mut order: Vec<u32> = (0..sides.len() as u32).collect();
+    let mut order: Vec<u32> = (0_u32..).take(sides.len()).collect();
     // Parts yet to be halved: where they start and end in the order; each has a number of its own.
     let mut later = vec![(0, order.len())];
     let mut number = 0;

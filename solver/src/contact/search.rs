@@ -24,6 +24,12 @@ impl Law {
         self.reach() / BINS
     }
 
+    /// The bin that this way (m) falls into; the first where it is past.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates at 0")]
+    fn bin_of(&self, way: f64) -> usize {
+        (way / self.bin()) as usize
+    }
+
     /// Lists all pairs nearer than the radius at these places (m). Contacts stay as they are.
     pub fn search(&self, places: &Field, meeting: &mut Meeting) {
         meeting.travelled = 0.0;
@@ -84,7 +90,7 @@ impl Law {
             meeting.near.push(Near { pair, gap: distance });
             return;
         }
-        let bin = (due / self.bin()) as usize;
+        let bin = self.bin_of(due);
         if meeting.far.len() <= bin {
             meeting.far.resize_with(bin + 1, Vec::new);
         }
@@ -97,7 +103,7 @@ impl Law {
         if meeting.searches == 0 || meeting.travelled + step > self.reach() {
             self.search(places, meeting);
         }
-        let until = ((meeting.travelled + step) / self.bin()) as usize;
+        let until = self.bin_of(meeting.travelled + step);
         let before = meeting.near.len();
         while meeting.reached <= until {
             let bin = meeting.reached;

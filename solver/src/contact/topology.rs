@@ -24,6 +24,11 @@ pub struct Topology {
     at_node: Vec<u32>,
 }
 
+/// A place in a list as the elements count, in 32 bits.
+fn index(at: usize) -> u32 {
+    u32::try_from(at).expect("under 2^32")
+}
+
 /// Elements, edges and nodes in an order in which neighbours on the film are near.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Order {
@@ -75,7 +80,7 @@ impl Topology {
     /// where exactly nought) lies on: an element, an edge or a node.
     pub fn feature(&self, element: u32, weights: [f64; 3]) -> Feature {
         let on = weights.map(|weight| weight != 0.0);
-        let faces = self.triangles.len() as u32;
+        let faces = index(self.triangles.len());
         let own = element as usize;
         match on {
             [true, true, false] => faces + self.sides[own][0],
@@ -89,7 +94,7 @@ impl Topology {
     }
 
     fn node_feature(&self, node: u32) -> Feature {
-        (self.triangles.len() + self.edges.len()) as u32 + node
+        index(self.triangles.len() + self.edges.len()) + node
     }
 
     /// Elements that have this feature.
@@ -115,7 +120,7 @@ impl Topology {
             let [a, b] = self.edges[own - faces];
             [a, b, b]
         } else {
-            [(own - faces - edges) as u32; 3]
+            [index(own - faces - edges); 3]
         }
     }
 

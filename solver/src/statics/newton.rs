@@ -21,6 +21,7 @@ use super::unknowns::Unknowns;
 use crate::forces::membrane::{ElementForces, NodeForces, element_pass, node_pass};
 use crate::forces::pressure::add_closure;
 use crate::model::FilmModel;
+use crate::resultants::thickness;
 use crate::simd::Path;
 use crate::state::Field;
 use crate::supports::Supports;
@@ -362,6 +363,12 @@ fn between(low: [f64; 2], high: [f64; 2]) -> f64 {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// E t of the thickest film, N/m.
+pub(super) fn tensile_stiffness(model: &FilmModel) -> f64 {
+    let thickest = (0..model.elements()).map(|element| thickness(model, element));
+    thickest.fold(0.0, f64::max) * model.material.youngs_modulus
 }
 
 /// Longest diagonal of the box round these places, m.

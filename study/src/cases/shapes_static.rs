@@ -34,6 +34,22 @@ pub fn revolved(rings: u32, around: u32, crossed: bool, place: impl Fn(u32) -> [
     Shell::relaxed(positions, triangles)
 }
 
+/// A flat disc whose elements lie along its radii: `rings` equal steps outward, `around` nodes on
+/// each ring, one in the middle, node 0 of the last ring first.
+pub fn polar(rings: u32, around: u32, radius: f64) -> Shell {
+    let shell = revolved(rings - 1, around, false, |k| {
+        [radius * f64::from(rings - k) / f64::from(rings), 0.0]
+    });
+    let Shell { mut positions, mut triangles, .. } = shell;
+    let middle = u32::try_from(positions.len()).expect("under 2^32 nodes");
+    positions.push(Vector3::zeros());
+    let last = ring(rings - 1, around);
+    for i in 0..around as usize {
+        triangles.push([last[i], last[(i + 1) % around as usize], middle]);
+    }
+    Shell::relaxed(positions, triangles)
+}
+
 /// Nodes of one ring of [`revolved`].
 pub fn ring(ring: u32, around: u32) -> Vec<u32> {
     (ring * around..(ring + 1) * around).collect()

@@ -1,8 +1,9 @@
-//! The end state of the capsule: its cone with caps, inflated at a fixed pressure.
+//! The end state of the capsule: its cone with circular caps, a free body inflated at a fixed pressure,
+//! against the axisymmetric tension field.
 //!
-//! Circular caps on a free body, against the axisymmetric tension field, by the pattern's own mesh;
-//! and N-gon caps with the bottom ring on its stowed N-gon, as every run of the design ends, for
-//! which the numbers are our own.
+//! It is judged on a mesh along its meridians. On the pattern's own mesh the elements lie aslant to
+//! the tension of wrinkled caps and side; its sizes come near the table's, but the small differences
+//! between two pressures drown in what the mesh does to each: they are told there, not judged.
 
 use billow_solver::film_scene::{Filling, FilmScene};
 use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
@@ -19,7 +20,7 @@ use super::static_rest::{at_rest_from, film, mean};
 use super::{Outcome, Rig, Row};
 
 /// The capsule's design on this mesh.
-fn design(subdivisions: u32, caps: Caps) -> FoldDesign {
+fn design(subdivisions: u32) -> FoldDesign {
     let [bottom, top, height] =
         ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
     FoldDesign {
@@ -34,7 +35,7 @@ fn design(subdivisions: u32, caps: Caps) -> FoldDesign {
         chirality: Chirality::Same,
         stowed_height: 0.04,
         subdivisions,
-        caps,
+        caps: Caps::Circular,
     }
 }
 
@@ -83,8 +84,8 @@ fn inflate(known: &Known) -> Result<([[f64; 5]; 2], String), String> {
     Ok(([found[1], found[0]], words.join(", ")))
 }
 
-/// Rows of three meshes against the table.
-fn judge(meshes: &[Known; 3]) -> Outcome {
+/// Rows of three meshes against the table; differences between the pressures judged or told.
+fn judge(meshes: &[Known; 3], differences: bool) -> Outcome {
     let (rows, bands) = (rows("end_state"), numbers("end_state/bands"));
     let difference_band = number("end_state/difference_band");
     let mut found = Vec::new();
@@ -115,30 +116,32 @@ fn judge(meshes: &[Known; 3]) -> Outcome {
         let expected = rows[1][1 + at] - rows[0][1 + at];
         let values = [0, 1, 2].map(|mesh: usize| found[mesh][1][at] - found[mesh][0][at]);
         let errors = values.map(|value| value / expected - 1.0);
-        judged.push(
-            Row::new(
-                &format!("{name}, {} less {} Pa", rows[1][0], rows[0][0]),
-                values[2],
-                expected,
-                difference_band,
-            )
-            .with_order(order(errors[1], errors[2]))
-            .with_errors(errors)
-            .with_note(&words[2]),
-        );
+        if differences {
+            let name = format!("{name}, {} less {} Pa", rows[1][0], rows[0][0]);
+            judged.push(
+                Row::new(&name, values[2], expected, difference_band)
+                    .with_order(order(errors[1], errors[2]))
+                    .with_errors(errors)
+                    .with_note(&words[2]),
+            );
+        } else if let Some(row) = judged.pop() {
+            let [a, b, c] = errors;
+            let told = format!("difference between pressures off by {a:.2e} {b:.2e} {c:.2e}");
+            judged.push(row.with_note(&told).with_note(&words[2]));
+        }
     }
     Ok(judged)
 }
 
 /// Circular caps, on the pattern's own mesh.
-pub fn circular(_: &Rig) -> Outcome {
-    judge(&[pattern(7)?, pattern(14)?, pattern(28)?])
+pub fn pattern(_: &Rig) -> Outcome {
+    judge(&[own_mesh(7)?, own_mesh(14)?, own_mesh(28)?], false)
 }
 
 /// The pattern's own mesh, erected.
-fn pattern(subdivisions: u32) -> Result<Known, String> {
+fn own_mesh(subdivisions: u32) -> Result<Known, String> {
     let told = |error: &dyn std::fmt::Display| error.to_string();
-    let pattern = FoldPattern::new(&design(subdivisions, Caps::Circular)).map_err(|e| told(&e))?;
+    let pattern = FoldPattern::new(&design(subdivisions)).map_err(|e| told(&e))?;
     let mesh = Mesh::new(&pattern, subdivisions, Shape::Erected).map_err(|e| told(&e))?;
     Ok(Known {
         shell: Shell::of_mesh(&mesh),
@@ -151,8 +154,9 @@ fn pattern(subdivisions: u32) -> Result<Known, String> {
 pub fn aligned(_: &Rig) -> Outcome {
     let [bottom, top, height] =
         ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
-    judge(&[8, 16, 32].map(|fine| {
+    let meshes = [8, 16, 32].map(|fine| {
         let capped = capped(fine, [bottom, top], height);
         Known { shell: capped.shell, rims: capped.rims, poles: capped.poles }
-    }))
+    });
+    judge(&meshes, true)
 }

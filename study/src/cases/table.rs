@@ -3,7 +3,7 @@
 use super::{
     Case, Outcome, Rig, Tier, capsule_run, damping, drum, forces, gas_piston, gas_vessel,
     invariants, piston_model, sphere_motion, static_airbag, static_discs, static_end_state,
-    static_shells, static_wrinkling, step_limit,
+    static_polygon, static_shells, static_wrinkling, step_limit,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -188,7 +188,17 @@ pub const CASES: &[Case] = &[
     quick(
         "end_state",
         "end state of the capsule with circular caps, with the axisymmetric tension field",
-        static_end_state::circular,
+        static_end_state::aligned,
     ),
-    quick("end_state_aligned", "the same on a mesh along its meridians", static_end_state::aligned),
+    long(
+        "end_state_pattern",
+        "sizes of the same on the pattern's own mesh, whose elements lie aslant",
+        static_end_state::pattern,
+    ),
+    quick(
+        "end_state_polygon",
+        "end state of the capsule as its design ends, n 5, with billow's own numbers",
+        static_polygon::coarse,
+    ),
+    quick("end_state_polygon_fine", "the same, n 8", static_polygon::fine),
 ];
