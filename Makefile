@@ -1,6 +1,7 @@
 # make study    install what is missing, build, run studies/first.json, print its table
 # make test     the quick tier of the tests and of the reference cases (what CI runs)
 # make test-all the quick tier, the long ones, every reference case, and the Python readers
+# make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make check    formatting, lints, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
 
@@ -15,7 +16,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study test test-all test-long readers build check deps reader-deps fresh-check
+.PHONY: study test test-all test-long contact-matrix readers build check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -28,9 +29,14 @@ test: deps
 test-all: test test-long readers
 
 # Tests marked `#[ignore]` are the long tier; so are the cases `validate --quick` leaves out.
-test-long: deps
+test-long: deps reader-deps
 	$(CARGO) test $(FLAGS) -- --ignored
 	$(BILLOW) validate
+	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW) --subdivisions 5 --seeds 1
+
+# Runs it has finished are not run again.
+contact-matrix: build reader-deps
+	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW)
 
 # Opens a fresh study with h5py, xarray, pandas and pyarrow.
 readers: build reader-deps

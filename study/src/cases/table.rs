@@ -185,7 +185,7 @@ pub const CASES: &[Case] = &[
         "torque and wrinkles of a twisted annulus, with a boundary value problem",
         static_wrinkling::annulus_torsion,
     ),
-    quick(
+    long(
         "end_state",
         "end state of the capsule with circular caps, with the axisymmetric tension field",
         static_end_state::aligned,
