@@ -65,7 +65,7 @@ pub fn friction(rig: &Rig) -> Outcome {
 
 /// Height of the upper sheet after it was pulled by this pressure (Pa): lowest and highest node, m.
 fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
-    let low = sheet(12, 12, 0.4, 0.4);
+    let low = sheet(16, 16, 0.4, 0.4);
     let high = moved(sheet(4, 4, 0.2, 0.2), |x| x + Vector3::new(0.104, 0.109, DISTANCE));
     let (scene, split) = on_top(low, high);
     // Weight upwards: so much an area.
@@ -81,7 +81,7 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     };
     scene.solver.mass_damping = 200.0;
     let mut film = rig.start(&scene)?;
-    follow(&mut film, 0.035, 7, &Phase::default())?;
+    follow(&mut film, 0.05, 10, &Phase::default())?;
     let heights = &film.state.places.z[split..];
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     Ok([lowest, heights.iter().copied().fold(0.0, worse)])
