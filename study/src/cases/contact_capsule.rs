@@ -70,7 +70,7 @@ fn sound(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: f64) -
 
 /// The coarsest capsule, every step looked at: tension field and film that bears compression, both
 /// chiralities.
-pub fn capsule_every_step(rig: &Rig) -> Outcome {
+pub(super) fn capsule_every_step(rig: &Rig) -> Outcome {
     let watch = Watchfulness::EVERY_STEP;
     let mut judged = Vec::new();
     for (compression, key) in [(0.0, "ledger_band"), (1.0, "compressed_ledger_band")] {
@@ -125,17 +125,17 @@ fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
 }
 
 /// The deployed capsule on a coarse mesh.
-pub fn capsule_deployed(rig: &Rig) -> Outcome {
+pub(super) fn capsule_deployed(rig: &Rig) -> Outcome {
     deployed(rig, 5)
 }
 
 /// The same on a finer one.
-pub fn capsule_deployed_fine(rig: &Rig) -> Outcome {
+pub(super) fn capsule_deployed_fine(rig: &Rig) -> Outcome {
     deployed(rig, 8)
 }
 
 /// The volume at the end, with half and with twice the contact distance.
-pub fn contact_distance(rig: &Rig) -> Outcome {
+pub(super) fn contact_distance(rig: &Rig) -> Outcome {
     let scene = paper_capsule(5, 0.3);
     let (run, _) = deploy(rig, &scene, FilmContact::default())?;
     let usual = run.film.setting.contact.as_ref().ok_or("no contact")?.distance;
