@@ -25,6 +25,13 @@ mod shapes_static;
 mod table;
 
 pub mod capsule_run;
+pub mod contact_capsule;
+mod contact_meetings;
+mod contact_relaxed;
+pub mod contact_rig;
+mod contact_rubbing;
+mod contact_stack;
+mod contact_tube;
 mod damping;
 mod drum;
 mod forces;

@@ -12,9 +12,7 @@
 mod allocation;
 mod capsule;
 mod conservation;
-mod contact_capsule;
-mod contact_cases;
-mod contact_tube;
+mod contact_bits;
 mod explicit_bits;
 mod explicit_cases;
 mod exports;

@@ -4,6 +4,7 @@
 
 mod broken_studies;
 mod contact;
+mod contact_audit;
 mod determinism;
 mod folding;
 mod mutations;

@@ -7,16 +7,17 @@
 use billow_solver::course::Phase;
 use billow_solver::deployment::Model;
 use billow_solver::deployment::Unobserved;
-use billow_solver::film_scene::{Filling, FilmScene, FilmSupport, Hold, Motion, Profile, Turn};
+use billow_solver::film_scene::{
+    Filling, FilmContact, FilmScene, FilmSupport, Hold, Motion, Profile, Turn,
+};
 use billow_solver::gas::Inflow;
 use billow_solver::history::COLUMNS;
-use billow_solver::integrate::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::integrate::explicit::Explicit;
 use billow_solver::ladder;
-use billow_solver::ladder::film::FilmRun;
-use billow_solver::measures::Reference;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer, InflowWindow, Scene};
 use billow_study::cases::Rig;
 use billow_study::cases::capsule_run::paper_capsule;
+use billow_study::cases::contact_capsule::stowed;
 use billow_study::cases::rig::{film, held, nitrogen, scene};
 use billow_study::cases::shapes_dynamic::{icosphere, pattern, sheet, tube};
 use nalgebra::Vector3;
@@ -37,7 +38,7 @@ fn piston(scene: &Scene) -> String {
     hash(columns.flatten().copied())
 }
 
-/// Of film's end state: places, velocities, gas, works.
+/// Of film's end state: places, velocities, gas, works; that of contact where there is any.
 fn end_state(film: &Explicit) -> String {
     let state = &film.state;
     let fields = [&state.places, &state.velocities].map(|field| [&field.x, &field.y, &field.z]);
@@ -56,7 +57,8 @@ fn end_state(film: &Explicit) -> String {
         works.viscous,
         works.damping,
     ];
-    hash(nodes.chain(scalars))
+    let met = film.setting.contact.as_ref().map(|_| works.contact);
+    hash(nodes.chain(scalars).chain(met))
 }
 
 fn window(from: f64, to: f64, rate: f64) -> InflowWindow {
@@ -80,12 +82,13 @@ fn preinflated() -> String {
     piston(&scene)
 }
 
+/// Film on film from the first millisecond on.
 fn capsule() -> String {
-    let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    let mut run = FilmRun::from_scene(&paper_capsule(2, 0.003), DEFAULT_CFL, None, reference)
-        .expect("a capsule");
+    let contact = FilmContact::default();
+    let mut run = stowed(&paper_capsule(2, 0.02), contact).expect("a capsule");
     let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
-    run.advance(3e-3, &Phase { packed: false, inflow }).expect("it runs");
+    run.advance(0.02, &Phase { packed: false, inflow }).expect("it runs");
+    assert!(run.film.state.meeting.searches > 10 && run.film.state.works.contact != 0.0);
     end_state(&run.film)
 }
 
@@ -153,7 +156,7 @@ fn the_physics_changes_only_with_its_version() {
     let hashes = json!({
         "piston, rapid inflation with heat and leak": rapid(),
         "piston, preinflated and packed": preinflated(),
-        "film, capsule of two subdivisions for 3 ms": capsule(),
+        "film, capsule of two subdivisions with contact for 20 ms": capsule(),
         "film, sphere with gas, heat and leak in air": sphere(),
         "film, viscous sheet under gravity, compression 0.3": falling_sheet(),
         "film, tube with a moving support": turned_tube(),

@@ -165,7 +165,8 @@ impl Law {
                     (self.first_offset(pair.kind, before, gap), self.pair_stiffness(pair, mass))
                 };
             let offset = offset.max(gap.min(self.distance));
-            let adhesion = self.adhesion.pressure * mass[node as usize] / self.area_density;
+            // Half: where two films lie on each other the nodes of both pull, each for its share of area.
+            let adhesion = 0.5 * self.adhesion.pressure * mass[node as usize] / self.area_density;
             let contact = Contact { pair, feature, offset, stiffness, gap, adhesion, energy: 0.0 };
             meeting.contacts.push(contact);
         }

@@ -4,12 +4,13 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-static FILES: LazyLock<[Value; 4]> = LazyLock::new(|| {
+static FILES: LazyLock<[Value; 5]> = LazyLock::new(|| {
     [
         include_str!("../../../tests/reference/gas.json"),
         include_str!("../../../tests/reference/film.json"),
         include_str!("../../../tests/reference/dynamics.json"),
         include_str!("../../../tests/reference/statics.json"),
+        include_str!("../../../tests/reference/contact.json"),
     ]
     .map(|text| serde_json::from_str(text).expect("JSON in tests/reference"))
 });

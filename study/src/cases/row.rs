@@ -40,6 +40,13 @@ impl Row {
         Self { reference: Some(floor), ..Self::judged(quantity, value, None, error, 0.0) }
     }
 
+    /// A value that should lie between two numbers: to half their difference about their middle.
+    pub fn within(quantity: &str, value: f64, from: f64, to: f64) -> Self {
+        let middle = 0.5 * (from + to);
+        let half = 0.5 * (to - from) / middle;
+        Self::new(quantity, value, middle, half).with_note(&format!("asked for {from} to {to}"))
+    }
+
     fn judged(quantity: &str, value: f64, reference: Option<f64>, error: f64, band: f64) -> Self {
         let quantity = quantity.to_owned();
         // No NaN passes.

@@ -1,7 +1,8 @@
 //! The table of cases.
 
 use super::{
-    Case, Outcome, Rig, Tier, capsule_run, damping, drum, forces, gas_piston, gas_vessel,
+    Case, Outcome, Rig, Tier, capsule_run, contact_capsule, contact_meetings, contact_relaxed,
+    contact_rubbing, contact_stack, contact_tube, damping, drum, forces, gas_piston, gas_vessel,
     invariants, piston_model, sphere_motion, static_airbag, static_discs, static_end_state,
     static_polygon, static_shells, static_wrinkling, step_limit,
 };
@@ -201,4 +202,69 @@ pub const CASES: &[Case] = &[
         static_polygon::coarse,
     ),
     quick("end_state_polygon_fine", "the same, n 8", static_polygon::fine),
+    quick(
+        "stack",
+        "pressure between sheets pressed flat, with the pressure on them, at three contact distances",
+        contact_stack::stack_of_sheets,
+    ),
+    quick(
+        "tube_between_plates",
+        "force and section of a tube squeezed between plates, with the closed form",
+        contact_tube::tube_between_plates,
+    ),
+    quick(
+        "films_at_50_m_s",
+        "two films shot at each other, with the sides they came from",
+        contact_meetings::films_at_50_m_s,
+    ),
+    quick(
+        "squeezed_bag",
+        "a closed bag squeezed to a tenth of its height: nothing passes",
+        contact_meetings::squeezed_bag,
+    ),
+    quick(
+        "dropped_sheet",
+        "a crumpled sheet thrown on a floor: nothing passes",
+        contact_meetings::dropped_sheet,
+    ),
+    quick(
+        "friction",
+        "speed a sliding film loses, with Coulomb's mu g t",
+        contact_rubbing::friction,
+    ),
+    quick(
+        "adhesion",
+        "film pulled by less and by more than the pull-off pressure: holds, parts",
+        contact_rubbing::adhesion,
+    ),
+    quick(
+        "capsule_every_step",
+        "the coarsest capsule deployed with contact, every step audited: nothing passes",
+        contact_capsule::capsule_every_step,
+    ),
+    quick(
+        "capsule_deployed",
+        "the paper's capsule deployed with contact, with what is known of its motion",
+        contact_capsule::capsule_deployed,
+    ),
+    long(
+        "capsule_deployed_fine",
+        "capsule_deployed on a finer mesh",
+        contact_capsule::capsule_deployed_fine,
+    ),
+    long(
+        "contact_distance",
+        "end volume of capsule_deployed, with that at half and twice the contact distance",
+        contact_capsule::contact_distance,
+    ),
+    long(
+        "deployed_equals_inflated",
+        "the folded capsule deployed and relaxed, with the erected one inflated statically",
+        contact_relaxed::deployed_equals_inflated,
+    ),
+    long(
+        "deployed_equals_inflated_fine",
+        "the same on a finer mesh",
+        contact_relaxed::deployed_equals_inflated_fine,
+    ),
 ];

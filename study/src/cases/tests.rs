@@ -58,6 +58,11 @@ fn rows_judge_as_they_say() {
     assert!(Row::at_most("x", 1e-13, 1e-12).pass && !Row::at_most("x", 2e-12, 1e-12).pass);
     assert!(!Row::at_most("x", f64::NAN, 1e-12).pass);
     assert!(Row::at_least("x", 1.9, 1.8).pass && !Row::at_least("x", 1.7, 1.8).pass);
+    let inside = Row::within("x", 0.026, 0.025, 0.045);
+    assert!(inside.pass && inside.reference == Some(0.035) && inside.note.contains("0.045"));
+    for outside in [0.0249, 0.0451, f64::NAN] {
+        assert!(!Row::within("x", outside, 0.025, 0.045).pass, "{outside}");
+    }
     let slow = Row::new("x", 1.0, 1.0, 1e-3).with_least_order(1.7, 1.8);
     assert!(!slow.pass && slow.order == Some(1.7) && slow.note.contains("1.8"));
     assert!(!Row::new("x", 1.0, 1.0, 1e-3).with_least_order(f64::NAN, 1.8).pass);

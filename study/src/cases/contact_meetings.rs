@@ -1,0 +1,173 @@
+//! Film that hits film, is squeezed, or falls: it stays on its side.
+//!
+//! ```text
+//! passages at any step = 0     intersections = 0     Σ m v = Σ m v at the start
+//! what was below an element of the other film is below it at the end
+//! ```
+
+use billow_solver::course::Phase;
+use billow_solver::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::integrate::explicit::Explicit;
+use billow_solver::scene::{Film, GasSupply};
+use billow_solver::shell::Shell;
+use nalgebra::Vector3;
+
+use super::contact_rig::{follow, moved, plate, together, watched};
+use super::reference::number;
+use super::rig::{film, nitrogen, scene};
+use super::shapes_dynamic::{icosphere, sheet};
+use super::{Outcome, Rig, Row};
+
+/// Contact distance, m.
+const DISTANCE: f64 = 2e-3;
+
+fn viscous() -> Film {
+    Film { viscosity: 0.1, ..film() }
+}
+
+/// A sheet, and a slanted one above it turned by a quarter: their film as one, and the nodes of the lower.
+fn two_films() -> (Shell, usize) {
+    let low = sheet(5, 4, 0.5, 0.4);
+    let turned = |x: Vector3<f64>| Vector3::new(0.45 - x.y, 0.02 + x.x * 0.9, 0.02 + 0.03 * x.x);
+    let high = moved(sheet(5, 4, 0.5, 0.4), turned);
+    let nodes = low.positions.len();
+    let mut whole = together(&[low, high.clone()]);
+    // Where it starts it is free of stress.
+    let flat = Shell::relaxed(high.positions, high.triangles).reference;
+    let first = whole.reference.len() - flat.len();
+    whole.reference[first..].copy_from_slice(&flat);
+    (whole, nodes)
+}
+
+/// Nodes that lie on the wrong side of an element of the other film, seen along z.
+fn astray(film: &Explicit, split: usize) -> usize {
+    let places: Vec<Vector3<f64>> = film.state.places.iter().collect();
+    let wrong = |node: usize| {
+        film.model.triangles.iter().any(|corners| {
+            let below = node < split;
+            if below == ((corners[0] as usize) < split) {
+                return false;
+            }
+            let [a, b, c] = corners.map(|corner| places[corner as usize]);
+            let x = places[node];
+            let (p, q, r) = ((b - a).xy(), (c - a).xy(), (x - a).xy());
+            let whole = p.perp(&q);
+            let (s, t) = (r.perp(&q) / whole, p.perp(&r) / whole);
+            let over = x.z - (a.z + (b.z - a.z) * s + (c.z - a.z) * t);
+            s >= 0.0 && t >= 0.0 && s + t <= 1.0 && (over > 0.0) == below
+        })
+    };
+    (0..places.len()).filter(|node| wrong(*node)).count()
+}
+
+/// Two films shot at each other, and one at one that floats.
+pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
+    let speed = number("films_at_50_m_s/speed");
+    let mut judged = Vec::new();
+    for (run, speeds) in
+        [("both move: ", [0.5 * speed, -0.5 * speed]), ("one moves: ", [speed, 0.0])]
+    {
+        let (shell, split) = two_films();
+        let nodes = shell.positions.len();
+        let velocity = |node: usize| Vector3::z() * speeds[usize::from(node >= split)];
+        let scene = FilmScene {
+            velocities: (0..nodes).map(velocity).collect(),
+            contact: Some(watched(DISTANCE)),
+            ..scene(shell, viscous())
+        };
+        let mut film = rig.start(&scene)?;
+        let momentum = |film: &Explicit| -> Vector3<f64> {
+            let all = film.model.mass.iter().zip(film.state.velocities.iter());
+            all.map(|(mass, velocity)| velocity * *mass).sum()
+        };
+        let before = momentum(&film);
+        let scale: f64 = (0..nodes).map(|n| film.model.mass[n] * velocity(n).norm()).sum();
+        let seen = follow(&mut film, 4e-3, 40, &Phase::default())?;
+        let mean = |from: usize, to: usize| {
+            film.state.velocities.z[from..to].iter().sum::<f64>() / (to - from) as f64
+        };
+        let apart = mean(split, nodes) - mean(0, split);
+        judged.push(Row::at_most(
+            &format!("{run}nodes on the wrong side"),
+            astray(&film, split) as f64,
+            0.0,
+        ));
+        judged.push(Row::at_least(&format!("{run}speed apart after the shock, m/s"), apart, 0.0));
+        judged.push(Row::at_most(
+            &format!("{run}change of momentum over sum of m v"),
+            (momentum(&film) - before).norm() / scale,
+            number("contact/momentum_band"),
+        ));
+        judged.push(seen.returned(&film, run));
+        judged.extend(seen.rows(&film, run, number("contact/ledger_band")));
+    }
+    Ok(judged)
+}
+
+/// A closed bag, slack and dented so that its walls fold, with a little gas, between plates that close
+/// to a tenth of its height.
+pub fn squeezed_bag(rig: &Rig) -> Outcome {
+    let (radius, closed) = (0.2, 0.03);
+    let share = number("squeezed_bag/height");
+    let dented = |x: Vector3<f64>| {
+        let dent =
+            libm::sin(25.0 * x.x + 1.0) * libm::cos(22.0 * x.y) + 0.5 * libm::sin(31.0 * x.z);
+        Vector3::new(0.55 * x.x, 0.55 * x.y, 0.65 * x.z) * (1.0 + 0.08 * dent)
+    };
+    // Its film is that of the sphere.
+    let shell = moved(icosphere(2, radius), dented);
+    let tall = shell.positions.iter().map(|x| x.z.abs()).fold(0.0, f64::max);
+    let start = tall + 2.0 * DISTANCE;
+    let half = |sign: f64| {
+        let up = Vector3::z() * sign;
+        plate(up * start, -up, Some((up * (share * tall - start), closed)))
+    };
+    let supply = GasSupply { initial_mass: 2e-7, ..nitrogen() };
+    let scene = FilmScene {
+        filling: Filling::Gas { supply, initial_temperature: 293.0 },
+        contact: Some(FilmContact { plates: vec![half(1.0), half(-1.0)], ..watched(DISTANCE) }),
+        ..scene(shell, viscous())
+    };
+    let mut film = rig.start(&scene)?;
+    let height = |film: &Explicit| {
+        let z = || film.state.places.z.iter().copied();
+        z().fold(f64::NEG_INFINITY, f64::max) - z().fold(f64::INFINITY, f64::min)
+    };
+    let whole = height(&film);
+    let seen = follow(&mut film, closed, 60, &Phase::default())?;
+    let left = height(&film) / whole;
+    let mut judged = vec![Row::at_most("height over that at the start", left, share)];
+    judged.extend(seen.rows(&film, "", number("contact/ledger_band")));
+    Ok(judged)
+}
+
+/// A crumpled sheet thrown at a floor and pressed on it by fifty times its weight, of film without and
+/// with compressive stiffness: the one lies down flat, the other folds.
+pub fn dropped_sheet(rig: &Rig) -> Outcome {
+    // A crumple that does not cut itself: shortened in its plane, high waves.
+    let wave = |x: Vector3<f64>| {
+        let height = 0.03 * libm::sin(40.0 * x.x) + 0.015 * libm::cos(31.0 * x.y + 9.0 * x.x);
+        Vector3::new(0.35 * x.x, 0.7 * x.y, height + 0.06)
+    };
+    let mut judged = Vec::new();
+    for (compression, key) in [(0.0, "ledger_band"), (1.0, "compressed_ledger_band")] {
+        let crumple = moved(sheet(9, 9, 0.4, 0.4), wave);
+        let shell = Shell::relaxed(crumple.positions, crumple.triangles);
+        let slower = |node: usize| Vector3::new(0.0, 0.0, -8.0 - 0.01 * node as f64);
+        let floor = plate(Vector3::zeros(), Vector3::z(), None);
+        let scene = FilmScene {
+            velocities: (0..shell.positions.len()).map(slower).collect(),
+            gravity: Vector3::new(0.0, 0.0, -500.0),
+            contact: Some(FilmContact { plates: vec![floor], ..watched(DISTANCE) }),
+            ..scene(shell, Film { compression, ..viscous() })
+        };
+        let mut film = rig.start(&scene)?;
+        let seen = follow(&mut film, 0.03, 60, &Phase::default())?;
+        let lowest = film.state.places.z.iter().copied().fold(f64::INFINITY, f64::min);
+        let run = format!("c {compression}: ");
+        judged.push(Row::at_least(&format!("{run}lowest node above the floor, m"), lowest, 0.0));
+        judged.push(seen.returned(&film, &run));
+        judged.extend(seen.rows(&film, &run, number(&format!("contact/{key}"))));
+    }
+    Ok(judged)
+}

@@ -1,0 +1,106 @@
+//! The folded capsule deployed and relaxed meets the erected one inflated statically.
+//!
+//! ```text
+//! stowed: m a = f_film + f_contact + p ∂V/∂x − c m v    until kinetic energy < 1e-6 p V
+//! erected, same caps, same supports: f_film + p ∂V/∂x = 0
+//! ```
+//!
+//! N-gon caps, bottom ring on its stowed N-gon. What is compared is V, the height of the top rim and
+//! the strain energy; the reference is the static state, so no number is stored.
+
+use billow_solver::course::Phase;
+use billow_solver::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::integrate::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::ladder::film::{StaticState, capsule, static_states};
+use billow_solver::mesh::{Mesh, Shape};
+use billow_solver::scene::Scene;
+
+use super::capsule_run::paper_capsule;
+use super::contact_rig::crossings;
+use super::reference::{number, numbers};
+use super::rig::advance;
+use super::{Outcome, Rig, Row};
+
+/// Mass damping, 1/s: little against the deployment, enough to come to rest.
+const DAMPING: f64 = 30.0;
+/// Before this nothing is at rest, s: it starts at rest too.
+const EARLIEST: f64 = 0.1;
+/// After this it will not come to rest, s.
+const LATEST: f64 = 5.0;
+/// Time between two looks, s.
+const LOOK: f64 = 0.01;
+
+/// The stowed capsule under a fixed pressure (Pa), come to rest.
+fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), String> {
+    let stowed = Shape::Stowed(scene.design.stowed_height);
+    let (film, mesh) =
+        capsule::film_scene(scene, stowed, DEFAULT_CFL).map_err(|error| error.to_string())?;
+    let mut film = FilmScene {
+        filling: Filling::Pressure(pressure),
+        contact: Some(FilmContact::default()),
+        ..film
+    };
+    film.solver.mass_damping = DAMPING;
+    let mut film = rig.start(&film)?;
+    let share = number("deployed_equals_inflated/kinetic_share");
+    // Twice in a row: a motion that turns back has no kinetic energy either.
+    let mut calm = 0;
+    while calm < 2 {
+        let target = film.state.time + LOOK;
+        if target > LATEST {
+            return Err(format!("not at rest at {LATEST} s"));
+        }
+        advance(&mut film, target, &Phase::default())?;
+        let settled = film.kinetic_energy() < share * pressure * film.state.volume;
+        calm = if settled && target > EARLIEST { calm + 1 } else { 0 };
+    }
+    Ok((film, mesh))
+}
+
+/// Rows of one pressure.
+fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
+    let name = |what: &str| format!("{what}, at {} Pa", expected.overpressure);
+    let band = |key: &str| number(&format!("deployed_equals_inflated/{key}"));
+    let rim = mesh.top_ring.iter().map(|node| film.state.places.z[*node as usize]).sum::<f64>()
+        / mesh.top_ring.len() as f64;
+    let share = film.kinetic_energy() / (expected.overpressure * film.state.volume);
+    let passages = film.watch.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
+    let word = format!("at rest after {:.2} s, {} steps", film.state.time, film.state.steps);
+    let strain = film.strain_energy();
+    vec![
+        Row::new(&name("volume, m3"), film.state.volume, expected.volume, band("volume_band"))
+            .with_note(&word),
+        Row::new(&name("rim height, m"), rim, expected.z_rim, band("rim_height_band")),
+        Row::new(
+            &name("strain energy, J"),
+            strain,
+            expected.strain_energy,
+            band("strain_energy_band"),
+        ),
+        Row::at_most(&name("kinetic energy over p V"), share, band("kinetic_share")),
+        Row::at_most(&name("passages"), passages, 0.0),
+        Row::at_most(&name("intersections"), crossings(film) as f64, 0.0),
+    ]
+}
+
+fn meet(rig: &Rig, subdivisions: u32) -> Outcome {
+    let scene = paper_capsule(subdivisions, 1.0);
+    let pressures = numbers("deployed_equals_inflated/pressures");
+    let inflated = static_states(&scene, &pressures).map_err(|error| error.to_string())?;
+    let mut judged = Vec::new();
+    for expected in &inflated {
+        let (film, mesh) = relaxed(rig, &scene, expected.overpressure)?;
+        judged.extend(compare(&film, &mesh, expected));
+    }
+    Ok(judged)
+}
+
+/// On a coarse mesh.
+pub fn deployed_equals_inflated(rig: &Rig) -> Outcome {
+    meet(rig, 5)
+}
+
+/// On a finer one.
+pub fn deployed_equals_inflated_fine(rig: &Rig) -> Outcome {
+    meet(rig, 8)
+}

@@ -1,0 +1,110 @@
+//! Sheets of film pressed flat.
+//!
+//! ```text
+//! force of sheet k on sheet k + 1 = p A         the same in every layer, at any contact distance
+//! ```
+//!
+//! The lowest sheet lies on a plate, the highest is a rigid plane under the force p A; the meshes are
+//! shifted, so that nodes do not lie on nodes.
+
+use billow_solver::contact::{Law, Meeting};
+use billow_solver::course::Phase;
+use billow_solver::film_scene::{FilmContact, FilmScene, FilmSupport, Hold, PlaneBody};
+use billow_solver::integrate::explicit::Explicit;
+use billow_solver::shell::Shell;
+use nalgebra::Vector3;
+
+use super::contact_rig::{follow, moved, plate, together, watched};
+use super::reference::{number, numbers};
+use super::rig::{film, held, scene};
+use super::shapes_dynamic::sheet;
+use super::{Outcome, Rig, Row};
+
+const LAYERS: u32 = 4;
+/// Side of a sheet, m.
+const SIDE: f64 = 0.3;
+/// Time to come to rest, s.
+const REST: f64 = 0.02;
+
+/// A stack at rest at this contact distance (m), every sheet a distance above the one below.
+fn stack(distance: f64, pressure: f64) -> FilmScene {
+    let layer = |k: u32| -> Shell {
+        let k = f64::from(k);
+        let shift = Vector3::new(0.011 * k, 0.007 * k, distance * (k + 1.0));
+        moved(sheet(5, 5, SIDE, SIDE), |x| x + shift)
+    };
+    let sheets: Vec<Shell> = (0..LAYERS).map(layer).collect();
+    let shell = together(&sheets);
+    let (each, all) = (nodes_of(&shell) / LAYERS, nodes_of(&shell));
+    let press = PlaneBody {
+        normal: Vector3::z(),
+        mass: 0.0,
+        velocity: 0.0,
+        force: -pressure * SIDE * SIDE,
+    };
+    let top = FilmSupport {
+        name: "press".to_owned(),
+        nodes: (all - each..all).collect(),
+        hold: Hold::Body(press),
+        motion: None,
+    };
+    let floor = plate(Vector3::zeros(), Vector3::z(), None);
+    let mut scene = FilmScene {
+        supports: vec![held((0..all).collect(), "xy"), top],
+        contact: Some(FilmContact { plates: vec![floor], ..watched(distance) }),
+        ..scene(shell, film())
+    };
+    scene.solver.mass_damping = 3000.0;
+    scene
+}
+
+fn nodes_of(shell: &Shell) -> u32 {
+    u32::try_from(shell.positions.len()).expect("under 2^32 nodes")
+}
+
+/// Mean and largest interlayer pressure between sheet `k` and the next, Pa.
+fn between(film: &Explicit, law: &Law, k: u32) -> [f64; 2] {
+    let each = film.model.mass.len() / LAYERS as usize;
+    let layer = |node: u32| node as usize / each;
+    let mut meeting = Meeting::default();
+    let own = film.state.meeting.contacts.iter().filter(|contact| {
+        let layers = contact.pair.nodes(&law.topology).map(layer);
+        let (low, high) = (layers.iter().min(), layers.iter().max());
+        low == Some(&(k as usize)) && high == Some(&(k as usize + 1))
+    });
+    meeting.contacts = own.copied().collect();
+    let areas: Vec<f64> = film.model.mass.iter().map(|mass| mass / law.area_density).collect();
+    let pressed = law.interlayer(&film.state.places, &areas, &meeting);
+    let whole: f64 = areas.iter().sum();
+    // Each of the two sheets bears the force once.
+    let force = 0.5 * pressed.mean * pressed.area_fraction * whole;
+    [force / (SIDE * SIDE), pressed.largest]
+}
+
+/// Every interlayer pressure, at three contact distances.
+pub fn stack_of_sheets(rig: &Rig) -> Outcome {
+    let (pressure, band) = (number("stack/pressure"), number("stack/band"));
+    let mut judged = Vec::new();
+    for distance in numbers("stack/distances") {
+        let mut film = rig.start(&stack(distance, pressure))?;
+        let seen = follow(&mut film, REST, 10, &Phase::default())?;
+        let law = film.setting.contact.as_ref().ok_or("no contact")?;
+        for k in 0..LAYERS - 1 {
+            let [mean, largest] = between(&film, law, k);
+            let quantity = format!(
+                "distance {} mm, sheets {} and {}: interlayer pressure, Pa",
+                1e3 * distance,
+                k + 1,
+                k + 2
+            );
+            let word = format!("largest at a node {largest:.0} Pa");
+            judged.push(Row::new(&quantity, mean, pressure, band).with_note(&word));
+        }
+        judged.extend(seen.rows(
+            &film,
+            &format!("distance {} mm, ", 1e3 * distance),
+            number("contact/ledger_band"),
+        ));
+    }
+    Ok(judged)
+}
