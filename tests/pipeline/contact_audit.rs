@@ -11,9 +11,12 @@ use billow_study::cases::contact_capsule::stowed;
 use billow_study::cases::contact_rig::not_returned;
 use billow_study::cases::reference::number;
 
+/// What is done to contact.
+type Fault = fn(&mut Law);
+
 /// The capsule of `capsule_deployed` for 30 ms, its contact changed; how it ended, what was counted,
 /// and the share of its kinetic energy contact did not return.
-fn deploy(fault: fn(&mut Law)) -> (Stop, Audit, f64) {
+fn deploy(fault: Fault) -> (Stop, Audit, f64) {
     let scene = paper_capsule(5, 0.03);
     let mut run = stowed(&scene, FilmContact::default()).expect("a capsule");
     let Explicit { model, mut setting, state, .. } = run.film;
@@ -27,7 +30,7 @@ fn deploy(fault: fn(&mut Law)) -> (Stop, Audit, f64) {
 
 #[test]
 fn every_fault_of_contact_is_counted() {
-    let faults: [(&str, fn(&mut Law)); 3] = [
+    let faults: [(&str, Fault); 3] = [
         ("edges do not meet", |law| law.edges = false),
         ("bounds ten times too wide", |law| law.bounds = 10.0),
         ("film is drawn together and nothing guards it", |law| {

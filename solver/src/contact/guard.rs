@@ -1,9 +1,12 @@
 //! Keeps film from passing through film in the step to come.
 //!
 //! ```text
-//! approach  w = n·Σ w_i v_i < 0          impulse  j = −w/(Σ w_i² n·P n/m_i)          v_i += j w_i P n/m_i
+//! approach  w = n·Σ w_i v_i < 0      impulse  j = −(w + s (d − f)/Δt)/(Σ w_i² n·P n/m_i)      v_i += j w_i P n/m_i
 //! ```
 //!
+//! Symbols: s the share of its distance d above a floor f a pair may still close in the step Δt: none at
+//! first; where many pairs press each other and plates close on them that has no solution, and they may
+//! close by half and more. Below the floor, a hundredth of the contact distance, they part again.
 //! Momentum is kept but where a support holds. An impulse is a force over one kick, so what it takes is
 //! its trapezoid, −½ J·(v⁻ + v⁺): nothing where it only bears what presses on a pair at rest.
 
@@ -18,15 +21,41 @@ use crate::supports::Supports;
 /// A pair that cannot close more than this share of its distance needs no sweep.
 const SAFE: f64 = 0.8;
 /// Share of its distance a pair keeps in any step.
-const KEPT: f64 = 0.1;
+pub(super) const KEPT: f64 = 0.1;
 /// Rounds of impulses before relative motion is taken out altogether.
-const ROUNDS: u32 = 12;
-/// Rounds in all.
-const MOST_ROUNDS: u32 = 60;
+const ROUNDS: u32 = 60;
+/// Rounds in a turn, at most.
+const MOST_ROUNDS: u32 = 120;
+
+/// Least distance pairs are left, as a share of the contact distance.
+const FLOOR: f64 = 0.01;
+/// Share of what is missing to it by which a pair parts in a step.
+const OUT: f64 = 0.2;
+
+/// Share of its distance a pair may close after an impulse, by the turn and the round in it.
+fn closing(turn: u32, round: u32) -> f64 {
+    match (turn, round) {
+        (0, 0..12) => 0.0,
+        (0..8, 0..36) => 0.5,
+        _ => 0.8,
+    }
+}
+
+/// What the guard changed in a step: node and impulse, N s.
+pub type Stopped = Vec<(usize, Vector3<f64>)>;
+
+/// Energy impulses took from film whose velocities (m/s) were `before` the kick and are `after`
+/// them, J.
+pub fn taken(stopped: &Stopped, before: &Field, after: &Field) -> f64 {
+    let work =
+        |(node, push): &(usize, Vector3<f64>)| push.dot(&(before.get(*node) + after.get(*node)));
+    -0.5 * stopped.iter().map(work).sum::<f64>()
+}
 
 impl Law {
     /// Takes out of the velocities (m/s) whatever would carry a near pair through itself in a drift of
-    /// `length` (s). `before`: velocities before the kick.
+    /// `length` (s), and adds the impulses to `stopped`. `turn`: how often plates have changed
+    /// velocities in this step.
     ///
     /// # Errors
     /// The pair that could not be kept apart.
@@ -36,12 +65,12 @@ impl Law {
         model: &FilmModel,
         supports: &Supports,
         places: &Field,
-        before: &Field,
         velocities: &mut Field,
         length: f64,
         meeting: &mut Meeting,
+        turn: u32,
+        stopped: &mut Stopped,
     ) -> Result<(), Pair> {
-        let mut stopped = Vec::new();
         for round in 0..MOST_ROUNDS {
             let mut touched = None;
             for k in 0..meeting.near.len() {
@@ -55,8 +84,13 @@ impl Law {
                 touched = Some(own.pair);
                 meeting.impulses += 1;
                 let kicked = at(velocities, nodes);
+                let share = closing(turn, round);
+                let floor = FLOOR * self.distance_of(own.pair.kind);
+                let allowed = move |gap: f64| {
+                    (if gap > floor { share * (gap - floor) } else { OUT * (gap - floor) }) / length
+                };
                 if round < ROUNDS {
-                    bounce(model, supports, own.pair, nodes, &x, velocities);
+                    bounce(model, supports, own.pair, nodes, &x, allowed, velocities);
                 } else {
                     stick(model, supports, nodes, velocities);
                 }
@@ -67,10 +101,6 @@ impl Law {
                 }
             }
             if touched.is_none() {
-                let work = |(node, push): &(usize, Vector3<f64>)| {
-                    push.dot(&(before.get(*node) + velocities.get(*node)))
-                };
-                meeting.taken -= 0.5 * stopped.iter().map(work).sum::<f64>();
                 return Ok(());
             }
             if round + 1 == MOST_ROUNDS
@@ -102,17 +132,19 @@ impl Law {
     }
 }
 
-/// Takes the approach of a pair out.
+/// Takes the approach of a pair out, but for the speed (m/s) it is allowed at its gap (m).
 fn bounce(
     model: &FilmModel,
     supports: &Supports,
     pair: Pair,
     nodes: [u32; 4],
     x: &[Vector3<f64>; 4],
+    allowed: impl Fn(f64) -> f64,
     velocities: &mut Field,
 ) {
     let closest = pair.closest(x);
-    let normal = closest.between / closest.squared.sqrt();
+    let gap = closest.squared.sqrt();
+    let normal = closest.between / gap;
     let mobile = nodes.map(|node| {
         let node = node as usize;
         supports.projector(node) * normal * model.inverse_mass[node]
@@ -123,6 +155,7 @@ fn bounce(
         approach += weight * normal.dot(&velocities.get(nodes[k] as usize));
         mobility += weight * weight * normal.dot(&mobile[k]);
     }
+    let approach = approach + allowed(gap);
     let helps = approach < 0.0 && mobility > 0.0;
     if !helps {
         // It turns into the other on the way: nothing along the line now would stop it.

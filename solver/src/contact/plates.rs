@@ -11,6 +11,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::guard::{KEPT, Stopped};
 use crate::film_scene::Motion;
 use crate::model::FilmModel;
 use crate::state::Field;
@@ -99,39 +100,37 @@ impl Plate {
         }
     }
 
-    /// Stops nodes that would pass through in a drift from `time` over `length` (s); the energy that
-    /// takes, as a trapezoid with the velocities before the kick, J.
+    /// Stops nodes that would pass through in a drift from `time` over `length` (s), and adds the
+    /// impulses to `stopped`.
     #[expect(clippy::too_many_arguments, reason = "one pass over what a plate meets")]
     pub fn guard(
         &self,
         places: &Field,
         model: &FilmModel,
         supports: &Supports,
-        before: &Field,
         velocities: &mut Field,
         time: f64,
         length: f64,
-    ) -> f64 {
+        stopped: &mut Stopped,
+    ) {
         if time >= self.until {
-            return 0.0;
+            return;
         }
         let (height, after) = (self.height(time), self.height(time + length));
-        let mut taken = 0.0;
         for node in 0..places.len() {
             let place = self.normal.dot(&places.get(node));
             let gap = place - height;
             let velocity = velocities.get(node);
             let left = place + self.normal.dot(&velocity) * length - after;
-            let least = 0.1 * gap;
-            if left < least && gap > 0.0 {
+            let least = KEPT * gap;
+            // Rounding alone is no approach.
+            if left < least * (1.0 - 1e-9) && gap > 0.0 {
                 let wish = self.normal * ((least - left) / length);
                 let change = supports.projector(node) * wish;
                 velocities.set(node, velocity + change);
-                let mean = before.get(node) + velocities.get(node);
-                taken -= 0.5 * model.mass[node] * change.dot(&mean);
+                stopped.push((node, change * model.mass[node]));
             }
         }
-        taken
     }
 
     /// Its way along the normal from one time to another (s), m.

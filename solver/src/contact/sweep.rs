@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use super::distance::Closest;
 
 /// Most steps of one sweep; at the last the time reached still holds.
-const MOST: u32 = 40;
+const MOST: u32 = 2000;
 
 /// Part of the motion, 0 to 1, until which the pair certainly stays farther apart than `gap` (m):
 /// 1 for all of it. `left` nodes are of the one side.

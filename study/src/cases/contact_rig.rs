@@ -116,18 +116,32 @@ impl Seen {
         self.ledgers.iter().map(|ledger| ledger.kinetic).fold(0.0, worse)
     }
 
-    /// Rows every run with contact has: passages at any step, intersections, the ledger.
-    pub fn rows(&self, film: &Explicit, run: &str, ledger_band: f64) -> Vec<Row> {
-        let residual = residuals(&self.ledgers).into_iter().fold(0.0, worse);
+    /// Passages at any step, and intersections.
+    pub fn counts(&self, film: &Explicit, run: &str) -> Vec<Row> {
         let passages = film.watch.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
         vec![
             Row::at_most(&format!("{run}passages"), passages, 0.0).with_note(&format!(
-                "{} steps looked at, {} pairs pressed at most, {} approaches taken out",
-                film.state.steps, self.pairs, film.state.meeting.impulses
+                "{} steps looked at, {} pairs pressed at most, {} approaches taken out; film residual \
+                 {:.1e}",
+                film.state.steps,
+                self.pairs,
+                film.state.meeting.impulses,
+                self.residual()
             )),
             Row::at_most(&format!("{run}intersections"), self.intersections as f64, 0.0),
-            Row::at_most(&format!("{run}film residual"), residual, ledger_band),
         ]
+    }
+
+    /// Largest ledger residual.
+    fn residual(&self) -> f64 {
+        residuals(&self.ledgers).into_iter().fold(0.0, worse)
+    }
+
+    /// The same and the ledger.
+    pub fn rows(&self, film: &Explicit, run: &str, ledger_band: f64) -> Vec<Row> {
+        let mut rows = self.counts(film, run);
+        rows.push(Row::at_most(&format!("{run}film residual"), self.residual(), ledger_band));
+        rows
     }
 
     /// What contact did not return, over the largest kinetic energy.

@@ -1,7 +1,22 @@
 //! The step's part that keeps film off film and off plates, and lets the audit see it.
 
 use super::{Explicit, State};
+use crate::contact::guard::{Stopped, taken};
+use crate::contact::{Kind, Pair};
 use crate::deployment::{Failure, FailureKind};
+use crate::state::Field;
+
+/// How often pairs and plates take turns in a step, at most.
+const MOST_TURNS: u32 = 50;
+
+/// A pair that could not be kept apart, in words.
+fn unkept(pair: Pair) -> String {
+    let [one, other] = match pair.kind {
+        Kind::NodeTriangle => ["node", "element"],
+        Kind::EdgeEdge => ["edge", "edge"],
+    };
+    format!("{one} {} and {other} {} could not be kept apart", pair.first, pair.second)
+}
 
 impl Explicit {
     /// The pairs and plates of the start.
@@ -39,25 +54,43 @@ impl Explicit {
         }
     }
 
-    /// Looks for pairs the drift to come could bring together, and keeps them apart.
+    /// Looks for pairs the drift to come could bring together, and keeps them apart, and off the plates:
+    /// in turn, until neither changes anything and no node is faster than the pairs were looked for.
     pub(super) fn keep_apart(&mut self, kick: f64, length: f64) -> Result<(), Failure> {
         let Some(law) = &self.setting.contact else { return Ok(()) };
-        let state = &mut self.state;
-        let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        law.prepare(&state.places, &mut state.meeting, speed * length);
-        let (model, supports) = (&self.model, &self.setting.supports);
-        let State { places, velocities, meeting, .. } = state;
+        let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
+        let State { places, velocities, meeting, .. } = &mut self.state;
+        let fastest = |velocities: &Field| {
+            velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
+        };
+        let mut way = fastest(velocities) * length;
+        law.prepare(places, meeting, way);
         law.rub(model, supports, places, &self.next, velocities, kick, meeting);
-        let kept = law.guard(model, supports, places, &self.next, velocities, length, meeting);
-        for plate in &law.plates {
-            let before = &self.next;
-            let time = state.time;
-            meeting.taken += plate.guard(places, model, supports, before, velocities, time, length);
+        let mut stopped = Stopped::new();
+        for turn in 0..MOST_TURNS {
+            let kept =
+                law.guard(model, supports, places, velocities, length, meeting, turn, &mut stopped);
+            if let Err(pair) = kept {
+                return Err(self.failure(FailureKind::Interpenetrated, &unkept(pair)));
+            }
+            let before = stopped.len();
+            for plate in &law.plates {
+                plate.guard(places, model, supports, velocities, time, length, &mut stopped);
+            }
+            let now = fastest(velocities) * length;
+            let farther = now > way;
+            if farther {
+                meeting.travelled -= way;
+                law.prepare(places, meeting, now);
+                way = now;
+            }
+            if !farther && stopped.len() == before {
+                meeting.taken += taken(&stopped, &self.next, velocities);
+                return Ok(());
+            }
         }
-        kept.map_err(|pair| {
-            let place = format!("{pair:?} could not be kept apart");
-            self.failure(FailureKind::Interpenetrated, &place)
-        })
+        Err(self
+            .failure(FailureKind::Interpenetrated, "film between plates could not be kept apart"))
     }
 
     /// Half a step's work of the plates, by their force now, on the way to `until` (s).
