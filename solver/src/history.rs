@@ -136,7 +136,7 @@ columns! {
     "support_work" ["J"] "work of moving supports and the lid on the film since time 0",
     "viscous_work" ["J"] "energy dissipated by film viscosity since time 0",
     "friction_work" ["J"] "energy dissipated by friction since time 0",
-    "damping_work" ["J"] "energy dissipated by mass damping since time 0 (statics only)",
+    "damping_work" ["J"] "energy dissipated by mass damping since time 0",
     "heat" ["J"] "heat given by the film to the gas since time 0",
     "enthalpy_in" ["J"] "enthalpy let in since time 0",
     "enthalpy_out" ["J"] "enthalpy leaked since time 0",

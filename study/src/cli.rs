@@ -41,7 +41,7 @@ pub struct Global {
     /// Threads [default: one a core].
     #[arg(long, global = true, value_name = "N")]
     pub threads: Option<usize>,
-    /// Override a key of the study, as in --set film.thickness="30 um".
+    /// Override a key of the study or scene, as in --set film.thickness="30 um".
     #[arg(long, global = true, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Same as --format json.

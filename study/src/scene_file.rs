@@ -156,6 +156,7 @@ impl SceneFile {
             outputs,
             contact,
         };
+        contact::check_plates(&film, &reader.source)?;
         // Whatever of the film is none is found before anything runs.
         let unsound = |error| scene_error(error, &reader.source);
         if contact::lies_on_itself(&film).map_err(unsound)? {

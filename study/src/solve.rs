@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use billow_solver::checkpoint::{Checkpoint, CheckpointError};
 use billow_solver::course::Course;
-use billow_solver::deployment::{Deployment, Model, Observer, Progress, Run, Stop as End};
+use billow_solver::deployment::{
+    Deployment, FailureKind, Model, Observer, Progress, Run, Stop as End,
+};
 use billow_solver::ladder::film::FilmRun;
 use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolution};
 
@@ -80,7 +82,12 @@ fn rest(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
         None => ControlFlow::Continue(()),
     };
     match statics::solve(&scene.film, &mut watch) {
-        Ok(solution) => Ok((row::DONE, Ended::Rest(Box::new(solution)))),
+        Ok(solution) => {
+            // Closed film turned inside out rests as well, and is no answer.
+            let inside_out = scene.film.shell.is_closed() && solution.volume <= 0.0;
+            let status = if inside_out { FailureKind::InvertedVolume.name() } else { row::DONE };
+            Ok((status, Ended::Rest(Box::new(solution))))
+        }
         Err(StaticError::NoState(failure)) => match (failure.kind, stop.requested()) {
             (StaticFailureKind::Stopped, Some(signal)) => {
                 Err(Error::Interrupted { signal, next: "nothing is stored".to_owned() })

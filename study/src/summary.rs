@@ -3,6 +3,7 @@
 //! | key | meaning |
 //! |---|---|
 //! | `status` | `done`; `paused`; `unstable`, `drifted`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
+//! | `notes` | what the program decided for itself, where it did |
 //! | `stop` | kind, time and place, where there is no result |
 //! | `volume` | enclosed, m³; of open film between it and the fans over its free edges |
 //! | `pressure`, `overpressure` | inside (of a fixed pressure: the overpressure); less the ambient one, Pa |
@@ -50,6 +51,9 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
             json!({"stop": stop, "steps": failure.iterations, "elements": elements})
         }
     };
+    if !scene.notes.is_empty() {
+        summary["notes"] = scene.notes.clone().into();
+    }
     summary["status"] = solved.status.into();
     summary["wall_seconds"] = solved.wall_seconds.into();
     summary
@@ -213,6 +217,10 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         largest.max(own.principal[0] / thickness(&rest.model, element))
     });
     let topology = Topology::new(rest.model.nodes(), &rest.model.triangles);
+    if scene.film.shell.is_closed() && rest.volume <= 0.0 {
+        let place = format!("the film is turned inside out: V {:.6} m3", rest.volume);
+        summary["stop"] = json!({"kind": "inverted_volume", "time": null, "place": place});
+    }
     let more = json!({
         "volume": rest.volume,
         "pressure": pressure,

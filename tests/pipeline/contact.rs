@@ -106,13 +106,16 @@ fn film_comes_to_rest_on_a_plate_with_its_weight() {
         "solver": {"end_time": "0.3 s", "mass_damping": 100},
         "outputs": {"sample_interval": "10 ms"},
     });
-    let folder = desk(&scene, &[("sheet.obj", &sheet(0.004))]);
-    let summary = done(folder.path(), &["scene.json", "-q"], "");
-    // 0.2 m square.
-    let weight = 0.04 * 1400.0 * 25.4e-6 * 10.0;
-    let force = number(&summary, "/contact/plates/floor");
-    assert!((force / weight - 1.0).abs() < 0.01, "{force} of {weight}");
-    assert!(number(&summary, "/extents/z/0") > 0.0);
+    // Let fall from 4 mm, and from almost nothing.
+    for height in [0.004, 1e-6] {
+        let folder = desk(&scene, &[("sheet.obj", &sheet(height))]);
+        let summary = done(folder.path(), &["scene.json", "-q"], "");
+        // 0.2 m square.
+        let weight = 0.04 * 1400.0 * 25.4e-6 * 10.0;
+        let force = number(&summary, "/contact/plates/floor");
+        assert!((force / weight - 1.0).abs() < 0.01, "{force} of {weight}");
+        assert!(number(&summary, "/extents/z/0") > 0.0);
+    }
 }
 
 #[test]
@@ -131,7 +134,17 @@ fn what_cannot_touch_is_refused_or_told() {
     let output = with("gravity", json!(0));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("film lies on film at the start"));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("a summary");
+    assert!(summary["notes"][0].as_str().is_some_and(|note| note.contains("lies on film")));
     let refused = [
+        (
+            json!({"plates": [{"point": [0, 0, "2 mm"], "normal": [0, 0, 1]}]}),
+            "film lies up to 0.002000 m behind it",
+        ),
+        (
+            json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}),
+            "film lies on it at the start",
+        ),
         (json!({"enabled": true}), "film lies on film at the start"),
         (json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 0]}]}), "plates[0].normal"),
         (json!({"plates": [{"point": [0, 0, 0]}]}), "plates[0].normal: missing"),

@@ -227,3 +227,35 @@ fn flags_that_cannot_be_are_refused() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("of another scene"), "{}", stderr(&output));
 }
+
+/// Two square sheets on each other, sewn along the rim.
+#[test]
+fn a_flat_bag_opens_under_a_pressure_and_holds_no_gas() {
+    let mut text = String::new();
+    for [x, y] in [[0, 0], [2, 0], [2, 2], [0, 2], [1, 1], [1, 1]] {
+        text.push_str(&["v", &x.to_string(), &y.to_string(), "0\n"].join(" "));
+    }
+    for [a, b] in [[1, 2], [2, 3], [3, 4], [4, 1]] {
+        text.push_str(&["f", &a.to_string(), &b.to_string(), "5\n"].join(" "));
+        text.push_str(&["f", &b.to_string(), &a.to_string(), "6\n"].join(" "));
+    }
+    let scene = |gas: &Value| {
+        json!({
+            "mesh": {"positions": "bag.obj"}, "gas": gas, "solver": {"end_time": "1 ms"},
+        })
+    };
+    let files = [("bag.obj", text.as_str())];
+    let folder = desk(&scene(&json!({"pressure": "100 Pa"})), &files);
+    let rest = ["scene.json", "--set", "solver.static=true"];
+    let summary = done(folder.path(), &rest, "");
+    assert!(number(&summary, "/volume") > 0.1, "{summary}");
+    // Drawn empty, it turns inside out: no result.
+    let output = solve(folder.path(), &[&rest[..], &["--set", "gas.pressure=-100"]].concat(), "");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("inverted_volume"), "{}", stderr(&output));
+
+    let folder = desk(&scene(&json!({"initial_mass": "1 g"})), &files);
+    let output = solve(folder.path(), &["scene.json"], "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("encloses no volume: its layers lie on each other"));
+}

@@ -17,6 +17,9 @@ use crate::model::FilmModel;
 use crate::state::Field;
 use crate::supports::Supports;
 
+/// How far behind a plate rounding may leave a node that lies on it, m.
+const ROUNDING: f64 = 1e-12;
+
 /// A rigid plate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plate {
@@ -124,11 +127,14 @@ impl Plate {
             let left = place + self.normal.dot(&velocity) * length - after;
             let least = KEPT * gap;
             // Rounding alone is no approach.
-            if left < least * (1.0 - 1e-9) && gap > 0.0 {
+            if left < least * (1.0 - 1e-9) && gap >= -ROUNDING {
                 let wish = self.normal * ((least - left) / length);
                 let change = supports.projector(node) * wish;
-                velocities.set(node, velocity + change);
-                stopped.push((node, change * model.mass[node]));
+                // A node held there stays there.
+                if change.norm_squared() > 0.0 {
+                    velocities.set(node, velocity + change);
+                    stopped.push((node, change * model.mass[node]));
+                }
             }
         }
     }

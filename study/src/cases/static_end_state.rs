@@ -135,7 +135,7 @@ fn judge(meshes: &[Known; 3], differences: bool) -> Outcome {
 
 /// Circular caps, on the pattern's own mesh.
 pub fn pattern(_: &Rig) -> Outcome {
-    judge(&[own_mesh(7)?, own_mesh(14)?, own_mesh(28)?], false)
+    judge(&[own_mesh(8)?, own_mesh(16)?, own_mesh(32)?], false)
 }
 
 /// The pattern's own mesh, erected.

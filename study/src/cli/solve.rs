@@ -80,6 +80,10 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         format => print_rows(&["quantity", "value"], &summary::rows(&summary), format, out)?,
     }
     write_files(args, &scene, &solved)?;
+    if let ("paused", Some(path), false) = (solved.status, &args.checkpoint, global.quiet) {
+        let without = if args.out.is_some() { "; --out is written when it is done" } else { "" };
+        eprintln!("billow: paused; go on with --resume {}{without}", path.display());
+    }
     if matches!(solved.status, row::DONE | "paused") {
         return Ok(());
     }

@@ -37,6 +37,16 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     }
     let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
+    if cases.is_empty() {
+        return Err(Error::Input(InputError {
+            file: "--quick".to_owned(),
+            key: String::new(),
+            value: String::new(),
+            problem: "leaves out every case asked for".to_owned(),
+            allowed: "long cases without --quick".to_owned(),
+            hint: String::new(),
+        }));
+    }
     let pool = super::run::pool(global)?;
     let (total, ended) = (cases.len(), AtomicUsize::new(0));
     let telling = Mutex::new(());

@@ -44,6 +44,35 @@ pub(super) fn read(
     }))
 }
 
+/// Least gap of film and a plate at the start, m.
+const LEAST_GAP: f64 = 1e-9;
+
+/// Refuses plates that film lies behind or on at the start.
+pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), InputError> {
+    let plates = film.contact.iter().flat_map(|contact| &contact.plates);
+    for (at, plate) in plates.enumerate() {
+        let places = Field::of(&film.shell.positions);
+        let gap = plate.smallest_gap(&places, 0.0);
+        if gap < LEAST_GAP {
+            let [x, y, z] = [plate.point.x, plate.point.y, plate.point.z];
+            let mut error = source.error(
+                &format!("contact.plates[{at}]"),
+                &format!("\"{}\" through ({x}, {y}, {z})", plate.name),
+                if gap > -LEAST_GAP {
+                    "film lies on it at the start".to_owned()
+                } else {
+                    format!("film lies up to {:.6} m behind it", -gap)
+                },
+                "a plate all film lies in front of, where its normal points to, with a gap, however small",
+            );
+            "move its point back (a micrometre will do), or turn its normal round"
+                .clone_into(&mut error.hint);
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
 /// Share of the contact distance below which film lies on film, and has no side.
 const TOUCHING: f64 = 1e-6;
 

@@ -36,7 +36,8 @@ pub(super) fn read(
                 "pressure alone, or a gas without it",
             ));
         }
-        if shape.shell.is_closed() {
+        // Film that lies flat encloses nothing, and a pressure may part its layers.
+        if shape.shell.is_closed() && !encloses_nothing(shape) {
             check_outward(shape, source)?;
         }
         return Ok(Filling::Pressure(pressure));
@@ -111,10 +112,27 @@ fn windows(
     Ok(windows)
 }
 
+/// Whether the volume is rounding, by the film's area.
+fn encloses_nothing(shape: &Shape) -> bool {
+    let places = &shape.shell.positions;
+    let area = shape.shell.reference_area();
+    shape.shell.volume(|node| places[node as usize]).abs() <= 1e-12 * area * area.sqrt()
+}
+
 /// The enclosed volume, m³, above 0 by the winding of its faces.
 fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
     let places = &shape.shell.positions;
     let volume = shape.shell.volume(|node| places[node as usize]);
+    if encloses_nothing(shape) {
+        let mut error = source.error(
+            "mesh.positions",
+            &Json::Text(shape.file.clone()).brief(),
+            "encloses no volume: its layers lie on each other",
+            "film with some room inside where there is gas",
+        );
+        "part the layers a little, or give gas.pressure".clone_into(&mut error.hint);
+        return Err(error);
+    }
     if volume > 0.0 {
         return Ok(volume);
     }

@@ -66,7 +66,7 @@ pub(super) fn read(
 ) -> std::result::Result<(FilmOutputs, Followed), InputError> {
     let empty = Json::Object(Vec::new());
     let json = json.unwrap_or(&empty);
-    let more = ["nodes", "elements", "frames"];
+    let more = ["nodes", "elements"];
     let object = Object::new(json, "outputs", "outputs", OUTPUT_KEYS, &more, source)?;
     let mut named: Vec<(String, u32)> =
         shape.centres.iter().map(|(name, node)| ((*name).to_owned(), *node)).collect();
@@ -81,9 +81,6 @@ pub(super) fn read(
         None => numbered_element(json, shape),
     };
     collect(&object, "elements", ELEMENTS, &mut elements, &element)?;
-    if object.given("frames").is_some() {
-        return Err(object.error("frames", "is not stored in this version", "no frames"));
-    }
     let (names, nodes) = named.into_iter().unzip();
     let (element_names, elements) = elements.into_iter().unzip();
     let sample_interval = object.needed("sample_interval")?;

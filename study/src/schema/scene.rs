@@ -99,7 +99,7 @@ fn mesh() -> Json {
 fn supports() -> Json {
     let doc = "A rigid plane of this mass that moves along its normal as a free body.";
     let body = table("body", doc, BODY_KEYS, []);
-    let motion = motion("A prescribed motion of what is held.");
+    let motion = motion();
     let nodes = json!({
         "title": "nodes",
         "description": "Vertices by number, 0 for the first of the file.",
@@ -119,13 +119,14 @@ fn supports() -> Json {
     })
 }
 
-fn motion(doc: &str) -> Json {
+fn motion() -> Json {
     let rotation = table("rotation", "A rotation about an axis.", ROTATION_KEYS, []);
+    let doc = "A prescribed motion of what is held.";
     table("move", doc, MOVE_KEYS, [("rotation", rotation)])
 }
 
 fn plates() -> Json {
-    let motion = motion("A prescribed motion of the plate: a translation.");
+    let motion = table("move", "A prescribed motion of the plate.", MOVE_KEYS, []);
     json!({
         "title": "plates",
         "description": "Rigid plates the film lies against, on the side their normal points to. \
