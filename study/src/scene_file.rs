@@ -130,7 +130,8 @@ impl SceneFile {
             }
         }
         let velocities = outputs::velocities(tree.get("start"), &shape, reader)?;
-        let (outputs, followed) = outputs::read(tree.get("outputs"), &shape, &reader.source)?;
+        let (outputs, followed) =
+            outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&settings, &reader.source)?;
         outputs::check_interval(outputs.sample_interval, end_time, &reader.source)?;
         let contact = contact::read(tree, &settings, &reader.source)?;
@@ -157,6 +158,14 @@ impl SceneFile {
             contact,
         };
         contact::check_plates(&film, &reader.source)?;
+        if statics && settings.number("solver.end_time").is_some() {
+            notes.push("solver.end_time has no effect: a state of rest has no time".to_owned());
+        }
+        if film.release_time > 0.0 && (statics || film.release_time >= end_time) {
+            let why =
+                if statics { "a state of rest is not packed" } else { "it is packed to the end" };
+            notes.push(format!("release_time releases nothing: {why}"));
+        }
         // Whatever of the film is none is found before anything runs.
         let unsound = |error| scene_error(error, &reader.source);
         if contact::lies_on_itself(&film).map_err(unsound)? {

@@ -259,3 +259,18 @@ fn a_flat_bag_opens_under_a_pressure_and_holds_no_gas() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("encloses no volume: its layers lie on each other"));
 }
+
+#[test]
+fn what_decides_nothing_is_told() {
+    let mut scene = capsule();
+    scene["outputs"]["nodes"] = json!({"off": [200, 0, 500]});
+    scene["release_time"] = json!("1 s");
+    scene["gas"] = json!({"windows": [{"rate": "5 g/s"}]});
+    scene["outputs"]["sample_interval"] = json!("10 ms");
+    scene["solver"] = json!({"end_time": "10 ms"});
+    let folder = desk(&scene, &[]);
+    let summary = done(folder.path(), &["scene.json", "-q"], "");
+    let notes = summary["notes"].to_string();
+    assert!(notes.contains("the node nearest to [200.0, 0.0, 500.0] m is"), "{notes}");
+    assert!(notes.contains("release_time releases nothing: it is packed to the end"), "{notes}");
+}

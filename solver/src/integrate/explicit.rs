@@ -24,18 +24,16 @@ use crate::contact::Law;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
-use crate::forces::membrane::{
-    ElementForces, NodeForces, Sums, element_pass, node_pass, strain_energy,
-};
+use crate::forces::membrane::{ElementForces, NodeForces, Sums, element_pass, node_pass};
 use crate::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::gas::{Gas, GasState, Inflow};
-use crate::ledger::{GasBooks, Ledger};
 use crate::model::FilmModel;
 use crate::mutation::{Mutation, Term};
 use crate::simd::Path;
 use crate::state::Field;
 use crate::supports::Supports;
 
+mod books;
 mod kick;
 mod meet;
 mod state;
@@ -362,51 +360,6 @@ impl Explicit {
             self.forces.area.set(node, self.forces.area.get(node) * area);
         }
         sums.six_volumes *= self.setting.fault(Term::Volume);
-    }
-
-    /// Elastic energy, J.
-    pub fn strain_energy(&self) -> f64 {
-        strain_energy(&self.model, &self.state.places)
-    }
-
-    /// The film's side of the ledger.
-    pub fn ledger(&self) -> Ledger {
-        let works = self.state.works;
-        Ledger {
-            kinetic: self.kinetic_energy(),
-            strain: self.strain_energy(),
-            gas_work: works.gas,
-            ambient_work: works.ambient,
-            gravity_work: self
-                .setting
-                .gravity
-                .dot(&(self.first_moment() - Vector3::from(self.state.start_moment))),
-            support_work: works.support,
-            viscous_work: works.viscous,
-            damping_work: works.damping,
-            contact: -works.contact,
-            friction_work: self.state.meeting.rubbed + self.state.meeting.taken,
-        }
-    }
-
-    /// The gas's side of the ledger; the mass let in is the loop's. A fixed overpressure has none.
-    pub fn books(&self) -> GasBooks {
-        let gas_work = match self.setting.interior {
-            Interior::Gas(_) => self.state.works.gas,
-            Interior::Overpressure(_) => 0.0,
-        };
-        GasBooks {
-            mass: self.state.gas.mass,
-            internal_energy: self.state.gas.internal_energy,
-            gas_work,
-            ..self.state.books
-        }
-    }
-
-    /// Σ m x, kg m.
-    fn first_moment(&self) -> Vector3<f64> {
-        let nodes = self.model.mass.iter().zip(self.state.places.iter());
-        nodes.map(|(mass, place)| place * *mass).sum()
     }
 
     fn unstable(&self) -> Failure {

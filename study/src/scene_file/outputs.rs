@@ -1,5 +1,7 @@
 //! `outputs`: what is followed, by the names the user gives it; and `start`: velocities.
 
+use std::cell::RefCell;
+
 use billow_solver::film_scene::FilmOutputs;
 use billow_solver::history::Track;
 use billow_solver::mesh_io::obj_reader;
@@ -38,6 +40,9 @@ impl Followed {
     }
 }
 
+/// Share of the film's size beyond which a followed place is told to be off the film.
+const FAR: f64 = 0.2;
+
 /// Most samples of one run: more would be a slip of the unit.
 const MOST_SAMPLES: f64 = 1e6;
 
@@ -62,6 +67,7 @@ pub(super) fn check_interval(
 pub(super) fn read(
     json: Option<&Json>,
     shape: &Shape,
+    notes: &mut Vec<String>,
     source: &Source,
 ) -> std::result::Result<(FilmOutputs, Followed), InputError> {
     let empty = Json::Object(Vec::new());
@@ -70,14 +76,33 @@ pub(super) fn read(
     let object = Object::new(json, "outputs", "outputs", OUTPUT_KEYS, &more, source)?;
     let mut named: Vec<(String, u32)> =
         shape.centres.iter().map(|(name, node)| ((*name).to_owned(), *node)).collect();
+    let far = RefCell::new(notes);
     let node = |json: &Json| match place(json)? {
-        Some(place) => Ok(nearest_node(shape, place)),
+        Some(place) => {
+            let (away, node) = nearest_node(shape, place);
+            if away > FAR * shape.size() {
+                let place = <[f64; 3]>::from(place);
+                let note =
+                    format!("outputs.nodes: the node nearest to {place:?} m is {away:.4} m off");
+                far.borrow_mut().push(note);
+            }
+            Ok(node)
+        }
         None => vertex(json, shape),
     };
     collect(&object, "nodes", NODES, &mut named, &node)?;
     let mut elements = Vec::new();
     let element = |json: &Json| match place(json)? {
-        Some(place) => Ok(nearest_element(shape, place)),
+        Some(place) => {
+            let (away, element) = nearest_element(shape, place);
+            if away > FAR * shape.size() {
+                let place = <[f64; 3]>::from(place);
+                far.borrow_mut().push(format!(
+                    "outputs.elements: the element nearest to {place:?} m is {away:.4} m off"
+                ));
+            }
+            Ok(element)
+        }
         None => numbered_element(json, shape),
     };
     collect(&object, "elements", ELEMENTS, &mut elements, &element)?;
@@ -157,7 +182,8 @@ fn place(json: &Json) -> std::result::Result<Option<Vector3<f64>>, String> {
     Ok(Some(read.into()))
 }
 
-fn nearest_node(shape: &Shape, place: Vector3<f64>) -> u32 {
+/// The node nearest to a place, and how far it is, m.
+fn nearest_node(shape: &Shape, place: Vector3<f64>) -> (f64, u32) {
     let mut best = (f64::INFINITY, 0);
     for node in shape.numbering.node.iter().flatten() {
         let distance = (shape.shell.positions[*node as usize] - place).norm();
@@ -165,10 +191,11 @@ fn nearest_node(shape: &Shape, place: Vector3<f64>) -> u32 {
             best = (distance, *node);
         }
     }
-    best.1
+    best
 }
 
-fn nearest_element(shape: &Shape, place: Vector3<f64>) -> u32 {
+/// The element whose middle is nearest to a place, and how far it is, m.
+fn nearest_element(shape: &Shape, place: Vector3<f64>) -> (f64, u32) {
     let mut best = (f64::INFINITY, 0);
     for (element, triangle) in (0..).zip(&shape.shell.triangles) {
         let corners = triangle.map(|node| shape.shell.positions[node as usize]);
@@ -177,7 +204,7 @@ fn nearest_element(shape: &Shape, place: Vector3<f64>) -> u32 {
             best = (distance, element);
         }
     }
-    best.1
+    best
 }
 
 fn numbered_element(json: &Json, shape: &Shape) -> std::result::Result<u32, String> {

@@ -33,6 +33,16 @@ pub(super) struct Shape {
     pub file: String,
 }
 
+impl Shape {
+    /// Largest extent of the film, m.
+    pub fn size(&self) -> f64 {
+        let places = &self.shell.positions;
+        let first = places.first().copied().unwrap_or_default();
+        let (low, high) = places.iter().fold((first, first), |(a, b), x| (a.inf(x), b.sup(x)));
+        (high - low).max()
+    }
+}
+
 /// From the numbers of the user's mesh to those of the run: vertices to nodes, triangles (faces cut
 /// into fans, in file order) to elements. Those of a design are its own.
 #[derive(Debug, Clone, PartialEq)]

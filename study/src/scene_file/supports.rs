@@ -142,17 +142,9 @@ fn plane(
     let point = object.vector("point")?.ok_or_else(|| object.missing("point"))?;
     let tolerance = match object.number("tolerance")? {
         Some(tolerance) => tolerance,
-        None => 1e-6 * size(shape),
+        None => 1e-6 * shape.size(),
     };
     Ok((object.direction("normal")?, point, tolerance))
-}
-
-/// Largest extent of the film, m.
-fn size(shape: &Shape) -> f64 {
-    let places = &shape.shell.positions;
-    let first = places.first().copied().unwrap_or_default();
-    let (low, high) = places.iter().fold((first, first), |(a, b), x| (a.inf(x), b.sup(x)));
-    (high - low).max()
 }
 
 /// Nodes of the film, which alone can be held: the tips of fans are not among them.
