@@ -48,3 +48,8 @@ pub fn coarse(_: &Rig) -> Outcome {
 pub fn fine(_: &Rig) -> Outcome {
     on_mesh(8)
 }
+
+/// The finest mesh.
+pub fn finest(_: &Rig) -> Outcome {
+    on_mesh(16)
+}

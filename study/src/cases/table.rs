@@ -202,6 +202,7 @@ pub const CASES: &[Case] = &[
         static_polygon::coarse,
     ),
     quick("end_state_polygon_fine", "the same, n 8", static_polygon::fine),
+    quick("end_state_polygon_finest", "the same, n 16", static_polygon::finest),
     quick(
         "stack",
         "pressure between sheets pressed flat, with the pressure on them, at three contact distances",
