@@ -7,12 +7,12 @@
 //! ```
 //!
 //! Film of extent L that starts slack or flat finds its place soonest under a pressure that
-//! stretches it all over, and then follows the pressure down. On the way it keeps a stiffness against
-//! compression in proportion to the pressure, so that its shape hardly depends on it and follows
-//! the pressure in a few steps; that is let go last (a thousandth under a high pressure finds an
-//! energy of the square airbag 0.03 J of 78 J lower than less does). Wrinkled film has many minima of energy near
-//! each other: this way keeps to the one the taut film passes into, with the symmetry it has, where
-//! a start at the pressure asked for ends in dents.
+//! stretches it all over, and then follows the pressure down; what starts full, near its shape,
+//! begins at a tenth of that. On the way film keeps a stiffness against compression in proportion to
+//! the pressure, so that its shape hardly depends on it and follows the pressure in a few steps; that
+//! is let go last. Wrinkled film has many minima of energy near each other: this way keeps to the one
+//! the taut film passes into, with the symmetry it has, where a start at the pressure asked for ends
+//! in dents.
 
 use nalgebra::Vector3;
 
@@ -21,13 +21,20 @@ use super::newton::{
     tensile_stiffness,
 };
 use super::relaxation::Relaxation;
+use crate::forces::pressure::volume;
 use crate::gas::GasState;
 use crate::integrate::explicit::{Explicit, Interior, Setting};
+use crate::model::FilmModel;
+use crate::resultants::thickness;
 use crate::state::Field;
 use crate::supports::Supports;
 
 /// p L/(E t) of the first pressure.
 const FIRST_STRETCH: f64 = 0.5;
+/// The same of film that starts full, and so near its shape.
+const FULL_STRETCH: f64 = 0.05;
+/// V/A^(3/2) above which film is full: 0.094 for a sphere, 0 for what lies flat.
+const FULL: f64 = 0.03;
 /// Compression fraction on the way over p L/(E t).
 const STIFFENED: f64 = 0.01;
 /// Its least where p L/(E t) is this or more.
@@ -97,7 +104,8 @@ fn stages(loaded: &Loaded<'_>, places: &Field, from: Option<f64>) -> Vec<Stage> 
         let compression = own.max(least).max(STIFFENED * stretch);
         Stage { overpressure, compression }
     };
-    let first = from.map_or(FIRST_STRETCH * unit, f64::abs);
+    let stretch = if fullness(loaded.model, places) > FULL { FULL_STRETCH } else { FIRST_STRETCH };
+    let first = from.map_or(stretch * unit, f64::abs);
     let fall = (first / pressure.abs()).max(1.0);
     let count = (libm::log(fall) / libm::log(RATIO)).ceil();
     let mut all = Vec::new();
@@ -109,6 +117,13 @@ fn stages(loaded: &Loaded<'_>, places: &Field, from: Option<f64>) -> Vec<Stage> 
     }
     all.extend([on_the_way(pressure), last]);
     all
+}
+
+/// V/A^(3/2), A the film's area free of stress.
+fn fullness(model: &FilmModel, places: &Field) -> f64 {
+    let area: f64 =
+        (0..model.elements()).map(|own| model.volume[own] / thickness(model, own)).sum();
+    volume(model, places) / (area * area.sqrt())
 }
 
 struct Way<'a, 'b> {
