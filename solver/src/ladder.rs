@@ -1,7 +1,7 @@
 //! Models from cheap to full behind one interface: Scene → Deployment.
 //!
-//! [`solve`] runs the models a scene can name. [`film`] is not among them yet: without contact it is
-//! reached by its own name alone.
+//! [`solve`] runs the models a scene can name. [`film`] is not among them yet: it
+//! is reached by its own name alone.
 
 use crate::deployment::{Deployment, Observer};
 use crate::fold::FoldError;

@@ -6,6 +6,7 @@ use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
 use billow_solver::model::FilmModel;
 use billow_solver::scene::Film;
+use billow_solver::shell::Shell;
 use billow_solver::simd::Path;
 use billow_solver::state::Field;
 use nalgebra::{Vector2, Vector3};
@@ -26,18 +27,8 @@ pub struct Piece {
 impl Piece {
     /// A piece that is stress free where it is, each element laid flat by itself.
     pub fn relaxed(nodes: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Self {
-        let reference = triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.map(|node| nodes[node as usize]);
-                let (p, q) = (b - a, c - a);
-                let along = p.normalize();
-                let x = q.dot(&along);
-                let y = (q - along * x).norm();
-                [Vector2::zeros(), Vector2::new(p.norm(), 0.0), Vector2::new(x, y)]
-            })
-            .collect();
-        Self { nodes, triangles, reference }
+        let Shell { positions, triangles, reference, .. } = Shell::relaxed(nodes, triangles);
+        Self { nodes: positions, triangles, reference }
     }
 
     pub fn model(&self, film: &Film) -> FilmModel {

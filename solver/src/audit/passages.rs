@@ -241,9 +241,8 @@ impl Watch {
         Self { how, start: steps, frames, used: 1, passages: 0, first: None }
     }
 
-    /// Takes note of the places (m) after a step; looks at a block when it is full. Whether nothing has
-    /// passed so far.
-    pub fn step(&mut self, topology: &Topology, places: &Field) -> bool {
+    /// Takes note of the places (m) after a step; looks at a block when it is full.
+    pub fn step(&mut self, topology: &Topology, places: &Field) {
         let frame = &mut self.frames[self.used];
         frame.x.copy_from_slice(&places.x);
         frame.y.copy_from_slice(&places.y);
@@ -252,7 +251,6 @@ impl Watch {
         if self.used == self.frames.len() {
             self.look(topology);
         }
-        self.passages == 0
     }
 
     /// Looks at what has not been looked at yet.

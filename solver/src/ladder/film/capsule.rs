@@ -5,9 +5,7 @@ use nalgebra::Vector3;
 use super::imperfection;
 use crate::contact::plates::Plate;
 use crate::contact::{self, Adhesion, Law};
-use crate::film_scene::{
-    Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold,
-};
+use crate::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold};
 use crate::fold::FoldPattern;
 use crate::gas::{Gas, GasState};
 use crate::integrate::explicit::{Explicit, Interior, Setting};
@@ -155,16 +153,6 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Setting, GasState), Sc
         mutation: None,
     };
     Ok((model, setting, gas))
-}
-
-/// How film of a capsule's scene meets film.
-pub fn contact(scene: &Scene) -> FilmContact {
-    FilmContact {
-        distance: scene.contact.distance,
-        friction: scene.contact.friction,
-        adhesion: scene.contact.adhesion,
-        ..FilmContact::default()
-    }
 }
 
 /// The law of a scene's contact; until its release the film lies packed between base and lid.
