@@ -1,14 +1,19 @@
 //! Keeps film from passing through film in the step to come.
 //!
 //! ```text
-//! approach  w = n·Σ w_i v_i < 0      impulse  j = −(w + s (d − f)/Δt)/(Σ w_i² n·P n/m_i)      v_i += j w_i P n/m_i
+//! approach  w = n·Σ w_i v_i < u      impulse  j = (u − w)/(Σ w_i² n·P n/m_i)      v_i += j w_i P n/m_i
+//! speed a pair must have at least   u = max(−w⁻, 0) first, then −s (d − f)/Δt
 //! ```
 //!
-//! Symbols: s the share of its distance d above a floor f a pair may still close in the step Δt: none at
-//! first; where many pairs press each other and plates close on them that has no solution, and they may
-//! close by half and more. Below the floor, a hundredth of the contact distance, they part again.
-//! Momentum is kept but where a support holds. An impulse is a force over one kick, so what it takes is
-//! its trapezoid, −½ J·(v⁻ + v⁺): nothing where it only bears what presses on a pair at rest.
+//! Symbols: w⁻ the approach before the kick; s the share of its distance d above a floor f a pair may
+//! still close in the step Δt: none for some rounds; where many pairs press each other and plates close
+//! on them that has no solution, and they may close by half and more. Below the floor, a hundredth of
+//! the contact distance, they part again. Momentum is kept but where a support holds.
+//!
+//! An impulse is a force over one kick, so what it takes is its trapezoid, −½ J·(v⁻ + v⁺): nothing where
+//! it only bears what presses on a pair at rest, and nothing where a pair parts as fast as it came. So
+//! film too fast for the contact force bounces off, and only what more pairs than one want of a node at
+//! once costs energy.
 
 use nalgebra::Vector3;
 
@@ -54,8 +59,8 @@ pub fn taken(stopped: &Stopped, before: &Field, after: &Field) -> f64 {
 
 impl Law {
     /// Takes out of the velocities (m/s) whatever would carry a near pair through itself in a drift of
-    /// `length` (s), and adds the impulses to `stopped`. `turn`: how often plates have changed
-    /// velocities in this step.
+    /// `length` (s), and adds the impulses to `stopped`. `before`: velocities before the kick, m/s;
+    /// `turn`: how often plates have changed velocities in this step.
     ///
     /// # Errors
     /// The pair that could not be kept apart.
@@ -65,6 +70,7 @@ impl Law {
         model: &FilmModel,
         supports: &Supports,
         places: &Field,
+        before: &Field,
         velocities: &mut Field,
         length: f64,
         meeting: &mut Meeting,
@@ -78,7 +84,8 @@ impl Law {
                 let nodes = own.pair.nodes(&self.topology);
                 let moves = at(velocities, nodes).map(|velocity| velocity * length);
                 let x = at(places, nodes);
-                if self.is_clear(own.pair, own.gap, &x, &moves) {
+                let until = self.clear_until(own.pair, own.gap, &x, &moves);
+                if until >= 1.0 {
                     continue;
                 }
                 touched = Some(own.pair);
@@ -86,12 +93,17 @@ impl Law {
                 let kicked = at(velocities, nodes);
                 let share = closing(turn, round);
                 let floor = FLOOR * self.distance_of(own.pair.kind);
-                let allowed = move |gap: f64| {
-                    (if gap > floor { share * (gap - floor) } else { OUT * (gap - floor) }) / length
+                let least = |gap: f64, came: f64| {
+                    let back = if turn == 0 && round == 0 { (-came).max(0.0) } else { f64::MIN };
+                    let share = if gap > floor { share } else { OUT };
+                    back.max(share * (floor - gap) / length)
                 };
-                if round < ROUNDS {
-                    bounce(model, supports, own.pair, nodes, &x, allowed, velocities);
-                } else {
+                // Where it only turns into the other on the way, the line between them there counts.
+                let there = || core::array::from_fn(|k| x[k] + moves[k] * until);
+                let mut bounced = |x: &[Vector3<f64>; 4]| {
+                    bounce(model, supports, own.pair, nodes, x, before, least, velocities)
+                };
+                if round >= ROUNDS || !(bounced(&x) || bounced(&there())) {
                     stick(model, supports, nodes, velocities);
                 }
                 for (node, kicked) in nodes.iter().zip(kicked) {
@@ -112,13 +124,14 @@ impl Law {
         Ok(())
     }
 
-    fn is_clear(
+    /// Part of the motion, 0 to 1, until which a pair certainly keeps its share of the distance.
+    fn clear_until(
         &self,
         pair: Pair,
         gap: f64,
         x: &[Vector3<f64>; 4],
         moves: &[Vector3<f64>; 4],
-    ) -> bool {
+    ) -> f64 {
         let left = pair.left();
         let mean = (moves[0] + moves[1] + moves[2] + moves[3]) * 0.25;
         let largest = |side: &[Vector3<f64>]| {
@@ -126,22 +139,26 @@ impl Law {
         };
         let speed = largest(&moves[..left]) + largest(&moves[left..]);
         if speed < SAFE * gap * self.bounds {
-            return true;
+            return 1.0;
         }
-        clear_until(x, moves, left, KEPT * gap, |x| pair.closest(x)) >= 1.0
+        clear_until(x, moves, left, KEPT * gap, |x| pair.closest(x))
     }
 }
 
-/// Takes the approach of a pair out, but for the speed (m/s) it is allowed at its gap (m).
+/// Gives a pair at least the speed of parting (m/s), along the line between its closest points at `x`,
+/// that `least` names for its gap (m) and its speed of parting before the kick (m/s); whether that
+/// changed anything.
+#[expect(clippy::too_many_arguments, reason = "one pair and what it is made of")]
 fn bounce(
     model: &FilmModel,
     supports: &Supports,
     pair: Pair,
     nodes: [u32; 4],
     x: &[Vector3<f64>; 4],
-    allowed: impl Fn(f64) -> f64,
+    before: &Field,
+    least: impl Fn(f64, f64) -> f64,
     velocities: &mut Field,
-) {
+) -> bool {
     let closest = pair.closest(x);
     let gap = closest.squared.sqrt();
     let normal = closest.between / gap;
@@ -149,25 +166,25 @@ fn bounce(
         let node = node as usize;
         supports.projector(node) * normal * model.inverse_mass[node]
     });
-    let (mut approach, mut mobility) = (0.0, 0.0);
+    let (mut approach, mut came, mut mobility) = (0.0, 0.0, 0.0);
     for k in 0..4 {
         let weight = closest.weights[k];
         approach += weight * normal.dot(&velocities.get(nodes[k] as usize));
+        came += weight * normal.dot(&before.get(nodes[k] as usize));
         mobility += weight * weight * normal.dot(&mobile[k]);
     }
-    let approach = approach + allowed(gap);
-    let helps = approach < 0.0 && mobility > 0.0;
+    let missing = least(gap, came) - approach;
+    let helps = missing > 0.0 && mobility > 0.0;
     if !helps {
-        // It turns into the other on the way: nothing along the line now would stop it.
-        stick(model, supports, nodes, velocities);
-        return;
+        return false;
     }
-    let impulse = -approach / mobility;
+    let impulse = missing / mobility;
     for k in 0..4 {
         let node = nodes[k] as usize;
         let push = mobile[k] * (impulse * closest.weights[k]);
         velocities.set(node, velocities.get(node) + push);
     }
+    true
 }
 
 /// Gives four nodes their common velocity, in what is free.

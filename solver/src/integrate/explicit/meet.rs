@@ -68,8 +68,17 @@ impl Explicit {
         law.rub(model, supports, places, &self.next, velocities, kick, meeting);
         let mut stopped = Stopped::new();
         for turn in 0..MOST_TURNS {
-            let kept =
-                law.guard(model, supports, places, velocities, length, meeting, turn, &mut stopped);
+            let kept = law.guard(
+                model,
+                supports,
+                places,
+                &self.next,
+                velocities,
+                length,
+                meeting,
+                turn,
+                &mut stopped,
+            );
             if let Err(pair) = kept {
                 return Err(self.failure(FailureKind::Interpenetrated, &unkept(pair)));
             }
