@@ -26,6 +26,8 @@ pub struct Course {
     pub schedule: Schedule,
     /// Pressure outside, Pa.
     pub ambient_pressure: f64,
+    /// Frames to keep.
+    pub frames: u32,
     /// Thresholds of the verdict.
     pub thresholds: Thresholds,
 }
@@ -39,6 +41,7 @@ impl Course {
             release_time: scene.release_time,
             schedule: Schedule::new(&scene.gas.windows),
             ambient_pressure: scene.gas.ambient_pressure,
+            frames: scene.outputs.frames,
             thresholds: scene.outputs.thresholds,
         }
     }
@@ -57,6 +60,7 @@ impl Course {
             release_time: scene.release_time,
             schedule,
             ambient_pressure,
+            frames: scene.outputs.frames,
             thresholds: Thresholds::default(),
         }
     }

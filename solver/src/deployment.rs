@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::audit::{self, Audit};
 use crate::course::{Course, Phase};
+use crate::frames::{Frame, Frames};
 use crate::history::{History, Sample, Track};
 use crate::measures::{self, Measures, Reference};
 
@@ -54,6 +55,16 @@ pub trait Model {
     /// Values of what it follows now, in the order of [`Self::tracks`].
     fn follow(&self, _values: &mut Vec<f64>) {}
 
+    /// Its shape now; none for a model without one.
+    fn frame(&self) -> Option<Frame> {
+        None
+    }
+
+    /// What its frames are shapes of: nodes and storey of each element.
+    fn surface(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
+        (Vec::new(), Vec::new())
+    }
+
     /// Largest principal second Piola-Kirchhoff film stress so far, Pa.
     fn film_stress(&self) -> f64;
 
@@ -96,6 +107,8 @@ pub struct Run {
     samples: Vec<Sample>,
     /// What the model follows, at each of them.
     tracks: Vec<Vec<f64>>,
+    /// Shapes kept so far.
+    frames: Vec<Frame>,
     /// The last break or sample landed on, s.
     time: f64,
 }
@@ -111,6 +124,7 @@ impl Run {
         observer: &mut dyn Observer,
     ) -> Option<Stop> {
         let breaks = course.breaks();
+        let frames = course.frame_samples();
         // A pause never lies between a landing and its sample, so but for the first sample the phase
         // is that of the way just gone.
         let mut phase = course.phase(0.0, next_break(&breaks, 0.0, course.end_time));
@@ -124,6 +138,9 @@ impl Run {
                     Ok(false) => return None,
                     Err(failure) => return Some(Stop::Failed(failure)),
                 }
+            }
+            if frames.binary_search(&(self.samples.len() as u64)).is_ok() {
+                self.frames.extend(model.frame());
             }
             let mut sample = model.sample(&phase);
             sample.gas.mass_in = course.schedule.mass_until(target);
@@ -185,7 +202,11 @@ impl Run {
             track.values = self.tracks.iter().map(|row| row[at]).collect();
         }
         let (steps, elements) = (model.steps(), model.elements());
-        Deployment { history, tracks, measures, audit, stop, steps, elements }
+        let frames = (!self.frames.is_empty()).then(|| {
+            let (triangles, storeys) = model.surface();
+            Frames { triangles, storeys, frames: self.frames }
+        });
+        Deployment { history, tracks, frames, measures, audit, stop, steps, elements }
     }
 }
 
@@ -200,6 +221,8 @@ pub struct Deployment {
     pub history: History,
     /// What was followed beside it.
     pub tracks: Vec<Track>,
+    /// Shapes kept; none of a model without a shape, or where none were asked for.
+    pub frames: Option<Frames>,
     /// What the history says, in single numbers.
     pub measures: Measures,
     /// What the history is worth.

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use crate::audit::passages::Watchfulness;
 use crate::contact::plates::Plate;
-use crate::scene::{Film, GasSupply};
+use crate::scene::{Contact, Film, GasSupply};
 use crate::shell::Shell;
 use crate::simd::Path;
 
@@ -66,6 +66,14 @@ pub struct FilmContact {
     pub plates: Vec<Plate>,
     /// How closely passages are watched for.
     pub watch: Watchfulness,
+}
+
+impl FilmContact {
+    /// The contact a capsule's scene names.
+    pub fn of(contact: &Contact) -> Self {
+        let Contact { distance, friction, adhesion } = *contact;
+        Self { distance, friction, adhesion, ..Self::default() }
+    }
 }
 
 impl Default for FilmContact {
@@ -179,6 +187,8 @@ pub struct FilmOutputs {
     pub nodes: Vec<u32>,
     /// Elements whose stress resultants are followed.
     pub elements: Vec<u32>,
+    /// Shapes kept ([`crate::frames`]); 0 for none.
+    pub frames: u32,
 }
 
 impl Motion {

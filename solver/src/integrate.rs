@@ -158,6 +158,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                     Err(self.failure(FailureKind::Unstable, "state of the fixed step".to_owned()))
                 }
             }
+            Stepping::Stable(_) => unreachable!("no model integrated here has a stable step"),
             Stepping::Adaptive(tolerance) => {
                 let mut wish =
                     if self.next_step > 0.0 { self.next_step } else { FIRST_STEP * rest };

@@ -1,10 +1,12 @@
 //! Models from cheap to full behind one interface: Scene → Deployment.
 //!
-//! [`solve`] runs the models a scene can name. [`film`] is not among them yet: it
-//! is reached by its own name alone.
+//! [`solve`] runs the model a scene names. A model that is judged against static states of its own
+//! mesh does not look for them in every run: [`reference_scene`] says which they are, so that runs of
+//! one design can share them.
 
 use crate::deployment::{Deployment, Observer};
 use crate::fold::FoldError;
+use crate::measures::Reference;
 use crate::scene::{ModelKind, Scene};
 
 pub mod film;
@@ -34,15 +36,40 @@ pub enum SceneError {
 pub fn check(scene: &Scene) -> Result<(), SceneError> {
     match scene.solver.model {
         ModelKind::Piston => piston::check(scene),
+        ModelKind::Film => film::check(scene),
     }
 }
 
-/// Runs a scene on the model it names.
+/// The scene whose [`reference`] a run of this one is judged against: all that does not matter to
+/// static states at its default, so that equal references are equal scenes. `None` for a model that
+/// knows its own.
+pub fn reference_scene(scene: &Scene) -> Option<Scene> {
+    match scene.solver.model {
+        ModelKind::Piston => None,
+        ModelKind::Film => Some(film::reference_scene(scene)),
+    }
+}
+
+/// Static states of a [`reference_scene`].
+///
+/// # Errors
+/// [`SceneError`] when the capsule cannot be made, or has no such state.
+pub fn reference(scene: &Scene) -> Result<Reference, SceneError> {
+    film::static_reference(scene)
+}
+
+/// Runs a scene on the model it names, judged against `reference`; without one (and with a model that
+/// does not know its own) there is no verdict.
 ///
 /// # Errors
 /// [`SceneError`] when the scene cannot be started.
-pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, SceneError> {
+pub fn solve(
+    scene: &Scene,
+    reference: Option<Reference>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, SceneError> {
     match scene.solver.model {
         ModelKind::Piston => piston::solve(scene, observer),
+        ModelKind::Film => film::solve_scene(scene, reference, observer),
     }
 }

@@ -28,6 +28,7 @@ pub mod deployment;
 pub mod film_scene;
 pub mod fold;
 pub mod forces;
+pub mod frames;
 pub mod gas;
 pub mod history;
 pub mod integrate;

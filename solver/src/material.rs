@@ -18,6 +18,8 @@
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
+use serde::{Deserialize, Serialize};
+
 use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
 use crate::simd::Lanes;
@@ -48,7 +50,8 @@ impl PlaneTensor {
 }
 
 /// What the film does at a strain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Regime {
     /// Stretched both ways.
     Taut,

@@ -160,6 +160,8 @@ pub struct Contact {
 pub enum ModelKind {
     /// One moving mass on one gas volume: [`crate::ladder::piston`].
     Piston,
+    /// The film itself, with contact: [`crate::ladder::film`].
+    Film,
 }
 
 /// How the scene is computed.
@@ -184,6 +186,8 @@ pub enum Stepping {
     Adaptive(f64),
     /// This step, s (shortened only to land on window edges and samples).
     Fixed(f64),
+    /// This share of the stable step (CFL number): for explicit models.
+    Stable(f64),
 }
 
 /// What is stored of a run.
@@ -192,6 +196,8 @@ pub enum Stepping {
 pub struct Outputs {
     /// Time between samples of the history, s. Sampling is even: k·interval, and the end.
     pub sample_interval: f64,
+    /// Shapes kept of a model that has any ([`crate::frames`]); 0 for none.
+    pub frames: u32,
     /// Thresholds of the measures and the verdict.
     pub thresholds: Thresholds,
 }

@@ -7,14 +7,21 @@ use std::time::Instant;
 
 use billow_solver::deployment::{Deployment, Observer, Progress, Stop};
 use billow_solver::ladder::{self, SceneError};
+use billow_solver::measures::Reference;
 
-use crate::job::Job;
+use crate::job::{Job, JobId};
+use crate::references::References;
 
 /// Computes jobs.
 pub trait Executor: Sync {
     /// How many jobs it likes to get at once.
     fn batch(&self) -> usize {
         1
+    }
+
+    /// Static states found since the last call, to be kept for later runs.
+    fn references(&self) -> Vec<(JobId, Reference)> {
+        Vec::new()
     }
 
     /// Runs a batch: one outcome a job, in the order of `jobs`. `watch` is told the position in
@@ -32,8 +39,10 @@ pub enum Outcome {
     Ran {
         /// What it left.
         deployment: Box<Deployment>,
-        /// Wall time, s. A cost, never a reason.
+        /// Wall time, s, without that of the static states. A cost, never a reason.
         seconds: f64,
+        /// Why there is no verdict where there should be one.
+        note: Option<String>,
     },
     /// The model refused the scene.
     Refused(SceneError),
@@ -44,18 +53,27 @@ pub enum Outcome {
 }
 
 /// The solver on this machine, one job at a time.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Solver;
+#[derive(Debug, Default)]
+pub struct Solver {
+    /// Static states known so far.
+    pub references: References,
+}
 
 impl Executor for Solver {
+    fn references(&self) -> Vec<(JobId, Reference)> {
+        self.references.take_fresh()
+    }
+
     fn execute(&self, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome> {
         let run = |(position, job): (usize, &&Job)| {
+            let (reference, note) = self.references.of(&job.scene);
             let start = Instant::now();
-            match ladder::solve(&job.scene, &mut Watcher { position, watch }) {
+            match ladder::solve(&job.scene, reference, &mut Watcher { position, watch }) {
                 Ok(deployment) if deployment.stop == Stop::Cancelled => Outcome::Cancelled,
                 Ok(deployment) => Outcome::Ran {
                     deployment: Box::new(deployment),
                     seconds: start.elapsed().as_secs_f64(),
+                    note,
                 },
                 Err(error) => Outcome::Refused(error),
             }

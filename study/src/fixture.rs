@@ -75,7 +75,7 @@ fn scene(number: u32) -> Scene {
             stepping: Stepping::Adaptive(1e-9),
             step_limit: 1_000_000,
         },
-        outputs: Outputs { sample_interval: 0.001, thresholds: Thresholds::default() },
+        outputs: Outputs { sample_interval: 0.001, frames: 0, thresholds: Thresholds::default() },
         seed: u64::from(number),
     }
 }
@@ -105,6 +105,7 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
     Deployment {
         history,
         tracks: Vec::new(),
+        frames: None,
         measures,
         audit: Audit { ledger_residual: 1e-12, ..Audit::default() },
         stop: Stop::Done,

@@ -1,6 +1,7 @@
 //! The keys of a study file and of a scene file: the tables behind reading, errors, defaults,
 //! `billow schema` and the names an expression knows.
 
+mod nearest;
 mod scene;
 mod table;
 
@@ -12,6 +13,7 @@ use crate::study_file::Json;
 use crate::units::{self, Dimension};
 use crate::value::{Value, short_number};
 
+pub use nearest::nearest;
 pub use scene::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE,
     SCENE_WINDOW_KEYS, SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
@@ -371,36 +373,6 @@ pub fn find(name: &str) -> Option<usize> {
 /// The shortest name that [`find`] finds the key by.
 pub fn short_name(at: usize) -> &'static str {
     STUDY.short_name(at)
-}
-
-/// The known name nearest to a mistyped one, if any is near.
-pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    if name.len() > 64 {
-        return None;
-    }
-    let name = name.to_lowercase();
-    let furthest = 1 + name.chars().count() / 4;
-    known
-        .map(|known| (distance(&name, &known.to_lowercase()), known))
-        .filter(|(distance, _)| *distance <= furthest)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, known)| known)
-}
-
-/// Edits (insert, delete, replace) from one word to another.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, c) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, d) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(c != *d);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

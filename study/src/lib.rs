@@ -26,6 +26,7 @@ pub mod plan;
 pub mod point;
 pub mod progress;
 pub mod provenance;
+pub mod references;
 pub mod render;
 pub mod results;
 pub mod row;

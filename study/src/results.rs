@@ -4,6 +4,7 @@
 //! results/<study>/study.json        the study as last run, all spelled out: a study file itself
 //!                 journal/*.jsonl   which jobs ended, and how (crate::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::history_file)
+//!                 references/*.json static states of the designs (crate::references)
 //!                 summary.parquet   the table, rebuilt from plan and journal (crate::table)
 //!                 lock              held while a command changes the folder
 //! ```
@@ -81,6 +82,11 @@ impl<'a> Results<'a> {
         self.root.join("jobs").join(&id.as_str()[..2]).join(format!("{id}.h5"))
     }
 
+    /// Path of the static states runs are judged against.
+    pub fn references_path(&self) -> PathBuf {
+        self.root.join("references")
+    }
+
     /// Path of the summary table.
     pub fn table_path(&self) -> PathBuf {
         self.root.join("summary.parquet")
@@ -107,7 +113,8 @@ impl<'a> Results<'a> {
 
     /// Refuses a folder that holds what no study left there.
     fn refuse_foreign(&self) -> Result<()> {
-        const OURS: [&str; 5] = ["study.json", "journal", "jobs", "summary.parquet", "lock"];
+        const OURS: [&str; 7] =
+            ["study.json", "journal", "jobs", "references", "summary.parquet", "charts", "lock"];
         let at_root = |error: io::Error| disk_error(&self.root, &error);
         let names: Vec<String> = self
             .files
@@ -140,7 +147,7 @@ impl<'a> Results<'a> {
         let mut folders = self.files.list(&jobs).map_err(|error| disk_error(&jobs, &error))?;
         // Job folders are named by two digits; anything else in there is not ours.
         folders.retain(|path| path.file_name().is_some_and(|name| name.len() == 2));
-        folders.push(self.root.clone());
+        folders.extend([self.references_path(), self.root.clone()]);
         for folder in folders {
             files::sweep(self.files, &folder).map_err(|error| disk_error(&folder, &error))?;
         }

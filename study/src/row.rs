@@ -120,8 +120,9 @@ impl Cells {
         if !matches!(outcome, Outcome::Panicked(_)) {
             cells.design(job);
         }
-        if let Outcome::Ran { deployment, seconds } = outcome {
+        if let Outcome::Ran { deployment, seconds, note } = outcome {
             cells.deployment(deployment, *seconds);
+            cells.set("reason", note.as_deref());
         }
         cells.set("program_version", provenance::PROGRAM_VERSION);
         cells.set("commit", provenance::COMMIT);

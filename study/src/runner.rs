@@ -224,6 +224,9 @@ impl State<'_> {
             });
             records.push(Record { job: job.id.clone(), cells, file_hash });
         }
+        for (id, reference) in self.run.executor.references() {
+            self.run.results.write_reference(&id, &reference)?;
+        }
         if !records.is_empty() {
             self.writer.append(&records)?;
             self.ran += records.len();

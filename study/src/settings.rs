@@ -10,7 +10,7 @@ use crate::source::Source;
 use crate::study_file::Json;
 use crate::value::Value;
 
-pub(crate) use parts::{design, film, gas_laws, missing, number, unsigned};
+pub(crate) use parts::{design, film, gas_laws, missing, number, unsigned, whole};
 
 /// The value of every key of a table, in its order; `Null` where absent.
 #[derive(Debug, Clone)]

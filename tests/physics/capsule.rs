@@ -170,7 +170,7 @@ fn an_observer_can_stop_a_run() {
             progress.time < self.0
         }
     }
-    let deployment = ladder::solve(&injected(), &mut Until(0.02)).unwrap();
+    let deployment = ladder::solve(&injected(), None, &mut Until(0.02)).unwrap();
     assert_eq!(deployment.stop, Stop::Cancelled);
     assert_eq!(*deployment.history.column("time").last().unwrap(), 0.02);
     assert_eq!(deployment.measures.verdict, None);
@@ -181,7 +181,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
     let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
         let mut scene = injected();
         change(&mut scene);
-        match ladder::solve(&scene, &mut billow_solver::deployment::Unobserved) {
+        match ladder::solve(&scene, None, &mut billow_solver::deployment::Unobserved) {
             Err(SceneError::Invalid { key, problem }) => {
                 assert_eq!(key, expected, "{problem}");
                 assert!(!problem.is_empty());

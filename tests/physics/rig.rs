@@ -87,11 +87,11 @@ pub fn paper_scene() -> Scene {
             stepping: Stepping::Adaptive(DEFAULT_TOLERANCE),
             step_limit: 10_000_000,
         },
-        outputs: Outputs { sample_interval: 5e-4, thresholds: Thresholds::default() },
+        outputs: Outputs { sample_interval: 5e-4, frames: 0, thresholds: Thresholds::default() },
         seed: 0,
     }
 }
 
 pub fn run(scene: &Scene) -> Deployment {
-    ladder::solve(scene, &mut Unobserved).expect("a scene that can be run")
+    ladder::solve(scene, None, &mut Unobserved).expect("a scene that can be run")
 }

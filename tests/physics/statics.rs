@@ -186,7 +186,12 @@ fn scene(shell: Shell, pressure: f64, supports: Vec<FilmSupport>) -> FilmScene {
             step_limit: 0,
             path: Path::best(),
         },
-        outputs: FilmOutputs { sample_interval: 1.0, nodes: Vec::new(), elements: Vec::new() },
+        outputs: FilmOutputs {
+            sample_interval: 1.0,
+            nodes: Vec::new(),
+            elements: Vec::new(),
+            frames: 0,
+        },
         contact: None,
     }
 }

@@ -33,7 +33,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
 
 /// Of a piston's whole history.
 fn piston(scene: &Scene) -> String {
-    let deployment = ladder::solve(scene, &mut Unobserved).expect("a scene that can be run");
+    let deployment = ladder::solve(scene, None, &mut Unobserved).expect("a scene that can be run");
     let columns = COLUMNS.iter().map(|column| deployment.history.column(column.name));
     hash(columns.flatten().copied())
 }

@@ -68,6 +68,7 @@ fn course() -> Course {
         release_time: 0.25,
         schedule: Schedule::new(&[window(0.0, 0.5, 1.0), window(0.33, 2.0, 0.5)]),
         ambient_pressure: 0.0,
+        frames: 0,
         thresholds: Thresholds::default(),
     }
 }

@@ -5,7 +5,6 @@
 //! film, with rings. Passages are counted by an audit of its own and intersections at every sample;
 //! the first of either ends the run as `interpenetrated`. Without contact film passes through film:
 //! for unfolded shapes and for checks of energy; both counts come out as `None`.
-//! [`crate::scene::Solver::model`] and `stepping` are not read here.
 //!
 //! While packed, film with contact lies between a base and a lid, two plates at the contact distance
 //! from it, and moves between them as the gas lets it; the lid's force is what it bears. Without
@@ -19,11 +18,12 @@ use crate::contact::intersections::intersections;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
 use crate::film_scene::{FilmContact, FilmScene};
+use crate::frames::Frame;
 use crate::history::{Sample, Track};
 use crate::integrate::explicit::{Explicit, Interior, State};
 use crate::measures::Reference;
-use crate::mesh::{Mesh, Shape};
-use crate::scene::Scene;
+use crate::mesh::{Mesh, Part, Shape};
+use crate::scene::{Scene, Stepping};
 use crate::state::Field;
 
 pub mod capsule;
@@ -32,7 +32,9 @@ mod statics;
 mod tracks;
 
 pub use crate::statics::Relaxation;
-pub use statics::{Erected, StaticState, erected, static_reference, static_states};
+pub use statics::{
+    Erected, StaticState, erected, reference_scene, static_reference, static_states,
+};
 
 /// Runs a scene as film with this contact, at this share of the stable step, judged against
 /// `reference` ([`static_reference`], or a stored one of the same design, film and supports).
@@ -46,8 +48,43 @@ pub fn solve(
     reference: Reference,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let mut run = FilmRun::from_scene(scene, cfl, contact, reference)?;
+    let mut run = FilmRun::from_scene(scene, cfl, contact, Some(reference))?;
     Ok(deployment::run(&mut run, &Course::new(scene), observer))
+}
+
+/// Runs a scene with the contact and the share of the stable step it names.
+///
+/// # Errors
+/// As [`check`], and what shows only with the capsule made.
+pub fn solve_scene(
+    scene: &Scene,
+    reference: Option<Reference>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, SceneError> {
+    let cfl = stable_share(scene)?;
+    let contact = FilmContact::of(&scene.contact);
+    let mut run = FilmRun::from_scene(scene, cfl, Some(contact), reference)?;
+    Ok(deployment::run(&mut run, &Course::new(scene), observer))
+}
+
+/// Whether a scene is sound for this model, as far as that shows without its pattern.
+///
+/// # Errors
+/// [`SceneError::Invalid`].
+pub fn check(scene: &Scene) -> Result<(), SceneError> {
+    scene.validate()?;
+    stable_share(scene).map(|_| ())
+}
+
+fn stable_share(scene: &Scene) -> Result<f64, SceneError> {
+    match scene.solver.stepping {
+        Stepping::Stable(share) => Ok(share),
+        Stepping::Adaptive(_) | Stepping::Fixed(_) => Err(SceneError::Invalid {
+            key: "solver.stepping".to_owned(),
+            problem: "model `film` takes a share of its stable step; allowed: solver.cfl"
+                .to_owned(),
+        }),
+    }
 }
 
 /// Film in the middle of a run.
@@ -72,6 +109,8 @@ pub struct Rings {
     pub top_ring: Vec<u32>,
     /// Centre node of the top cap.
     pub top_centre: u32,
+    /// Storey of each element, as [`crate::frames::Frames::storeys`].
+    pub storeys: Vec<u32>,
     /// Height of the stack while it is packed, m.
     pub stowed_height: f64,
 }
@@ -79,8 +118,22 @@ pub struct Rings {
 impl Rings {
     /// The rings of a capsule's mesh, packed at this height (m).
     pub fn of(mesh: &Mesh, stowed_height: f64) -> Self {
-        let (top_ring, top_centre) = (mesh.top_ring.clone(), mesh.top_centre);
-        Self { top_ring, top_centre, stowed_height }
+        let lateral = mesh.parts.iter().filter_map(|part| match part {
+            Part::Storey(storey) => Some(storey + 1),
+            Part::BottomCap | Part::TopCap => None,
+        });
+        let storeys = lateral.max().unwrap_or(0);
+        let storey = |part: &Part| match part {
+            Part::BottomCap => 0,
+            Part::Storey(storey) => storey + 1,
+            Part::TopCap => storeys + 1,
+        };
+        Self {
+            top_ring: mesh.top_ring.clone(),
+            top_centre: mesh.top_centre,
+            storeys: mesh.parts.iter().map(storey).collect(),
+            stowed_height,
+        }
     }
 }
 
@@ -129,13 +182,13 @@ impl FilmRun {
         scene: &Scene,
         cfl: f64,
         contact: Option<FilmContact>,
-        reference: Reference,
+        reference: Option<Reference>,
     ) -> Result<Self, SceneError> {
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let (film, mesh) = capsule::film_scene(scene, stowed, cfl)?;
         let film = FilmScene { contact, ..film };
         let run = Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))?;
-        Ok(Self { reference: Some(reference), ..run })
+        Ok(Self { reference, ..run })
     }
 
     /// Force on the lid while packed, N.
@@ -235,6 +288,19 @@ impl Model for FilmRun {
 
     fn follow(&self, values: &mut Vec<f64>) {
         tracks::values(self, values);
+    }
+
+    fn frame(&self) -> Option<Frame> {
+        Some(tracks::frame(self))
+    }
+
+    fn surface(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
+        let triangles = self.film.model.triangles.clone();
+        let storeys = match &self.rings {
+            Some(rings) => rings.storeys.clone(),
+            None => vec![0; triangles.len()],
+        };
+        (triangles, storeys)
     }
 
     fn film_stress(&self) -> f64 {

@@ -29,7 +29,7 @@ use super::SceneError;
 use crate::course::Course;
 use crate::deployment::{self, Deployment, Observer};
 use crate::fold::FoldPattern;
-use crate::scene::Scene;
+use crate::scene::{Scene, Stepping};
 
 mod end_film;
 mod from_scene;
@@ -55,6 +55,13 @@ pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, S
 /// Whether a scene is sound and its supports are those of a piston.
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
+    if let Stepping::Stable(_) = scene.solver.stepping {
+        return Err(SceneError::Invalid {
+            key: "solver.cfl".to_owned(),
+            problem: "model `piston` has no stable step; allowed: adaptive or fixed stepping"
+                .to_owned(),
+        });
+    }
     from_scene::check_supports(scene)
 }
 

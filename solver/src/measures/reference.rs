@@ -23,6 +23,11 @@ impl Reference {
         Self { states }
     }
 
+    /// The table: overpressure (Pa), volume (m³), height (m), pressure rising.
+    pub fn states(&self) -> &[[f64; 3]] {
+        &self.states
+    }
+
     /// Volume (m³) and height (m) at an overpressure (Pa). Below the lowest pressure, none and
     /// suction included, they are those of the lowest.
     pub fn at(&self, overpressure: f64) -> (f64, f64) {

@@ -11,6 +11,7 @@ fn course() -> Course {
         release_time: 0.0,
         schedule: Schedule::new(&[]),
         ambient_pressure: 0.0,
+        frames: 0,
         thresholds: Thresholds::default(),
     }
 }

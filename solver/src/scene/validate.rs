@@ -5,6 +5,8 @@ use crate::ladder::SceneError;
 
 /// Samples a history may hold; more do not fit a table, a file or a machine.
 const MOST_SAMPLES: f64 = 1e7;
+/// Frames a run may keep in memory.
+const MOST_FRAMES: u32 = 10_000;
 
 impl Scene {
     /// Checks every key but those of the design, which [`crate::fold::FoldPattern::new`] checks.
@@ -83,6 +85,10 @@ impl Scene {
                 number("solver.stepping.adaptive", tolerance, sound, "from 1e-14 to 0.1")
             }
             Stepping::Fixed(step) => positive("solver.stepping.fixed", step, "s"),
+            Stepping::Stable(share) => {
+                let sound = |value: f64| value > 0.0 && value <= 1.0;
+                number("solver.cfl", share, sound, "above 0, at most 1")
+            }
         }
     }
 
@@ -92,6 +98,10 @@ impl Scene {
         positive(key, interval, "s")?;
         let few = |interval: f64| self.solver.end_time / interval <= MOST_SAMPLES;
         number(key, interval, few, "at least a ten-millionth of solver.end_time")?;
+        if self.outputs.frames > MOST_FRAMES {
+            let problem = format!("{} is not allowed; at most {MOST_FRAMES}", self.outputs.frames);
+            return Err(invalid("outputs.frames", problem));
+        }
         let thresholds = &self.outputs.thresholds;
         positive("outputs.thresholds.deployed_volume", thresholds.deployed_volume, "a ratio")?;
         positive("outputs.thresholds.deployed_height", thresholds.deployed_height, "a ratio")?;

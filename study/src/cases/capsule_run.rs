@@ -60,7 +60,7 @@ pub fn paper_capsule(subdivisions: u32, end_time: f64) -> Scene {
             stepping: Stepping::Adaptive(DEFAULT_TOLERANCE),
             step_limit: 10_000_000,
         },
-        outputs: Outputs { sample_interval: 5e-4, thresholds: Thresholds::default() },
+        outputs: Outputs { sample_interval: 5e-4, frames: 0, thresholds: Thresholds::default() },
         seed: 0,
     }
 }
@@ -71,7 +71,7 @@ pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     // Nothing here is judged by its static states.
     let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
     let mut run =
-        FilmRun::from_scene(&scene, DEFAULT_CFL, None, unread).map_err(|e| e.to_string())?;
+        FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(unread)).map_err(|e| e.to_string())?;
     run.film = rig.faulty(run.film);
     let deployment = deployment::run(&mut run, &Course::new(&scene), &mut Unobserved);
     if deployment.stop != Stop::Done {

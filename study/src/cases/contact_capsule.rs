@@ -29,7 +29,7 @@ use super::{Outcome, Rig, Row};
 pub fn stowed(scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
     // Nothing here is judged by its static states.
     let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    FilmRun::from_scene(scene, DEFAULT_CFL, Some(contact), unread).map_err(|e| e.to_string())
+    FilmRun::from_scene(scene, DEFAULT_CFL, Some(contact), Some(unread)).map_err(|e| e.to_string())
 }
 
 /// Runs a scene with this contact to its end.

@@ -87,7 +87,12 @@ pub fn scene(shell: Shell, film: Film) -> FilmScene {
             step_limit: u64::MAX,
             path: Path::best(),
         },
-        outputs: FilmOutputs { sample_interval: 1e-3, nodes: Vec::new(), elements: Vec::new() },
+        outputs: FilmOutputs {
+            sample_interval: 1e-3,
+            nodes: Vec::new(),
+            elements: Vec::new(),
+            frames: 0,
+        },
         contact: None,
     }
 }

@@ -10,6 +10,7 @@ use crate::executor::Solver;
 use crate::files::{Disk, disk_error};
 use crate::plan;
 use crate::progress::{self, Loudness};
+use crate::references::References;
 use crate::results::Results;
 use crate::row;
 use crate::runner::{self, Run, Summary};
@@ -34,14 +35,15 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         Global { verbose: true, .. } => Loudness::Verbose,
         _ => Loudness::Normal,
     };
+    let results = Results::new(&Disk, &root);
     let summary = runner::run(
         &Run {
             name: &study.name,
             study: &study.to_json(),
             planner: &|finished| plan::next_jobs(&study, finished),
             unit: &|name| study.unit(name).to_owned(),
-            executor: &Solver,
-            results: Results::new(&Disk, &root),
+            executor: &Solver { references: References::load(&results)? },
+            results,
             threads: threads(global)?,
             stop,
         },

@@ -213,6 +213,8 @@ pub static SPIN_KEYS: &[Key] = &[
 pub static OUTPUT_KEYS: &[Key] = &[
     key("sample_interval", above(Dimension::Time, 0.0, 1e6), Number(0.001), "\"1 ms\"",
         "Time between samples of the history; at most a million samples a run."),
+    key("frames", Kind::Integer(0, 10_000), Integer(40), "40",
+        "Shapes kept for --out, densest after the release; 0 for none."),
 ];
 
 /// `gravity`: one number along z, or three.

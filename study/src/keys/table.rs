@@ -2,6 +2,7 @@
 //! narrow enough to catch millimetres given as metres.
 
 use billow_solver::integrate::DEFAULT_TOLERANCE;
+use billow_solver::integrate::explicit::DEFAULT_CFL;
 
 use super::{Default, Key, Kind, Quantity};
 use crate::units::Dimension;
@@ -46,6 +47,15 @@ const RADIUS: Kind = above(Dimension::Length, 0.0, 100.0);
 pub(super) const FRACTION: Kind = above(Dimension::Number, 0.0, 1.0);
 pub(super) const KELVIN: Kind = from(Dimension::Temperature, 1.0, 5000.0);
 pub(super) const CLOCK: Kind = from(Dimension::Time, 0.0, 1e6);
+
+/// Shapes kept of a run.
+pub(super) const FRAMES: Key = key(
+    "outputs.frames",
+    Kind::Integer(0, 10_000),
+    Integer(40),
+    "40",
+    "Shapes kept of a run, densest after the release; 0 for none. Models without a shape ignore it.",
+);
 
 /// Every key that holds one value.
 #[rustfmt::skip]
@@ -149,19 +159,23 @@ pub static KEYS: &[Key] = &[
         "The inflation strategy: one named under strategies, or direct (released at once, inflow \
          from release to the end)."),
 
-    key("solver.model", Kind::Choice(&["piston"]), Word("piston"), "\"piston\"",
-        "Which model computes the job."),
+    key("solver.model", Kind::Choice(&["piston", "film"]), Word("film"), "\"piston\"",
+        "Which model computes the job: film (the whole film, with contact) or piston (one moving \
+         mass)."),
     key("solver.end_time", above(Dimension::Time, 0.0, 1e6), Required, "\"0.5 s\"",
         "Simulated time."),
+    key("solver.cfl", FRACTION, Number(DEFAULT_CFL), "0.45",
+        "Share of the stable step the film model takes (CFL number)."),
     key("solver.stepping.adaptive", above(Dimension::Number, 0.0, 0.1), Number(DEFAULT_TOLERANCE), "1e-9",
-        "Relative error tolerance a step of an error-controlled step."),
+        "Relative error tolerance a step of an error-controlled step; the piston's."),
     key("solver.stepping.fixed", above(Dimension::Time, 0.0, 1.0),
-        Absent("the step is error-controlled"), "\"10 us\"", "A fixed step."),
+        Absent("the step is error-controlled"), "\"10 us\"", "A fixed step; the piston's."),
     key("solver.step_limit", Kind::Integer(1, LARGEST), Integer(10_000_000), "10000000",
         "Steps after which a run stops with the status step_limit."),
 
     key("outputs.sample_interval", above(Dimension::Time, 0.0, 1e6), Number(0.001), "\"1 ms\"",
         "Time between samples of the history; at most a million samples a run."),
+    FRAMES,
     key("outputs.thresholds.deployed_volume", FRACTION, Number(0.93), "0.93",
         "Deployed needs this fraction of the reference volume."),
     key("outputs.thresholds.deployed_height", FRACTION, Number(0.95), "0.95",

@@ -105,6 +105,14 @@ impl<'a> Object<'a> {
         self.number(name)?.ok_or_else(|| self.missing(name))
     }
 
+    /// A whole number from 0 on that must be there.
+    pub fn count(&self, name: &str) -> Result<u32, InputError> {
+        match self.value(name)? {
+            Value::Integer(number) => u32::try_from(number).map_err(|_| self.missing(name)),
+            _ => Err(self.missing(name)),
+        }
+    }
+
     /// A word or a text, given or by default.
     pub fn text(&self, name: &str) -> Result<Option<String>, InputError> {
         match self.value(name)? {

@@ -110,7 +110,7 @@ pub(super) fn read(
     let (element_names, elements) = elements.into_iter().unzip();
     let sample_interval = object.needed("sample_interval")?;
     Ok((
-        FilmOutputs { sample_interval, nodes, elements },
+        FilmOutputs { sample_interval, nodes, elements, frames: object.count("frames")? },
         Followed { nodes: names, elements: element_names },
     ))
 }

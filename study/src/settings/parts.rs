@@ -28,7 +28,8 @@ pub(crate) fn number(settings: &Settings, path: &str, source: &Source) -> Result
     settings.number(path).ok_or_else(|| missing(settings, path, source))
 }
 
-fn whole(settings: &Settings, path: &str, source: &Source) -> Result<u32, InputError> {
+/// A whole number of 32 bits that must be there.
+pub(crate) fn whole(settings: &Settings, path: &str, source: &Source) -> Result<u32, InputError> {
     let number = settings.integer(path).and_then(|number| u32::try_from(number).ok());
     number.ok_or_else(|| missing(settings, path, source))
 }

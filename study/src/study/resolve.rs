@@ -10,7 +10,7 @@ use super::strategy::Strategy;
 use crate::error::InputError;
 use crate::keys::{STRATEGY_KEYS, WINDOW_KEYS};
 use crate::point::Infeasible;
-use crate::settings::{film, gas_laws, missing, number, unsigned};
+use crate::settings::{film, gas_laws, missing, number, unsigned, whole};
 use crate::source::{Source, shown};
 use crate::value::Value;
 
@@ -95,6 +95,10 @@ pub(super) fn scene(
             format!("below solver.end_time, {end_time} s"),
         ));
     }
+    let model = match settings.text("solver.model") {
+        "piston" => ModelKind::Piston,
+        _ => ModelKind::Film,
+    };
     let residual = get("gas.residual_gas_mass")?;
     let stored = settings.text("gas.residual_gas") == "stored";
     let windows = windows(point, name, strategy, if stored { 0.0 } else { residual }, source)?;
@@ -116,16 +120,22 @@ pub(super) fn scene(
         gravity: get("gravity")?,
         release_time,
         solver: Solver {
-            model: ModelKind::Piston,
+            model,
             end_time,
-            stepping: match settings.number("solver.stepping.fixed") {
-                Some(step) => Stepping::Fixed(step),
-                None => Stepping::Adaptive(get("solver.stepping.adaptive")?),
+            stepping: match (model, settings.number("solver.stepping.fixed")) {
+                (ModelKind::Film, _) => Stepping::Stable(get("solver.cfl")?),
+                (ModelKind::Piston, Some(step)) => Stepping::Fixed(step),
+                (ModelKind::Piston, None) => Stepping::Adaptive(get("solver.stepping.adaptive")?),
             },
             step_limit: unsigned(settings, "solver.step_limit", source)?,
         },
         outputs: Outputs {
             sample_interval,
+            // A model without a shape keeps none, whatever is asked: equal physics, equal job.
+            frames: match model {
+                ModelKind::Film => whole(settings, "outputs.frames", source)?,
+                ModelKind::Piston => 0,
+            },
             thresholds: Thresholds {
                 deployed_volume: get("outputs.thresholds.deployed_volume")?,
                 deployed_height: get("outputs.thresholds.deployed_height")?,

@@ -78,6 +78,7 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
             sample_interval: scene.outputs.sample_interval,
             nodes: Vec::new(),
             elements: Vec::new(),
+            frames: scene.outputs.frames,
         },
     };
     Ok((film, mesh))

@@ -20,7 +20,9 @@ use crate::ladder::SceneError;
 use crate::measures::{REFERENCE_PRESSURES, Reference};
 use crate::mesh::{Mesh, Shape};
 use crate::model::FilmModel;
-use crate::scene::{Film, Scene};
+use crate::scene::{
+    Contact, Film, GasSupply, HeatTransfer, Outputs, Scene, Solver, Stepping, Thresholds,
+};
 use crate::simd::Path;
 use crate::state::Field;
 use crate::statics::{Loaded, Settling, StaticFailure, settle};
@@ -149,6 +151,37 @@ pub fn static_states(scene: &Scene, overpressures: &[f64]) -> Result<Vec<StaticS
         problem: failure.to_string(),
     };
     overpressures.iter().map(|pressure| capsule.settle(*pressure).map_err(no_state)).collect()
+}
+
+/// A scene of which all that does not matter to its static states is at its default: gas, contact,
+/// lid, gravity, imperfection, what is stored, how long it runs, and of the film compression and
+/// viscosity.
+pub fn reference_scene(scene: &Scene) -> Scene {
+    Scene {
+        design: scene.design.clone(),
+        film: Film { compression: 0.0, viscosity: 0.0, ..scene.film },
+        gas: GasSupply {
+            initial_mass: 0.0,
+            windows: Vec::new(),
+            ambient_pressure: 0.0,
+            heat_transfer: HeatTransfer::Coefficient(0.0),
+            leak_area: 0.0,
+            discharge_coefficient: 1.0,
+            ..scene.gas.clone()
+        },
+        supports: scene.supports.clone(),
+        contact: Contact { distance: None, friction: 0.0, adhesion: 0.0 },
+        gravity: 0.0,
+        release_time: 0.0,
+        solver: Solver {
+            end_time: 1.0,
+            stepping: Stepping::Stable(1.0),
+            step_limit: 1,
+            ..scene.solver
+        },
+        outputs: Outputs { sample_interval: 1.0, frames: 0, thresholds: Thresholds::default() },
+        seed: 0,
+    }
 }
 
 /// `V_ref` and `H_ref` of a scene's capsule, at [`REFERENCE_PRESSURES`].

@@ -1,6 +1,8 @@
-//! What film is followed by beside its samples: nodes, elements, the cap's centre, contact.
+//! What film is followed by beside its samples: nodes, elements, the cap's centre, contact; its shape.
 
 use super::FilmRun;
+use crate::forces::membrane::strain;
+use crate::frames::Frame;
 use crate::history::Track;
 use crate::resultants::resultants;
 
@@ -73,4 +75,14 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
         ]);
         values.extend(meeting.plates.iter().map(|plate| plate.force));
     }
+}
+
+/// The film's shape now.
+pub(super) fn frame(run: &FilmRun) -> Frame {
+    let (model, state) = (&run.film.model, &run.film.state);
+    #[expect(clippy::cast_possible_truncation, reason = "single precision is what frames have")]
+    let places = state.places.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]).collect();
+    let regime = |element| model.material.regime(strain(model, &state.places, element));
+    let regimes = (0..model.elements()).map(regime).collect();
+    Frame { time: state.time, places, regimes }
 }

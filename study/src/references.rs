@@ -1,0 +1,159 @@
+//! Static states runs are judged against: looked for once a design, shared by all its jobs.
+//!
+//! ```text
+//! results/<study>/references/<id>.json     {"format", "version", "physics_version", "states": [[p, V, z_rim], …]}
+//! ```
+//!
+//! The id is that of the scene whose states they are ([`billow_solver::ladder::reference_scene`]): all
+//! that does not matter to them left out. A stored state is a saving, never a truth: what is missing,
+//! damaged or of another physics version is looked for again and gives the same bits.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use billow_solver::PHYSICS_VERSION;
+use billow_solver::ladder;
+use billow_solver::measures::Reference;
+use billow_solver::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::files::{self, disk_error};
+use crate::job::JobId;
+use crate::results::Results;
+
+/// Name of the format.
+const FORMAT: &str = "billow-reference";
+/// Version of the format this program writes and reads.
+const VERSION: u32 = 1;
+
+/// A reference, or why there is none.
+type Found = std::result::Result<Reference, String>;
+/// Found once; whoever comes meanwhile waits.
+type Slot = Arc<OnceLock<Found>>;
+
+/// References by the scene they are of.
+#[derive(Debug, Default)]
+pub struct References {
+    slots: Mutex<BTreeMap<JobId, Slot>>,
+    fresh: Mutex<Vec<(JobId, Reference)>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    format: String,
+    version: u32,
+    physics_version: u32,
+    /// Overpressure, Pa, volume, m³, mean height of the top ring, m; pressure rising.
+    states: Vec<[f64; 3]>,
+}
+
+impl References {
+    /// What a results folder holds of them.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Disk`] when the folder cannot be read.
+    pub fn load(results: &Results<'_>) -> Result<Self> {
+        let folder = results.references_path();
+        let at = |path: &std::path::Path, error: io::Error| disk_error(path, &error);
+        let paths = results.files().list(&folder).map_err(|error| at(&folder, error))?;
+        let mut slots = BTreeMap::new();
+        for path in paths {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let Some(id) = JobId::from_digits(&stem) else { continue };
+            let bytes = results.files().read(&path).map_err(|error| at(&path, error))?;
+            if let Some(reference) = read(&bytes) {
+                slots.insert(id, Arc::new(OnceLock::from(Ok(reference))));
+            }
+        }
+        Ok(Self { slots: Mutex::new(slots), fresh: Mutex::default() })
+    }
+
+    /// The reference of a scene; `None` where its model knows its own. The second value says why
+    /// there is none where there should be one.
+    pub fn of(&self, scene: &Scene) -> (Option<Reference>, Option<String>) {
+        let Some(of) = ladder::reference_scene(scene) else { return (None, None) };
+        let id = JobId::of(&of);
+        let slot = {
+            let mut slots = self.slots.lock().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(slots.entry(id.clone()).or_default())
+        };
+        let found = slot.get_or_init(|| {
+            let found = ladder::reference(&of).map_err(|error| error.to_string());
+            if let Ok(reference) = &found {
+                let mut fresh = self.fresh.lock().unwrap_or_else(PoisonError::into_inner);
+                fresh.push((id, reference.clone()));
+            }
+            found
+        });
+        match found {
+            Ok(reference) => (Some(reference.clone()), None),
+            Err(problem) => (None, Some(format!("no verdict: {problem}"))),
+        }
+    }
+
+    /// What has been found since the last call.
+    pub fn take_fresh(&self) -> Vec<(JobId, Reference)> {
+        core::mem::take(&mut self.fresh.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+fn read(bytes: &[u8]) -> Option<Reference> {
+    let stored: Stored = serde_json::from_slice(bytes).ok()?;
+    let ours = stored.format == FORMAT
+        && stored.version == VERSION
+        && stored.physics_version == PHYSICS_VERSION;
+    let rising = stored.states.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+    let sound = rising && stored.states.first().is_some_and(|first| first[0] > 0.0);
+    (ours && sound).then(|| Reference::new(stored.states))
+}
+
+impl Results<'_> {
+    /// Stores a reference.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Disk`].
+    pub fn write_reference(&self, id: &JobId, reference: &Reference) -> Result<()> {
+        let folder = self.references_path();
+        let path = folder.join(format!("{id}.json"));
+        let stored = Stored {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            physics_version: PHYSICS_VERSION,
+            states: reference.states().to_vec(),
+        };
+        let written = || -> io::Result<()> {
+            self.files().create_folder(&folder)?;
+            let mut bytes = serde_json::to_vec(&stored).map_err(io::Error::other)?;
+            bytes.push(b'\n');
+            files::write_atomic(self.files(), &path, &bytes)
+        };
+        written().map_err(|error| disk_error(&path, &error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Disk;
+
+    #[test]
+    fn what_is_stored_is_read_and_what_is_damaged_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let results = Results::new(&Disk, folder.path());
+        let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
+        let reference = Reference::new(vec![[1.0, 0.1 + 0.2, 0.9], [10.0, 0.4, 1.0]]);
+        results.write_reference(&id, &reference).unwrap();
+        let path = results.references_path().join(format!("{id}.json"));
+        let bytes = results.files().read(&path).unwrap();
+        assert_eq!(read(&bytes), Some(reference.clone()));
+        assert_eq!(read(&bytes[..bytes.len() / 2]), None);
+        let other = String::from_utf8(bytes).unwrap().replace("\"version\":1", "\"version\":2");
+        assert_eq!(read(other.as_bytes()), None);
+        let loaded = References::load(&results).unwrap();
+        let slots = loaded.slots.lock().unwrap();
+        assert_eq!(slots[&id].get(), Some(&Ok(reference)));
+    }
+}
