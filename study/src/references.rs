@@ -51,24 +51,15 @@ struct Stored {
 }
 
 impl References {
-    /// What a results folder holds of them.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::Disk`] when the folder cannot be read.
-    pub fn load(results: &Results<'_>) -> Result<Self> {
-        let folder = results.references_path();
-        let at = |path: &std::path::Path, error: io::Error| disk_error(path, &error);
-        let paths = results.files().list(&folder).map_err(|error| at(&folder, error))?;
-        let mut slots = BTreeMap::new();
-        for path in paths {
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            let Some(id) = JobId::from_digits(&stem) else { continue };
-            let bytes = results.files().read(&path).map_err(|error| at(&path, error))?;
-            if let Some(reference) = read(&bytes) {
-                slots.insert(id, Arc::new(OnceLock::from(Ok(reference))));
-            }
-        }
-        Ok(Self { slots: Mutex::new(slots), fresh: Mutex::default() })
+    /// What a results folder holds of them; what cannot be read is not known.
+    pub fn load(results: &Results<'_>) -> Self {
+        let paths = results.files().list(&results.references_path()).unwrap_or_default();
+        let known = paths.into_iter().filter_map(|path| {
+            let id = JobId::from_digits(&path.file_stem()?.to_string_lossy())?;
+            let reference = read(&results.files().read(&path).ok()?)?;
+            Some((id, Arc::new(OnceLock::from(Ok(reference)))))
+        });
+        Self { slots: Mutex::new(known.collect()), fresh: Mutex::default() }
     }
 
     /// The reference of a scene; `None` where its model knows its own. The second value says why
@@ -152,7 +143,7 @@ mod tests {
         assert_eq!(read(&bytes[..bytes.len() / 2]), None);
         let other = String::from_utf8(bytes).unwrap().replace("\"version\":1", "\"version\":2");
         assert_eq!(read(other.as_bytes()), None);
-        let loaded = References::load(&results).unwrap();
+        let loaded = References::load(&results);
         let slots = loaded.slots.lock().unwrap();
         assert_eq!(slots[&id].get(), Some(&Ok(reference)));
     }

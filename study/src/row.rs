@@ -179,6 +179,13 @@ impl Cells {
         let audit = &deployment.audit;
         self.set("passages", audit.passages.map(integer));
         self.set("intersections", audit.intersections.map(integer));
+        let followed = |name: &str| deployment.tracks.iter().find(|track| track.name == name);
+        let extreme = |name: &str, pick: fn(f64, f64) -> f64| {
+            followed(name).and_then(|track| track.values.iter().copied().reduce(pick))
+        };
+        self.set("interlayer_pressure", extreme("interlayer_pressure", f64::max));
+        self.set("contact_area_fraction", extreme("contact_area_fraction", f64::max));
+        self.set("smallest_gap", extreme("smallest_gap", f64::min));
         self.set("ledger_residual", audit.ledger_residual);
         self.set("gas_residual", audit.gas_residual);
         self.set("viscous_fraction", audit.viscous_fraction);

@@ -14,7 +14,7 @@ fn changed(pointer: &str, value: Json) -> Vec<u8> {
     let mut study = json!({
         "design": {"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
         "gas": {"mass_flow_rate": 0.005},
-        "solver": {"end_time": 0.5},
+        "solver": {"model": "piston", "end_time": 0.5},
     });
     let (parent, leaf) = pointer.rsplit_once('/').unwrap();
     study.pointer_mut(parent).unwrap()[leaf] = value;
@@ -357,7 +357,7 @@ fn shortened(path: &std::path::Path) -> Json {
 #[test]
 fn a_hundred_thousand_mangled_studies_never_panic() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies");
-    let studies: Vec<Json> = ["first.json", "strategies.json", "folds.json"]
+    let studies: Vec<Json> = ["first.json", "designs.json", "strategies.json", "folds.json"]
         .iter()
         .map(|name| shortened(&folder.join(name)))
         .collect();

@@ -6,6 +6,7 @@ mod broken_studies;
 mod contact;
 mod contact_audit;
 mod determinism;
+mod film_study;
 mod folding;
 mod mutations;
 mod physics_version;

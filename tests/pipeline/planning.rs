@@ -32,7 +32,7 @@ fn capsule() -> Json {
     json!({
         "design": {"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
         "gas": {"mass_flow_rate": 0.005},
-        "solver": {"end_time": 0.5},
+        "solver": {"model": "piston", "end_time": 0.5},
     })
 }
 
@@ -167,7 +167,7 @@ proptest! {
 #[test]
 fn a_grid_is_the_product_in_the_order_of_the_file() {
     let text = r#"{"design": {"bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
-        "gas": {"mass_flow_rate": 0.005}, "solver": {"end_time": 0.5},
+        "gas": {"mass_flow_rate": 0.005}, "solver": {"model": "piston", "end_time": 0.5},
         "grid": {"N": [5, 6], "M": [4, 3], "film.thickness": ["25.4 um", "12.7 um"]}}"#;
     let study = Study::from_text(text, "f", "x", &[], Limits::default()).unwrap();
     assert_eq!(study.parameter_names(), ["N", "M", "thickness"]);

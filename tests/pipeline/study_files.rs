@@ -124,7 +124,7 @@ fn schema_and_plan_print_json() {
     let (schema, _): (serde_json::Value, _) = billow(&["schema"]);
     assert_eq!(schema, study_schema());
 
-    let (plan, stderr): (serde_json::Value, _) = billow(&["plan", "first.json", "--json"]);
+    let (plan, stderr): (serde_json::Value, _) = billow(&["plan", "designs.json", "--json"]);
     let rows = plan.as_array().unwrap();
     assert_eq!(rows.len(), 108);
     for row in rows {

@@ -75,7 +75,7 @@ pub fn grid(axes: &Value) -> Value {
     serde_json::json!({
         "design": { "fit": "height", "bottom_radius": "500 mm", "height": "1 m" },
         "gas": { "species": "nitrogen" },
-        "solver": { "end_time": "0.6 s" },
+        "solver": { "model": "piston", "end_time": "0.6 s" },
         "grid": axes
     })
 }

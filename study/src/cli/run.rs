@@ -42,7 +42,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             study: &study.to_json(),
             planner: &|finished| plan::next_jobs(&study, finished),
             unit: &|name| study.unit(name).to_owned(),
-            executor: &Solver { references: References::load(&results)? },
+            executor: &Solver { references: References::load(&results) },
             results,
             threads: threads(global)?,
             stop,

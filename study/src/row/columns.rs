@@ -91,6 +91,21 @@ pub const COLUMNS: &[RowColumn] = &[
         "intersections",
         "intersections at the worst frame; null for a model without film to intersect",
     ),
+    number(
+        "interlayer_pressure",
+        "Pa",
+        "largest pressure of film on film at a sample; null for a model without contact",
+    ),
+    number(
+        "contact_area_fraction",
+        "1",
+        "largest share of the film's area in contact at a sample; null for a model without contact",
+    ),
+    number(
+        "smallest_gap",
+        "m",
+        "smallest distance of film from film at a sample; null for a model without contact",
+    ),
     number("ledger_residual", "1", "largest energy ledger residual"),
     number("gas_residual", "1", "largest gas balance residual"),
     number("viscous_fraction", "1", "energy dissipated by film viscosity over the work of the gas"),

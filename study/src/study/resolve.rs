@@ -123,7 +123,15 @@ pub(super) fn scene(
             model,
             end_time,
             stepping: match (model, settings.number("solver.stepping.fixed")) {
-                (ModelKind::Film, _) => Stepping::Stable(get("solver.cfl")?),
+                (ModelKind::Film, Some(step)) => {
+                    return Err(source.error(
+                        "solver.stepping.fixed",
+                        &shown(step),
+                        "the model film takes a share of its stable step",
+                        "solver.cfl in its place; a fixed step is the piston's",
+                    ));
+                }
+                (ModelKind::Film, None) => Stepping::Stable(get("solver.cfl")?),
                 (ModelKind::Piston, Some(step)) => Stepping::Fixed(step),
                 (ModelKind::Piston, None) => Stepping::Adaptive(get("solver.stepping.adaptive")?),
             },
