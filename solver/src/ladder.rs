@@ -50,12 +50,16 @@ pub fn reference_scene(scene: &Scene) -> Option<Scene> {
     }
 }
 
-/// Static states of a [`reference_scene`].
+/// Static states of a [`reference_scene`], for as long as `goes_on` says so, which is asked now and
+/// then.
 ///
 /// # Errors
-/// [`SceneError`] when the capsule cannot be made, or has no such state.
-pub fn reference(scene: &Scene) -> Result<Reference, SceneError> {
-    film::static_reference(scene)
+/// [`SceneError`] when the capsule cannot be made, or has no such state, or `goes_on` said no.
+pub fn reference(
+    scene: &Scene,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Result<Reference, SceneError> {
+    film::static_reference_while(scene, goes_on)
 }
 
 /// Runs a scene on the model it names, judged against `reference`; without one (and with a model that

@@ -66,7 +66,15 @@ impl Executor for Solver {
 
     fn execute(&self, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome> {
         let run = |(position, job): (usize, &&Job)| {
-            let (reference, note) = self.references.of(&job.scene);
+            let end_time = job.scene.solver.end_time;
+            let start = Progress {
+                time: 0.0,
+                end_time,
+                z_centre: job.scene.design.stowed_height,
+                pressure: 0.0,
+            };
+            let goes_on = &mut || watch(position, start);
+            let (reference, note) = self.references.of(&job.scene, goes_on);
             let start = Instant::now();
             match ladder::solve(&job.scene, reference, &mut Watcher { position, watch }) {
                 Ok(deployment) if deployment.stop == Stop::Cancelled => Outcome::Cancelled,

@@ -63,8 +63,13 @@ impl References {
     }
 
     /// The reference of a scene; `None` where its model knows its own. The second value says why
-    /// there is none where there should be one.
-    pub fn of(&self, scene: &Scene) -> (Option<Reference>, Option<String>) {
+    /// there is none where there should be one. `goes_on` is asked now and then; once it says no the
+    /// whole run is ending, and none is looked for again.
+    pub fn of(
+        &self,
+        scene: &Scene,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> (Option<Reference>, Option<String>) {
         let Some(of) = ladder::reference_scene(scene) else { return (None, None) };
         let id = JobId::of(&of);
         let slot = {
@@ -72,7 +77,7 @@ impl References {
             Arc::clone(slots.entry(id.clone()).or_default())
         };
         let found = slot.get_or_init(|| {
-            let found = ladder::reference(&of).map_err(|error| error.to_string());
+            let found = ladder::reference(&of, goes_on).map_err(|error| error.to_string());
             if let Ok(reference) = &found {
                 let mut fresh = self.fresh.lock().unwrap_or_else(PoisonError::into_inner);
                 fresh.push((id, reference.clone()));

@@ -33,7 +33,8 @@ mod tracks;
 
 pub use crate::statics::Relaxation;
 pub use statics::{
-    Erected, StaticState, erected, reference_scene, static_reference, static_states,
+    Erected, StaticState, erected, reference_scene, static_reference, static_reference_while,
+    static_states,
 };
 
 /// Runs a scene as film with this contact, at this share of the stable step, judged against

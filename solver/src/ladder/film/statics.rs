@@ -114,6 +114,18 @@ impl Erected {
     /// # Errors
     /// [`StaticFailure`].
     pub fn settle(&mut self, overpressure: f64) -> Result<StaticState, StaticFailure> {
+        self.settle_while(overpressure, &mut || true)
+    }
+
+    /// The same, for as long as `goes_on` says so, which is asked at every iteration.
+    ///
+    /// # Errors
+    /// [`StaticFailure`], of kind `Stopped` where it said no.
+    pub fn settle_while(
+        &mut self,
+        overpressure: f64,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<StaticState, StaticFailure> {
         let loaded = Loaded {
             model: &self.model,
             supports: &self.supports,
@@ -121,7 +133,9 @@ impl Erected {
             gravity: Vector3::zeros(),
             path: Path::best(),
         };
-        let watch = &mut |_: &_| ControlFlow::Continue(());
+        let watch = &mut |_: &_| {
+            if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
         let rest = settle(&loaded, &self.places, self.rests_under, &Settling::default(), watch)?;
         self.places.clone_from(&rest.places);
         // What is held has arrived.
@@ -145,12 +159,21 @@ impl Erected {
 /// # Errors
 /// [`SceneError`] when the capsule cannot be made, or has no such state.
 pub fn static_states(scene: &Scene, overpressures: &[f64]) -> Result<Vec<StaticState>, SceneError> {
+    states_while(scene, overpressures, &mut || true)
+}
+
+fn states_while(
+    scene: &Scene,
+    overpressures: &[f64],
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Result<Vec<StaticState>, SceneError> {
     let mut capsule = erected(scene)?;
     let no_state = |failure: StaticFailure| SceneError::Invalid {
         key: "design".to_owned(),
         problem: failure.to_string(),
     };
-    overpressures.iter().map(|pressure| capsule.settle(*pressure).map_err(no_state)).collect()
+    let mut settle = |pressure: &f64| capsule.settle_while(*pressure, goes_on).map_err(no_state);
+    overpressures.iter().map(&mut settle).collect()
 }
 
 /// A scene of which all that does not matter to its static states is at its default: gas, contact,
@@ -189,9 +212,20 @@ pub fn reference_scene(scene: &Scene) -> Scene {
 /// # Errors
 /// As [`static_states`].
 pub fn static_reference(scene: &Scene) -> Result<Reference, SceneError> {
+    static_reference_while(scene, &mut || true)
+}
+
+/// The same, for as long as `goes_on` says so, which is asked now and then.
+///
+/// # Errors
+/// As [`static_states`], and where it said no.
+pub fn static_reference_while(
+    scene: &Scene,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Result<Reference, SceneError> {
     let mut falling = REFERENCE_PRESSURES;
     falling.reverse();
-    let mut states = static_states(scene, &falling)?;
+    let mut states = states_while(scene, &falling, goes_on)?;
     states.reverse();
     Ok(Reference::new(states.iter().map(|s| [s.overpressure, s.volume, s.z_rim]).collect()))
 }
