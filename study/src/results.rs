@@ -14,6 +14,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Deserialize;
 
@@ -28,6 +29,11 @@ use crate::table::{Table, parquet};
 const FORMAT: &str = "billow-study";
 /// Version of study.json this program writes, and the newest it reads.
 const VERSION: u64 = 1;
+
+/// Names of what a run leaves in a folder.
+pub const OURS: [&str; 5] = ["study.json", "journal", "jobs", "summary.parquet", "lock"];
+/// How often a lock that is held is looked at before it counts as held.
+const LOOKS: u32 = 5;
 
 /// What tells whose folder it is.
 #[derive(Deserialize)]
@@ -95,9 +101,16 @@ impl<'a> Results<'a> {
         if !self.files.create_folder(&self.root).map_err(at_root)? {
             self.refuse_foreign()?;
         }
-        let path = self.root.join("lock");
-        let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
-        lock.ok_or_else(|| Error::Disk {
+        let path = self.lock_path();
+        // A command that only looks whether somebody runs holds the lock for an instant.
+        for _ in 0..LOOKS {
+            let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
+            if let Some(lock) = lock {
+                return Ok(lock);
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        Err(Error::Disk {
             path: self.root.clone(),
             problem: "another billow command is running this study\n  next: wait until it has \
                       ended, or choose another folder with --results DIR"
@@ -105,9 +118,21 @@ impl<'a> Results<'a> {
         })
     }
 
+    /// Whether another process is running this study.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn is_locked(&self) -> Result<bool> {
+        let path = self.lock_path();
+        self.files.is_locked(&path).map_err(|error| disk_error(&path, &error))
+    }
+
+    fn lock_path(&self) -> PathBuf {
+        self.root.join("lock")
+    }
+
     /// Refuses a folder that holds what no study left there.
     fn refuse_foreign(&self) -> Result<()> {
-        const OURS: [&str; 5] = ["study.json", "journal", "jobs", "summary.parquet", "lock"];
         let at_root = |error: io::Error| disk_error(&self.root, &error);
         let names: Vec<String> = self
             .files
@@ -147,40 +172,55 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
+    /// Path of study.json.
+    pub fn study_path(&self) -> PathBuf {
+        self.root.join("study.json")
+    }
+
+    /// Name of the study the folder belongs to, `None` where no study.json says so.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when study.json cannot be read, is none of ours, or of a newer program.
+    pub fn owner(&self) -> Result<Option<String>> {
+        let path = self.study_path();
+        let bytes = match self.files.read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(disk_error(&path, &error)),
+        };
+        let there: Owner = serde_json::from_slice(&bytes)
+            .map_err(|error| self.refused(format!("not a study.json of billow: {error}")))?;
+        if there.format != FORMAT {
+            return Err(self.refused(format!("format {:?} is not {FORMAT:?}", there.format)));
+        }
+        if there.version > VERSION {
+            return Err(self.refused(format!(
+                "version {}, this program reads up to {VERSION}: written by a newer billow",
+                there.version
+            )));
+        }
+        Ok(Some(there.name))
+    }
+
+    fn refused(&self, problem: String) -> Error {
+        Error::Disk {
+            path: self.study_path(),
+            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
+        }
+    }
+
     /// Notes which study the folder belongs to, unless it says so already: `study` is the resolved
     /// study, an object.
     ///
     /// # Errors
     /// [`Error::Disk`] when it belongs to another study, or to a newer program.
     pub fn write_study(&self, name: &str, study: &serde_json::Value) -> Result<()> {
-        let path = self.root.join("study.json");
-        let refused = |problem: String| Error::Disk {
-            path: path.clone(),
-            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
-        };
-        match self.files.read(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(error) => return Err(disk_error(&path, &error)),
-            Ok(bytes) => {
-                let there: Owner = serde_json::from_slice(&bytes)
-                    .map_err(|error| refused(format!("not a study.json of billow: {error}")))?;
-                if there.format != FORMAT {
-                    return Err(refused(format!("format {:?} is not {FORMAT:?}", there.format)));
-                }
-                if there.version > VERSION {
-                    return Err(refused(format!(
-                        "version {}, this program reads up to {VERSION}: written by a newer billow",
-                        there.version
-                    )));
-                }
-                if there.name != name {
-                    return Err(refused(format!(
-                        "the folder holds results of the study {:?}, not of {name:?}",
-                        there.name
-                    )));
-                }
-            }
+        if let Some(there) = self.owner()?.filter(|there| there != name) {
+            return Err(self.refused(format!(
+                "the folder holds results of the study {there:?}, not of {name:?}"
+            )));
         }
+        let path = self.study_path();
         let bytes = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
         files::write_if_changed(self.files, &path, &bytes)
             .map_err(|error| disk_error(&path, &error))?;
@@ -192,7 +232,7 @@ impl<'a> Results<'a> {
     /// # Errors
     /// [`Error::Disk`] when study.json cannot be read.
     pub fn holds(&self, name: &str, study: &serde_json::Value) -> Result<bool> {
-        let path = self.root.join("study.json");
+        let path = self.study_path();
         let there = self.files.read(&path).map_err(|error| disk_error(&path, &error))?;
         Ok(there == study_bytes(name, study).map_err(|error| disk_error(&path, &error))?)
     }

@@ -23,7 +23,7 @@ use crate::job::Parameters;
 use crate::keys::{Kind, STUDY};
 use crate::point::{Infeasible, Solved};
 use crate::study_file::{self, Json};
-use crate::value::json_value;
+use crate::value::{Value, json_value};
 use billow_solver::scene::Scene;
 
 use crate::source::Source;
@@ -134,6 +134,32 @@ impl Study {
     /// Dotted paths of the varied parameters, in the same order.
     pub fn parameter_paths(&self) -> impl Iterator<Item = &'static str> {
         self.grid.columns.iter().map(|column| column.target.key().path)
+    }
+
+    /// Varied parameters that stand on the same axis as this one, and so change with it.
+    pub fn zipped_with(&self, parameter: &str) -> Vec<String> {
+        let named = |column: &&usize| self.grid.columns[**column].name == parameter;
+        let axis = self.grid.axes.iter().find(|axis| axis.columns.iter().any(|at| named(&at)));
+        let columns = axis.map(|axis| axis.columns.as_slice()).unwrap_or_default();
+        let others = columns.iter().filter(|column| !named(column));
+        others.map(|column| self.grid.columns[*column].name.clone()).collect()
+    }
+
+    /// Reads a value of a varied parameter as a user writes it on a command line: a number (SI), a
+    /// quantity with its unit, a word. `None` for what is no parameter, or no value of it.
+    pub fn parameter_value(&self, parameter: &str, text: &str) -> Option<Value> {
+        let column = self.grid.columns.iter().find(|column| column.name == parameter)?;
+        let key = column.target.key();
+        let text = text.trim();
+        let number = || {
+            let whole = text.parse::<i64>().ok().map(Json::Integer);
+            whole.or_else(|| {
+                text.parse::<f64>().ok().filter(|number| number.is_finite()).map(Json::Number)
+            })
+        };
+        let flag = || text.parse::<bool>().ok().map(Json::Bool);
+        let written = [number(), flag(), Some(Json::Text(text.to_owned()))];
+        written.iter().flatten().find_map(|json| key.read(json).ok())
     }
 
     /// SI unit of a varied parameter: "1" for a pure number, empty for a word.

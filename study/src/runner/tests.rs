@@ -64,6 +64,7 @@ fn run_on(
         results: Results::new(files, root),
         threads: NonZero::new(threads),
         stop: Stop::new(),
+        again: None,
     };
     run(&study, reporter)
 }
@@ -279,6 +280,7 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
         results: Results::new(&Disk, folder.path()),
         threads: NonZero::new(1),
         stop: stop.clone(),
+        again: None,
     };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
@@ -314,6 +316,7 @@ fn generations_are_replayed_on_resume() {
             results: Results::new(&Disk, folder.path()),
             threads: NonZero::new(2),
             stop: Stop::new(),
+            again: None,
         };
         run(&study, &mut Silent).unwrap();
         assert_eq!(asked(&executor), expected);
