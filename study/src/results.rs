@@ -23,6 +23,7 @@ use crate::files::{self, Files, Lock, disk_error};
 use crate::history_file;
 use crate::job::JobId;
 use crate::journal::{self, Journal, Record};
+use crate::study_file::Json;
 use crate::table::{Table, parquet};
 
 /// Name of the format of study.json: it is a study file, with everything spelled out.
@@ -44,11 +45,11 @@ struct Owner {
 }
 
 /// study.json of a resolved study.
-fn study_bytes(name: &str, study: &serde_json::Value) -> io::Result<Vec<u8>> {
+fn study_bytes(name: &str, study: &Json) -> io::Result<Vec<u8>> {
     let mut study = study.clone();
-    study["format"] = FORMAT.into();
-    study["version"] = VERSION.into();
-    study["name"] = name.into();
+    study.set("format", Json::Text(FORMAT.to_owned()));
+    study.set("version", Json::Integer(VERSION.cast_signed()));
+    study.set("name", Json::Text(name.to_owned()));
     let mut bytes = serde_json::to_vec_pretty(&study).map_err(io::Error::other)?;
     bytes.push(b'\n');
     Ok(bytes)
@@ -214,7 +215,7 @@ impl<'a> Results<'a> {
     ///
     /// # Errors
     /// [`Error::Disk`] when it belongs to another study, or to a newer program.
-    pub fn write_study(&self, name: &str, study: &serde_json::Value) -> Result<()> {
+    pub fn write_study(&self, name: &str, study: &Json) -> Result<()> {
         if let Some(there) = self.owner()?.filter(|there| there != name) {
             return Err(self.refused(format!(
                 "the folder holds results of the study {there:?}, not of {name:?}"
@@ -231,7 +232,7 @@ impl<'a> Results<'a> {
     ///
     /// # Errors
     /// [`Error::Disk`] when study.json cannot be read.
-    pub fn holds(&self, name: &str, study: &serde_json::Value) -> Result<bool> {
+    pub fn holds(&self, name: &str, study: &Json) -> Result<bool> {
         let path = self.study_path();
         let there = self.files.read(&path).map_err(|error| disk_error(&path, &error))?;
         Ok(there == study_bytes(name, study).map_err(|error| disk_error(&path, &error))?)

@@ -23,6 +23,7 @@ use crate::point::Point;
 use crate::results::Results;
 use crate::row::{self, Cells};
 use crate::stop::Stop;
+use crate::study_file::Json;
 use crate::table::Table;
 
 mod workers;
@@ -41,7 +42,7 @@ pub struct Run<'a> {
     /// Name of the study.
     pub name: &'a str,
     /// The study, for study.json.
-    pub study: &'a serde_json::Value,
+    pub study: &'a Json,
     /// [`crate::plan::next_jobs`] of that study.
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
     /// SI unit of a parameter.
@@ -358,5 +359,7 @@ fn receive(receiver: &Receiver<Message>) -> Option<(Vec<Message>, Vec<Ended>)> {
     Some((messages, ended))
 }
 
+#[cfg(test)]
+mod rerun_tests;
 #[cfg(test)]
 mod tests;

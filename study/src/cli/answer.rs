@@ -11,8 +11,8 @@ use crate::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
 use crate::row;
 use crate::value::{Value, brief_number, json_value, short_number};
 
-/// Values of a study printed on one line.
-const WIDTH: usize = 110;
+/// Characters a line of medians may have.
+const WIDTH: usize = 120;
 
 /// Prints the answer: about a line each for what deployed, the fastest job, the hardest, the trust,
 /// and every parameter of a few values.
@@ -48,7 +48,9 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
         )?;
     }
     for effect in &answer.effects {
-        writeln!(out, "{}", line(effect))?;
+        for line in lines(effect) {
+            writeln!(out, "{line}")?;
+        }
     }
     Ok(())
 }
@@ -134,31 +136,42 @@ fn trusted(trust: &Trust) -> String {
     )
 }
 
-/// One parameter: its values with both medians, cut where the line would be too long.
-fn line(effect: &Effect) -> String {
+/// One parameter: its values with both medians, broken where the line would be too long.
+fn lines(effect: &Effect) -> Vec<String> {
     let unit = match effect.unit.as_str() {
         "" | "1" => String::new(),
         unit => format!(" ({unit})"),
     };
-    let mut line = format!("    {}{unit}  ", effect.parameter);
-    for (value, medians) in &effect.values {
-        let value = match value {
-            Value::Number(number) => short_number(*number),
-            other => other.to_string(),
-        };
-        let medians = medians.map(|own| own.map_or_else(|| "-".to_owned(), brief_number));
-        line += &format!("  {value}: {}", medians.join(", "));
-    }
-    let sets = count(effect.sets, "set");
+    let mut parts: Vec<String> = effect
+        .values
+        .iter()
+        .map(|(value, medians)| {
+            let value = match value {
+                Value::Number(number) => short_number(*number),
+                other => other.to_string(),
+            };
+            let medians = medians.map(|own| own.map_or_else(|| "-".to_owned(), brief_number));
+            format!("{value}: {}", medians.join(", "))
+        })
+        .collect();
     let with = if effect.carried.is_empty() {
         String::new()
     } else {
         format!(", {} with it", effect.carried.join(", "))
     };
-    if line.chars().count() > WIDTH {
-        line = line.chars().take(WIDTH).collect::<String>() + "…";
+    parts.push(format!("({}{with})", count(effect.sets, "set")));
+    let name = format!("    {}{unit}", effect.parameter);
+    let mut lines = vec![format!("{name:<27}")];
+    for part in parts {
+        let length = lines.last().map_or(0, |line| line.chars().count());
+        if length + 2 + part.chars().count() > WIDTH {
+            lines.push(" ".repeat(27));
+        }
+        if let Some(line) = lines.last_mut() {
+            *line += &format!("  {part}");
+        }
     }
-    format!("{line}  ({sets}{with})")
+    lines
 }
 
 /// The same as keys.

@@ -15,6 +15,7 @@ use crate::error::{Error, InputError, Result};
 use crate::files::Disk;
 use crate::keys;
 use crate::results::Results;
+use crate::row;
 use crate::stored::Stored;
 use crate::table::{Column, Table};
 use crate::units::{self, Dimension};
@@ -171,37 +172,40 @@ fn share(text: &str) -> Result<f64> {
 }
 
 impl Question<'_> {
+    /// One row a pair. A line has no room for everything; csv and json have.
     fn print_pairs(&self, format: Format, out: &mut dyn Write) -> Result<()> {
-        let mut columns: Vec<String> = self.sets.matched.clone();
-        columns.push(self.by.name.clone());
-        columns.extend(self.sets.carried.iter().cloned());
-        for end in ["job", "status", "verdict"] {
-            columns.extend([format!("base_{end}"), format!("other_{end}")]);
-        }
-        // A line has no room for everything; csv and json have.
         let brief = format == Format::Table;
-        if brief {
-            columns.retain(|name| !name.ends_with("_job") && !name.ends_with("_verdict"));
-        }
-        let ends: &[&str] = if brief {
+        let all_done = self.pairs.iter().all(|pair| {
+            [pair.base, pair.other].iter().all(|row| compare::status(self.table, *row) == row::DONE)
+        });
+        let ends: &[&str] = match (brief, all_done) {
+            (true, true) => &[],
+            (true, false) => &["status"],
+            (false, _) => &["job", "status", "verdict"],
+        };
+        let figures: &[&str] = if brief {
             &["base", "other", "ratio", "better"]
         } else {
             &["base", "other", "difference", "ratio", "better"]
         };
+        let mut columns: Vec<String> = self.sets.matched.clone();
+        columns.push(self.by.name.clone());
+        columns.extend(self.sets.carried.iter().cloned());
+        columns.extend(ends.iter().flat_map(|end| [format!("base_{end}"), format!("other_{end}")]));
         for measure in &self.measures {
-            columns.extend(ends.iter().map(|end| format!("{}_{end}", measure.name)));
+            columns.extend(figures.iter().map(|figure| format!("{}_{figure}", measure.name)));
         }
-        let rows: Vec<Vec<Value>> = self.pairs.iter().map(|pair| self.row(*pair, brief)).collect();
+        let rows: Vec<Vec<Value>> =
+            self.pairs.iter().map(|pair| self.row(*pair, ends, brief)).collect();
         print_rows(&columns, &rows, format, out)
     }
 
-    fn row(&self, pair: Pair, brief: bool) -> Vec<Value> {
+    fn row(&self, pair: Pair, ends: &[&str], brief: bool) -> Vec<Value> {
         let cell = |name: &str, row: usize| {
             self.table.column(name).map_or(Value::Null, |column| column.cells[row].clone())
         };
         let parameters = self.sets.matched.iter().chain([&self.by.name]).chain(&self.sets.carried);
         let mut row: Vec<Value> = parameters.map(|name| cell(name, pair.other)).collect();
-        let ends: &[&str] = if brief { &["status"] } else { &["job", "status", "verdict"] };
         for end in ends {
             row.extend([cell(end, pair.base), cell(end, pair.other)]);
         }
@@ -217,30 +221,39 @@ impl Question<'_> {
         row
     }
 
+    /// One row a value and measure. Outcomes no pair had are left out where people read.
     fn print_tallies(&self, format: Format, out: &mut dyn Write) -> Result<()> {
-        const KINDS: [Better; 7] = [
-            Better::Other,
-            Better::Base,
-            Better::Tie,
-            Better::OnlyOther,
-            Better::OnlyBase,
-            Better::Neither,
-            Better::Differ,
+        const KINDS: [(&str, Better, bool); 8] = [
+            ("other_better", Better::Other, true),
+            ("base_better", Better::Base, true),
+            ("ties", Better::Tie, true),
+            ("only_other", Better::OnlyOther, false),
+            ("only_base", Better::OnlyBase, false),
+            ("neither", Better::Neither, false),
+            ("differ", Better::Differ, false),
+            ("pending", Better::Pending, false),
         ];
-        let columns: Vec<&str> = [self.by.name.as_str(), "measure", "pairs"]
-            .into_iter()
-            .chain(["other_better", "base_better", "ties"])
-            .chain(["only_other", "only_base", "neither", "differ", "pending"])
-            .chain(["median_ratio", "least_ratio", "largest_ratio"])
-            .collect();
         let tallies =
             compare::tallies(self.table, &self.pairs, &self.by.name, &self.measures, self.tie);
+        let kinds: Vec<(&str, Better)> = KINDS
+            .into_iter()
+            .filter(|(_, kind, always)| {
+                *always
+                    || format != Format::Table
+                    || tallies.iter().any(|tally| tally.count(*kind) > 0)
+            })
+            .map(|(name, kind, _)| (name, kind))
+            .collect();
+        let columns: Vec<&str> = [self.by.name.as_str(), "measure", "pairs"]
+            .into_iter()
+            .chain(kinds.iter().map(|(name, _)| *name))
+            .chain(["median_ratio", "least_ratio", "largest_ratio"])
+            .collect();
+        let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
         let row = |tally: &Tally| {
-            let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
             let mut row = vec![tally.value.clone(), Value::Text(tally.measure.clone())];
             row.push(number(tally.pairs()));
-            row.extend(KINDS.map(|kind| number(tally.count(kind))));
-            row.push(number(tally.count(Better::Pending)));
+            row.extend(kinds.iter().map(|(_, kind)| number(tally.count(*kind))));
             row.extend(tally.ratio.map_or([const { Value::Null }; 3], |ratio| {
                 [ratio.median, ratio.least, ratio.largest].map(Value::Number)
             }));
@@ -253,14 +266,19 @@ impl Question<'_> {
     /// What a reader should know beside the rows.
     fn tell(&self, base: &Value, alone: &[usize]) {
         let by = &self.by.name;
-        let unit = if matches!(self.by.unit.as_str(), "" | "1") { "" } else { &self.by.unit };
-        let base = format!("{base} {unit}");
-        eprintln!(
-            "base: {by} = {}; ratio: other over base; better: less of {}, more of {}",
-            base.trim_end(),
-            self.judged(&SMALLER_IS_BETTER),
-            self.judged(&LARGER_IS_BETTER)
-        );
+        let unit = match base {
+            Value::Number(_) if self.by.unit != "1" => format!(" {}", self.by.unit),
+            _ => String::new(),
+        };
+        let mut text = format!("base: {by} = {base}{unit}; ratio: other over base");
+        for (word, list) in [("less", &SMALLER_IS_BETTER[..]), ("more", &LARGER_IS_BETTER)] {
+            let own = self.measures.iter().map(|measure| measure.name.as_str());
+            let names: Vec<&str> = own.filter(|name| list.contains(name)).collect();
+            if !names.is_empty() {
+                text += &format!("; better: {word} {}", names.join(", "));
+            }
+        }
+        eprintln!("{text}");
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");
         }
@@ -270,11 +288,5 @@ impl Question<'_> {
                 count(alone.len(), "row")
             );
         }
-    }
-
-    fn judged(&self, list: &[&str]) -> String {
-        let own = self.measures.iter().map(|measure| measure.name.as_str());
-        let names: Vec<&str> = own.filter(|name| list.contains(name)).collect();
-        if names.is_empty() { "none shown".to_owned() } else { names.join(", ") }
     }
 }

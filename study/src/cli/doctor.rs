@@ -37,7 +37,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             let state = if faults == 0 { "sound".to_owned() } else { format!("{faults} broken") };
             writeln!(
                 out,
-                "{}: {state}: {} recorded, {} whole, {} found{running}",
+                "{}: {state}: {} recorded, {} looked at, {} found{running}",
                 root.display(),
                 count(health.records, "job"),
                 if health.histories == 1 {

@@ -59,7 +59,7 @@ pub(super) fn run_study(
     let summary = runner::run(
         &Run {
             name: &study.name,
-            study: &study.to_json(),
+            study: &study.resolved(),
             planner: &|finished| plan::next_jobs(study, finished),
             unit: &|name| study.unit(name).to_owned(),
             executor: &Solver,

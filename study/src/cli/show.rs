@@ -175,6 +175,7 @@ fn unit(path: &str) -> &'static str {
             "temperature" => "K",
             "gas_constant" | "cp" => "J/(kg K)",
             "gravity" => "m/s2",
+            "coefficient" => "W/(m2 K)",
             _ => "",
         },
     }

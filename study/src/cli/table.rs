@@ -58,7 +58,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let table = results.read_table()?;
     if let Some(path) = args.study.as_deref().filter(|path| path.is_file()) {
         let study = Study::load(path, &global.set)?;
-        if !results.holds(&study.name, &study.to_json())? {
+        if !results.holds(&study.name, &study.resolved())? {
             eprintln!(
                 "billow: {} says another study than the one these rows were run for; `billow run` \
                  brings them up to date",

@@ -57,7 +57,7 @@ fn run_on(
 ) -> Result<Summary> {
     let study = Run {
         name: "test",
-        study: &serde_json::json!({ "jobs": jobs }),
+        study: &serde_json::json!({ "jobs": jobs }).into(),
         planner: &generation_zero(jobs),
         unit: &|_| String::new(),
         executor,
@@ -273,7 +273,7 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
     let executor = Scripted::new(script);
     let study = Run {
         name: "test",
-        study: &serde_json::json!({}),
+        study: &serde_json::json!({}).into(),
         planner: &generation_zero(12),
         unit: &|_| String::new(),
         executor: &executor,
@@ -309,7 +309,7 @@ fn generations_are_replayed_on_resume() {
         let executor = Scripted::new(ran);
         let study = Run {
             name: "test",
-            study: &serde_json::json!({}),
+            study: &serde_json::json!({}).into(),
             planner: &planner,
             unit: &|_| String::new(),
             executor: &executor,
