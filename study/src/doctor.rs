@@ -262,8 +262,13 @@ fn strays(results: &Results<'_>, journal: &Journal, names: &[PathBuf], health: &
     };
     let has_file = |record: &Record| record.file_hash.is_some();
     for folder in folders {
-        if name(&folder).len() != 2 || !folder.is_dir() {
+        let own = name(&folder);
+        if own.len() != 2 || !own.bytes().all(|byte| byte.is_ascii_hexdigit()) {
             health.note(&folder, "not a file of billow", foreign);
+            continue;
+        }
+        if !folder.is_dir() {
+            health.fault(&folder, "a file where a folder of histories belongs", "move it away");
             continue;
         }
         let paths = match list(&folder) {

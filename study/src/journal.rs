@@ -193,8 +193,11 @@ fn line_after(bytes: &[u8]) -> usize {
 
 fn parse(line: &[u8]) -> std::result::Result<Entry, String> {
     let line = std::str::from_utf8(line).map_err(|_| "not UTF-8 text".to_owned())?;
-    let line: Line =
-        serde_json::from_str(line).map_err(|error| format!("not a journal record: {error}"))?;
+    let line: Line = serde_json::from_str(line.trim_end_matches('\n')).map_err(|error| {
+        // Its own "at line 1" would be taken for the line of the file.
+        let error = error.to_string();
+        format!("not a journal record: {}", error.split(" at line ").next().unwrap_or_default())
+    })?;
     let job = JobId::from_digits(&line.job)
         .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))?;
     match line.kind.as_deref() {

@@ -165,7 +165,8 @@ impl<'a> Results<'a> {
         let jobs = self.root.join("jobs");
         let mut folders = self.files.list(&jobs).map_err(|error| disk_error(&jobs, &error))?;
         // Job folders are named by two digits; anything else in there is not ours.
-        folders.retain(|path| path.file_name().is_some_and(|name| name.len() == 2));
+        folders
+            .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
         folders.push(self.root.clone());
         for folder in folders {
             files::sweep(self.files, &folder).map_err(|error| disk_error(&folder, &error))?;

@@ -57,7 +57,8 @@ mod tests {
             let spread = Spread::of(numbers.iter().copied()).unwrap();
             let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
             let largest = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            prop_assert_eq!((spread.count, spread.least, spread.largest), (numbers.len(), least, largest));
+            prop_assert_eq!(spread.count, numbers.len());
+            prop_assert_eq!((spread.least, spread.largest), (least, largest));
             let below = numbers.iter().filter(|number| **number < spread.median).count();
             let above = numbers.iter().filter(|number| **number > spread.median).count();
             prop_assert!(2 * below <= numbers.len() && 2 * above <= numbers.len());

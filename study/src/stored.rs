@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::error::{Error, InputError, Result};
 use crate::job::{JobId, Parameters};
-use crate::journal::{Journal, Record};
+use crate::journal::{self, Journal, Record};
 use crate::plan::{self, FinishedRow};
 use crate::point::Point;
 use crate::results::Results;
@@ -34,6 +34,16 @@ impl<'a> Stored<'a> {
     /// # Errors
     /// [`Error::Disk`] where there is no study.json, or what lies there cannot be read.
     pub fn read(results: Results<'a>) -> Result<Self> {
+        // What a line says that cannot be read is not to be guessed.
+        let (stored, faults) = Self::salvage(results)?;
+        faults.into_iter().next().map_or(Ok(stored), Err)
+    }
+
+    /// Reads what can be read: journal lines that are none of ours are passed over, and told.
+    ///
+    /// # Errors
+    /// As [`Self::read`], but for such lines.
+    pub fn salvage(results: Results<'a>) -> Result<(Self, Vec<Error>)> {
         if results.owner()?.is_none() {
             return Err(Error::Disk {
                 path: results.root().to_owned(),
@@ -43,9 +53,9 @@ impl<'a> Stored<'a> {
             });
         }
         let study = Study::load(&results.study_path(), &[])?;
-        let journal = results.journal()?;
+        let (journal, faults) = journal::examine(results.files(), &results.journal_path())?;
         let points = planned(&study, &journal.records);
-        Ok(Self { results, study, journal, points })
+        Ok((Self { results, study, journal, points }, faults))
     }
 
     /// How a point ended so far.

@@ -47,8 +47,9 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             "  medians  t_90_z_rim (s), peak_vz (m/s) by value, over jobs equal in all else"
         )?;
     }
+    let indent = answer.effects.iter().map(|own| name(own).chars().count()).max().unwrap_or(0);
     for effect in &answer.effects {
-        for line in lines(effect) {
+        for line in lines(effect, indent) {
             writeln!(out, "{line}")?;
         }
     }
@@ -136,12 +137,16 @@ fn trusted(trust: &Trust) -> String {
     )
 }
 
+/// A parameter with its unit, indented.
+fn name(effect: &Effect) -> String {
+    match effect.unit.as_str() {
+        "" | "1" => format!("    {}", effect.parameter),
+        unit => format!("    {} ({unit})", effect.parameter),
+    }
+}
+
 /// One parameter: its values with both medians, broken where the line would be too long.
-fn lines(effect: &Effect) -> Vec<String> {
-    let unit = match effect.unit.as_str() {
-        "" | "1" => String::new(),
-        unit => format!(" ({unit})"),
-    };
+fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     let mut parts: Vec<String> = effect
         .values
         .iter()
@@ -160,12 +165,11 @@ fn lines(effect: &Effect) -> Vec<String> {
         format!(", {} with it", effect.carried.join(", "))
     };
     parts.push(format!("({}{with})", count(effect.sets, "set")));
-    let name = format!("    {}{unit}", effect.parameter);
-    let mut lines = vec![format!("{name:<27}")];
+    let mut lines = vec![format!("{:<indent$}", name(effect))];
     for part in parts {
         let length = lines.last().map_or(0, |line| line.chars().count());
         if length + 2 + part.chars().count() > WIDTH {
-            lines.push(" ".repeat(27));
+            lines.push(" ".repeat(indent));
         }
         if let Some(line) = lines.last_mut() {
             *line += &format!("  {part}");

@@ -46,7 +46,8 @@ struct Status {
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let root = folder(args.study.as_deref(), global)?;
     let results = Results::new(&Disk, &root);
-    let stored = Stored::read(results.clone())?;
+    // What is broken is one of the things it says.
+    let (stored, _) = Stored::salvage(results.clone())?;
     let health = doctor::examine(&results, Depth::Names);
     let mut status = Status::of(&stored);
     status.threads = match threads(global)? {

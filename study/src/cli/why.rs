@@ -131,39 +131,48 @@ fn verdict(cells: &Cells) -> Vec<Line> {
     let high = against(cells, "height_ratio", "deployed_height_threshold");
     let verdict = cells.text("verdict");
     if let (Some((value, full, above)), Some((_, low, over))) = (full, low) {
-        let value = format!("volume_ratio {}", brief_number(value));
-        lines.push(("volume", match verdict {
-            "deployed" => format!("{value} (mean of the last tenth of the run), and never below the {full} a deployed capsule needs; margin of the mean {}", share(above)),
-            "stalled" => format!("{value} < {low}: below that a run is stalled; missed by {}", share(over)),
-            _ if above >= 0.0 => format!("{value} on the mean of the last tenth reaches {full}, but a deployed capsule keeps it throughout"),
-            _ => format!("{value} ≥ {low}, so not stalled ({} above); < {full}, so not deployed ({} below)", share(over), share(above)),
-        }));
+        let mean = format!("volume_ratio {} (mean of the last tenth)", brief_number(value));
+        let text = match verdict {
+            "deployed" => {
+                let margin = share(above);
+                format!(
+                    "{mean}, and never below the {full} it takes to be deployed; {margin} above"
+                )
+            }
+            "stalled" => format!("{mean} < {low}, so it stalled; {} below", share(over)),
+            _ if above >= 0.0 => {
+                format!("{mean}, where it takes {full} all through that tenth to be deployed")
+            }
+            _ => format!(
+                "{mean} < {full}, so not deployed ({} below); ≥ {low}, so not stalled ({} above)",
+                share(above),
+                share(over)
+            ),
+        };
+        lines.push(("volume", text));
     }
     if let Some((value, wanted, margin)) = high {
         let (sign, word) = if margin >= 0.0 { ("≥", "above") } else { ("<", "below") };
-        let value = brief_number(value);
-        lines.push(("height", format!("height_ratio {value} {sign} {wanted} that a deployed capsule needs, {} {word} (least of the last tenth)", share(margin))));
+        let (value, margin) = (brief_number(value), share(margin));
+        let ratio = format!("height_ratio {value} (least of the last tenth)");
+        let text = format!("{ratio} {sign} {wanted} it takes to be deployed; {margin} {word}");
+        lines.push(("height", text));
     }
     if verdict.is_empty() {
-        lines.push((
-            "verdict",
-            "none: the design has no static states to hold it against".to_owned(),
-        ));
+        let text = "none: the design has no static states to hold it against";
+        lines.push(("verdict", text.to_owned()));
     }
     if let Some(margin) = number(cells, "close_margin") {
         let close = *cells.get("close") == Value::Bool(true);
-        let would = if close { "would" } else { "would not" };
-        lines.push((
-            "close",
-            format!(
-                "{}: a change of the ratios by less than {} {would} change the verdict",
-                if close { "yes" } else { "no" },
-                share(margin)
-            ),
-        ));
+        let (said, would) = if close { ("yes", "would") } else { ("no", "would not") };
+        let margin = share(margin);
+        let change = format!("a change of the ratios by less than {margin}");
+        lines.push(("close", format!("{said}: {change} {would} change the verdict")));
     }
     if let Some(time) = number(cells, "t_deployed") {
-        lines.push(("deployed", format!("from {} s on, held 20 ms", brief_number(time))));
+        let since = format!("from {} s on both thresholds held 20 ms", brief_number(time));
+        let later = if verdict == "deployed" { "" } else { "; it did not stay there" };
+        lines.push(("held", format!("{since}{later}")));
     }
     lines
 }
@@ -197,49 +206,37 @@ fn failure(cells: &Cells, status: &str) -> Vec<Line> {
 
 /// What to do about a failure.
 fn advice(status: &str, short: &str, root: &str) -> String {
+    let look = format!("billow show {short} {root} --history");
     match status {
         row::INFEASIBLE => {
             "take a nearest value, or leave the point out with a grid filter".to_owned()
         }
         row::INVALID => "change the key the reason names".to_owned(),
         row::PANICKED => format!("report the reason with {root}/study.json and the job id"),
-        "step_limit" => {
-            "look where the steps went (billow show JOB --history), then raise solver.step_limit"
-                .to_owned()
-        }
-        "unstable" | "drifted" => format!(
-            "billow show {short} {root} --history; then a finer step (billow schema: solver)"
-        ),
-        _ => format!("billow show {short} {root} --history"),
+        "step_limit" => format!("{look}: where the steps went; then raise solver.step_limit"),
+        "unstable" | "drifted" => format!("{look}; then a finer step (billow schema: solver)"),
+        _ => look,
     }
 }
 
 /// What the audit says.
 fn trust(cells: &Cells) -> Vec<Line> {
-    let mut lines: Vec<Line> = Vec::new();
-    if let Some(residual) = number(cells, "ledger_residual") {
-        let sign = if residual <= RESIDUAL_BOUND { "≤" } else { ">" };
-        let gas = number(cells, "gas_residual")
-            .map_or_else(String::new, |gas| format!("; gas balance {}", brief_number(gas)));
-        lines.push((
-            "ledger",
-            format!("largest residual {} {sign} {RESIDUAL_BOUND}{gas}", brief_number(residual)),
-        ));
-        let count = |name: &str| match cells.get(name) {
-            Value::Null => "not counted by this model".to_owned(),
-            own => own.to_string(),
-        };
-        let (passages, intersections) = (count("passages"), count("intersections"));
-        lines.push((
-            "film",
-            if passages == intersections && passages.starts_with("not") {
-                format!("passages and intersections {passages}")
-            } else {
-                format!("passages {passages}, intersections {intersections}")
-            },
-        ));
+    let Some(residual) = number(cells, "ledger_residual") else { return Vec::new() };
+    let sign = if residual <= RESIDUAL_BOUND { "≤" } else { ">" };
+    let residual = brief_number(residual);
+    let mut ledger = format!("largest residual {residual} {sign} {RESIDUAL_BOUND}");
+    if let Some(gas) = number(cells, "gas_residual") {
+        ledger += &format!("; gas balance {}", brief_number(gas));
     }
-    lines
+    let film = match (cells.get("passages"), cells.get("intersections")) {
+        (Value::Null, Value::Null) => {
+            "passages and intersections are not counted by this model".to_owned()
+        }
+        (passages, intersections) => {
+            format!("passages {passages}, intersections {intersections}")
+        }
+    };
+    vec![("ledger", ledger), ("film", film)]
 }
 
 /// The same as keys.
