@@ -15,7 +15,7 @@ use crate::value::short_number;
 /// Least time between two plain lines about where a study stands.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 /// The same once it has run for long.
-const LONGEST_INTERVAL: Duration = Duration::from_secs(60);
+const LONGEST_INTERVAL: Duration = Duration::from_mins(1);
 /// Running jobs told of in plain lines.
 const SHOWN: usize = 8;
 

@@ -191,12 +191,12 @@ impl<'a> Results<'a> {
             Err(error) => return Err(disk_error(&path, &error)),
         };
         let there: Owner = serde_json::from_slice(&bytes)
-            .map_err(|error| self.refused(format!("not a study.json of billow: {error}")))?;
+            .map_err(|error| self.refused(&format!("not a study.json of billow: {error}")))?;
         if there.format != FORMAT {
-            return Err(self.refused(format!("format {:?} is not {FORMAT:?}", there.format)));
+            return Err(self.refused(&format!("format {:?} is not {FORMAT:?}", there.format)));
         }
         if there.version > VERSION {
-            return Err(self.refused(format!(
+            return Err(self.refused(&format!(
                 "version {}, this program reads up to {VERSION}: written by a newer billow",
                 there.version
             )));
@@ -204,7 +204,7 @@ impl<'a> Results<'a> {
         Ok(Some(there.name))
     }
 
-    fn refused(&self, problem: String) -> Error {
+    fn refused(&self, problem: &str) -> Error {
         Error::Disk {
             path: self.study_path(),
             problem: format!("{problem}\n  next: choose another folder with --results DIR"),
@@ -218,7 +218,7 @@ impl<'a> Results<'a> {
     /// [`Error::Disk`] when it belongs to another study, or to a newer program.
     pub fn write_study(&self, name: &str, study: &Json) -> Result<()> {
         if let Some(there) = self.owner()?.filter(|there| there != name) {
-            return Err(self.refused(format!(
+            return Err(self.refused(&format!(
                 "the folder holds results of the study {there:?}, not of {name:?}"
             )));
         }

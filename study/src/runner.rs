@@ -263,7 +263,9 @@ impl State<'_> {
             self.writer.append(&records)?;
             self.ran += records.len();
             self.table_stale = true;
-            records.iter().for_each(|record| self.hold_against(record));
+            for record in &records {
+                self.hold_against(record);
+            }
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
         for event in &events {

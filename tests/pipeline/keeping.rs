@@ -22,124 +22,118 @@ fn a_sound_folder_is_sound_and_the_doctor_changes_nothing() {
     assert!(desk.stdout(&["doctor", "grid.json"]).contains("sound"));
 }
 
-/// Every way a folder can be hurt: found, told with what to do, and healed by the next run where it
-/// can be.
+/// Hurts the folder, or one job of it.
+type Hurt = fn(&Desk, &str);
+
+/// Every way a folder can be hurt: its name, how, whether that breaks it, what the doctor says.
+const HURTS: [(&str, Hurt, bool, &str); 12] = [
+    ("missing history", |desk, id| fs::remove_file(file_of(desk, id)).unwrap(), true, ": missing"),
+    (
+        "cut history",
+        |desk, id| {
+            let bytes = fs::read(file_of(desk, id)).unwrap();
+            fs::write(file_of(desk, id), &bytes[..bytes.len() / 2]).unwrap();
+        },
+        true,
+        "not the file that was written (no HDF5 file",
+    ),
+    (
+        "another history",
+        |desk, id| {
+            let other = ids(desk, "done").into_iter().find(|other| other != id).unwrap();
+            fs::copy(file_of(desk, &other), file_of(desk, id)).unwrap();
+        },
+        true,
+        "(a whole history, but another one)",
+    ),
+    (
+        "missing table",
+        |desk, _| fs::remove_file(desk.results().join("summary.parquet")).unwrap(),
+        true,
+        "no table here",
+    ),
+    (
+        "foreign table",
+        |desk, _| fs::write(desk.results().join("summary.parquet"), "x").unwrap(),
+        true,
+        "no Parquet file",
+    ),
+    (
+        "table behind",
+        |desk, _| {
+            let other = Desk::new(&grid(
+                &json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]}),
+            ));
+            other.stdout(&["run", "grid.json", "-q"]);
+            fs::copy(
+                other.results().join("summary.parquet"),
+                desk.results().join("summary.parquet"),
+            )
+            .unwrap();
+        },
+        true,
+        "out of step with the journal in 24 rows",
+    ),
+    (
+        "torn last line",
+        |desk, _| {
+            let path = desk.results().join("journal/000001.jsonl");
+            let bytes = fs::read(&path).unwrap();
+            fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
+        },
+        true,
+        "line 17 is torn",
+    ),
+    (
+        "leftover",
+        |desk, _| {
+            fs::write(desk.results().join("jobs/.x.tmp"), "")
+                .and_then(|()| fs::write(desk.results().join(".table.1-1.tmp"), ""))
+                .unwrap();
+        },
+        false,
+        "a file left half written",
+    ),
+    (
+        "foreign file",
+        |desk, _| fs::write(desk.results().join("notes.txt"), "").unwrap(),
+        false,
+        "not a file of billow",
+    ),
+    (
+        "orphan",
+        |desk, id| {
+            let orphan =
+                desk.results().join(format!("jobs/{}/{}{}.h5", &id[..2], &id[..2], "0".repeat(30)));
+            fs::copy(file_of(desk, id), orphan).unwrap();
+        },
+        false,
+        "a history no record names",
+    ),
+    (
+        "study.json gone",
+        |desk, _| fs::remove_file(desk.results().join("study.json")).unwrap(),
+        true,
+        "nothing says which study this is",
+    ),
+    (
+        "study.json cut",
+        |desk, _| {
+            let path = desk.results().join("study.json");
+            let bytes = fs::read(&path).unwrap();
+            fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+        },
+        true,
+        "not a study.json of billow",
+    ),
+];
+
+/// Found, told with what to do, and healed by the next run where it can be.
 #[test]
 fn the_doctor_finds_whatever_is_broken() {
-    type Hurt = fn(&Desk, &str);
-    let hurts: [(&str, Hurt, bool, &str); 12] = [
-        (
-            "missing history",
-            |desk, id| fs::remove_file(file_of(desk, id)).unwrap(),
-            true,
-            ": missing",
-        ),
-        (
-            "cut history",
-            |desk, id| {
-                let bytes = fs::read(file_of(desk, id)).unwrap();
-                fs::write(file_of(desk, id), &bytes[..bytes.len() / 2]).unwrap();
-            },
-            true,
-            "not the file that was written (no HDF5 file",
-        ),
-        (
-            "another history",
-            |desk, id| {
-                let other = ids(desk, "done").into_iter().find(|other| other != id).unwrap();
-                fs::copy(file_of(desk, &other), file_of(desk, id)).unwrap();
-            },
-            true,
-            "(a whole history, but another one)",
-        ),
-        (
-            "missing table",
-            |desk, _| fs::remove_file(desk.results().join("summary.parquet")).unwrap(),
-            true,
-            "no table here",
-        ),
-        (
-            "foreign table",
-            |desk, _| fs::write(desk.results().join("summary.parquet"), "x").unwrap(),
-            true,
-            "no Parquet file",
-        ),
-        (
-            "table behind",
-            |desk, _| {
-                let other = Desk::new(&grid(
-                    &json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]}),
-                ));
-                other.stdout(&["run", "grid.json", "-q"]);
-                fs::copy(
-                    other.results().join("summary.parquet"),
-                    desk.results().join("summary.parquet"),
-                )
-                .unwrap();
-            },
-            true,
-            "out of step with the journal in 24 rows",
-        ),
-        (
-            "torn last line",
-            |desk, _| {
-                let path = desk.results().join("journal/000001.jsonl");
-                let bytes = fs::read(&path).unwrap();
-                fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
-            },
-            true,
-            "line 17 is torn",
-        ),
-        (
-            "leftover",
-            |desk, _| {
-                fs::write(desk.results().join("jobs/.x.tmp"), "")
-                    .and_then(|()| fs::write(desk.results().join(".table.1-1.tmp"), ""))
-                    .unwrap()
-            },
-            false,
-            "a file left half written",
-        ),
-        (
-            "foreign file",
-            |desk, _| fs::write(desk.results().join("notes.txt"), "").unwrap(),
-            false,
-            "not a file of billow",
-        ),
-        (
-            "orphan",
-            |desk, id| {
-                let orphan = desk.results().join(format!(
-                    "jobs/{}/{}{}.h5",
-                    &id[..2],
-                    &id[..2],
-                    "0".repeat(30)
-                ));
-                fs::copy(file_of(desk, id), orphan).unwrap();
-            },
-            false,
-            "a history no record names",
-        ),
-        (
-            "study.json gone",
-            |desk, _| fs::remove_file(desk.results().join("study.json")).unwrap(),
-            true,
-            "nothing says which study this is",
-        ),
-        (
-            "study.json cut",
-            |desk, _| {
-                let path = desk.results().join("study.json");
-                let bytes = fs::read(&path).unwrap();
-                fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
-            },
-            true,
-            "not a study.json of billow",
-        ),
-    ];
     let whole = ran();
     let rows = without_costs(whole.rows("results/grid"));
-    for (name, hurt, broken, expected) in hurts {
+    for (name, hurt, broken, expected) in HURTS {
         let desk = ran();
         let id = ids(&desk, "done").remove(2);
         hurt(&desk, &id);

@@ -1,5 +1,6 @@
 //! The answer of a study as lines of text and as JSON keys.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -30,7 +31,7 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
         let mut value = format!("peak_vz {} m/s", brief_number(hardest.value));
         let energy = answer.most_energy.as_ref();
         if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
-            value += &format!(", peak_kinetic_energy {} J", brief_number(same.value));
+            let _ = write!(value, ", peak_kinetic_energy {} J", brief_number(same.value));
         }
         writeln!(out, "  hardest  {value}: {}", of_job(hardest))?;
         if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
@@ -91,15 +92,15 @@ fn deployed(answer: &Answer) -> String {
         (answer.count(row::PENDING), "pending"),
     ] {
         if number > 0 {
-            text += &format!(", {number} {word}");
+            let _ = write!(text, ", {number} {word}");
         }
     }
     if answer.close > 0 {
-        text += &format!(", {} close to a threshold", answer.close);
+        let _ = write!(text, ", {} close to a threshold", answer.close);
     }
     let infeasible = answer.count(row::INFEASIBLE);
     if infeasible > 0 {
-        text += &format!("; {} infeasible", count(infeasible, "point"));
+        let _ = write!(text, "; {} infeasible", count(infeasible, "point"));
     }
     text
 }
@@ -172,7 +173,7 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
             lines.push(" ".repeat(indent));
         }
         if let Some(line) = lines.last_mut() {
-            *line += &format!("  {part}");
+            let _ = write!(line, "  {part}");
         }
     }
     lines

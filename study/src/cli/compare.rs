@@ -1,5 +1,6 @@
 //! `billow compare`: what one parameter does, all else equal.
 
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -275,7 +276,7 @@ impl Question<'_> {
             let own = self.measures.iter().map(|measure| measure.name.as_str());
             let names: Vec<&str> = own.filter(|name| list.contains(name)).collect();
             if !names.is_empty() {
-                text += &format!("; better: {word} {}", names.join(", "));
+                let _ = write!(text, "; better: {word} {}", names.join(", "));
             }
         }
         eprintln!("{text}");

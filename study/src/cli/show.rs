@@ -73,9 +73,9 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     }
     if args.history {
         let history = history_of(&stored, &id)?;
-        return print_history(&history, args, global.format(), out);
+        return print_history(&history, args, global, out);
     }
-    let rows = rows(&stored, &id)?;
+    let rows = rows(&stored, &id);
     print_rows(&["group", "name", "value", "unit", "meaning"], &rows, global.format(), out)
 }
 
@@ -125,7 +125,7 @@ fn group(column: &RowColumn) -> &'static str {
 }
 
 /// One row a quantity: group, name, value, unit, meaning.
-fn rows(stored: &Stored<'_>, id: &JobId) -> Result<Vec<Vec<Value>>> {
+fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
     const GROUPS: [&str; 6] = ["outcome", "measures", "audit", "pattern", "cost", "provenance"];
     let text = |text: &str| Value::Text(text.to_owned());
     let point = stored.point(id);
@@ -160,7 +160,7 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Result<Vec<Vec<Value>>> {
         })),
         Err(error) => rows.push(vec![text("scene"), text("error"), text(&error.to_string())]),
     }
-    Ok(rows)
+    rows
 }
 
 /// SI unit of a scene's number, by its place in it; empty where the scene's words are its own.
@@ -184,9 +184,10 @@ fn unit(path: &str) -> &'static str {
 fn print_history(
     stored: &StoredHistory,
     args: &Args,
-    format: Format,
+    global: &Global,
     out: &mut dyn Write,
 ) -> Result<()> {
+    let format = global.format();
     let own = stored.history.iter().map(|(column, values)| (column.name, values));
     let tracks = stored.tracks.iter().map(|(name, values)| (name.as_str(), values.as_slice()));
     let all: Vec<(&str, &[f64])> = own.chain(tracks).collect();
@@ -214,7 +215,7 @@ fn print_history(
         .collect();
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
     print_rows(&names, &rows, format, out)?;
-    if format == Format::Table {
+    if format == Format::Table && !global.quiet {
         let units: Vec<String> = COLUMNS
             .iter()
             .filter(|column| names.contains(&column.name) && column.unit != "1")

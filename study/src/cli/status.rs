@@ -148,7 +148,7 @@ impl Status {
             (false, 0) => "finished",
             (false, _) => "not running",
         };
-        let mut lines = vec![("".to_owned(), format!("{}: {state}", stored.study.name))];
+        let mut lines = vec![(String::new(), format!("{}: {state}", stored.study.name))];
         let mut line = |name: &str, text: String| lines.push((name.to_owned(), text));
         if !stored.study.question.is_empty() {
             line("question", stored.study.question.clone());

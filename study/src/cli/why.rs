@@ -1,5 +1,6 @@
 //! `billow why`: why a job ended as it did, in plain words.
 
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -226,7 +227,7 @@ fn trust(cells: &Cells) -> Vec<Line> {
     let residual = brief_number(residual);
     let mut ledger = format!("largest residual {residual} {sign} {RESIDUAL_BOUND}");
     if let Some(gas) = number(cells, "gas_residual") {
-        ledger += &format!("; gas balance {}", brief_number(gas));
+        let _ = write!(ledger, "; gas balance {}", brief_number(gas));
     }
     let film = match (cells.get("passages"), cells.get("intersections")) {
         (Value::Null, Value::Null) => {
