@@ -9,16 +9,24 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::error::{Error, Result};
 
+mod answer;
+mod compare;
 mod completions;
+mod doctor;
 mod fold;
 mod notes;
 mod plan;
 pub mod print;
+mod rerun;
 mod run;
 mod schema;
+mod show;
 mod solve;
+mod status;
 mod table;
+mod target;
 pub mod validate;
+mod why;
 
 /// Parameter studies of inflatable capsules: fold, inflate, compare.
 #[derive(Debug, Parser)]
@@ -85,6 +93,18 @@ pub enum Command {
     Plan(plan::Args),
     /// Run what is missing of a study.
     Run(run::Args),
+    /// Run jobs again that are finished, and say whether they give the same bits.
+    Rerun(rerun::Args),
+    /// Say how far a study is, while it runs and afterwards.
+    Status(status::Args),
+    /// Say why a job ended as it did.
+    Why(why::Args),
+    /// Show everything stored of one job: parameters, scene, row, history.
+    Show(show::Args),
+    /// Compare the values of one parameter, all else equal.
+    Compare(compare::Args),
+    /// Check a results folder; change nothing. Exit code 1 if something is broken.
+    Doctor(doctor::Args),
     /// Solve one scene, a capsule or any mesh, without a study.
     Solve(solve::Args),
     /// Print the summary table of a study's results.
@@ -126,6 +146,12 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Fold(args) => fold::run(args, &cli.global, out),
         Command::Plan(args) => plan::run(args, &cli.global, out),
         Command::Run(args) => run::run(args, &cli.global, out),
+        Command::Rerun(args) => rerun::run(args, &cli.global, out),
+        Command::Status(args) => status::run(args, &cli.global, out),
+        Command::Why(args) => why::run(args, &cli.global, out),
+        Command::Show(args) => show::run(args, &cli.global, out),
+        Command::Compare(args) => compare::run(args, &cli.global, out),
+        Command::Doctor(args) => doctor::run(args, &cli.global, out),
         Command::Solve(args) => solve::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),

@@ -72,6 +72,13 @@ pub trait Files: Send + Sync {
     /// # Errors
     /// Whatever the system says.
     fn try_lock(&self, path: &Path) -> io::Result<Option<Lock>>;
+
+    /// Whether another process holds the lock of that file; changes nothing. To see it, the lock is
+    /// shared for an instant, which whoever takes it waits out.
+    ///
+    /// # Errors
+    /// Whatever the system says.
+    fn is_locked(&self, path: &Path) -> io::Result<bool>;
 }
 
 /// A file that only grows.
@@ -148,6 +155,19 @@ impl Files for Disk {
             Err(TryLockError::Error(error)) => Err(error),
         }
     }
+
+    fn is_locked(&self, path: &Path) -> io::Result<bool> {
+        let file = match File::open(path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(error),
+        };
+        match file.try_lock_shared() {
+            Ok(()) => Ok(false),
+            Err(TryLockError::WouldBlock) => Ok(true),
+            Err(TryLockError::Error(error)) => Err(error),
+        }
+    }
 }
 
 struct DiskAppend {
@@ -172,6 +192,12 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
+}
+
+/// Whether a path has the name of a temporary file of ours.
+pub fn is_temporary(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with('.') && name.ends_with(TEMPORARY)
 }
 
 /// Whether a file could be written there: before a long run, not after it.
@@ -230,11 +256,8 @@ pub fn write_if_changed(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Res
 /// # Errors
 /// Whatever the system says.
 pub fn sweep(files: &dyn Files, folder: &Path) -> io::Result<()> {
-    for path in files.list(folder)? {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.starts_with('.') && name.ends_with(TEMPORARY) {
-            files.remove(&path)?;
-        }
+    for path in files.list(folder)?.iter().filter(|path| is_temporary(path)) {
+        files.remove(path)?;
     }
     Ok(())
 }
@@ -298,7 +321,10 @@ mod tests {
         let held = Disk.try_lock(&path).unwrap();
         assert!(held.is_some());
         assert!(Disk.try_lock(&path).unwrap().is_none());
+        assert!(Disk.is_locked(&path).unwrap());
         drop(held);
+        assert!(!Disk.is_locked(&path).unwrap());
+        assert!(!Disk.is_locked(&folder.path().join("none")).unwrap());
         assert!(Disk.try_lock(&path).unwrap().is_some());
     }
 }

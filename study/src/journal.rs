@@ -3,7 +3,15 @@
 //! `journal/<writer>.jsonl` holds a header line, then one line a finished job, appended and synced.
 //! Every process that finishes jobs writes a file of its own, numbered upward and never reused, so
 //! that no two write to one file and a line torn by a crash is always the last of its file. Where a
-//! job has several records, the one in the later file, and there the later line, counts.
+//! job has several lines, the one in the later file, and there the later line, counts.
+//!
+//! ```text
+//! {"format":"billow-journal","version":2,…}
+//! {"job":"<id>","file_hash":"<SHA-256 of its history file>","cells":{…}}   a finished job
+//! {"kind":"withdrawn","job":"<id>"}                                        to be run again
+//! ```
+//!
+//! Version 1 knows no `kind`; everything else is the same, and it is read.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -22,7 +30,7 @@ use crate::value::Value;
 /// Name of the format, in the header.
 const FORMAT: &str = "billow-journal";
 /// Version of the format this program writes, and the newest it reads.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// A finished job.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,10 +46,37 @@ pub struct Record {
 /// What the journals of a study hold.
 #[derive(Debug, Default)]
 pub struct Journal {
-    /// Last record of every job.
+    /// Last record of every job that is finished.
     pub records: BTreeMap<JobId, Record>,
+    /// Last record of every job that was withdrawn and has not ended again since.
+    pub withdrawn: BTreeMap<JobId, Record>,
     /// Torn lines, for the user to know.
     pub notes: Vec<String>,
+}
+
+/// One line after the header.
+enum Entry {
+    Finished(Record),
+    Withdrawn(JobId),
+}
+
+impl Journal {
+    fn take(&mut self, entry: Entry) {
+        match entry {
+            Entry::Finished(record) => {
+                self.withdrawn.remove(&record.job);
+                self.records.insert(record.job.clone(), record);
+            }
+            Entry::Withdrawn(job) => self.withdraw(&job),
+        }
+    }
+
+    /// Counts a job as not finished; its record is kept beside, to compare with.
+    pub fn withdraw(&mut self, job: &JobId) {
+        if let Some(record) = self.records.remove(job) {
+            self.withdrawn.insert(job.clone(), record);
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -57,26 +92,51 @@ struct Header {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    kind: Option<String>,
     job: String,
+    #[serde(default)]
     file_hash: Option<String>,
+    #[serde(default)]
     cells: Map<String, serde_json::Value>,
 }
+
+/// [`Line::kind`] of a job to be run again; a finished job has none.
+const WITHDRAWN: &str = "withdrawn";
 
 /// Reads every journal in a folder; none when the folder is not there.
 ///
 /// # Errors
 /// [`Error::Disk`] naming file and line for what is no journal of ours, or of a newer version.
 pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
-    let mut journal = Journal::default();
-    let paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
-    for path in paths.iter().filter(|path| path.extension().is_some_and(|end| end == "jsonl")) {
-        let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
-        read_file(path, &bytes, &mut journal)?;
-    }
-    Ok(journal)
+    let (journal, faults) = examine(files, folder)?;
+    faults.into_iter().next().map_or(Ok(journal), Err)
 }
 
-fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal) -> Result<()> {
+/// Reads what can be read of every journal in a folder: what is no line of ours is told, and passed
+/// over.
+///
+/// # Errors
+/// [`Error::Disk`] when the folder cannot be listed.
+pub fn examine(files: &dyn Files, folder: &Path) -> Result<(Journal, Vec<Error>)> {
+    let mut journal = Journal::default();
+    let mut faults = Vec::new();
+    let paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
+    for path in paths.iter().filter(|path| is_journal(path)) {
+        match files.read(path) {
+            Ok(bytes) => read_file(path, &bytes, &mut journal, &mut faults),
+            Err(error) => faults.push(disk_error(path, &error)),
+        }
+    }
+    Ok((journal, faults))
+}
+
+/// Whether a file has the name of a journal.
+pub fn is_journal(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end == "jsonl")
+}
+
+fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal, faults: &mut Vec<Error>) {
     let foreign = |number: usize, problem: &str| Error::Disk {
         path: path.to_owned(),
         problem: format!(
@@ -88,17 +148,27 @@ fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal) -> Result<()> {
     if whole < bytes.len() {
         let line = line_after(&bytes[..whole]);
         journal.notes.push(format!(
-            "{}: line {line} is torn (the program was stopped while writing it); its job is run again",
+            "{}: line {line} is torn (the program was stopped while writing it); the job it is \
+             about is run again",
             path.display()
         ));
     }
-    let text = std::str::from_utf8(&bytes[..whole]).map_err(|error| {
-        let line = line_after(&bytes[..error.valid_up_to()]);
-        foreign(line, "not UTF-8 text")
-    })?;
-    let mut lines = text.lines();
-    let Some(header) = lines.next() else { return Ok(()) };
-    let header: Header = serde_json::from_str(header)
+    let mut lines = bytes[..whole].split_inclusive(|byte| *byte == b'\n');
+    let Some(header) = lines.next() else { return };
+    if let Err(error) = read_header(path, header, &foreign) {
+        faults.push(error);
+        return;
+    }
+    for (number, line) in (2..).zip(lines) {
+        match parse(line) {
+            Ok(entry) => journal.take(entry),
+            Err(problem) => faults.push(foreign(number, &problem)),
+        }
+    }
+}
+
+fn read_header(path: &Path, line: &[u8], foreign: &dyn Fn(usize, &str) -> Error) -> Result<()> {
+    let header: Header = serde_json::from_slice(line)
         .map_err(|_| foreign(1, "not the header of a billow journal"))?;
     if header.format != FORMAT {
         return Err(foreign(1, &format!("format {:?} is not {FORMAT:?}", header.format)));
@@ -113,10 +183,6 @@ fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal) -> Result<()> {
             ),
         });
     }
-    for (number, line) in (2..).zip(lines) {
-        let record = parse(line).map_err(|problem| foreign(number, &problem))?;
-        journal.records.insert(record.job.clone(), record);
-    }
     Ok(())
 }
 
@@ -125,11 +191,20 @@ fn line_after(bytes: &[u8]) -> usize {
     bytes.split(|byte| *byte == b'\n').count()
 }
 
-fn parse(line: &str) -> std::result::Result<Record, String> {
-    let line: Line =
-        serde_json::from_str(line).map_err(|error| format!("not a journal record: {error}"))?;
+fn parse(line: &[u8]) -> std::result::Result<Entry, String> {
+    let line = std::str::from_utf8(line).map_err(|_| "not UTF-8 text".to_owned())?;
+    let line: Line = serde_json::from_str(line.trim_end_matches('\n')).map_err(|error| {
+        // Its own "at line 1" would be taken for the line of the file.
+        let error = error.to_string();
+        format!("not a journal record: {}", error.split(" at line ").next().unwrap_or_default())
+    })?;
     let job = JobId::from_digits(&line.job)
         .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))?;
+    match line.kind.as_deref() {
+        None => {}
+        Some(WITHDRAWN) => return Ok(Entry::Withdrawn(job)),
+        Some(other) => return Err(format!("not a journal record: unknown kind {other:?}")),
+    }
     let mut cells = Cells::new("");
     for (name, value) in &line.cells {
         let kind = row::index(name)
@@ -142,7 +217,7 @@ fn parse(line: &str) -> std::result::Result<Record, String> {
     if cells.status().is_empty() {
         return Err("record without a status".to_owned());
     }
-    Ok(Record { job, cells, file_hash: line.file_hash })
+    Ok(Entry::Finished(Record { job, cells, file_hash: line.file_hash }))
 }
 
 /// Numbers JSON has no digits for are kept as text.
@@ -170,16 +245,20 @@ fn from_json(kind: Kind, value: &serde_json::Value) -> Option<Value> {
     }
 }
 
-fn encode(record: &Record) -> serde_json::Result<String> {
+fn finished(record: &Record) -> Line {
     let cells = record
         .cells
         .iter()
         .filter(|(_, value)| **value != Value::Null)
         .map(|(column, value)| (column.name.to_owned(), to_json(value)))
         .collect();
-    let line =
-        Line { job: record.job.as_str().to_owned(), file_hash: record.file_hash.clone(), cells };
-    serde_json::to_string(&line).map(|text| text + "\n")
+    let job = record.job.as_str().to_owned();
+    Line { kind: None, job, file_hash: record.file_hash.clone(), cells }
+}
+
+/// A withdrawal says nothing but which job: no file hash, no cells.
+fn withdrawn(job: &JobId) -> serde_json::Value {
+    serde_json::json!({ "kind": WITHDRAWN, "job": job.as_str() })
 }
 
 /// Appends the records of one process. Its file comes into being with the first record.
@@ -201,11 +280,23 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`Error::Disk`]; none of these records then counts as written.
     pub fn append(&mut self, records: &[Record]) -> Result<()> {
+        self.write(records.iter().map(|record| serde_json::to_string(&finished(record))))
+    }
+
+    /// Appends that these jobs count as not finished, and syncs once.
+    ///
+    /// # Errors
+    /// As [`Self::append`].
+    pub fn withdraw(&mut self, jobs: &[JobId]) -> Result<()> {
+        self.write(jobs.iter().map(|job| serde_json::to_string(&withdrawn(job))))
+    }
+
+    fn write(&mut self, lines: impl Iterator<Item = serde_json::Result<String>>) -> Result<()> {
         let mut bytes = Vec::new();
-        for record in records {
-            let line = encode(record)
-                .map_err(|error| disk_error(&self.folder, &io::Error::other(error)))?;
+        for line in lines {
+            let line = line.map_err(|error| disk_error(&self.folder, &io::Error::other(error)))?;
             bytes.extend_from_slice(line.as_bytes());
+            bytes.push(b'\n');
         }
         let (path, mut file) = match self.open.take() {
             Some(open) => open,
@@ -254,124 +345,4 @@ impl<'a> Writer<'a> {
 }
 
 #[cfg(test)]
-#[expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
-mod tests {
-    use super::*;
-    use crate::files::Disk;
-    use crate::files::failing::FailingFiles;
-
-    fn record(number: u32, value: f64) -> Record {
-        let mut cells = Cells::new("done");
-        cells.set("final_volume", value);
-        cells.set("steps", 7_i64);
-        cells.set("close", true);
-        cells.set("reason", "line\nbreak \"quoted\"");
-        let job = JobId::from_digits(&format!("{number:032x}")).unwrap();
-        Record { job, cells, file_hash: Some("00".to_owned()) }
-    }
-
-    fn read_back(folder: &Path) -> Journal {
-        read(&Disk, folder).unwrap()
-    }
-
-    fn problem(folder: &Path) -> String {
-        read(&Disk, folder).unwrap_err().to_string()
-    }
-
-    #[test]
-    fn records_come_back_to_the_bit_and_the_last_one_counts() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("journal");
-        assert!(read_back(&path).records.is_empty());
-        let values = [0.1 + 0.2, 5e-324, -0.0, f64::MAX, f64::INFINITY, f64::NEG_INFINITY];
-        let records: Vec<_> = (0..).zip(values).map(|(n, value)| record(n, value)).collect();
-        let mut writer = Writer::new(&Disk, path.clone());
-        writer.append(&records[..2]).unwrap();
-        writer.append(&records[2..]).unwrap();
-        let journal = read_back(&path);
-        assert_eq!(journal.records.values().cloned().collect::<Vec<_>>(), records);
-        for (record, value) in journal.records.values().zip(values) {
-            let Value::Number(number) = record.cells.get("final_volume") else { panic!() };
-            assert_eq!(number.to_bits(), value.to_bits());
-        }
-
-        Writer::new(&Disk, path.clone()).append(&[record(0, 9.0)]).unwrap();
-        Writer::new(&Disk, path.clone()).append(&[record(0, f64::NAN)]).unwrap();
-        let journal = read_back(&path);
-        let Value::Number(number) = journal.records[&record(0, 0.0).job].cells.get("final_volume")
-        else {
-            panic!()
-        };
-        assert!(number.is_nan());
-        assert_eq!(Disk.list(&path).unwrap().len(), 3, "one file a writer");
-    }
-
-    #[test]
-    fn a_line_torn_anywhere_costs_only_that_line_and_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        Writer::new(&Disk, folder.path().to_owned())
-            .append(&[record(1, 1.0), record(2, 2.0)])
-            .unwrap();
-        let path = Disk.list(folder.path()).unwrap().remove(0);
-        let whole = Disk.read(&path).unwrap();
-        let ends: Vec<usize> =
-            (0..whole.len()).filter(|at| whole[*at] == b'\n').map(|at| at + 1).collect();
-        for length in 0..whole.len() {
-            std::fs::write(&path, &whole[..length]).unwrap();
-            let journal = read_back(folder.path());
-            let kept = ends.iter().filter(|end| **end <= length).count().saturating_sub(1);
-            assert_eq!(journal.records.len(), kept, "cut at {length}");
-            let torn = length > 0 && !ends.contains(&length);
-            assert_eq!(journal.notes.len(), usize::from(torn), "cut at {length}");
-        }
-    }
-
-    #[test]
-    fn what_is_no_journal_of_ours_is_refused_by_file_and_line() {
-        let folder = tempfile::tempdir().unwrap();
-        Writer::new(&Disk, folder.path().to_owned()).append(&[record(1, 1.0)]).unwrap();
-        let path = Disk.list(folder.path()).unwrap().remove(0);
-        let sound = String::from_utf8(Disk.read(&path).unwrap()).unwrap();
-        let broken = |text: String, expected: &str| {
-            std::fs::write(&path, text).unwrap();
-            let problem = problem(folder.path());
-            assert!(problem.contains(expected), "{problem}");
-            assert!(problem.contains("000001.jsonl"), "{problem}");
-        };
-        broken(
-            sound.replacen("\"version\":1", "\"version\":2", 1),
-            "version 2, this program reads",
-        );
-        broken(sound.replacen(FORMAT, "other", 1), "line 1: format \"other\"");
-        broken(format!("hello\n{sound}"), "line 1: not the header");
-        broken(format!("{sound}hello\n"), "line 3: not a journal record");
-        broken(
-            sound.replacen("00000001", "0000000g", 1),
-            "line 2: \"0000000000000000000000000000000g",
-        );
-        broken(
-            sound.replacen("final_volume", "final_colour", 1),
-            "unknown column \"final_colour\"",
-        );
-        broken(sound.replacen("\"steps\":7", "\"steps\":\"x\"", 1), "\"steps\" cannot hold \"x\"");
-        std::fs::write(&path, [sound.as_bytes(), b"\xff\n"].concat()).unwrap();
-        assert!(problem(folder.path()).contains("line 3: not UTF-8"));
-    }
-
-    #[test]
-    fn a_failing_disk_never_loses_a_record_that_was_acknowledged() {
-        for nth in 1.. {
-            let folder = tempfile::tempdir().unwrap();
-            let failing = FailingFiles::new(nth, io::ErrorKind::StorageFull);
-            let mut writer = Writer::new(&failing, folder.path().join("journal"));
-            let acknowledged =
-                (0..4).take_while(|n| writer.append(&[record(*n, 1.0)]).is_ok()).count();
-            let journal = read_back(&folder.path().join("journal"));
-            assert_eq!(journal.records.len(), acknowledged, "operation {nth}");
-            if acknowledged == 4 {
-                assert!(nth > 7, "only {nth} operations");
-                return;
-            }
-        }
-    }
-}
+mod tests;

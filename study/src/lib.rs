@@ -9,8 +9,11 @@
 //! **Reading order.** `study_file` (what the JSON says), `study` (what it means), `plan`
 //! (which jobs), `runner` (running them), `history_file` and `table` (what is left).
 
+pub mod answer;
 pub mod cases;
 pub mod cli;
+pub mod compare;
+pub mod doctor;
 pub mod error;
 pub mod event;
 pub mod executor;
@@ -36,7 +39,9 @@ pub mod schema;
 mod settings;
 pub mod solve;
 mod source;
+pub mod statistics;
 pub mod stop;
+pub mod stored;
 pub mod study;
 pub mod study_file;
 pub mod summary;

@@ -1,15 +1,23 @@
 //! How a run shows on stderr: bars on a terminal, plain lines elsewhere, nothing when quiet.
 
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
+use billow_solver::deployment::Progress;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::event::{Event, Reporter};
 use crate::row;
+use crate::value::short_number;
 
-/// Least time between two plain lines about jobs.
+/// Least time between two plain lines about where a study stands.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
+/// The same once it has run for long.
+const LONGEST_INTERVAL: Duration = Duration::from_mins(1);
+/// Running jobs told of in plain lines.
+const SHOWN: usize = 8;
 
 /// How much is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,44 +74,121 @@ fn finished_line(event: &Event) -> Option<String> {
     Some(format!("{} {status}{verdict}", id.short()))
 }
 
-/// Plain lines, for logs and pipes.
+/// Plain lines, for logs and pipes: every now and then where the study and its running jobs stand.
 struct Lines<W> {
     out: W,
     verbose: bool,
     tally: Tally,
+    /// When jobs began to run, and how many were finished then.
+    start: Option<(Instant, usize)>,
     last: Option<Instant>,
+    /// Running jobs: thread, name, where each stands.
+    running: BTreeMap<usize, (String, Option<Progress>)>,
 }
 
 impl<W: Write> Lines<W> {
     fn new(out: W, verbose: bool) -> Self {
-        Self { out, verbose, tally: Tally::default(), last: None }
+        let running = BTreeMap::new();
+        Self { out, verbose, tally: Tally::default(), start: None, last: None, running }
     }
 
     fn line(&mut self, text: &str) {
         // A stderr that is gone is no reason to stop a study.
         let _ = writeln!(self.out, "{text}");
     }
+
+    /// Whether it is time for a line: seldom in a long run, so that a log stays short.
+    fn due(&self) -> bool {
+        let Some((start, _)) = self.start else { return false };
+        let interval = (start.elapsed() / 20).clamp(LINE_INTERVAL, LONGEST_INTERVAL);
+        self.last.is_some_and(|last| last.elapsed() >= interval)
+    }
+
+    /// Where the study stands, how long it may take, and where the running jobs are.
+    fn tell(&mut self) {
+        let Tally { jobs, finished, failed } = self.tally;
+        let mut text = format!("{finished} of {jobs} jobs finished, {failed} failed");
+        if let Some(left) = self.left() {
+            let _ = write!(text, ", about {} left", told(left));
+        }
+        self.line(&text);
+        let standing: Vec<String> =
+            self.running.values().take(SHOWN).filter_map(standing).collect();
+        for text in standing {
+            self.line(&text);
+        }
+        if self.running.len() > SHOWN {
+            self.line(&format!("  and {} more jobs running", self.running.len() - SHOWN));
+        }
+        self.last = Some(Instant::now());
+    }
+
+    /// Time left, from what was done since the start, running jobs by their share of simulated
+    /// time; none until that says something.
+    fn left(&self) -> Option<Duration> {
+        let (start, before) = self.start?;
+        let shares = self.running.values().filter_map(|(_, progress)| *progress);
+        let running: f64 = shares.map(|own| (own.time / own.end_time).clamp(0.0, 1.0)).sum();
+        let done = (self.tally.finished - before) as f64 + running;
+        let open = (self.tally.jobs - self.tally.finished) as f64 - running;
+        let known = done > 0.01 && open > 0.0;
+        let seconds = start.elapsed().as_secs_f64() * open / done;
+        known.then(|| Duration::try_from_secs_f64(seconds).ok()).flatten()
+    }
+}
+
+/// A running job as a line; nothing while it has told nothing.
+fn standing((name, progress): &(String, Option<Progress>)) -> Option<String> {
+    let own = (*progress)?;
+    Some(format!(
+        "  {name}  t {:.4} of {} s  z {:.3} m  p {:.4} Pa",
+        own.time,
+        short_number(own.end_time),
+        own.z_centre,
+        own.pressure
+    ))
+}
+
+/// A duration in its largest sensible unit.
+fn told(duration: Duration) -> String {
+    match duration.as_secs() {
+        seconds @ 0..120 => format!("{} s", seconds.max(1)),
+        seconds @ 120..7200 => format!("{} min", (seconds + 30) / 60),
+        seconds => format!("{:.1} h", seconds as f64 / 3600.0),
+    }
 }
 
 impl<W: Write> Reporter for Lines<W> {
     fn event(&mut self, event: &Event) {
         self.tally.hear(event);
-        let Tally { jobs, finished, failed } = self.tally;
+        let Tally { jobs, finished, .. } = self.tally;
         match event {
             Event::GenerationStarted { .. } if finished < jobs => {
                 self.line(&format!("{jobs} jobs, {finished} finished, {} to run", jobs - finished));
-                self.last = Some(Instant::now());
+                let now = Instant::now();
+                self.start.get_or_insert((now, finished));
+                self.last = Some(now);
             }
-            Event::JobFinished { .. } => {
+            Event::JobStarted { id, label, thread } => {
+                self.running.insert(*thread, (format!("{} {label}", id.short()), None));
+            }
+            Event::JobSample { thread, progress } => {
+                if let Some((_, own)) = self.running.get_mut(thread) {
+                    *own = Some(*progress);
+                }
+                if self.due() {
+                    self.tell();
+                }
+            }
+            Event::JobFinished { thread, .. } => {
+                self.running.remove(thread);
                 if self.verbose
                     && let Some(text) = finished_line(event)
                 {
                     self.line(&text);
                 }
-                if finished == jobs || self.last.is_some_and(|last| last.elapsed() >= LINE_INTERVAL)
-                {
-                    self.line(&format!("{finished} of {jobs} jobs finished, {failed} failed"));
-                    self.last = Some(Instant::now());
+                if finished == jobs || self.due() {
+                    self.tell();
                 }
             }
             Event::Note(text) => self.line(&format!("note: {text}")),
@@ -219,106 +304,4 @@ impl Reporter for Bars {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::{Arc, Mutex};
-
-    use billow_solver::deployment::Progress;
-    use indicatif::TermLike;
-
-    use super::*;
-    use crate::job::JobId;
-
-    fn events() -> Vec<Event> {
-        let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
-        let progress = Progress { time: 0.5, end_time: 2.0, z_centre: 0.3, pressure: 51.0 };
-        vec![
-            Event::GenerationStarted { number: 0, jobs: 4, finished: 3 },
-            Event::Note("a line is torn".to_owned()),
-            Event::JobStarted { id: id.clone(), label: "N=5 M=2".to_owned(), thread: 1 },
-            Event::JobSample { thread: 1, progress },
-            Event::JobFinished { id, thread: 1, status: "unstable".to_owned(), verdict: None },
-        ]
-    }
-
-    #[test]
-    fn lines_say_where_the_study_stands() {
-        let mut lines = Lines::new(Vec::new(), true);
-        for event in events() {
-            lines.event(&event);
-        }
-        lines.event(&Event::Ended);
-        let expected = "4 jobs, 3 finished, 1 to run\nnote: a line is torn\nabababab unstable\n\
-                        4 of 4 jobs finished, 1 failed\n";
-        assert_eq!(String::from_utf8(lines.out).unwrap(), expected);
-    }
-
-    #[test]
-    fn nothing_to_run_is_no_line() {
-        let mut lines = Lines::new(Vec::new(), false);
-        lines.event(&Event::GenerationStarted { number: 0, jobs: 4, finished: 4 });
-        lines.event(&Event::Ended);
-        assert!(lines.out.is_empty());
-    }
-
-    /// A terminal that remembers all that was ever written to it.
-    #[derive(Debug, Clone, Default)]
-    struct Screen(Arc<Mutex<String>>);
-
-    impl TermLike for Screen {
-        fn width(&self) -> u16 {
-            100
-        }
-
-        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
-            Ok(())
-        }
-
-        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
-            Ok(())
-        }
-
-        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
-            Ok(())
-        }
-
-        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
-            Ok(())
-        }
-
-        fn write_line(&self, text: &str) -> io::Result<()> {
-            self.write_str(&format!("{text}\n"))
-        }
-
-        fn write_str(&self, text: &str) -> io::Result<()> {
-            self.0.lock().unwrap().push_str(text);
-            Ok(())
-        }
-
-        fn clear_line(&self) -> io::Result<()> {
-            self.write_str("<clear>")
-        }
-
-        fn flush(&self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
-    #[test]
-    fn bars_show_the_study_and_the_running_job_and_then_go_away() {
-        let screen = Screen::default();
-        let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
-        let mut bars = Bars::new(target, false, false);
-        for event in events() {
-            bars.event(&event);
-        }
-        bars.study.force_draw();
-        bars.jobs[1].force_draw();
-        let text = screen.0.lock().unwrap().clone();
-        assert!(text.contains("note: a line is torn"), "{text}");
-        assert!(text.contains("4/4 jobs  1 failed"), "{text}");
-        assert!(text.contains("abababab N=5 M=2  t 0.500 s  z 0.300 m  p 51.0000 Pa"), "{text}");
-        assert!(!text.contains('\x1b'), "no colour was asked for");
-        bars.event(&Event::Ended);
-        assert!(screen.0.lock().unwrap().ends_with("<clear>"));
-    }
-}
+mod tests;

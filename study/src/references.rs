@@ -10,6 +10,7 @@
 
 use std::collections::BTreeMap;
 use std::io;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use billow_solver::PHYSICS_VERSION;
@@ -107,6 +108,13 @@ fn read(bytes: &[u8]) -> Option<Reference> {
 }
 
 impl Results<'_> {
+    /// Files that should be references and are none this program reads.
+    pub fn unread_references(&self) -> Vec<PathBuf> {
+        let paths = self.files().list(&self.references_path()).unwrap_or_default();
+        let sound = |path: &PathBuf| self.files().read(path).ok().and_then(|bytes| read(&bytes));
+        paths.into_iter().filter(|path| sound(path).is_none()).collect()
+    }
+
     /// Stores a reference.
     ///
     /// # Errors
@@ -148,6 +156,10 @@ mod tests {
         assert_eq!(read(&bytes[..bytes.len() / 2]), None);
         let other = String::from_utf8(bytes).unwrap().replace("\"version\":1", "\"version\":2");
         assert_eq!(read(other.as_bytes()), None);
+        assert!(results.unread_references().is_empty());
+        let damaged = path.with_file_name(format!("{}.json", "cd".repeat(16)));
+        files::write_atomic(&Disk, &damaged, other.as_bytes()).unwrap();
+        assert_eq!(results.unread_references(), [damaged]);
         let loaded = References::load(&results);
         let slots = loaded.slots.lock().unwrap();
         assert_eq!(slots[&id].get(), Some(&Ok(reference)));

@@ -15,6 +15,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Deserialize;
 
@@ -23,12 +24,19 @@ use crate::files::{self, Files, Lock, disk_error};
 use crate::history_file;
 use crate::job::JobId;
 use crate::journal::{self, Journal, Record};
+use crate::study_file::Json;
 use crate::table::{Table, parquet};
 
 /// Name of the format of study.json: it is a study file, with everything spelled out.
 const FORMAT: &str = "billow-study";
 /// Version of study.json this program writes, and the newest it reads.
 const VERSION: u64 = 1;
+
+/// Names of what a run leaves in a folder.
+pub const OURS: [&str; 6] =
+    ["study.json", "journal", "jobs", "references", "summary.parquet", "lock"];
+/// How often a lock that is held is looked at before it counts as held.
+const LOOKS: u32 = 5;
 
 /// What tells whose folder it is.
 #[derive(Deserialize)]
@@ -39,11 +47,11 @@ struct Owner {
 }
 
 /// study.json of a resolved study.
-fn study_bytes(name: &str, study: &serde_json::Value) -> io::Result<Vec<u8>> {
+fn study_bytes(name: &str, study: &Json) -> io::Result<Vec<u8>> {
     let mut study = study.clone();
-    study["format"] = FORMAT.into();
-    study["version"] = VERSION.into();
-    study["name"] = name.into();
+    study.set("format", Json::Text(FORMAT.to_owned()));
+    study.set("version", Json::Integer(VERSION.cast_signed()));
+    study.set("name", Json::Text(name.to_owned()));
     let mut bytes = serde_json::to_vec_pretty(&study).map_err(io::Error::other)?;
     bytes.push(b'\n');
     Ok(bytes)
@@ -101,9 +109,16 @@ impl<'a> Results<'a> {
         if !self.files.create_folder(&self.root).map_err(at_root)? {
             self.refuse_foreign()?;
         }
-        let path = self.root.join("lock");
-        let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
-        lock.ok_or_else(|| Error::Disk {
+        let path = self.lock_path();
+        // A command that only looks whether somebody runs holds the lock for an instant.
+        for _ in 0..LOOKS {
+            let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
+            if let Some(lock) = lock {
+                return Ok(lock);
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        Err(Error::Disk {
             path: self.root.clone(),
             problem: "another billow command is running this study\n  next: wait until it has \
                       ended, or choose another folder with --results DIR"
@@ -111,10 +126,21 @@ impl<'a> Results<'a> {
         })
     }
 
+    /// Whether another process is running this study.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn is_locked(&self) -> Result<bool> {
+        let path = self.lock_path();
+        self.files.is_locked(&path).map_err(|error| disk_error(&path, &error))
+    }
+
+    fn lock_path(&self) -> PathBuf {
+        self.root.join("lock")
+    }
+
     /// Refuses a folder that holds what no study left there.
     fn refuse_foreign(&self) -> Result<()> {
-        const OURS: [&str; 7] =
-            ["study.json", "journal", "jobs", "references", "summary.parquet", "charts", "lock"];
         let at_root = |error: io::Error| disk_error(&self.root, &error);
         let names: Vec<String> = self
             .files
@@ -146,7 +172,8 @@ impl<'a> Results<'a> {
         let jobs = self.root.join("jobs");
         let mut folders = self.files.list(&jobs).map_err(|error| disk_error(&jobs, &error))?;
         // Job folders are named by two digits; anything else in there is not ours.
-        folders.retain(|path| path.file_name().is_some_and(|name| name.len() == 2));
+        folders
+            .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
         folders.extend([self.references_path(), self.root.clone()]);
         for folder in folders {
             files::sweep(self.files, &folder).map_err(|error| disk_error(&folder, &error))?;
@@ -154,40 +181,55 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
+    /// Path of study.json.
+    pub fn study_path(&self) -> PathBuf {
+        self.root.join("study.json")
+    }
+
+    /// Name of the study the folder belongs to, `None` where no study.json says so.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when study.json cannot be read, is none of ours, or of a newer program.
+    pub fn owner(&self) -> Result<Option<String>> {
+        let path = self.study_path();
+        let bytes = match self.files.read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(disk_error(&path, &error)),
+        };
+        let there: Owner = serde_json::from_slice(&bytes)
+            .map_err(|error| self.refused(&format!("not a study.json of billow: {error}")))?;
+        if there.format != FORMAT {
+            return Err(self.refused(&format!("format {:?} is not {FORMAT:?}", there.format)));
+        }
+        if there.version > VERSION {
+            return Err(self.refused(&format!(
+                "version {}, this program reads up to {VERSION}: written by a newer billow",
+                there.version
+            )));
+        }
+        Ok(Some(there.name))
+    }
+
+    fn refused(&self, problem: &str) -> Error {
+        Error::Disk {
+            path: self.study_path(),
+            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
+        }
+    }
+
     /// Notes which study the folder belongs to, unless it says so already: `study` is the resolved
     /// study, an object.
     ///
     /// # Errors
     /// [`Error::Disk`] when it belongs to another study, or to a newer program.
-    pub fn write_study(&self, name: &str, study: &serde_json::Value) -> Result<()> {
-        let path = self.root.join("study.json");
-        let refused = |problem: String| Error::Disk {
-            path: path.clone(),
-            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
-        };
-        match self.files.read(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(error) => return Err(disk_error(&path, &error)),
-            Ok(bytes) => {
-                let there: Owner = serde_json::from_slice(&bytes)
-                    .map_err(|error| refused(format!("not a study.json of billow: {error}")))?;
-                if there.format != FORMAT {
-                    return Err(refused(format!("format {:?} is not {FORMAT:?}", there.format)));
-                }
-                if there.version > VERSION {
-                    return Err(refused(format!(
-                        "version {}, this program reads up to {VERSION}: written by a newer billow",
-                        there.version
-                    )));
-                }
-                if there.name != name {
-                    return Err(refused(format!(
-                        "the folder holds results of the study {:?}, not of {name:?}",
-                        there.name
-                    )));
-                }
-            }
+    pub fn write_study(&self, name: &str, study: &Json) -> Result<()> {
+        if let Some(there) = self.owner()?.filter(|there| there != name) {
+            return Err(self.refused(&format!(
+                "the folder holds results of the study {there:?}, not of {name:?}"
+            )));
         }
+        let path = self.study_path();
         let bytes = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
         files::write_if_changed(self.files, &path, &bytes)
             .map_err(|error| disk_error(&path, &error))?;
@@ -198,8 +240,8 @@ impl<'a> Results<'a> {
     ///
     /// # Errors
     /// [`Error::Disk`] when study.json cannot be read.
-    pub fn holds(&self, name: &str, study: &serde_json::Value) -> Result<bool> {
-        let path = self.root.join("study.json");
+    pub fn holds(&self, name: &str, study: &Json) -> Result<bool> {
+        let path = self.study_path();
         let there = self.files.read(&path).map_err(|error| disk_error(&path, &error))?;
         Ok(there == study_bytes(name, study).map_err(|error| disk_error(&path, &error))?)
     }

@@ -3,7 +3,8 @@
 //! Workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. This
 //! thread alone touches the disk: it stores what comes in, history file first, journal record
 //! second, so that a record always has its file; whatever happens in between is run again and gives
-//! the same bits.
+//! the same bits. A job that is run again ([`Run::again`]) is withdrawn first, and its new history is
+//! held against the hash of the one before.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
@@ -22,6 +23,7 @@ use crate::point::Point;
 use crate::results::Results;
 use crate::row::{self, Cells};
 use crate::stop::Stop;
+use crate::study_file::Json;
 use crate::table::Table;
 
 mod workers;
@@ -40,7 +42,7 @@ pub struct Run<'a> {
     /// Name of the study.
     pub name: &'a str,
     /// The study, for study.json.
-    pub study: &'a serde_json::Value,
+    pub study: &'a Json,
     /// [`crate::plan::next_jobs`] of that study.
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
     /// SI unit of a parameter.
@@ -53,6 +55,8 @@ pub struct Run<'a> {
     pub threads: Option<NonZero<usize>>,
     /// Asks to end early.
     pub stop: Stop,
+    /// Jobs to run whether they are finished or not, and nothing else; `None` runs what is missing.
+    pub again: Option<&'a BTreeSet<JobId>>,
 }
 
 /// What a run left.
@@ -66,6 +70,10 @@ pub struct Summary {
     pub ran: usize,
     /// The signal that ended it early.
     pub signal: Option<i32>,
+    /// Of the jobs it ran, those that had ended before and left the same history again.
+    pub same: usize,
+    /// Those that left another one than before, or ended otherwise.
+    pub different: Vec<JobId>,
 }
 
 impl Summary {
@@ -90,13 +98,17 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let mut state = State {
         run,
         writer: Writer::new(run.results.files(), run.results.journal_path()),
+        before: journal.withdrawn,
         recorded: journal.records,
         records: BTreeMap::new(),
         points: Vec::new(),
         ran: 0,
+        same: 0,
+        different: Vec::new(),
         table_due: Instant::now() + TABLE_INTERVAL,
         table_stale: true,
     };
+    state.withdraw()?;
     let mut finished = Vec::new();
     let mut last = None;
     while run.stop.requested().is_none()
@@ -116,6 +128,8 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
 struct State<'a> {
     run: &'a Run<'a>,
     writer: Writer<'a>,
+    /// Records of jobs that were finished once and are no longer.
+    before: BTreeMap<JobId, Record>,
     /// What the journals held at the start, not yet checked.
     recorded: BTreeMap<JobId, Record>,
     /// Sound records of planned jobs.
@@ -123,11 +137,27 @@ struct State<'a> {
     /// Every point planned so far.
     points: Vec<Point>,
     ran: usize,
+    same: usize,
+    different: Vec<JobId>,
     table_due: Instant,
     table_stale: bool,
 }
 
 impl State<'_> {
+    /// Withdraws the finished ones of the jobs to run again.
+    fn withdraw(&mut self) -> Result<()> {
+        let Some(again) = self.run.again else { return Ok(()) };
+        let finished = again.iter().filter(|job| self.recorded.contains_key(*job));
+        let finished: Vec<JobId> = finished.cloned().collect();
+        if !finished.is_empty() {
+            self.writer.withdraw(&finished)?;
+        }
+        for job in finished {
+            self.before.extend(self.recorded.remove_entry(&job));
+        }
+        Ok(())
+    }
+
     /// Takes in a generation; gives the jobs that are missing, in plan order.
     fn begin(&mut self, generation: Generation, reporter: &mut dyn Reporter) -> Result<Vec<Job>> {
         let mut missing = Vec::new();
@@ -145,15 +175,20 @@ impl State<'_> {
                     }
                     Some(note) => {
                         reporter.event(&Event::Note(note));
+                        self.before.insert(id.clone(), record);
                         missing.push(point.job.clone());
                     }
                 },
             }
         }
+        let open = missing.len();
+        if let Some(again) = self.run.again {
+            missing.retain(|job| again.contains(&job.id));
+        }
         reporter.event(&Event::GenerationStarted {
             number: generation.number,
-            jobs: seen.len(),
-            finished: seen.len() - missing.len(),
+            jobs: seen.len() - open + missing.len(),
+            finished: seen.len() - open,
         });
         self.points.extend(generation.points);
         self.table_stale = true;
@@ -231,6 +266,9 @@ impl State<'_> {
             self.writer.append(&records)?;
             self.ran += records.len();
             self.table_stale = true;
+            for record in &records {
+                self.hold_against(record);
+            }
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
         for event in &events {
@@ -240,6 +278,20 @@ impl State<'_> {
             self.write_table()?;
         }
         Ok(())
+    }
+
+    /// Counts whether a job that had ended before ended the same.
+    fn hold_against(&mut self, record: &Record) {
+        let Some(before) = self.before.remove(&record.job) else { return };
+        let end = |record: &Record| {
+            let text = |name: &str| record.cells.text(name).to_owned();
+            [text("status"), text("content_hash")]
+        };
+        if end(&before) == end(record) {
+            self.same += 1;
+        } else {
+            self.different.push(record.job.clone());
+        }
     }
 
     fn write_table(&mut self) -> Result<()> {
@@ -274,8 +326,13 @@ impl State<'_> {
     }
 
     fn summary(&self) -> Summary {
-        let mut summary =
-            Summary { ran: self.ran, signal: self.run.stop.requested(), ..Summary::default() };
+        let mut summary = Summary {
+            ran: self.ran,
+            signal: self.run.stop.requested(),
+            same: self.same,
+            different: self.different.clone(),
+            ..Summary::default()
+        };
         for point in &self.points {
             let cells = self.cells(point).unwrap_or_else(|| Cells::new(row::PENDING));
             *summary.status.entry(cells.status().to_owned()).or_default() += 1;
@@ -307,5 +364,7 @@ fn receive(receiver: &Receiver<Message>) -> Option<(Vec<Message>, Vec<Ended>)> {
     Some((messages, ended))
 }
 
+#[cfg(test)]
+mod rerun_tests;
 #[cfg(test)]
 mod tests;

@@ -16,14 +16,12 @@ mod supports;
 
 use std::path::Path;
 
-use serde_json::{Map, json};
-
 use crate::error::InputError;
 use crate::job::Parameters;
 use crate::keys::{Kind, STUDY};
 use crate::point::{Infeasible, Solved};
 use crate::study_file::{self, Json};
-use crate::value::json_value;
+use crate::value::{Value, json_value};
 use billow_solver::scene::Scene;
 
 use crate::source::Source;
@@ -136,6 +134,32 @@ impl Study {
         self.grid.columns.iter().map(|column| column.target.key().path)
     }
 
+    /// Varied parameters that stand on the same axis as this one, and so change with it.
+    pub fn zipped_with(&self, parameter: &str) -> Vec<String> {
+        let named = |column: &&usize| self.grid.columns[**column].name == parameter;
+        let axis = self.grid.axes.iter().find(|axis| axis.columns.iter().any(|at| named(&at)));
+        let columns = axis.map(|axis| axis.columns.as_slice()).unwrap_or_default();
+        let others = columns.iter().filter(|column| !named(column));
+        others.map(|column| self.grid.columns[*column].name.clone()).collect()
+    }
+
+    /// Reads a value of a varied parameter as a user writes it on a command line: a number (SI), a
+    /// quantity with its unit, a word. `None` for what is no parameter, or no value of it.
+    pub fn parameter_value(&self, parameter: &str, text: &str) -> Option<Value> {
+        let column = self.grid.columns.iter().find(|column| column.name == parameter)?;
+        let key = column.target.key();
+        let text = text.trim();
+        let number = || {
+            let whole = text.parse::<i64>().ok().map(Json::Integer);
+            whole.or_else(|| {
+                text.parse::<f64>().ok().filter(|number| number.is_finite()).map(Json::Number)
+            })
+        };
+        let flag = || text.parse::<bool>().ok().map(Json::Bool);
+        let written = [number(), flag(), Some(Json::Text(text.to_owned()))];
+        written.iter().flatten().find_map(|json| key.read(json).ok())
+    }
+
     /// SI unit of a varied parameter: "1" for a pure number, empty for a word.
     pub fn unit(&self, parameter: &str) -> &'static str {
         let column = self.grid.columns.iter().find(|column| column.name == parameter);
@@ -147,12 +171,13 @@ impl Study {
     }
 
     /// The resolved study: units converted, defaults spelled out, axes as lists. A study file
-    /// itself: read back, it plans the same jobs in the same order.
-    pub fn to_json(&self) -> serde_json::Value {
+    /// itself: read back, it plans the same jobs in the same order, their parameters in the same.
+    pub fn resolved(&self) -> Json {
         let mut json = self.base.to_json();
         json["name"] = self.name.as_str().into();
+        let mut json = Json::from(json);
         if !self.grid.is_empty() {
-            json["grid"] = self.grid.to_json();
+            json.set("grid", self.grid.resolved());
         }
         json
     }
@@ -163,36 +188,32 @@ impl Study {
 }
 
 impl Grid {
-    /// Each axis a group of `zip`: a list keeps the order of the axes, an object would not.
-    fn to_json(&self) -> serde_json::Value {
-        let mut grid = Map::new();
-        let groups: Vec<serde_json::Value> = self
-            .axes
-            .iter()
-            .map(|axis| {
-                let columns = axis.columns.iter().enumerate().map(|(at, column)| {
-                    let values: Vec<_> = axis.rows.iter().map(|row| json_value(&row[at])).collect();
-                    (self.columns[*column].name.clone(), values.into())
-                });
-                columns.collect::<Map<_, _>>().into()
-            })
-            .collect();
-        if !groups.is_empty() {
-            grid.insert("zip".to_owned(), groups.into());
-        }
-        if !self.points.is_empty() {
-            let points = self.points.iter().map(|point| {
-                let members = point
-                    .iter()
-                    .map(|(column, value)| (self.columns[*column].name.clone(), json_value(value)));
-                members.collect::<Map<_, _>>().into()
+    /// Each axis a group of `zip`: a list keeps the order of the axes wherever an object would not.
+    fn resolved(&self) -> Json {
+        let name = |column: usize| self.columns[column].name.clone();
+        let json = |value: &Value| Json::from(json_value(value));
+        let mut grid = Vec::new();
+        let groups = self.axes.iter().map(|axis| {
+            let columns = axis.columns.iter().enumerate().map(|(at, column)| {
+                let values = axis.rows.iter().map(|row| json(&row[at])).collect();
+                (name(*column), Json::List(values))
             });
-            grid.insert("points".to_owned(), points.collect::<Vec<serde_json::Value>>().into());
+            Json::Object(columns.collect())
+        });
+        if !self.axes.is_empty() {
+            grid.push(("zip".to_owned(), Json::List(groups.collect())));
+        }
+        let points = self.points.iter().map(|point| {
+            let members = point.iter().map(|(column, value)| (name(*column), json(value)));
+            Json::Object(members.collect())
+        });
+        if !self.points.is_empty() {
+            grid.push(("points".to_owned(), Json::List(points.collect())));
         }
         if let Some(filter) = &self.filter {
-            grid.insert("filter".to_owned(), json!(filter.text()));
+            grid.push(("filter".to_owned(), Json::Text(filter.text().to_owned())));
         }
-        grid.into()
+        Json::Object(grid)
     }
 }
 

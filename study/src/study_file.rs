@@ -8,6 +8,7 @@ use std::fmt;
 use std::path::Path;
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::ser::{Serialize, Serializer};
 
 use crate::error::{Error, InputError, Result};
 use crate::files;
@@ -40,6 +41,15 @@ impl Json {
     pub fn get(&self, key: &str) -> Option<&Self> {
         let Self::Object(members) = self else { return None };
         members.iter().find(|(name, _)| name == key).map(|(_, value)| value)
+    }
+
+    /// Sets a key of an object: in its place where it is there, else as the last one.
+    pub fn set(&mut self, key: &str, value: Self) {
+        let Self::Object(members) = self else { return };
+        match members.iter_mut().find(|(name, _)| name == key) {
+            Some((_, place)) => *place = value,
+            None => members.push((key.to_owned(), value)),
+        }
     }
 
     /// What it is, with its article, as errors say it.
@@ -102,6 +112,42 @@ fn write_json(value: &Json, text: &mut String, longest: usize) {
                 }
             }
             text.push('}');
+        }
+    }
+}
+
+/// In file order, as it was read.
+impl Serialize for Json {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Self::Null => serializer.serialize_unit(),
+            Self::Bool(value) => serializer.serialize_bool(*value),
+            Self::Integer(value) => serializer.serialize_i64(*value),
+            Self::Number(value) => serializer.serialize_f64(*value),
+            Self::Text(value) => serializer.serialize_str(value),
+            Self::List(items) => serializer.collect_seq(items),
+            Self::Object(members) => {
+                serializer.collect_map(members.iter().map(|(key, value)| (key, value)))
+            }
+        }
+    }
+}
+
+impl From<serde_json::Value> for Json {
+    fn from(value: serde_json::Value) -> Self {
+        match value {
+            serde_json::Value::Null => Self::Null,
+            serde_json::Value::Bool(value) => Self::Bool(value),
+            serde_json::Value::Number(number) => number
+                .as_i64()
+                .map_or_else(|| Self::Number(number.as_f64().unwrap_or(f64::NAN)), Self::Integer),
+            serde_json::Value::String(text) => Self::Text(text),
+            serde_json::Value::Array(items) => {
+                Self::List(items.into_iter().map(Self::from).collect())
+            }
+            serde_json::Value::Object(members) => Self::Object(
+                members.into_iter().map(|(key, value)| (key, Self::from(value))).collect(),
+            ),
         }
     }
 }
@@ -255,6 +301,8 @@ mod tests {
         let Json::Object(members) = &json else { panic!("{json:?}") };
         assert_eq!(members[0], ("b".to_owned(), Json::Integer(8)));
         assert_eq!(json.brief(), r#"{"b": 8, "a": [8.0, "x", null, true]}"#);
+        let written = serde_json::to_string(&json).unwrap();
+        assert_eq!(written, r#"{"b":8,"a":[8.0,"x",null,true]}"#);
     }
 
     #[test]

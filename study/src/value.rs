@@ -63,6 +63,11 @@ pub fn short_number(number: f64) -> String {
     }
 }
 
+/// A number to four significant digits, for lines of text.
+pub fn brief_number(number: f64) -> String {
+    format!("{number:.3e}").parse().map_or_else(|_| number.to_string(), short_number)
+}
+
 fn trim_zeros(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
@@ -86,5 +91,7 @@ mod tests {
         ] {
             assert_eq!(short_number(number), text);
         }
+        assert_eq!(brief_number(0.123_456), "0.1235");
+        assert_eq!(brief_number(f64::NAN), "NaN");
     }
 }

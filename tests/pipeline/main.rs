@@ -3,14 +3,17 @@
 #![allow(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
 
 mod broken_studies;
+mod comparing;
 mod contact;
 mod contact_audit;
 mod determinism;
 mod film_study;
 mod folding;
+mod keeping;
 mod mutations;
 mod physics_version;
 mod planning;
+mod reading;
 mod resume;
 mod running;
 mod scene_files;

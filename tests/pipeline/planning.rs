@@ -159,7 +159,7 @@ proptest! {
         prop_assert_eq!(&next_jobs(&other, &[]).unwrap().points[0].job.id, &expected);
 
         // Defaults spelled out.
-        let resolved = other.to_json();
+        let resolved = serde_json::to_value(other.resolved()).unwrap();
         prop_assert_eq!(&id(&resolved), &expected);
     }
 }

@@ -61,7 +61,7 @@ fn newer_and_foreign_journals_are_refused_by_file_and_line() {
     let path = desk.results().join("journal/000001.jsonl");
     let sound = fs::read_to_string(&path).unwrap();
     for (text, expected) in [
-        (sound.replacen("\"version\":1", "\"version\":7", 1), "journal of version 7"),
+        (sound.replacen("\"version\":2", "\"version\":7", 1), "journal of version 7"),
         (format!("{sound}not ours\n"), "line 18: not a journal record"),
         (String::from("{}\n"), "line 1: not the header"),
     ] {

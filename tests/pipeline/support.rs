@@ -103,3 +103,36 @@ pub fn histories(results: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     }
     found
 }
+
+/// The small grid, run.
+pub fn ran() -> Desk {
+    let desk = Desk::new(&small_grid());
+    desk.stdout(&["run", "grid.json", "-q"]);
+    desk
+}
+
+/// The small grid, with jobs that all fail.
+pub fn failed() -> Desk {
+    let mut study = small_grid();
+    study["solver"]["step_limit"] = serde_json::json!(3);
+    let desk = Desk::new(&study);
+    desk.run(&["run", "grid.json", "-q"]);
+    desk
+}
+
+/// What a command prints as JSON; it must succeed.
+pub fn json_of(desk: &Desk, arguments: &[&str]) -> Value {
+    serde_json::from_str(&desk.stdout(&[arguments, &["--json"]].concat())).unwrap()
+}
+
+/// Ids of the rows of that status.
+pub fn ids(desk: &Desk, status: &str) -> Vec<String> {
+    let rows = desk.rows("results/grid");
+    let own = rows.iter().filter(|row| row["status"] == status);
+    own.map(|row| row["job"].as_str().unwrap().to_owned()).collect()
+}
+
+/// The history file of a job.
+pub fn file_of(desk: &Desk, id: &str) -> PathBuf {
+    desk.results().join(format!("jobs/{}/{id}.h5", &id[..2]))
+}

@@ -1,13 +1,16 @@
 //! `billow run`: runs what is missing of a study.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use super::{Format, Global, notes, output_error};
+use crate::answer::Answer;
 use crate::error::{Error, InputError, Result};
 use crate::executor::Solver;
 use crate::files::{Disk, disk_error};
+use crate::job::JobId;
 use crate::plan;
 use crate::progress::{self, Loudness};
 use crate::references::References;
@@ -15,6 +18,7 @@ use crate::results::Results;
 use crate::row;
 use crate::runner::{self, Run, Summary};
 use crate::stop::Stop;
+use crate::stored::Stored;
 use crate::study::Study;
 
 /// Arguments of `billow run`.
@@ -26,40 +30,65 @@ pub struct Args {
 
 /// Runs `billow run`: jobs that are finished are kept, the rest is run; stopped at any moment, the
 /// same command goes on. A study whose grid has changed keeps the jobs it still plans.
+///
+/// # Errors
+/// A study that is not sound, a disk that fails, jobs that failed, a signal.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &global.set)?;
     let root = results_folder(global, &study);
+    run_study(&study, &root, None, global, out)
+}
+
+/// Runs what is missing of a study, or some of its jobs again, and says what came of it.
+///
+/// # Errors
+/// As [`run`], and jobs that gave other bits than before.
+pub(super) fn run_study(
+    study: &Study,
+    root: &Path,
+    again: Option<&BTreeSet<JobId>>,
+    global: &Global,
+    out: &mut dyn Write,
+) -> Result<()> {
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let loudness = match global {
         Global { quiet: true, .. } => Loudness::Quiet,
         Global { verbose: true, .. } => Loudness::Verbose,
         _ => Loudness::Normal,
     };
-    let results = Results::new(&Disk, &root);
+    let results = Results::new(&Disk, root);
     let summary = runner::run(
         &Run {
             name: &study.name,
-            study: &study.to_json(),
-            planner: &|finished| plan::next_jobs(&study, finished),
+            study: &study.resolved(),
+            planner: &|finished| plan::next_jobs(study, finished),
             unit: &|name| study.unit(name).to_owned(),
             executor: &Solver { references: References::load(&results) },
-            results,
+            results: results.clone(),
             threads: threads(global)?,
             stop,
+            again,
         },
         progress::reporter(loudness).as_mut(),
     )?;
-    print(&study.name, &root, &summary, global.format(), out).map_err(output_error)?;
+    let answer = Answer::of(&Stored::read(results)?);
+    print(&study.name, root, &summary, &answer, global.format(), out).map_err(output_error)?;
     if !global.quiet {
-        notes::print(&study);
+        notes::print(study);
     }
     match (summary.signal, summary.failed()) {
         (Some(signal), _) => Err(Error::Signal(signal)),
+        (None, _) if !summary.different.is_empty() => Err(Error::JobsFailed(format!(
+            "{} gave other bits than before: {}\n  next: billow show JOB; same program, same \
+             physics version?",
+            count(summary.different.len(), "job"),
+            summary.different.iter().map(JobId::short).collect::<Vec<_>>().join(", ")
+        ))),
         (None, 0) => Ok(()),
         (None, failed) => Err(Error::JobsFailed(format!(
-            "{failed} {} failed\n  next: billow table {} --columns job,status,reason,stop_time,\
+            "{} failed\n  next: billow table {} --columns job,status,reason,stop_time,\
              stop_place",
-            plural(failed, "job"),
+            count(failed, "job"),
             root.display()
         ))),
     }
@@ -70,8 +99,9 @@ pub fn results_folder(global: &Global, study: &Study) -> PathBuf {
     global.results.clone().unwrap_or_else(|| Path::new("results").join(&study.name))
 }
 
-fn plural(count: usize, word: &str) -> String {
-    format!("{word}{}", if count == 1 { "" } else { "s" })
+/// So many of something, as in "1 job", "2 jobs".
+pub(super) fn count(number: usize, word: &str) -> String {
+    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
 /// The number of threads asked for.
@@ -108,18 +138,26 @@ fn print(
     name: &str,
     root: &Path,
     summary: &Summary,
+    answer: &Answer,
     format: Format,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     if format == Format::Json {
-        let json = serde_json::json!({
+        let mut json = serde_json::json!({
             "study": name,
             "results": root.display().to_string(),
             "ran": summary.ran,
             "failed": summary.failed(),
             "status": summary.status,
             "verdict": summary.verdict,
+            "same_bits": summary.same,
+            "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
         });
+        if let (Some(all), serde_json::Value::Object(more)) =
+            (json.as_object_mut(), super::answer::json(answer))
+        {
+            all.extend(more);
+        }
         return writeln!(out, "{json}");
     }
     let points: usize = summary.status.values().sum();
@@ -128,17 +166,22 @@ fn print(
     if summary.ran == 0 && pending == 0 {
         writeln!(out, "{name}: nothing to run, all {} jobs are finished", points - without_job)?;
     } else {
-        let (jobs, of) = (plural(summary.ran, "job"), plural(points, "point"));
-        writeln!(out, "{name}: {} {jobs} run, {points} {of}", summary.ran)?;
+        writeln!(out, "{name}: {} run, {}", count(summary.ran, "job"), count(points, "point"))?;
     }
-    let list = |counts: &std::collections::BTreeMap<String, usize>| {
-        let parts: Vec<String> = counts.iter().map(|(name, n)| format!("{n} {name}")).collect();
-        parts.join(", ")
-    };
-    writeln!(out, "  status   {}", list(&summary.status))?;
+    writeln!(out, "  status   {}", listed(&summary.status))?;
     if !summary.verdict.is_empty() {
-        writeln!(out, "  verdict  {}", list(&summary.verdict))?;
+        writeln!(out, "  verdict  {}", listed(&summary.verdict))?;
+    }
+    if summary.same > 0 {
+        writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;
     }
     writeln!(out, "  results  {}", root.display())?;
-    writeln!(out, "  next     billow table {}", root.display())
+    super::answer::print(answer, out)?;
+    super::answer::print_next(answer, root, out)
+}
+
+/// Counts in words, as in "4 done, 1 infeasible".
+pub(super) fn listed(counts: &BTreeMap<String, usize>) -> String {
+    let parts: Vec<String> = counts.iter().map(|(name, n)| format!("{n} {name}")).collect();
+    parts.join(", ")
 }

@@ -2,14 +2,14 @@
 
 use std::cmp::Ordering;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::print::print_rows;
-use super::run::results_folder;
+use super::target::folder;
 use super::{Format, Global};
 use crate::error::{Error, InputError, Result};
 use crate::expression::{Expression, Type, Variable};
-use crate::files::{Disk, Files};
+use crate::files::Disk;
 use crate::keys;
 use crate::results::Results;
 use crate::row::Kind;
@@ -58,7 +58,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let table = results.read_table()?;
     if let Some(path) = args.study.as_deref().filter(|path| path.is_file()) {
         let study = Study::load(path, &global.set)?;
-        if !results.holds(&study.name, &study.to_json())? {
+        if !results.holds(&study.name, &study.resolved())? {
             eprintln!(
                 "billow: {} says another study than the one these rows were run for; `billow run` \
                  brings them up to date",
@@ -93,61 +93,11 @@ fn legend(shown: &[&Column], all: usize) -> String {
     format!("{units}{} of {all} columns (--columns all)", shown.len())
 }
 
-/// The results folder meant: a folder, or that of a study file, or the only one there is.
-fn folder(given: Option<&Path>, global: &Global) -> Result<PathBuf> {
-    if let Some(results) = &global.results {
-        return Ok(results.clone());
-    }
-    let Some(given) = given else { return only_folder() };
-    let named = Path::new("results").join(given);
-    if given.is_dir() {
-        Ok(given.to_owned())
-    } else if !given.exists() && named.is_dir() {
-        Ok(named)
-    } else if !given.exists() {
-        Err(Error::Disk {
-            path: given.to_owned(),
-            problem:
-                "neither a study file nor a folder of results\n  next: billow table STUDY, or \
-                      the folder of its results"
-                    .to_owned(),
-        })
-    } else {
-        Ok(results_folder(global, &Study::load(given, &global.set)?))
-    }
-}
-
-fn only_folder() -> Result<PathBuf> {
-    let results = Path::new("results");
-    let mut folders = Disk.list(results).unwrap_or_default();
-    folders.retain(|path| path.join("summary.parquet").is_file());
-    match folders.as_slice() {
-        [one] => Ok(one.clone()),
-        several => {
-            let names: Vec<String> =
-                several.iter().map(|path| path.display().to_string()).collect();
-            Err(InputError {
-                file: "billow table".to_owned(),
-                key: String::new(),
-                value: String::new(),
-                problem: if names.is_empty() {
-                    "no results under the current folder".to_owned()
-                } else {
-                    "results of several studies under the current folder".to_owned()
-                },
-                allowed: if names.is_empty() {
-                    "a study file, or a folder of results".to_owned()
-                } else {
-                    names.join(", ")
-                },
-                hint: "billow table STUDY".to_owned(),
-            }
-            .into())
-        }
-    }
-}
-
-fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
+/// The column of that name.
+///
+/// # Errors
+/// [`Error::Input`] naming the flag, with the nearest name.
+pub(super) fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
     let names = || table.columns.iter().map(|column| column.name.as_str());
     table.column(name).ok_or_else(|| {
         let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
@@ -163,7 +113,10 @@ fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
 }
 
 /// Rows of which the condition holds, in plan order.
-fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
+///
+/// # Errors
+/// [`Error::Input`] for a condition that does not fit the columns.
+pub(super) fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
     let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
     let variables: Vec<Variable> = table
         .columns

@@ -91,6 +91,10 @@ impl Files for FailingFiles {
         self.step()?;
         Disk.try_lock(path)
     }
+
+    fn is_locked(&self, path: &Path) -> io::Result<bool> {
+        Disk.is_locked(path)
+    }
 }
 
 struct FailingAppend {

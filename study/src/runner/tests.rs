@@ -57,13 +57,14 @@ fn run_on(
 ) -> Result<Summary> {
     let study = Run {
         name: "test",
-        study: &serde_json::json!({ "jobs": jobs }),
+        study: &serde_json::json!({ "jobs": jobs }).into(),
         planner: &generation_zero(jobs),
         unit: &|_| String::new(),
         executor,
         results: Results::new(files, root),
         threads: NonZero::new(threads),
         stop: Stop::new(),
+        again: None,
     };
     run(&study, reporter)
 }
@@ -272,13 +273,14 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
     let executor = Scripted::new(script);
     let study = Run {
         name: "test",
-        study: &serde_json::json!({}),
+        study: &serde_json::json!({}).into(),
         planner: &generation_zero(12),
         unit: &|_| String::new(),
         executor: &executor,
         results: Results::new(&Disk, folder.path()),
         threads: NonZero::new(1),
         stop: stop.clone(),
+        again: None,
     };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
@@ -307,13 +309,14 @@ fn generations_are_replayed_on_resume() {
         let executor = Scripted::new(ran);
         let study = Run {
             name: "test",
-            study: &serde_json::json!({}),
+            study: &serde_json::json!({}).into(),
             planner: &planner,
             unit: &|_| String::new(),
             executor: &executor,
             results: Results::new(&Disk, folder.path()),
             threads: NonZero::new(2),
             stop: Stop::new(),
+            again: None,
         };
         run(&study, &mut Silent).unwrap();
         assert_eq!(asked(&executor), expected);

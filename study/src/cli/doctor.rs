@@ -1,0 +1,85 @@
+//! `billow doctor`: is a results folder sound?
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::print::print_rows;
+use super::run::count;
+use super::target::folder;
+use super::{Format, Global, output_error};
+use crate::doctor::{self, Depth, Finding};
+use crate::error::{Error, Result};
+use crate::files::Disk;
+use crate::results::Results;
+use crate::value::Value;
+
+/// Arguments of `billow doctor`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Study file, or folder of its results [default: the only one under results].
+    pub study: Option<PathBuf>,
+}
+
+/// Runs `billow doctor`: one line a finding, what is broken first.
+///
+/// # Errors
+/// [`Error::JobsFailed`] (exit code 1) when something is broken.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let root = folder(args.study.as_deref(), global)?;
+    let health = doctor::examine(&Results::new(&Disk, &root), Depth::Contents);
+    let faults = health.faults();
+    match global.format() {
+        Format::Table => {
+            for finding in &health.findings {
+                writeln!(out, "{}", line(finding)).map_err(output_error)?;
+            }
+            let running = if health.running { "; a run is going on" } else { "" };
+            let state = if faults == 0 { "sound".to_owned() } else { format!("{faults} broken") };
+            writeln!(
+                out,
+                "{}: {state}: {} recorded, {} looked at, {} found{running}",
+                root.display(),
+                count(health.records, "job"),
+                if health.histories == 1 {
+                    "1 history".to_owned()
+                } else {
+                    format!("{} histories", health.histories)
+                },
+                count(health.findings.len(), "thing"),
+            )
+            .map_err(output_error)?;
+        }
+        format => {
+            let rows: Vec<Vec<Value>> = health.findings.iter().map(row).collect();
+            print_rows(&["level", "path", "problem", "next"], &rows, format, out)?;
+        }
+    }
+    if faults == 0 {
+        return Ok(());
+    }
+    let are = if faults == 1 { "thing is" } else { "things are" };
+    Err(Error::JobsFailed(format!("{}: {faults} {are} broken", root.display())))
+}
+
+fn level(finding: &Finding) -> &'static str {
+    if finding.fault { "fault" } else { "note" }
+}
+
+fn line(finding: &Finding) -> String {
+    let next = if finding.next.is_empty() {
+        String::new()
+    } else {
+        format!("; next: {}", finding.next.replace('\n', " "))
+    };
+    format!("{:<5}  {}: {}{next}", level(finding), finding.path.display(), finding.problem)
+}
+
+fn row(finding: &Finding) -> Vec<Value> {
+    let text = |text: &str| Value::Text(text.to_owned());
+    vec![
+        text(level(finding)),
+        text(&finding.path.display().to_string()),
+        text(&finding.problem),
+        text(&finding.next),
+    ]
+}

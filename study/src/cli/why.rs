@@ -1,0 +1,287 @@
+//! `billow why`: why a job ended as it did, in plain words.
+
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::PathBuf;
+
+use billow_solver::audit::RESIDUAL_BOUND;
+use serde_json::{Map, json};
+
+use super::print::print_rows;
+use super::target::folder;
+use super::{Format, Global, output_error};
+use crate::error::Result;
+use crate::files::Disk;
+use crate::job::JobId;
+use crate::results::Results;
+use crate::row::{self, Cells};
+use crate::stored::Stored;
+use crate::summary;
+use crate::value::{Value, brief_number, json_value};
+
+/// Arguments of `billow why`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The job: the first digits of its id.
+    pub job: String,
+    /// Study file, or folder of its results [default: the only one under results].
+    pub study: Option<PathBuf>,
+}
+
+/// One line of the answer: what it is about, and what it says.
+type Line = (&'static str, String);
+
+/// Runs `billow why`.
+///
+/// # Errors
+/// A job that is not there; results that cannot be read.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let root = folder(args.study.as_deref(), global)?;
+    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let id = stored.job(&args.job)?;
+    let cells = match (stored.point(&id), stored.record(&id)) {
+        (Some(point), _) => stored.cells(point),
+        (None, Some(record)) => record.cells.clone(),
+        (None, None) => Cells::new(row::PENDING),
+    };
+    let lines = reasons(&stored, &id, &cells)?;
+    match global.format() {
+        Format::Table => {
+            writeln!(out, "job {}: {}", stored.label(&id), headline(&cells))
+                .map_err(output_error)?;
+            for (about, text) in &lines {
+                writeln!(out, "  {about:<9} {text}").map_err(output_error)?;
+            }
+            Ok(())
+        }
+        format => {
+            let json = keys(&stored, &id, &cells, &lines);
+            if format == Format::Json {
+                return writeln!(out, "{json}").map_err(output_error);
+            }
+            print_rows(&["quantity", "value"], &summary::rows(&json), format, out)
+        }
+    }
+}
+
+fn headline(cells: &Cells) -> String {
+    let close = if *cells.get("close") == Value::Bool(true) { ", close" } else { "" };
+    match cells.text("verdict") {
+        "" => cells.status().to_owned(),
+        verdict => format!("{}, {verdict}{close}", cells.status()),
+    }
+}
+
+/// All there is to say.
+fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> {
+    let mut lines: Vec<Line> = Vec::new();
+    let root = stored.results.root().display();
+    let short = id.short();
+    let next = match cells.status() {
+        row::DONE => {
+            lines.extend(verdict(cells));
+            format!("billow show {short} {root} --history")
+        }
+        row::PENDING => {
+            let withdrawn = stored.journal.withdrawn.contains_key(id);
+            let said = if withdrawn {
+                "withdrawn to be run again, and not run yet"
+            } else {
+                "not run yet"
+            };
+            lines.push(("status", said.to_owned()));
+            format!("billow run of its study, or billow rerun {short} {root}")
+        }
+        status => {
+            lines.extend(failure(cells, status));
+            advice(status, short, &root.to_string())
+        }
+    };
+    lines.extend(trust(cells));
+    if stored.point(id).is_none() {
+        lines.push(("study", "the study as it is now does not have this job".to_owned()));
+    }
+    if let Some(record) = stored.journal.records.get(id)
+        && let Some(damage) = stored.results.damage(record)?
+    {
+        lines.push(("file", format!("{damage}: billow doctor {root}")));
+    }
+    lines.push(("next", next));
+    Ok(lines)
+}
+
+fn number(cells: &Cells, name: &str) -> Option<f64> {
+    if let Value::Number(number) = cells.get(name) { Some(*number) } else { None }
+}
+
+/// A ratio against its threshold: measure, value, threshold, relative margin.
+fn against(cells: &Cells, measure: &str, threshold: &str) -> Option<(f64, f64, f64)> {
+    let (value, threshold) = (number(cells, measure)?, number(cells, threshold)?);
+    Some((value, threshold, value / threshold - 1.0))
+}
+
+fn share(margin: f64) -> String {
+    format!("{} %", brief_number((100.0 * margin).abs()))
+}
+
+/// The numbers behind a verdict.
+fn verdict(cells: &Cells) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    let full = against(cells, "volume_ratio", "deployed_volume_threshold");
+    let low = against(cells, "volume_ratio", "stalled_volume_threshold");
+    let high = against(cells, "height_ratio", "deployed_height_threshold");
+    let verdict = cells.text("verdict");
+    if let (Some((value, full, above)), Some((_, low, over))) = (full, low) {
+        let mean = format!("volume_ratio {} (mean of the last tenth)", brief_number(value));
+        let text = match verdict {
+            "deployed" => {
+                let margin = share(above);
+                format!(
+                    "{mean}, and never below the {full} it takes to be deployed; {margin} above"
+                )
+            }
+            "stalled" => format!("{mean} < {low}, so it stalled; {} below", share(over)),
+            _ if above >= 0.0 => {
+                format!("{mean}, where it takes {full} all through that tenth to be deployed")
+            }
+            _ => format!(
+                "{mean} < {full}, so not deployed ({} below); ≥ {low}, so not stalled ({} above)",
+                share(above),
+                share(over)
+            ),
+        };
+        lines.push(("volume", text));
+    }
+    if let Some((value, wanted, margin)) = high {
+        let (sign, word) = if margin >= 0.0 { ("≥", "above") } else { ("<", "below") };
+        let (value, margin) = (brief_number(value), share(margin));
+        let ratio = format!("height_ratio {value} (least of the last tenth)");
+        let text = format!("{ratio} {sign} {wanted} it takes to be deployed; {margin} {word}");
+        lines.push(("height", text));
+    }
+    if verdict.is_empty() {
+        let text = "none: the design has no static states to hold it against";
+        lines.push(("verdict", text.to_owned()));
+    }
+    if let Some(margin) = number(cells, "close_margin") {
+        let close = *cells.get("close") == Value::Bool(true);
+        let (said, would) = if close { ("yes", "would") } else { ("no", "would not") };
+        let margin = share(margin);
+        let change = format!("a change of the ratios by less than {margin}");
+        lines.push(("close", format!("{said}: {change} {would} change the verdict")));
+    }
+    if let Some(time) = number(cells, "t_deployed") {
+        let since = format!("from {} s on both thresholds held 20 ms", brief_number(time));
+        let later = if verdict == "deployed" { "" } else { "; it did not stay there" };
+        lines.push(("held", format!("{since}{later}")));
+    }
+    lines
+}
+
+/// Where and why there is no result.
+fn failure(cells: &Cells, status: &str) -> Vec<Line> {
+    let what = match status {
+        row::INFEASIBLE => "no fold pattern meets this design, so nothing was run",
+        row::INVALID => "the model refused the scene before its first step",
+        row::PANICKED => "the program met a state it did not expect: a mistake in billow",
+        "unstable" => "the state left all bounds: no number, or energy out of nothing",
+        "drifted" => "the energy ledger did not balance, so what was computed is no result",
+        "inverted_volume" => "the enclosed volume fell to nothing or turned inside out",
+        "step_limit" => "it took all the steps solver.step_limit allows before its end time",
+        "interpenetrated" => "film passed through film, or lay through film",
+        _ => "it stopped before its end time",
+    };
+    let mut lines = vec![("status", format!("{status}: {what}"))];
+    if let Some(time) = number(cells, "stop_time") {
+        lines.push(("time", format!("{} s", brief_number(time))));
+    }
+    for (about, name) in [("place", "stop_place"), ("reason", "reason"), ("nearest", "nearest")] {
+        if !cells.text(name).is_empty() {
+            let alone =
+                if name == "nearest" { " (each for a change of that key alone)" } else { "" };
+            lines.push((about, format!("{}{alone}", cells.text(name))));
+        }
+    }
+    lines
+}
+
+/// What to do about a failure.
+fn advice(status: &str, short: &str, root: &str) -> String {
+    let look = format!("billow show {short} {root} --history");
+    match status {
+        row::INFEASIBLE => {
+            "take a nearest value, or leave the point out with a grid filter".to_owned()
+        }
+        row::INVALID => "change the key the reason names".to_owned(),
+        row::PANICKED => format!("report the reason with {root}/study.json and the job id"),
+        "step_limit" => format!("{look}: where the steps went; then raise solver.step_limit"),
+        "unstable" | "drifted" => format!("{look}; then a finer step (billow schema: solver)"),
+        _ => look,
+    }
+}
+
+/// What the audit says.
+fn trust(cells: &Cells) -> Vec<Line> {
+    let Some(residual) = number(cells, "ledger_residual") else { return Vec::new() };
+    let sign = if residual <= RESIDUAL_BOUND { "≤" } else { ">" };
+    let residual = brief_number(residual);
+    let mut ledger = format!("largest residual {residual} {sign} {RESIDUAL_BOUND}");
+    if let Some(gas) = number(cells, "gas_residual") {
+        let _ = write!(ledger, "; gas balance {}", brief_number(gas));
+    }
+    let film = match (cells.get("passages"), cells.get("intersections")) {
+        (Value::Null, Value::Null) => {
+            "passages and intersections are not counted by this model".to_owned()
+        }
+        (passages, intersections) => {
+            format!("passages {passages}, intersections {intersections}")
+        }
+    };
+    vec![("ledger", ledger), ("film", film)]
+}
+
+/// The same as keys.
+fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde_json::Value {
+    let parameters = stored.point(id).map(|point| {
+        let own = point.job.parameters.iter();
+        own.map(|(name, value)| (name.clone(), json_value(value))).collect::<Map<_, _>>()
+    });
+    let checks: Vec<serde_json::Value> = [
+        ("volume_ratio", "deployed_volume_threshold"),
+        ("height_ratio", "deployed_height_threshold"),
+        ("volume_ratio", "stalled_volume_threshold"),
+    ]
+    .into_iter()
+    .filter_map(|(measure, threshold)| {
+        let (value, least, margin) = against(cells, measure, threshold)?;
+        Some(json!({
+            "measure": measure, "value": value, "threshold": threshold, "least": least,
+            "margin": margin,
+        }))
+    })
+    .collect();
+    let mut keys = json!({
+        "job": id.as_str(),
+        "parameters": parameters,
+        "ledger_bound": RESIDUAL_BOUND,
+        "checks": checks,
+        "why": lines.iter().map(|(about, text)| format!("{about}: {text}")).collect::<Vec<_>>(),
+    });
+    for name in [
+        "status",
+        "verdict",
+        "close",
+        "close_margin",
+        "reason",
+        "nearest",
+        "stop_time",
+        "stop_place",
+        "ledger_residual",
+        "gas_residual",
+        "passages",
+        "intersections",
+    ] {
+        keys[name] = json_value(cells.get(name));
+    }
+    keys
+}

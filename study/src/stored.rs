@@ -1,0 +1,193 @@
+//! What a results folder holds, read as it lies there: its study, planned again, and its journal.
+//! Nothing is changed and no lock is held, so it reads the same while a run goes on.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::error::{Error, InputError, Result};
+use crate::job::{JobId, Parameters};
+use crate::journal::{self, Journal, Record};
+use crate::plan::{self, FinishedRow};
+use crate::point::Point;
+use crate::results::Results;
+use crate::row::{self, Cells};
+use crate::study::Study;
+use crate::table::Table;
+
+/// Ids shown when one is not found, or not told apart.
+const NEAREST: usize = 5;
+
+/// A results folder, read.
+pub struct Stored<'a> {
+    /// Where it lies.
+    pub results: Results<'a>,
+    /// The study it was last run for.
+    pub study: Study,
+    /// What its journals say.
+    pub journal: Journal,
+    /// Every point planned so far, in plan order.
+    pub points: Vec<Point>,
+}
+
+impl<'a> Stored<'a> {
+    /// Reads a folder.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] where there is no study.json, or what lies there cannot be read.
+    pub fn read(results: Results<'a>) -> Result<Self> {
+        // What a line says that cannot be read is not to be guessed.
+        let (stored, faults) = Self::salvage(results)?;
+        faults.into_iter().next().map_or(Ok(stored), Err)
+    }
+
+    /// Reads what can be read: journal lines that are none of ours are passed over, and told.
+    ///
+    /// # Errors
+    /// As [`Self::read`], but for such lines.
+    pub fn salvage(results: Results<'a>) -> Result<(Self, Vec<Error>)> {
+        if results.owner()?.is_none() {
+            return Err(Error::Disk {
+                path: results.root().to_owned(),
+                problem: "no results here: no study.json\n  next: `billow run STUDY` first, or \
+                          name the folder of its results"
+                    .to_owned(),
+            });
+        }
+        let study = Study::load(&results.study_path(), &[])?;
+        let (journal, faults) = journal::examine(results.files(), &results.journal_path())?;
+        let points = planned(&study, &journal.records);
+        Ok((Self { results, study, journal, points }, faults))
+    }
+
+    /// How a point ended so far.
+    pub fn cells(&self, point: &Point) -> Cells {
+        match (&point.infeasible, self.journal.records.get(&point.job.id)) {
+            (Some(infeasible), _) => Cells::infeasible(infeasible),
+            (None, Some(record)) => record.cells.clone(),
+            (None, None) => Cells::new(row::PENDING),
+        }
+    }
+
+    /// The table, from plan and journal.
+    pub fn table(&self) -> Table {
+        Table::build(&self.points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+    }
+
+    /// The table with a row for every point of the grid: those that are one job have one row each.
+    pub fn table_of_all_points(&self) -> Table {
+        let mut points = Vec::with_capacity(self.points.len());
+        let mut seen: BTreeSet<String> = BTreeSet::new();
+        for point in &self.points {
+            for parameters in [&point.job.parameters].into_iter().chain(&point.merged) {
+                if seen.insert(format!("{parameters:?}")) {
+                    let mut point = point.clone();
+                    point.job.parameters.clone_from(parameters);
+                    points.push(point);
+                }
+            }
+        }
+        Table::build(&points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+    }
+
+    /// The planned point of a job.
+    pub fn point(&self, id: &JobId) -> Option<&Point> {
+        self.points.iter().find(|point| point.job.id == *id)
+    }
+
+    /// The record of a job, the last one before it was withdrawn included.
+    pub fn record(&self, id: &JobId) -> Option<&Record> {
+        self.journal.records.get(id).or_else(|| self.journal.withdrawn.get(id))
+    }
+
+    /// The job a prefix of its id means, among those planned and those only recorded.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when none or several begin like that; it lists the nearest.
+    pub fn job(&self, prefix: &str) -> Result<JobId> {
+        let wanted = prefix.trim().to_ascii_lowercase();
+        let planned = self.points.iter().map(|point| &point.job.id);
+        let recorded = self.journal.records.keys().chain(self.journal.withdrawn.keys());
+        let known: BTreeSet<&JobId> = planned.chain(recorded).collect();
+        let begins = |id: &&&JobId| !wanted.is_empty() && id.as_str().starts_with(&wanted);
+        let found: Vec<&JobId> = known.iter().filter(begins).copied().collect();
+        match found.as_slice() {
+            [one] => Ok((*one).clone()),
+            [] => {
+                let mut near: Vec<&JobId> = known.into_iter().collect();
+                // Stable: ids that agree equally far stay sorted.
+                near.sort_by_key(|id| std::cmp::Reverse(agreement(id.as_str(), &wanted)));
+                Err(self.no_job(prefix, "no job has this id", &near))
+            }
+            several => Err(self.no_job(
+                prefix,
+                &format!("{} jobs have ids that begin like this", several.len()),
+                several,
+            )),
+        }
+    }
+
+    fn no_job(&self, prefix: &str, problem: &str, near: &[&JobId]) -> Error {
+        let mut allowed: Vec<String> = near.iter().take(NEAREST).map(|id| self.label(id)).collect();
+        if near.len() > NEAREST {
+            allowed.push(format!("and {} more", near.len() - NEAREST));
+        }
+        InputError {
+            file: "job".to_owned(),
+            key: String::new(),
+            value: prefix.to_owned(),
+            problem: problem.to_owned(),
+            allowed: if allowed.is_empty() {
+                "there is none".to_owned()
+            } else {
+                format!("the first digits of one id, as {}", allowed.join("; "))
+            },
+            hint: format!("billow table {} --columns job", self.results.root().display()),
+        }
+        .into()
+    }
+
+    /// A job as a person tells it: short id and parameters.
+    pub fn label(&self, id: &JobId) -> String {
+        let parameters = self.point(id).map(|point| label(&point.job.parameters));
+        match parameters {
+            Some(text) if !text.is_empty() => format!("{} ({text})", id.short()),
+            _ => id.short().to_owned(),
+        }
+    }
+}
+
+/// Parameters as "N=5 M=2".
+pub fn label(parameters: &Parameters) -> String {
+    let texts: Vec<String> =
+        parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    texts.join(" ")
+}
+
+/// How many leading characters two texts have in common.
+fn agreement(one: &str, other: &str) -> usize {
+    one.bytes().zip(other.bytes()).take_while(|(one, other)| one == other).count()
+}
+
+/// Every point the study plans on what is finished: generation after generation, as a run does.
+pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    let mut last = None;
+    let mut finished = Vec::new();
+    while let Some(generation) = plan::next_jobs(study, &finished)
+        && last.is_none_or(|last| generation.number > last)
+    {
+        last = Some(generation.number);
+        points.extend(generation.points);
+        finished = points.iter().filter_map(|point| row_of(point, records)).collect();
+    }
+    points
+}
+
+fn row_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<FinishedRow> {
+    let id = point.job.id.clone();
+    if point.infeasible.is_some() {
+        return Some(FinishedRow { id, status: row::INFEASIBLE.to_owned(), verdict: None });
+    }
+    let cells = &records.get(&id)?.cells;
+    let verdict = Some(cells.text("verdict").to_owned()).filter(|text| !text.is_empty());
+    Some(FinishedRow { id, status: cells.status().to_owned(), verdict })
+}
