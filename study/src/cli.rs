@@ -18,6 +18,7 @@ mod run;
 mod schema;
 mod solve;
 mod table;
+mod target;
 pub mod validate;
 
 /// Parameter studies of inflatable capsules: fold, inflate, compare.
