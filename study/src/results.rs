@@ -5,6 +5,7 @@
 //!                 journal/*.jsonl   which jobs ended, and how (crate::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::history_file)
 //!                 summary.parquet   the table, rebuilt from plan and journal (crate::table)
+//!                 charts/           pictures (crate::chart)
 //!                 lock              held while a command changes the folder
 //! ```
 //!
@@ -79,6 +80,11 @@ impl<'a> Results<'a> {
     /// Path of a job's history file.
     pub fn job_path(&self, id: &JobId) -> PathBuf {
         self.root.join("jobs").join(&id.as_str()[..2]).join(format!("{id}.h5"))
+    }
+
+    /// Path of the pictures.
+    pub fn charts_path(&self) -> PathBuf {
+        self.root.join("charts")
     }
 
     /// Path of the summary table.
