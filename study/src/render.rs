@@ -1,3 +1,5 @@
-//! Pictures, as SVG text.
+//! Pictures, as SVG text, and PNG from it.
 
 pub mod crease_pattern;
+pub mod font;
+pub mod png;
