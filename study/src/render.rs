@@ -1,5 +1,8 @@
 //! Pictures, as SVG text, and PNG from it.
 
 pub mod crease_pattern;
+pub mod filmstrip;
 pub mod font;
+pub mod painter;
 pub mod png;
+pub mod projection;

@@ -15,8 +15,8 @@ use crate::value::short_number;
 
 /// Width of the page, mm: across an A4 page with its margins.
 const WIDTH: f64 = 180.0;
-/// Height the panels together may have, mm.
-const HEIGHT: f64 = 150.0;
+/// Height all rows together may have, mm.
+const HEIGHT: f64 = 110.0;
 /// Margin of the page and space between panels, mm.
 const MARGIN: f64 = 4.0;
 /// Size of letters, mm.
@@ -67,7 +67,7 @@ pub struct Filmstrip<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Storey of each element, as [`billow_solver::frames::Frames::storeys`].
     pub storeys: &'a [u32],
-    /// Shapes, in the order they are shown; at least one.
+    /// Shapes, in the order they are shown; at least one, and no more than a page holds (64 fit).
     pub frames: &'a [Frame],
     /// Where it is looked at from.
     pub view: View,
@@ -81,7 +81,7 @@ impl Filmstrip<'_> {
         let layout = Layout::of(self);
         let legend = self.legend();
         let below = LINE * layout.lines_below(&legend) as f64;
-        let height = layout.top() + layout.height() + below + MARGIN;
+        let height = layout.bottom() + below + MARGIN;
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}mm\" height=\"{height:.2}mm\" \
              viewBox=\"0 0 {WIDTH} {height:.2}\" font-family=\"{}, sans-serif\" \
@@ -95,10 +95,10 @@ impl Filmstrip<'_> {
         for (number, frame) in self.frames.iter().enumerate() {
             self.panel(&mut svg, &layout, number, frame);
             let [x, y] = layout.corner(number);
-            let under = [x + 0.5 * layout.panel[0], y + layout.panel[1] + 1.3 * LETTER];
+            let under = [x + 0.5 * layout.width, y + 1.3 * LETTER];
             text(&mut svg, under, "middle", &time_label(frame.time, seconds));
         }
-        let mut at = [MARGIN, layout.top() + layout.height() + LETTER];
+        let mut at = [MARGIN, layout.bottom() + LETTER];
         self.scale_bar(&mut svg, &layout, at);
         at[0] += layout.bar_width();
         for (name, colour) in &legend {
@@ -230,74 +230,78 @@ struct Layout {
     scale: f64,
     /// Least right and up any shape reaches, m.
     low: [f64; 2],
-    /// Width and height of a panel.
-    panel: [f64; 2],
+    /// Width of a panel.
+    width: f64,
+    /// Heights of the panels of each row: of the highest shape in it.
+    heights: Vec<f64>,
     columns: usize,
-    rows: usize,
 }
 
 impl Layout {
-    /// The largest scale at which all panels fit, in as many columns as that takes.
+    /// In the columns that give the largest scale, full rows preferred.
     fn of(strip: &Filmstrip<'_>) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let (mut low, mut right) = ([f64::INFINITY; 2], f64::NEG_INFINITY);
+        let mut tops = Vec::with_capacity(strip.frames.len());
         // Nodes of elements alone: others may lie anywhere.
         for frame in strip.frames {
+            let mut top = f64::NEG_INFINITY;
             for node in strip.triangles.as_flattened() {
-                let place = strip.view.project(frame.places[*node as usize]);
-                for axis in 0..2 {
-                    low[axis] = low[axis].min(place[axis]);
-                    high[axis] = high[axis].max(place[axis]);
-                }
+                let [x, y] = strip.view.project(frame.places[*node as usize]);
+                low = [low[0].min(x), low[1].min(y)];
+                (right, top) = (right.max(x), top.max(y));
             }
+            tops.push(top);
         }
         // Film without any extent is still drawn, as a dot.
-        let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(1e-9));
-        let count = strip.frames.len().max(1);
+        let width = (right - low[0]).max(1e-9);
+        let heights = |columns: usize| -> Vec<f64> {
+            let highest = |row: &[f64]| row.iter().copied().fold(low[1] + 1e-9, f64::max) - low[1];
+            tops.chunks(columns).map(highest).collect()
+        };
         let fitting = |columns: usize| {
-            let rows = count.div_ceil(columns);
-            let share = |all: f64, parts: usize, lost: f64| {
-                (all - MARGIN * (parts - 1) as f64) / parts as f64 - lost
-            };
-            let width = share(WIDTH - 2.0 * MARGIN, columns, 0.0);
-            let height = share(HEIGHT, rows, LINE);
-            (width / size[0]).min(height / size[1])
+            let heights = heights(columns);
+            let across = WIDTH - 2.0 * MARGIN - MARGIN * (columns - 1) as f64;
+            let down = HEIGHT - (LINE + MARGIN) * heights.len() as f64;
+            (across / (columns as f64 * width)).min(down / heights.iter().sum::<f64>())
+        };
+        // A row that is not full is worth as much less.
+        let worth = |columns: usize| {
+            let count = strip.frames.len();
+            let places = columns * count.div_ceil(columns);
+            fitting(columns) * count as f64 / places as f64
         };
         let mut columns = 1;
-        for more in 2..=count {
-            if fitting(more) > fitting(columns) {
+        for more in 2..=strip.frames.len() {
+            if worth(more) > worth(columns) {
                 columns = more;
             }
         }
-        // With one strip longer than any page, panels still have a size.
-        let scale = fitting(columns).max(0.5 / size[0].max(size[1]));
-        Self {
-            scale,
-            low,
-            panel: size.map(|length| scale * length),
-            columns,
-            rows: count.div_ceil(columns),
-        }
+        let scale = fitting(columns);
+        let heights = heights(columns).iter().map(|height| scale * height).collect();
+        Self { scale, low, width: scale * width, heights, columns }
     }
 
     /// Upper end of the first row.
-    fn top(&self) -> f64 {
+    fn top() -> f64 {
         MARGIN + LINE + 0.5 * MARGIN
     }
 
-    /// Height of all rows.
-    fn height(&self) -> f64 {
-        self.rows as f64 * (self.panel[1] + LINE + MARGIN)
+    /// Lower end of the shapes of a row.
+    fn ground(&self, row: usize) -> f64 {
+        Self::top() + self.heights[..=row].iter().sum::<f64>() + (LINE + MARGIN) * row as f64
     }
 
-    /// Upper left corner of a panel; the columns share the page evenly.
+    /// Lower end of all rows.
+    fn bottom(&self) -> f64 {
+        self.ground(self.heights.len() - 1) + LINE + MARGIN
+    }
+
+    /// Lower left corner of a panel; the columns share the page evenly.
     fn corner(&self, number: usize) -> [f64; 2] {
         let (row, column) = (number / self.columns, number % self.columns);
-        let cell = (WIDTH - 2.0 * MARGIN + MARGIN) / self.columns as f64;
-        let spare = 0.5 * (cell - MARGIN - self.panel[0]);
-        [
-            MARGIN + column as f64 * cell + spare,
-            self.top() + row as f64 * (self.panel[1] + LINE + MARGIN),
-        ]
+        let cell = (WIDTH - MARGIN) / self.columns as f64;
+        let spare = 0.5 * (cell - MARGIN - self.width);
+        [MARGIN + column as f64 * cell + spare, self.ground(row)]
     }
 
     /// Where a projected place lies on the page.
@@ -305,7 +309,7 @@ impl Layout {
         let [x, y] = self.corner(number);
         let right = self.scale * (place[0] - self.low[0]);
         let up = self.scale * (place[1] - self.low[1]);
-        [x + right, y + self.panel[1] - up]
+        [x + right, y - up]
     }
 
     /// Length of the scale bar, m: the longest round one within 30 mm.
@@ -385,7 +389,9 @@ fn short(hundredths: f64) -> String {
     let text = text.trim_end_matches('0').trim_end_matches('.');
     match text {
         "-0" => "0".to_owned(),
-        text => text.replacen("0.", ".", usize::from(text.starts_with("0.") || text.starts_with("-0."))),
+        text => {
+            text.replacen("0.", ".", usize::from(text.starts_with("0.") || text.starts_with("-0.")))
+        }
     }
 }
 

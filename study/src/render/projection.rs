@@ -1,4 +1,4 @@
-//! A surface looked at from afar: where it lies on the page, what lies over what, how bright it is.
+//! A surface looked at from afar: where it lies on the page, in which order it is drawn, how bright it is.
 //!
 //! ```text
 //! to the eye  e = (cos ε cos α, cos ε sin α, sin ε)        α azimuth, ε elevation
@@ -6,12 +6,13 @@
 //! on the page (x·r, x·u),   depth x·e,   brightness |n·l|
 //! ```
 //!
-//! Orthographic: lengths across the line of sight are the same everywhere. Elements are drawn from the
-//! farthest to the nearest by the depth of their centroids (painter's order), whichever side they show:
-//! film has no back. Of large elements that cross, one is drawn whole over the other.
+//! Orthographic: lengths across the line of sight are the same everywhere. Elements are drawn in the
+//! order of [`super::painter`], whichever side they show: film has no back.
 
 use billow_solver::frames::Frame;
 use nalgebra::Vector3;
+
+use super::painter::{self, Patch};
 
 /// Where the light comes from, in right, up and to the eye: from the upper left, over the shoulder.
 const LIGHT: [f64; 3] = [-0.45, 0.55, 0.7];
@@ -55,30 +56,26 @@ impl View {
         [place.dot(&self.right), place.dot(&self.up)]
     }
 
-    /// The elements of a shape in the order they are drawn, the farthest first. Elements without an
-    /// area are left out.
+    /// The elements of a shape in the order they are drawn. Elements without an area are left out.
     pub fn facets(&self, triangles: &[[u32; 3]], frame: &Frame) -> Vec<Facet> {
         let light = (LIGHT[0] * self.right + LIGHT[1] * self.up + LIGHT[2] * self.eye).normalize();
-        let mut facets: Vec<(f64, Facet)> = Vec::with_capacity(triangles.len());
+        let mut facets = Vec::with_capacity(triangles.len());
+        let mut patches = Vec::with_capacity(triangles.len());
         for (element, triangle) in triangles.iter().enumerate() {
             let places = triangle.map(|node| frame.places[node as usize]);
-            let [a, b, c] = places.map(|place| Vector3::from(place.map(f64::from)));
+            let corners = places.map(|place| self.project(place));
+            let places = places.map(|place| Vector3::from(place.map(f64::from)));
+            let [a, b, c] = places;
             let normal = (b - a).cross(&(c - a));
             let area = normal.norm();
             if area > 0.0 {
-                let depth = (a + b + c).dot(&self.eye) / 3.0;
-                let facet = Facet {
-                    element,
-                    corners: places.map(|place| self.project(place)),
-                    light: (normal.dot(&light) / area).abs().min(1.0),
-                    outside: normal.dot(&self.eye) >= 0.0,
-                };
-                facets.push((depth, facet));
+                let light = (normal.dot(&light) / area).abs().min(1.0);
+                let outside = normal.dot(&self.eye) >= 0.0;
+                facets.push(Facet { element, corners, light, outside });
+                patches.push(Patch { corners, depths: places.map(|place| place.dot(&self.eye)) });
             }
         }
-        // Stable: elements at one depth stay in their order, and a picture is the same each time.
-        facets.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-        facets.into_iter().map(|(_, facet)| facet).collect()
+        painter::order(&patches).into_iter().map(|at| facets[at]).collect()
     }
 }
 
