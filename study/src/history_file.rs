@@ -263,7 +263,12 @@ pub fn read_frames(path: &Path) -> Result<Option<StoredFrames>> {
 /// Opens a history file that is whole, ours, and not too new.
 fn open(path: &Path) -> Result<File> {
     let broken = |problem: String| Error::Disk { path: path.to_owned(), problem };
-    let file = File::open(path).map_err(|error| broken(format!("no HDF5 file: {error}")))?;
+    let file = File::open(path).map_err(|error| {
+        broken(format!(
+            "no HDF5 file: {error}\n  next: a job's file that is damaged is written anew by `billow \
+             run` of its study"
+        ))
+    })?;
     let damaged = |error| damaged(path, &error);
     let format = read_text(&file, "format").unwrap_or_default();
     if format != FORMAT {
