@@ -54,7 +54,7 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub view: String,
-    /// Picture to write, .svg or .png [default: both, charts/frames_JOB in the folder of the
+    /// Picture to write, .svg or .png [default: both, `charts/frames_JOB` in the folder of the
     /// results, or beside the history file].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

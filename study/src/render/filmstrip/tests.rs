@@ -26,6 +26,7 @@ fn elements() -> (Vec<[u32; 3]>, Vec<u32>) {
     (triangles, [[1; 8].as_slice(), &[2; 8], &[3; 2]].concat())
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "made up")]
 fn drawn(times: &[f64], colour: Colour) -> String {
     let (triangles, storeys) = elements();
     let frames: Vec<Frame> =
