@@ -263,6 +263,9 @@ pub fn read_frames(path: &Path) -> Result<Option<StoredFrames>> {
 /// Opens a history file that is whole, ours, and not too new.
 fn open(path: &Path) -> Result<File> {
     let broken = |problem: String| Error::Disk { path: path.to_owned(), problem };
+    if !path.exists() {
+        return Err(broken("no such file".to_owned()));
+    }
     let file = File::open(path).map_err(|error| {
         broken(format!(
             "no HDF5 file: {error}\n  next: a job's file that is damaged is written anew by `billow \

@@ -100,6 +100,8 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     assert_eq!((&rows[0]["frames"], &rows[0]["to"]), (&json!(4), &json!(0.004)));
     assert_eq!(panels(&svg), [elements; 4]);
     let text = fs::read_to_string(&svg).unwrap();
+    let title = format!(">grid, job {}, frames 4<", &job[..8]);
+    assert!(text.contains(&title), "study, job, parameters");
     assert!(text.contains("storey 3") && text.contains("caps") && text.contains(">4 ms<"));
     assert_eq!(pixels(&png)[0], 180 * 12);
 
@@ -148,7 +150,7 @@ fn what_cannot_be_drawn_is_one_clear_error() {
     refused(&[&without, results], &[&without, "no frames", "outputs.frames", "next: "]);
     refused(&["ffffffffffffffff", results], &["no job has this id", &job[..8]]);
     refused(&[&job, "nowhere"], &["nowhere", "next: "]);
-    refused(&["nothing.h5"], &["nothing.h5"]);
+    refused(&["nothing.h5"], &["nothing.h5: no such file"]);
     refused(&["grid.json"], &["grid.json", "no HDF5 file"]);
     refused(&[&job, results, "--count", "0"], &["--count", "1 to 64"]);
     refused(&[&job, results, "--times", "5 ms"], &["--times", "5 ms", "0 to 0.004 s"]);
@@ -163,7 +165,7 @@ fn what_cannot_be_drawn_is_one_clear_error() {
     fs::write(&path, &bytes).unwrap();
     refused(&[&job, results], &[&job, "next: "]);
     fs::remove_file(&path).unwrap();
-    refused(&[&job, results], &[&job]);
+    refused(&[&job, results], &[&job, "no such file"]);
     assert!(!desk.results().join("charts").exists(), "nothing was drawn");
 }
 

@@ -12,6 +12,7 @@ use super::target::folder;
 use crate::error::{Error, InputError, Result};
 use crate::files::{Disk, Files, disk_error, write_atomic};
 use crate::history_file::{self, StoredFrames};
+use crate::job::JobId;
 use crate::render::filmstrip::{Colour, Filmstrip};
 use crate::render::png;
 use crate::render::projection::View;
@@ -140,9 +141,20 @@ fn source(args: &Args, global: &Global) -> Result<Source> {
     let id = stored.job(&args.job)?;
     Ok(Source {
         path: stored.history_path(&id)?,
-        title: format!("{}: job {}", stored.study.name, stored.label(&id)),
+        title: title(&stored, &id),
         out: root.join("charts").join(format!("frames_{}", id.short())),
     })
+}
+
+/// Study, job and its parameters with their units.
+fn title(stored: &Stored<'_>, id: &JobId) -> String {
+    let mut title = format!("{}, job {}", stored.study.name, id.short());
+    for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
+        let unit = stored.study.unit(name);
+        let unit = if matches!(unit, "" | "1") { "" } else { unit };
+        title.push_str(format!(", {name} {value} {unit}").trim_end());
+    }
+    title
 }
 
 /// Files to write: the one asked for, or both.
