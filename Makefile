@@ -39,11 +39,13 @@ test-long: deps reader-deps
 contact-matrix: build reader-deps
 	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW)
 
-# Opens a fresh study with h5py, xarray, pandas and pyarrow.
+# Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk.
 readers: build reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
-	$(BILLOW) run studies/first.json --results "$$results/first" --quiet > /dev/null; \
-	tests/readers/check.sh "$$results/first"
+	for study in piston film; do \
+	    $(BILLOW) run tests/readers/$$study.json --results "$$results/$$study" --quiet > /dev/null; \
+	    tests/readers/check.sh "$$results/$$study"; \
+	done
 
 build: deps
 	$(CARGO) build $(FLAGS)

@@ -15,6 +15,7 @@ mod compare;
 mod completions;
 mod doctor;
 mod fold;
+mod frames;
 mod notes;
 mod plan;
 pub mod print;
@@ -106,6 +107,8 @@ pub enum Command {
     Compare(compare::Args),
     /// Check a results folder; change nothing. Exit code 1 if something is broken.
     Doctor(doctor::Args),
+    /// Draw the shapes of one job side by side, as SVG and PNG.
+    Frames(frames::Args),
     /// Solve one scene, a capsule or any mesh, without a study.
     Solve(solve::Args),
     /// Print the summary table of a study's results.
@@ -155,6 +158,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Show(args) => show::run(args, &cli.global, out),
         Command::Compare(args) => compare::run(args, &cli.global, out),
         Command::Doctor(args) => doctor::run(args, &cli.global, out),
+        Command::Frames(args) => frames::run(args, &cli.global, out),
         Command::Solve(args) => solve::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
         Command::Chart(args) => chart::run(args, &cli.global, out),

@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use billow_solver::audit::Audit;
 use billow_solver::deployment::{Deployment, Progress, Stop};
 use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign};
+use billow_solver::frames::{Frame, Frames};
 use billow_solver::history::{COLUMNS, History};
+use billow_solver::material::Regime;
 use billow_solver::measures::{Measures, Verdict};
 use billow_solver::scene::{
     Contact, Film, GasSupply, HeatTransfer, ModelKind, Outputs, Scene, Solver, Species, Stepping,
@@ -111,6 +113,26 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
         stop: Stop::Done,
         steps: 100,
         elements: 0,
+    }
+}
+
+/// Frames of a two-sided film of four nodes and two elements; their places depend on `number`.
+pub fn frames(number: u32, count: u32) -> Frames {
+    #[expect(clippy::cast_possible_truncation, reason = "made up")]
+    let place = |frame: u32, node: u32| {
+        let at = f64::from(7 * number + 3 * frame + node);
+        [libm::sin(at), libm::sin(2.0 * at), -0.0].map(|place| place as f32)
+    };
+    let all = [Regime::Slack, Regime::Wrinkled, Regime::Taut];
+    let frame = |frame: u32| Frame {
+        time: 0.1 * f64::from(frame),
+        places: (0..4).map(|node| place(frame, node)).collect(),
+        regimes: (0..2).map(|element| all[((frame + element) % 3) as usize]).collect(),
+    };
+    Frames {
+        triangles: vec![[0, 1, 2], [1, 3, 2]],
+        storeys: vec![0, 1],
+        frames: (0..count).map(frame).collect(),
     }
 }
 

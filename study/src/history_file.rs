@@ -7,6 +7,7 @@
 //!              each with units and long_name; of film without rings no z_centre, z_rim, vz; of a scene
 //!              node_NAME_x, …, element_NAME_N1, … for what it follows; of film with contact
 //!              interlayer_pressure, smallest_gap, …, plate_NAME_force
+//! /VTKHDF/     shapes of the film, where the run kept any (vtkhdf)
 //! ```
 //!
 //! A scene's `job` is the first half of its fingerprint.
@@ -20,6 +21,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use billow_solver::deployment::{Deployment, Stop};
+use billow_solver::frames::Frames;
 use billow_solver::history::{COLUMNS, History, RING_COLUMNS, Track};
 use hdf5::dataset::DatasetCreate;
 use hdf5::file::LinkCreationOrder;
@@ -32,6 +34,9 @@ use crate::job::{Job, JobId};
 use crate::{provenance, row};
 
 mod raw;
+mod vtkhdf;
+
+pub use vtkhdf::StoredFrames;
 
 /// Name of the format, in the attribute `format`.
 const FORMAT: &str = "billow-history";
@@ -48,26 +53,44 @@ const DEFLATE: u8 = 1;
 /// HDF5 keeps global state; one thread at a time is in here.
 static DOOR: Mutex<()> = Mutex::new(());
 
-/// SHA-256 of the names, shapes and values of a history, in lower-case hexadecimal digits: the same
-/// for the same results, whatever program or machine stored them.
-pub fn content_hash(history: &History) -> String {
-    hash_of(history, &[])
+/// SHA-256 of the names, lengths and values of all a run stored, in lower-case hexadecimal digits:
+/// the same for the same results, whatever program or machine stored them.
+pub fn content_hash(deployment: &Deployment) -> String {
+    hash_of(&deployment.history, &deployment.tracks, deployment.frames.as_ref())
 }
 
-/// The same with what was followed beside it.
-pub fn hash_of(history: &History, tracks: &[Track]) -> String {
-    let mut hash = Sha256::new();
+/// The same of a history, what was followed beside it, and its frames.
+pub fn hash_of(history: &History, tracks: &[Track], frames: Option<&Frames>) -> String {
+    let mut contents = Contents(Sha256::new());
     let columns = history.iter().map(|(column, values)| (column.name, values));
     let tracks = tracks.iter().map(|track| (track.name.as_str(), track.values.as_slice()));
     for (name, values) in columns.chain(tracks) {
-        hash.update((name.len() as u64).to_le_bytes());
-        hash.update(name.as_bytes());
-        hash.update((values.len() as u64).to_le_bytes());
+        contents.take(name, values.len(), values.iter().map(|value| value.to_bits().to_le_bytes()));
+    }
+    if let Some(frames) = frames {
+        vtkhdf::hash(frames, &mut contents);
+    }
+    hexadecimal(&contents.0.finalize())
+}
+
+/// What a content hash is taken of: one array after the other.
+struct Contents(Sha256);
+
+impl Contents {
+    /// An array: its name, its length, its values, little-endian.
+    fn take<const N: usize>(
+        &mut self,
+        name: &str,
+        length: usize,
+        values: impl Iterator<Item = [u8; N]>,
+    ) {
+        self.0.update((name.len() as u64).to_le_bytes());
+        self.0.update(name.as_bytes());
+        self.0.update((length as u64).to_le_bytes());
         for value in values {
-            hash.update(value.to_bits().to_le_bytes());
+            self.0.update(value);
         }
     }
-    hexadecimal(&hash.finalize())
 }
 
 /// SHA-256 of bytes, in lower-case hexadecimal digits.
@@ -145,6 +168,9 @@ fn build(id: &JobId, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::
         .with_gcpl(|creation| creation.link_creation_order(ordered))
         .create("history")?;
     write_history(&writer, &group, &deployment.history, &deployment.tracks)?;
+    if let Some(frames) = &deployment.frames {
+        vtkhdf::write(&file, frames)?;
+    }
     number_attribute(&file, "complete", 1_u8)?;
     raw::image(&file)
 }
@@ -212,9 +238,44 @@ pub struct StoredHistory {
 /// # Errors
 /// [`Error::Disk`] for a file that is missing, damaged, foreign, incomplete or of a newer version.
 pub fn read(path: &Path) -> Result<StoredHistory> {
-    let broken = |problem: String| Error::Disk { path: path.to_owned(), problem };
     let _door = DOOR.lock().unwrap_or_else(PoisonError::into_inner);
-    let file = File::open(path).map_err(|error| broken(format!("no HDF5 file: {error}")))?;
+    let file = open(path)?;
+    let damaged = |error| damaged(path, &error);
+    let job = read_text(&file, "job").map_err(damaged)?;
+    let (tracks, labels) = read_tracks(&file).map_err(damaged)?;
+    Ok(StoredHistory {
+        job: JobId::from_digits(&job).ok_or_else(|| damaged("no job id".into()))?,
+        scene: read_text(&file, "scene").map_err(damaged)?,
+        status: read_text(&file, "status").map_err(damaged)?,
+        content_hash: read_text(&file, "content_hash").map_err(damaged)?,
+        history: read_history(&file).map_err(damaged)?,
+        tracks,
+        labels,
+    })
+}
+
+/// Opens the frames of a history file, to be read one at a time; `None` where it holds none.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_frames(path: &Path) -> Result<Option<StoredFrames>> {
+    let _door = DOOR.lock().unwrap_or_else(PoisonError::into_inner);
+    let file = open(path)?;
+    vtkhdf::read(&file, path).map_err(|error| damaged(path, &error))
+}
+
+/// Opens a history file that is whole, ours, and not too new.
+fn open(path: &Path) -> Result<File> {
+    let broken = |problem: String| Error::Disk { path: path.to_owned(), problem };
+    if !path.exists() {
+        return Err(broken("no such file".to_owned()));
+    }
+    let file = File::open(path).map_err(|error| {
+        broken(format!(
+            "no HDF5 file: {error}\n  next: a job's file that is damaged is written anew by `billow \
+             run` of its study"
+        ))
+    })?;
     let damaged = |error| damaged(path, &error);
     let format = read_text(&file, "format").unwrap_or_default();
     if format != FORMAT {
@@ -231,17 +292,7 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
     if complete != 1 {
         return Err(damaged("not complete".into()));
     }
-    let job = read_text(&file, "job").map_err(damaged)?;
-    let (tracks, labels) = read_tracks(&file).map_err(damaged)?;
-    Ok(StoredHistory {
-        job: JobId::from_digits(&job).ok_or_else(|| damaged("no job id".into()))?,
-        scene: read_text(&file, "scene").map_err(damaged)?,
-        status: read_text(&file, "status").map_err(damaged)?,
-        content_hash: read_text(&file, "content_hash").map_err(damaged)?,
-        history: read_history(&file).map_err(damaged)?,
-        tracks,
-        labels,
-    })
+    Ok(file)
 }
 
 fn damaged(path: &Path, error: &hdf5::Error) -> Error {

@@ -2,6 +2,9 @@
 
 pub mod crease_pattern;
 pub mod figure;
+pub mod filmstrip;
 pub mod font;
 pub mod page;
+pub mod painter;
 pub mod png;
+pub mod projection;

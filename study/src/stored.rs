@@ -2,6 +2,7 @@
 //! Nothing is changed and no lock is held, so it reads the same while a run goes on.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 use crate::error::{Error, InputError, Result};
 use crate::job::{JobId, Parameters};
@@ -96,6 +97,26 @@ impl<'a> Stored<'a> {
     /// The record of a job, the last one before it was withdrawn included.
     pub fn record(&self, id: &JobId) -> Option<&Record> {
         self.journal.records.get(id).or_else(|| self.journal.withdrawn.get(id))
+    }
+
+    /// Where the history of a job lies.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] where the job has left none, and why.
+    pub fn history_path(&self, id: &JobId) -> Result<PathBuf> {
+        let path = self.results.job_path(id);
+        if self.record(id).is_some_and(|record| record.file_hash.is_some()) {
+            return Ok(path);
+        }
+        let why = match (self.point(id), self.record(id)) {
+            (Some(point), None) if point.infeasible.is_some() => {
+                "the point is infeasible: no job ran"
+            }
+            (_, None) => "the job has not run yet",
+            (_, Some(_)) => "the job left no history",
+        };
+        let next = format!("billow why {} {}", id.short(), self.results.root().display());
+        Err(Error::Disk { path, problem: format!("{why}\n  next: {next}") })
     }
 
     /// The job a prefix of its id means, among those planned and those only recorded.

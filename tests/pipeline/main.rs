@@ -10,6 +10,7 @@ mod contact_audit;
 mod determinism;
 mod film_study;
 mod folding;
+mod frames;
 mod keeping;
 mod mutations;
 mod physics_version;

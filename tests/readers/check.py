@@ -3,8 +3,9 @@
     tests/readers/check.sh RESULTS
 
 RESULTS is the folder of a study that has run. Every history file is opened with h5py and with
-xarray (h5netcdf), summary.parquet with pandas and with pyarrow, and the two are held against each
-other. The first thing found wrong ends the program with exit code 1.
+xarray (h5netcdf), its frames with VTK's own reader, which is ParaView's, summary.parquet with pandas
+and with pyarrow, and all are held against each other. The first thing found wrong ends the program
+with exit code 1.
 """
 
 import hashlib
@@ -19,6 +20,11 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import xarray as xr
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkVersion
+from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOHDF import vtkHDFReader
 
 HISTORY_UNITS = {
     "time": "s",
@@ -39,6 +45,19 @@ HISTORY_UNITS = {
     "passages": "1",
     "intersections": "1",
 }
+# What runs of film with contact follow beside.
+FILM_UNITS = {
+    "vz_centre": "m/s",
+    "interlayer_pressure": "Pa",
+    "interlayer_pressure_mean": "Pa",
+    "contact_area_fraction": "1",
+    "smallest_gap": "m",
+    "contact_pairs": "1",
+    "contact_searches": "1",
+    "contact_impulses": "1",
+}
+UNITS = {"", "1", "s", "m", "m/s", "m2", "m3", "Pa", "K", "kg", "kg/s", "N", "N/m", "J", "Hz", "rad", "ns",
+         "kg/m3", "m/s2", "J/(kg K)", "W/(m2 K)"}
 TABLE_UNITS = {
     "job": "",
     "status": "",
@@ -50,6 +69,12 @@ TABLE_UNITS = {
     "top_radius": "m",
     "steps": "1",
     "wall_seconds": "s",
+    "film_stress": "Pa",
+    "peak_kinetic_energy": "J",
+    "ringing_frequency": "Hz",
+    "reference_volume": "m3",
+    "ledger_residual": "1",
+    "ns_per_element_step": "ns",
 }
 TABLE_TYPES = {
     "job": "string",
@@ -63,6 +88,9 @@ TABLE_TYPES = {
     "elements": "int64",
     "physics_version": "int64",
     "content_hash": "string",
+    "passages": "int64",
+    "intersections": "int64",
+    "film_stress": "double",
 }
 
 
@@ -78,12 +106,12 @@ def same(one, other):
     return one == other
 
 
-def content_hash(columns):
+def content_hash(arrays):
     """As history_file.rs computes it: names, lengths, values."""
     digest = hashlib.sha256()
-    for name, values in columns:
+    for name, values in arrays:
         digest.update(struct.pack("<Q", len(name)) + name.encode())
-        digest.update(struct.pack("<Q", len(values)) + values.astype("<f8").tobytes())
+        digest.update(struct.pack("<Q", values.size) + values.astype(values.dtype.newbyteorder("<")).tobytes())
     return digest.hexdigest()
 
 
@@ -99,6 +127,8 @@ def check_table(path):
     check(all(column["meaning"] for column in told.values()), f"{path}: a column without meaning")
     for name, unit in TABLE_UNITS.items():
         check(told[name]["unit"] == unit, f"{path}: {name} in {told[name]['unit']}, not {unit}")
+    for name, column in told.items():
+        check(column["unit"] in UNITS, f"{path}: {name} in {column['unit']}")
 
     frame = pd.read_parquet(path)
     check(len(frame) == table.num_rows, f"{path}: pandas sees {len(frame)} rows")
@@ -116,6 +146,7 @@ def check_table(path):
 
 
 def check_history(path, row):
+    """Its number of frames."""
     with h5py.File(path) as file:
         check(file.attrs["format"] == "billow-history", f"{path}: format")
         check(file.attrs["version"] == 1 and file.attrs["complete"] == 1, f"{path}: version, complete")
@@ -133,10 +164,21 @@ def check_history(path, row):
             if name != "time":
                 check(data.dims[0][0].name == "/history/time", f"{path}: {name} is not along time")
             columns.append((name, data[()]))
+            check(data.attrs["units"] in UNITS, f"{path}: {name} in {data.attrs['units']}")
         values = dict(columns)
         for name, unit in HISTORY_UNITS.items():
             check(group[name].attrs["units"] == unit, f"{path}: {name} in {group[name].attrs['units']}")
-        hashed = content_hash(columns)
+        film = json.loads(file.attrs["scene"])["solver"]["model"] == "film"
+        check(film == ("VTKHDF" in file), f"{path}: film without frames, or frames without film")
+        for name, unit in FILM_UNITS.items() if film else []:
+            check(group[name].attrs["units"] == unit, f"{path}: {name} in {group[name].attrs['units']}")
+        frames = [
+            (name, file[name][()])
+            for name in ["VTKHDF/Connectivity", "VTKHDF/CellData/storey", "VTKHDF/Steps/Values",
+                         "VTKHDF/Points", "VTKHDF/CellData/regime"]
+            if film
+        ]
+        hashed = content_hash(columns + frames)
         check(hashed == file.attrs["content_hash"] == row["content_hash"], f"{path}: content hash {hashed}")
 
     check((np.diff(values["time"]) > 0).all(), f"{path}: time does not grow")
@@ -159,17 +201,66 @@ def check_history(path, row):
         check(data["pressure"].attrs["units"] == "Pa", f"{path}: xarray lost the unit of pressure")
         last = data["volume"].sel(time=values["time"][-1]).item()
         check(same(last, row["final_volume"]), f"{path}: xarray reads another volume")
+        for name, column in values.items():
+            check((data[name].values == column).all(), f"{path}: xarray reads another {name}")
+        half = data.sel(time=slice(0, values["time"][-1] / 2))
+        check(0 < half.sizes["time"] < len(values["time"]), f"{path}: xarray cannot select by time")
+
+    return check_frames(path, values, dict(frames)) if film else 0
+
+
+def check_frames(path, values, stored):
+    """The frames as VTK's reader plays them, held against the arrays and the history. How many."""
+    reader = vtkHDFReader()
+    check(reader.CanReadFile(str(path)), f"{path}: no file for vtkHDFReader")
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    times = stored["VTKHDF/Steps/Values"]
+    told = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    check(reader.GetHasTemporalData() and list(told) == list(times), f"{path}: VTK sees the times {told}")
+    check(reader.GetNumberOfSteps() == len(times), f"{path}: VTK sees {reader.GetNumberOfSteps()} steps")
+    check(times[0] == 0 and times[-1] == values["time"][-1], f"{path}: frames from {times[0]} to {times[-1]}")
+    cells = stored["VTKHDF/Connectivity"].reshape(-1, 3)
+    nodes = len(stored["VTKHDF/Points"]) // len(times)
+    storeys = stored["VTKHDF/CellData/storey"]
+    regimes = stored["VTKHDF/CellData/regime"].reshape(len(times), len(cells))
+    check(regimes.max() <= 2, f"{path}: a regime unknown")
+    check(set(storeys) == set(range(storeys.max() + 1)), f"{path}: a storey without elements")
+    for step, time in enumerate(times):
+        # By number and by time, as a script and as ParaView ask.
+        reader.SetStep(step)
+        reader.UpdateTimeStep(time)
+        grid = reader.GetOutputDataObject(0)
+        check(grid.IsA("vtkUnstructuredGrid"), f"{path}: VTK reads a {grid.GetClassName()}")
+        places = vtk_to_numpy(grid.GetPoints().GetData())
+        check(places.dtype == np.float32, f"{path}: places of {places.dtype}")
+        expected = stored["VTKHDF/Points"][step * nodes : (step + 1) * nodes]
+        check((places == expected).all(), f"{path}: VTK reads other places at {time} s")
+        check((vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 3) == cells).all()
+              and grid.GetNumberOfCells() == len(cells)
+              and all(grid.GetCellType(cell) == VTK_TRIANGLE for cell in range(len(cells))),
+              f"{path}: VTK reads other elements at {time} s")
+        data = grid.GetCellData()
+        check((vtk_to_numpy(data.GetArray("storey")) == storeys).all(), f"{path}: storeys at {time} s")
+        check((vtk_to_numpy(data.GetArray("regime")) == regimes[step]).all(), f"{path}: regimes at {time} s")
+        sample = np.flatnonzero(values["time"] == time)
+        check(len(sample) == 1, f"{path}: the frame at {time} s is no sample")
+        highest = np.float32(values["z_max"][sample[0]])
+        check(grid.GetBounds()[5] == highest, f"{path}: {grid.GetBounds()[5]} m high at {time} s, not {highest}")
+    return len(times)
 
 
 def main():
     results = Path(sys.argv[1])
     frame = check_table(results / "summary.parquet")
     ran = frame[frame["content_hash"].notna()]
-    for _, row in ran.iterrows():
-        check_history(results / "jobs" / row["job"][:2] / f"{row['job']}.h5", row)
+    frames = sum(
+        check_history(results / "jobs" / row["job"][:2] / f"{row['job']}.h5", row) for _, row in ran.iterrows()
+    )
     check(len(ran) > 0, f"{results}: no history")
-    print(f"{results}: {len(frame)} rows and {len(ran)} histories read alike by h5py {h5py.__version__},"
-          f" xarray {xr.__version__}, pandas {pd.__version__}, pyarrow {pa.__version__}")
+    print(f"{results}: {len(frame)} rows and {len(ran)} histories with {frames} frames read alike by"
+          f" h5py {h5py.__version__}, xarray {xr.__version__}, pandas {pd.__version__}, pyarrow {pa.__version__},"
+          f" vtk {vtkVersion.GetVTKVersion()}")
 
 
 if __name__ == "__main__":

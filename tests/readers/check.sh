@@ -1,5 +1,5 @@
 #!/bin/sh
-# Opens a results folder with h5py, xarray, pandas and pyarrow:  tests/readers/check.sh RESULTS
+# Opens a results folder with h5py, xarray, pandas, pyarrow and vtk:  tests/readers/check.sh RESULTS
 # The packages go into .venv beside this script, once.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)

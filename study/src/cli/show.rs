@@ -80,17 +80,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 }
 
 fn history_of(stored: &Stored<'_>, id: &JobId) -> Result<StoredHistory> {
-    let path = stored.results.job_path(id);
-    if stored.record(id).is_some_and(|record| record.file_hash.is_some()) {
-        return history_file::read(&path);
-    }
-    let why = match (stored.point(id), stored.record(id)) {
-        (Some(point), None) if point.infeasible.is_some() => "the point is infeasible: no job ran",
-        (_, None) => "the job has not run yet",
-        (_, Some(_)) => "the job left no history",
-    };
-    let next = format!("billow why {} {}", id.short(), stored.results.root().display());
-    Err(Error::Disk { path, problem: format!("{why}\n  next: {next}") })
+    history_file::read(&stored.history_path(id)?)
 }
 
 /// The scene a job was, or will be, computed from: the stored one where there is one.

@@ -148,7 +148,7 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
         && solved.status != "paused"
     {
         let deployment = &motion.1;
-        let hash = history_file::hash_of(&deployment.history, &deployment.tracks);
+        let hash = history_file::content_hash(deployment);
         let id = JobId::from_digits(&scene.fingerprint[..32]);
         let id = id.unwrap_or_else(|| unreachable!("a fingerprint has 64 digits"));
         let bytes = history_file::encode_scene(&id, &scene.json.to_string(), deployment, &hash)

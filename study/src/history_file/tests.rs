@@ -17,7 +17,7 @@ fn path_with(bytes: &[u8]) -> (tempfile::TempDir, std::path::PathBuf) {
 fn encoded(samples: usize) -> (Job, Deployment, Vec<u8>) {
     let job = fixture::job(3);
     let deployment = fixture::deployment(3, samples);
-    let hash = content_hash(&deployment.history);
+    let hash = content_hash(&deployment);
     let bytes = encode(&job, &deployment, &hash).unwrap();
     (job, deployment, bytes)
 }
@@ -26,13 +26,13 @@ fn encoded(samples: usize) -> (Job, Deployment, Vec<u8>) {
 fn a_history_comes_back_to_the_bit_and_is_the_same_bytes_twice() {
     for samples in [0, 1, 7, CHUNKED_FROM, 3 * CHUNK / 2] {
         let (job, deployment, bytes) = encoded(samples);
-        assert_eq!(bytes, encode(&job, &deployment, &content_hash(&deployment.history)).unwrap());
+        assert_eq!(bytes, encode(&job, &deployment, &content_hash(&deployment)).unwrap());
         let (_folder, path) = path_with(&bytes);
         let stored = read(&path).unwrap();
         assert_eq!(stored.history, deployment.history);
         assert_eq!(stored.job, job.id);
         assert_eq!(stored.status, "done");
-        assert_eq!(stored.content_hash, content_hash(&stored.history));
+        assert_eq!(stored.content_hash, hash_of(&stored.history, &[], None));
         assert_eq!(stored.scene, serde_json::to_string(&job.scene).unwrap());
     }
 }
@@ -57,19 +57,19 @@ fn a_failed_run_keeps_its_history_and_says_when_and_where() {
 #[test]
 fn the_content_hash_sees_every_bit_and_nothing_else() {
     let deployment = fixture::deployment(3, 20);
-    let hash = content_hash(&deployment.history);
+    let hash = content_hash(&deployment);
     assert_eq!(hash.len(), 64);
     let mut other = deployment.clone();
     other.steps += 1;
-    assert_eq!(content_hash(&other.history), hash);
+    assert_eq!(content_hash(&other), hash);
     let mut history = History::new();
     let mut values = [0.0; COLUMNS.len()];
     history.push(&values);
-    let zero = content_hash(&history);
+    let zero = hash_of(&history, &[], None);
     values[5] = -0.0;
     let mut history = History::new();
     history.push(&values);
-    assert_ne!(content_hash(&history), zero);
+    assert_ne!(hash_of(&history, &[], None), zero);
 }
 
 #[test]

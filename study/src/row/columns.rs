@@ -125,7 +125,7 @@ pub const COLUMNS: &[RowColumn] = &[
     text("stop_place", "where a failed run stopped"),
     count("steps", "accepted steps"),
     count("elements", "elements of the mesh; 0 for a model without one"),
-    text("content_hash", "SHA-256 of names, shapes and values of the history"),
+    text("content_hash", "SHA-256 of names, lengths and values of history and frames"),
     cost("wall_seconds", "s", "wall time of the job"),
     cost("ns_per_element_step", "ns", "wall time over elements and steps; null without elements"),
     RowColumn {

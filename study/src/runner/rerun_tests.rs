@@ -51,7 +51,7 @@ fn history(root: &Path, number: u32) -> Vec<u8> {
 
 /// The same job with one more sample: other bits.
 fn otherwise(number: u32) -> Outcome {
-    Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5 }
+    Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5, note: None }
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn finish(index: usize, thread: usize, job: &Job, outcome: Outcome) -> Option<En
     let mut cells = Cells::of(job, &outcome)?;
     let deployment = match outcome {
         Outcome::Ran { deployment, .. } => {
-            cells.set("content_hash", history_file::content_hash(&deployment.history));
+            cells.set("content_hash", history_file::content_hash(&deployment));
             Some(deployment)
         }
         Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,

@@ -1,0 +1,337 @@
+//! `billow frames`: the shapes of one job side by side.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use billow_solver::frames::Frame;
+use clap::ValueEnum;
+
+use super::Global;
+use super::print::print_rows;
+use super::target::folder;
+use crate::error::{Error, InputError, Result};
+use crate::files::{Disk, Files, disk_error, write_atomic};
+use crate::history_file::{self, StoredFrames};
+use crate::job::JobId;
+use crate::render::filmstrip::{Colour, Filmstrip};
+use crate::render::png;
+use crate::render::projection::View;
+use crate::results::Results;
+use crate::stored::Stored;
+use crate::units::{self, Dimension};
+use crate::value::Value;
+
+/// Frames on one picture, at most.
+const MOST: usize = 64;
+
+/// Arguments of `billow frames`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The job: the first digits of its id; or a history file (.h5).
+    pub job: String,
+    /// Study file, or folder of its results [default: the only one under results].
+    pub study: Option<PathBuf>,
+    /// How many frames, evenly over those stored: the last one, or first to last.
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub count: usize,
+    /// The frames nearest to these times instead, comma-separated: seconds, or with a unit, as in
+    /// "10 ms, 0.5".
+    #[arg(
+        long,
+        value_name = "TIMES",
+        value_delimiter = ',',
+        conflicts_with = "count",
+        allow_hyphen_values = true
+    )]
+    pub times: Vec<String>,
+    /// What the colours say [default: the storey; plain where there are none].
+    #[arg(long, value_enum)]
+    pub colour: Option<ColourArg>,
+    /// Where it is looked at from: azimuth and elevation, degrees.
+    #[arg(
+        long,
+        value_name = "AZIMUTH,ELEVATION",
+        default_value = "30,20",
+        allow_hyphen_values = true
+    )]
+    pub view: String,
+    /// Picture to write, .svg or .png [default: both, `charts/frames_JOB` in the folder of the
+    /// results, or beside the history file].
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// What the colours say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ColourArg {
+    /// The storey of a capsule.
+    Storey,
+    /// What the film does: taut, wrinkled, slack.
+    Regime,
+    /// Nothing.
+    Plain,
+}
+
+/// A run whose shapes are asked for.
+struct Source {
+    /// Its history file.
+    path: PathBuf,
+    /// What it is called above the picture.
+    title: String,
+    /// Pictures, without their extensions, where nobody names any.
+    out: PathBuf,
+}
+
+/// Runs `billow frames`: one row a picture written.
+///
+/// # Errors
+/// A job that is not there or has no frames; a flag that makes no sense; a file that cannot be read or
+/// written.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let view = view(&args.view)?;
+    let source = source(args, global)?;
+    let pictures = pictures(args, &source)?;
+    let stored = history_file::read_frames(&source.path)?.ok_or_else(|| Error::Disk {
+        path: source.path.clone(),
+        problem: "no frames in this file: its model has no shape (piston), or it was to keep none \
+                  (outputs.frames 0)\n  next: run it with solver.model \"film\" and \
+                  outputs.frames above 0"
+            .to_owned(),
+    })?;
+    let colour = colour(args.colour, &stored)?;
+    let numbers = if args.times.is_empty() {
+        evenly(args.count, stored.times().len())?
+    } else {
+        nearest(&args.times, stored.times(), global.quiet)?
+    };
+    let frames: Vec<Frame> =
+        numbers.iter().map(|number| stored.frame(*number)).collect::<Result<_>>()?;
+    let svg = Filmstrip {
+        title: &source.title,
+        triangles: stored.triangles(),
+        storeys: stored.storeys(),
+        frames: &frames,
+        view,
+        colour,
+    }
+    .svg();
+    let mut rows = Vec::with_capacity(pictures.len());
+    for path in pictures {
+        write(&path, &svg)?;
+        let time = |frame: Option<&Frame>| frame.map_or(Value::Null, |f| Value::Number(f.time));
+        rows.push(vec![
+            Value::Text(path.display().to_string()),
+            Value::Integer(i64::try_from(frames.len()).unwrap_or(i64::MAX)),
+            time(frames.first()),
+            time(frames.last()),
+        ]);
+    }
+    print_rows(&["picture", "frames", "from", "to"], &rows, global.format(), out)
+}
+
+fn source(args: &Args, global: &Global) -> Result<Source> {
+    let path = Path::new(&args.job);
+    if path.is_file() || path.extension().is_some_and(|extension| extension == "h5") {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let out = path.with_file_name(format!("{stem}_frames"));
+        return Ok(Source { path: path.to_owned(), title: stem.into_owned(), out });
+    }
+    let root = folder(args.study.as_deref(), global)?;
+    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let id = stored.job(&args.job)?;
+    Ok(Source {
+        path: stored.history_path(&id)?,
+        title: title(&stored, &id),
+        out: root.join("charts").join(format!("frames_{}", id.short())),
+    })
+}
+
+/// Study, job and its parameters with their units.
+fn title(stored: &Stored<'_>, id: &JobId) -> String {
+    let mut title = format!("{}, job {}", stored.study.name, id.short());
+    for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
+        let unit = stored.study.unit(name);
+        let unit = if matches!(unit, "" | "1") { "" } else { unit };
+        title.push_str(format!(", {name} {value} {unit}").trim_end());
+    }
+    title
+}
+
+/// Files to write: the one asked for, or both.
+fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
+    let Some(path) = &args.out else {
+        return Ok(["svg", "png"].map(|kind| source.out.with_extension(kind)).to_vec());
+    };
+    if extension(path).is_none() {
+        let allowed = "a file that ends in .svg or .png";
+        return Err(bad("--out", &path.display().to_string(), "no kind of picture", allowed));
+    }
+    Ok(vec![path.clone()])
+}
+
+fn extension(path: &Path) -> Option<&'static str> {
+    let extension = path.extension()?.to_str()?;
+    ["svg", "png"].into_iter().find(|known| extension.eq_ignore_ascii_case(known))
+}
+
+fn write(path: &Path, svg: &str) -> Result<()> {
+    let failed = |error: std::io::Error| disk_error(path, &error);
+    let encoded;
+    let bytes = if extension(path) == Some("png") {
+        encoded = png::encode(svg, png::PRINT)
+            .map_err(|problem| Error::Disk { path: path.to_owned(), problem })?;
+        &encoded
+    } else {
+        svg.as_bytes()
+    };
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        Disk.create_folder(folder).map_err(failed)?;
+    }
+    write_atomic(&Disk, path, bytes).map_err(failed)
+}
+
+/// What to colour by: storeys where there are some and nobody says otherwise.
+fn colour(asked: Option<ColourArg>, stored: &StoredFrames) -> Result<Colour> {
+    let capsule = stored.storeys().iter().any(|storey| *storey > 0);
+    match asked {
+        Some(ColourArg::Regime) => Ok(Colour::Regime),
+        Some(ColourArg::Plain) => Ok(Colour::Plain),
+        Some(ColourArg::Storey) if !capsule => {
+            Err(bad("--colour", "storey", "this film is no capsule: no storeys", "regime, plain"))
+        }
+        Some(ColourArg::Storey) => Ok(Colour::Storey),
+        None => Ok(if capsule { Colour::Storey } else { Colour::Plain }),
+    }
+}
+
+fn view(text: &str) -> Result<View> {
+    let refused = |problem: &str| {
+        let allowed = "azimuth,elevation in degrees, as 30,20; elevation -90 to 90";
+        bad("--view", text, problem, allowed)
+    };
+    let parts: Vec<&str> = text.split(',').collect();
+    let [azimuth, elevation] = parts.as_slice() else {
+        return Err(refused("not two numbers"));
+    };
+    let degrees = |part: &str| part.trim().parse::<f64>().ok().filter(|angle| angle.is_finite());
+    let (Some(azimuth), Some(elevation)) = (degrees(azimuth), degrees(elevation)) else {
+        return Err(refused("not two numbers"));
+    };
+    if elevation.abs() > 90.0 {
+        return Err(refused("looks from beyond the zenith"));
+    }
+    Ok(View::new(azimuth.to_radians(), elevation.to_radians()))
+}
+
+/// Numbers of `count` frames of `stored`, first and last among them; of one, the last.
+fn evenly(count: usize, stored: usize) -> Result<Vec<usize>> {
+    if count == 0 || count > MOST {
+        return Err(bad("--count", &count.to_string(), "no such picture", &format!("1 to {MOST}")));
+    }
+    let last = stored - 1;
+    if count == 1 {
+        return Ok(vec![last]);
+    }
+    if count >= stored {
+        return Ok((0..stored).collect());
+    }
+    // Rounded to the nearest; as count is below stored, no number comes twice.
+    Ok((0..count).map(|k| (2 * k * last + count - 1) / (2 * (count - 1))).collect())
+}
+
+/// Numbers of the frames nearest to these times, in order, each once.
+fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<Vec<usize>> {
+    let (first, last) = (stored[0], stored[stored.len() - 1]);
+    let mut numbers = Vec::with_capacity(texts.len());
+    for text in texts.iter().map(|text| text.trim()) {
+        let time = match text.parse::<f64>() {
+            Ok(time) => time,
+            Err(_) => units::parse(text, Dimension::Time)
+                .map_err(|error| bad("--times", text, &error.problem, &error.allowed))?,
+        };
+        // Written out, the last time may be a little more than it is.
+        let slack = 1e-6 * (last - first);
+        if !(first - slack..=last + slack).contains(&time) {
+            let allowed = format!("{first} to {last} s, of which there are {}", stored.len());
+            return Err(bad("--times", text, "no frame of that time", &allowed));
+        }
+        let distance = |number: &usize| (stored[*number] - time).abs();
+        let nearest = (0..stored.len())
+            .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+            .unwrap_or(0);
+        numbers.push(nearest);
+    }
+    let asked = numbers.len();
+    numbers.sort_unstable();
+    numbers.dedup();
+    if numbers.len() > MOST {
+        let problem = "too many for one picture";
+        return Err(bad("--times", &asked.to_string(), problem, &format!("at most {MOST}")));
+    }
+    if numbers.len() < asked && !quiet {
+        eprintln!(
+            "billow: {} of these {asked} times have the same nearest frame as another; {} frames \
+             are stored (outputs.frames)",
+            asked - numbers.len(),
+            stored.len()
+        );
+    }
+    Ok(numbers)
+}
+
+fn bad(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
+    Error::Input(InputError {
+        file: "frames".to_owned(),
+        key: flag.to_owned(),
+        value: value.to_owned(),
+        problem: problem.to_owned(),
+        allowed: allowed.to_owned(),
+        hint: String::new(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn chosen_frames_rise_from_the_first_to_the_last(count in 1_usize..=MOST, stored in 1_usize..300) {
+            let numbers = evenly(count, stored).unwrap();
+            prop_assert_eq!(numbers.len(), count.min(stored));
+            prop_assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]));
+            prop_assert_eq!(*numbers.last().unwrap(), stored - 1);
+            prop_assert!(count == 1 || numbers[0] == 0);
+            let steps: Vec<usize> = numbers.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let (least, most) = (steps.iter().min(), steps.iter().max());
+            prop_assert!(most.unwrap_or(&0) - least.unwrap_or(&0) <= 1, "{:?}", numbers);
+        }
+    }
+
+    #[test]
+    fn times_take_the_nearest_frame_and_carry_units() {
+        let stored = [0.0, 0.01, 0.02, 0.5];
+        let texts =
+            |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect::<Vec<_>>();
+        let found = nearest(&texts(&["0.5", " 12 ms", "0", "0.011"]), &stored, true).unwrap();
+        assert_eq!(found, [0, 1, 3]);
+        for wrong in ["-1", "0.6", "nan", "5 kg", "soon", ""] {
+            let error = nearest(&texts(&[wrong]), &stored, true).unwrap_err().to_string();
+            assert!(error.starts_with("frames: --times"), "{error}");
+            assert!(error.contains("allowed: "), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_view_is_two_angles() {
+        assert_eq!(
+            view(" -30, 20.5").unwrap(),
+            View::new(-30_f64.to_radians(), 20.5_f64.to_radians())
+        );
+        for wrong in ["30", "30,20,10", "30,91", "north,up", "inf,0"] {
+            assert!(view(wrong).unwrap_err().to_string().contains("--view"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Panels, scale bar and legend of a filmstrip on their page: one scale, rows as high as their highest
+//! shape.
+
+use std::fmt::Write;
+
+use super::{Filmstrip, HEIGHT, LETTER, LINE, MARGIN, WIDTH, text};
+use crate::render::font;
+use crate::value::short_number;
+
+/// Where everything lies on the page, mm.
+pub(super) struct Layout {
+    /// Millimetres a metre.
+    scale: f64,
+    /// Least right and up any shape reaches, m.
+    low: [f64; 2],
+    /// Width of a panel.
+    pub(super) width: f64,
+    /// Heights of the panels of each row: of the highest shape in it.
+    heights: Vec<f64>,
+    columns: usize,
+}
+
+impl Layout {
+    /// In the columns that give the largest scale, full rows preferred.
+    pub(super) fn of(strip: &Filmstrip<'_>) -> Self {
+        let (mut low, mut right) = ([f64::INFINITY; 2], f64::NEG_INFINITY);
+        let mut tops = Vec::with_capacity(strip.frames.len());
+        // Nodes of elements alone: others may lie anywhere.
+        for frame in strip.frames {
+            let mut top = f64::NEG_INFINITY;
+            for node in strip.triangles.as_flattened() {
+                let [x, y] = strip.view.project(frame.places[*node as usize]);
+                low = [low[0].min(x), low[1].min(y)];
+                (right, top) = (right.max(x), top.max(y));
+            }
+            tops.push(top);
+        }
+        // Film without any extent is still drawn, as a dot.
+        let width = (right - low[0]).max(1e-9);
+        let heights = |columns: usize| -> Vec<f64> {
+            let highest = |row: &[f64]| row.iter().copied().fold(low[1] + 1e-9, f64::max) - low[1];
+            tops.chunks(columns).map(highest).collect()
+        };
+        let fitting = |columns: usize| {
+            let heights = heights(columns);
+            let across = WIDTH - 2.0 * MARGIN - MARGIN * (columns - 1) as f64;
+            let down = HEIGHT - (LINE + MARGIN) * heights.len() as f64;
+            (across / (columns as f64 * width)).min(down / heights.iter().sum::<f64>())
+        };
+        // A row that is not full is worth as much less.
+        let worth = |columns: usize| {
+            let count = strip.frames.len();
+            let places = columns * count.div_ceil(columns);
+            fitting(columns) * count as f64 / places as f64
+        };
+        let mut columns = 1;
+        for more in 2..=strip.frames.len() {
+            if worth(more) > worth(columns) {
+                columns = more;
+            }
+        }
+        let scale = fitting(columns);
+        let heights = heights(columns).iter().map(|height| scale * height).collect();
+        Self { scale, low, width: scale * width, heights, columns }
+    }
+
+    /// Upper end of the first row.
+    fn top() -> f64 {
+        MARGIN + LINE + 0.5 * MARGIN
+    }
+
+    /// Lower end of the shapes of a row.
+    pub(super) fn ground(&self, row: usize) -> f64 {
+        Self::top() + self.heights[..=row].iter().sum::<f64>() + (LINE + MARGIN) * row as f64
+    }
+
+    /// Lower end of all rows.
+    pub(super) fn bottom(&self) -> f64 {
+        self.ground(self.heights.len() - 1) + LINE + MARGIN
+    }
+
+    /// Lower left corner of a panel; the columns share the page evenly.
+    pub(super) fn corner(&self, number: usize) -> [f64; 2] {
+        let (row, column) = (number / self.columns, number % self.columns);
+        let cell = (WIDTH - MARGIN) / self.columns as f64;
+        let spare = 0.5 * (cell - MARGIN - self.width);
+        [MARGIN + column as f64 * cell + spare, self.ground(row)]
+    }
+
+    /// Where a projected place lies on the page.
+    pub(super) fn page(&self, number: usize, place: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.corner(number);
+        let right = self.scale * (place[0] - self.low[0]);
+        let up = self.scale * (place[1] - self.low[1]);
+        [x + right, y - up]
+    }
+
+    /// Length of the scale bar, m: the longest round one within 30 mm.
+    fn bar(&self) -> f64 {
+        let most = 30.0 / self.scale;
+        let ten = libm::exp10(libm::floor(libm::log10(most)));
+        let fits = [5.0, 2.0].into_iter().find(|times| times * ten <= most);
+        fits.unwrap_or(1.0) * ten
+    }
+
+    /// A length of 1, 2 or 5 times a power of ten, with its number beside it.
+    pub(super) fn scale_bar(&self, svg: &mut String, [x, y]: [f64; 2]) {
+        let length = self.bar();
+        let (end, y_bar) = (x + length * self.scale, y - 0.35 * LETTER);
+        let tick = 0.35 * LETTER;
+        let _ = writeln!(
+            svg,
+            "<path id=\"scale\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.25\" \
+             d=\"M{x:.2},{:.2}v{:.2}M{x:.2},{y_bar:.2}H{end:.2}M{end:.2},{:.2}v{:.2}\"/>",
+            y_bar - tick,
+            2.0 * tick,
+            y_bar - tick,
+            2.0 * tick,
+        );
+        text(svg, [end + 0.5 * LETTER, y], "start", &length_label(length));
+    }
+
+    /// Width of the scale bar, its number and the space behind it.
+    pub(super) fn bar_width(&self) -> f64 {
+        let length = self.bar();
+        length * self.scale + font::width(&length_label(length), LETTER) + 3.0 * LETTER
+    }
+
+    /// Lines of legend below the panels.
+    pub(super) fn lines_below(&self, legend: &[(String, [u8; 3])]) -> usize {
+        let (mut lines, mut x) = (1, MARGIN + self.bar_width());
+        for (name, _) in legend {
+            let width = 1.6 * LETTER + font::width(name, LETTER);
+            if x + width > WIDTH - MARGIN {
+                (lines, x) = (lines + 1, MARGIN);
+            }
+            x += width + LETTER;
+        }
+        lines
+    }
+}
+
+fn length_label(length: f64) -> String {
+    match length {
+        length if length >= 1.0 => format!("{} m", short_number(length)),
+        length if length >= 1e-3 => format!("{} mm", short_number(1e3 * length)),
+        length => format!("{} µm", short_number(1e6 * length)),
+    }
+}

@@ -1,0 +1,190 @@
+//! Panels, scales, colours of a strip, read back from its SVG.
+
+use proptest::prelude::*;
+use resvg::usvg::roxmltree::{self, Document};
+
+use super::*;
+
+/// A box of film, `tall` m high on a ground of 0.2 m by 0.1 m, without a bottom.
+fn shape(time: f64, tall: f32) -> Frame {
+    let ground = [[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]];
+    let ring = |z: f32| ground.map(|[x, y]: [f32; 2]| [x, y, z]);
+    let places = [ring(0.0), ring(0.5 * tall), ring(tall)].concat();
+    Frame { time, places, regimes: REGIMES.map(|(regime, ..)| regime).repeat(6) }
+}
+
+/// Its elements, and their storeys: two storeys and a top cap.
+fn elements() -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut triangles = Vec::new();
+    for ring in [0, 4] {
+        for side in 0..4 {
+            let [a, b] = [ring + side, ring + (side + 1) % 4];
+            triangles.extend([[a, b, a + 4], [b, b + 4, a + 4]]);
+        }
+    }
+    triangles.extend([[8, 9, 10], [8, 10, 11]]);
+    (triangles, [[1; 8].as_slice(), &[2; 8], &[3; 2]].concat())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "made up")]
+fn drawn(times: &[f64], colour: Colour) -> String {
+    let (triangles, storeys) = elements();
+    let frames: Vec<Frame> =
+        times.iter().map(|time| shape(*time, 0.04 + 0.2 * *time as f32)).collect();
+    Filmstrip {
+        title: "grid: job 01234567 (N=5 & M<3)",
+        triangles: &triangles,
+        storeys: &storeys,
+        frames: &frames,
+        view: View::new(0.0, 0.0),
+        colour,
+    }
+    .svg()
+}
+
+fn texts(svg: &Document<'_>) -> Vec<String> {
+    let texts = svg.descendants().filter(|node| node.has_tag_name("text"));
+    texts.map(|node| node.text().unwrap_or_default().to_owned()).collect()
+}
+
+/// Absolute corners of the elements of a panel, in drawing order.
+fn corners(svg: &Document<'_>, panel: usize) -> Vec<[[f64; 2]; 3]> {
+    let id = format!("frame{panel}");
+    let group = svg.descendants().find(|node| node.attribute("id") == Some(&id)).unwrap();
+    let path = |node: roxmltree::Node<'_, '_>| {
+        let numbers: Vec<f64> = node
+            .attribute("d")?
+            .trim_start_matches('M')
+            .trim_end_matches('z')
+            .split(['l', ' ', ','])
+            .map(|number| number.parse().unwrap())
+            .collect();
+        let [x, y, dx, dy, ex, ey] = numbers.try_into().unwrap();
+        Some([[x, y], [x + dx, y + dy], [x + dx + ex, y + dy + ey]])
+    };
+    group.children().filter_map(path).collect()
+}
+
+#[test]
+fn every_frame_has_a_panel_and_its_time() {
+    let svg = drawn(&[0.0, 0.0125, 0.5], Colour::Storey);
+    let svg = Document::parse(&svg).unwrap();
+    let texts = texts(&svg);
+    assert_eq!(texts[0], "grid: job 01234567 (N=5 & M<3)");
+    assert_eq!(texts[1..4], ["0 ms", "12.5 ms", "500 ms"]);
+    assert_eq!(texts[5..], ["storey 1", "storey 2", "caps"]);
+    assert!(drawn(&[0.0125, 1.5], Colour::Plain).contains(">0.0125 s<"));
+    for panel in 0..3 {
+        assert_eq!(corners(&svg, panel).len(), 18, "every element, front and back");
+    }
+}
+
+#[test]
+fn all_panels_have_one_scale_which_the_bar_tells() {
+    let svg = drawn(&[0.0, 0.5, 0.8], Colour::Plain);
+    let svg = Document::parse(&svg).unwrap();
+    let extent = |panel: usize, axis: usize| {
+        let all: Vec<f64> = corners(&svg, panel).as_flattened().iter().map(|c| c[axis]).collect();
+        let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+        all.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
+    };
+    // Seen along x, shapes are 0.1 m wide and as high as they are.
+    let bar = svg.descendants().find(|node| node.attribute("id") == Some("scale")).unwrap();
+    let d = bar.attribute("d").unwrap();
+    let number = |text: &str| text.split(['v', ',', 'M']).next().unwrap().parse::<f64>().unwrap();
+    let length = number(d.split_once('H').unwrap().1) - number(&d[1..]);
+    let label = texts(&svg)[4].clone();
+    let told = label.strip_suffix(" mm").unwrap().parse::<f64>().unwrap() / 1e3;
+    assert!([1.0, 2.0, 5.0].iter().any(|d| (libm::log10(told / d) % 1.0).abs() < 1e-9), "{label}");
+    let scale = length / told;
+    for (panel, tall) in [(0, 0.04), (1, 0.14), (2, 0.2)] {
+        assert!((extent(panel, 0) - 0.1 * scale).abs() < 0.03, "{panel}");
+        assert!((extent(panel, 1) - tall * scale).abs() < 0.03, "{panel}");
+    }
+}
+
+#[test]
+fn states_of_the_film_have_three_tones_apart_in_grey() {
+    let svg = drawn(&[0.0], Colour::Regime);
+    let svg = Document::parse(&svg).unwrap();
+    assert_eq!(texts(&svg)[3..], ["taut", "wrinkled", "slack"]);
+    let grey =
+        |[r, g, b]: [u8; 3]| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
+    let tones: Vec<f64> = REGIMES.iter().map(|(.., colour)| grey(*colour)).collect();
+    // The darkest shade of one is brighter than the brightest of the next.
+    assert!(0.75 * tones[0] > tones[1] && 0.75 * tones[1] > tones[2], "{tones:?}");
+    let stronger = |pair: &[[u8; 3]]| (grey(pair[0]) - grey(pair[1])).abs() > 20.0;
+    assert!(STOREYS.windows(2).all(stronger), "neighbours differ in grey");
+}
+
+#[test]
+fn many_storeys_share_colours_and_the_legend_says_which() {
+    let (triangles, _) = elements();
+    let storeys: Vec<u32> = (1..=18).collect();
+    let frames = [shape(0.0, 0.1)];
+    let strip = Filmstrip {
+        title: "",
+        triangles: &triangles,
+        storeys: &storeys,
+        frames: &frames,
+        view: View::new(0.5, 0.4),
+        colour: Colour::Storey,
+    };
+    let names: Vec<String> = strip.legend().into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names.len(), 8);
+    assert_eq!(names[2], "storey 3, 10, 17");
+    assert_eq!(names[7], "caps");
+    assert_eq!(strip.storey_colour(3), strip.storey_colour(10));
+    assert_ne!(strip.storey_colour(3), strip.storey_colour(4));
+}
+
+#[test]
+fn numbers_are_short_and_right() {
+    for (hundredths, text) in [
+        (0.0, "0"),
+        (-0.4, "0"),
+        (5.0, ".05"),
+        (-50.0, "-.5"),
+        (1200.0, "12"),
+        (-1234.0, "-12.34"),
+        (10.0, ".1"),
+        (100_000.0, "1000"),
+    ] {
+        assert_eq!(short(hundredths), text);
+    }
+}
+
+proptest! {
+    #[test]
+    fn everything_is_on_the_page(
+        count in 1_usize..40, tall in 0.001_f32..50.0, azimuth in -4.0..4.0_f64,
+        elevation in -1.5..1.5_f64,
+    ) {
+        let (triangles, storeys) = elements();
+        let frames: Vec<Frame> = (0..count).map(|n| shape(n as f64, tall)).collect();
+        let title = "long ".repeat(50);
+        let strip = Filmstrip {
+            title: &title,
+            triangles: &triangles,
+            storeys: &storeys,
+            frames: &frames,
+            view: View::new(azimuth, elevation),
+            colour: Colour::Storey,
+        };
+        let text = strip.svg();
+        let svg = Document::parse(&text).unwrap();
+        let page: Vec<f64> = svg.root_element().attribute("viewBox").unwrap().split(' ')
+            .map(|number| number.parse().unwrap()).collect();
+        let mut right = f64::NEG_INFINITY;
+        for panel in 0..count {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for [x, y] in corners(&svg, panel).as_flattened() {
+                prop_assert!((0.0..=page[2]).contains(x) && (0.0..=page[3]).contains(y));
+                (low, high) = (low.min(*x), high.max(*x));
+            }
+            // Panels of a row stand apart.
+            prop_assert!(low > right || low < right - 1.0 || panel == 0);
+            right = high;
+        }
+    }
+}

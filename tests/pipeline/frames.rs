@@ -1,0 +1,192 @@
+//! Frames from the run to the picture: stored, read back, drawn, and refused where there are none.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use billow_solver::frames::Frame;
+use billow_study::history_file::{self, StoredFrames};
+use resvg::usvg::roxmltree::Document;
+use serde_json::{Value, json};
+
+use crate::support::{Desk, histories, stderr};
+
+/// A film study of a few milliseconds: a job with frames, a job without.
+fn study() -> Value {
+    json!({
+        "design": {
+            "fit": "cone", "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm",
+            "height": "1 m", "subdivisions": 2
+        },
+        "film": { "compression": 0 },
+        "gas": { "species": "nitrogen", "mass_flow_rate": "5 g/s" },
+        "solver": { "model": "film", "end_time": "4 ms" },
+        "outputs": { "sample_interval": "0.5 ms" },
+        "grid": { "outputs.frames": [4, 0] }
+    })
+}
+
+/// A study that has run: its desk, the job with frames, the job without.
+fn ran(threads: &str) -> (Desk, String, String) {
+    let desk = Desk::new(&study());
+    desk.stdout(&["run", "grid.json", "-q", "--threads", threads]);
+    let rows = desk.rows("results/grid");
+    assert_eq!(rows.len(), 2);
+    let job = |row: &Value| row["job"].as_str().unwrap().to_owned();
+    (desk, job(&rows[0]), job(&rows[1]))
+}
+
+fn history(desk: &Desk, job: &str) -> PathBuf {
+    desk.results().join("jobs").join(&job[..2]).join(format!("{job}.h5"))
+}
+
+fn frames(path: &Path) -> (StoredFrames, Vec<Frame>) {
+    let stored = history_file::read_frames(path).unwrap().unwrap();
+    let all = (0..stored.times().len()).map(|number| stored.frame(number).unwrap()).collect();
+    (stored, all)
+}
+
+/// Width and height of a PNG, pixels.
+fn pixels(path: &Path) -> [u32; 2] {
+    let bytes = fs::read(path).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+    [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
+}
+
+/// Panels of a picture and elements in each.
+fn panels(path: &Path) -> Vec<usize> {
+    let text = fs::read_to_string(path).unwrap();
+    let svg = Document::parse(&text).unwrap();
+    let panels = svg
+        .descendants()
+        .filter(|node| node.attribute("id").is_some_and(|id| id.starts_with("frame")));
+    panels
+        .map(|panel| panel.children().filter(|child| child.has_tag_name("path")).count())
+        .collect()
+}
+
+#[test]
+fn a_job_keeps_its_shapes_and_they_are_drawn() {
+    let (desk, job, _) = ran("1");
+    let path = history(&desk, &job);
+    let (stored, all) = frames(&path);
+    let elements = stored.triangles().len();
+    let rows = desk.rows("results/grid");
+    assert_eq!(rows[0]["elements"].as_u64(), Some(elements as u64));
+    for storey in 0..=4 {
+        assert!(stored.storeys().contains(&storey), "caps 0 and 4, storeys 1 to 3");
+    }
+    assert_eq!(stored.storeys().iter().max(), Some(&4));
+    assert_eq!(all.len(), 4);
+    assert_eq!(stored.times()[0].to_bits(), 0.0_f64.to_bits());
+    assert_eq!(stored.times()[3].to_bits(), 0.004_f64.to_bits());
+    // Frames are shapes at samples: their highest node is the sample's.
+    let history = history_file::read(&path).unwrap().history;
+    for frame in &all {
+        let times = history.column("time");
+        let sample = times.iter().position(|time| time.to_bits() == frame.time.to_bits()).unwrap();
+        #[expect(clippy::cast_possible_truncation, reason = "as frames have it")]
+        let z_max = history.column("z_max")[sample] as f32;
+        let highest = frame.places.iter().map(|place| place[2]).fold(f32::MIN, f32::max);
+        assert_eq!(highest.to_bits(), z_max.to_bits(), "at {}", frame.time);
+    }
+
+    let table = desk.stdout(&["frames", &job[..6], "results/grid", "--json"]);
+    let rows: Value = serde_json::from_str(&table).unwrap();
+    let charts = desk.results().join("charts");
+    let [svg, png] = ["svg", "png"].map(|kind| charts.join(format!("frames_{}.{kind}", &job[..8])));
+    assert_eq!(rows.as_array().unwrap().len(), 2);
+    assert_eq!(desk.path().join(rows[0]["picture"].as_str().unwrap()), svg);
+    assert_eq!(desk.path().join(rows[1]["picture"].as_str().unwrap()), png);
+    assert_eq!((&rows[0]["frames"], &rows[0]["to"]), (&json!(4), &json!(0.004)));
+    assert_eq!(panels(&svg), [elements; 4]);
+    let text = fs::read_to_string(&svg).unwrap();
+    let title = format!(">grid, job {}, frames 4<", &job[..8]);
+    assert!(text.contains(&title), "study, job, parameters");
+    assert!(text.contains("storey 3") && text.contains("caps") && text.contains(">4 ms<"));
+    assert_eq!(pixels(&png)[0], 180 * 12);
+
+    // Again, the same bytes; and from the file itself.
+    let [first, first_png] = [&svg, &png].map(|path| fs::read(path).unwrap());
+    desk.stdout(&["frames", &job, "grid.json", "-q"]);
+    assert!(fs::read(&svg).unwrap() == first && fs::read(&png).unwrap() == first_png);
+    let path = path.to_str().unwrap();
+    let arguments = ["--count", "2", "--colour", "regime", "--view=-60,35", "--out", "two.svg"];
+    desk.stdout(&[&["frames", path], arguments.as_slice()].concat());
+    assert_eq!(panels(&desk.path().join("two.svg")), [elements; 2]);
+    assert!(fs::read_to_string(desk.path().join("two.svg")).unwrap().contains("wrinkled"));
+    let output =
+        desk.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "pictures/a.PNG"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("1 of these 3 times"), "{}", stderr(&output));
+    assert_eq!(pixels(&desk.path().join("pictures/a.PNG"))[0], 180 * 12);
+}
+
+#[test]
+fn frames_are_the_same_bytes_whatever_runs_beside_them() {
+    let (one, job, without) = ran("1");
+    let (two, ..) = ran("2");
+    let (files, others) = (histories(&one.results()), histories(&two.results()));
+    assert_eq!(files.len(), 2);
+    assert!(files == others);
+    // Equal runs but for the frames: the content hash tells them apart.
+    let stored = [&job, &without].map(|job| history_file::read(&history(&one, job)).unwrap());
+    assert_eq!(stored[0].history, stored[1].history);
+    assert_ne!(stored[0].content_hash, stored[1].content_hash);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_one_clear_error() {
+    let (desk, job, without) = ran("2");
+    let refused = |arguments: &[&str], parts: &[&str]| {
+        let output = desk.run(&[&["frames"], arguments].concat());
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert_eq!(said.matches("billow: ").count(), 1, "{said}");
+        for part in parts {
+            assert!(said.contains(part), "{arguments:?}: {part}: {said}");
+        }
+    };
+    let results = "results/grid";
+    refused(&[&without, results], &[&without, "no frames", "outputs.frames", "next: "]);
+    refused(&["ffffffffffffffff", results], &["no job has this id", &job[..8]]);
+    refused(&[&job, "nowhere"], &["nowhere", "next: "]);
+    refused(&["nothing.h5"], &["nothing.h5: no such file"]);
+    refused(&["grid.json"], &["grid.json", "no HDF5 file"]);
+    refused(&[&job, results, "--count", "0"], &["--count", "1 to 64"]);
+    refused(&[&job, results, "--times", "5 ms"], &["--times", "5 ms", "0 to 0.004 s"]);
+    refused(&[&job, results, "--times", "1 kg"], &["--times", "time"]);
+    refused(&[&job, results, "--view", "north"], &["--view", "degrees"]);
+    refused(&[&job, results, "--out", "a.gif"], &["a.gif", ".svg or .png"]);
+    refused(&[&job, results, "--out", "grid.json/a.svg"], &["grid.json"]);
+
+    let path = history(&desk, &job);
+    let mut bytes = fs::read(&path).unwrap();
+    bytes.truncate(bytes.len() / 2);
+    fs::write(&path, &bytes).unwrap();
+    refused(&[&job, results], &[&job, "next: "]);
+    fs::remove_file(&path).unwrap();
+    refused(&[&job, results], &[&job, "no such file"]);
+    assert!(!desk.results().join("charts").exists(), "nothing was drawn");
+}
+
+#[test]
+fn a_scene_solved_by_itself_keeps_frames_as_well() {
+    let desk = Desk::new(&study());
+    let mut scene = study();
+    for section in ["grid", "solver"] {
+        scene.as_object_mut().unwrap().remove(section);
+    }
+    scene["format"] = json!("billow-scene");
+    scene["version"] = json!(1);
+    scene["gas"] = json!({ "species": "nitrogen", "windows": [{ "from": 0, "rate": "5 g/s" }] });
+    scene["solver"] = json!({ "end_time": "4 ms" });
+    scene["outputs"]["frames"] = json!(3);
+    fs::write(desk.path().join("scene.json"), scene.to_string()).unwrap();
+    desk.stdout(&["solve", "scene.json", "--out", "run.h5"]);
+    let (stored, all) = frames(&desk.path().join("run.h5"));
+    assert_eq!(all.len(), 3);
+    assert_eq!(stored.storeys().iter().max(), Some(&4));
+    desk.stdout(&["frames", "run.h5"]);
+    assert_eq!(panels(&desk.path().join("run_frames.svg")), [stored.triangles().len(); 3]);
+    assert_eq!(pixels(&desk.path().join("run_frames.png"))[0], 180 * 12);
+}
