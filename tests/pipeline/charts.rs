@@ -92,15 +92,19 @@ fn without_a_kind_a_set_is_drawn_and_again_with_the_same_bytes() {
     };
     let drawn = read();
     let names: Vec<&str> = drawn.iter().map(|(name, _)| name.as_str()).collect();
-    for stem in
-        ["history-z_rim", "history-vz", "history-pressure", "t_90_z_rim-over-N", "peak_vz-over-N"]
-    {
+    for stem in [
+        "history-z_rim",
+        "history-vz",
+        "history-pressure",
+        "t_90_z_rim-over-mass_flow_rate",
+        "peak_vz-over-mass_flow_rate",
+    ] {
         for ending in ["svg", "png"] {
             let path = format!("results/grid/charts/{stem}.{ending}");
             assert!(names.contains(&path.as_str()), "{path}: {names:?}");
         }
     }
-    assert!(names.iter().any(|name| name.contains("-map-N-")), "{names:?}");
+    assert!(names.iter().any(|name| name.contains("-map-mass_flow_rate-")), "{names:?}");
     assert!(drawn == read());
     // A folder of results with pictures in it is still one to run in.
     desk.stdout(&["run", "grid.json", "-q"]);

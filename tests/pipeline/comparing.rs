@@ -99,7 +99,7 @@ fn a_run_ends_with_the_answer_to_its_question() {
     assert!(said.contains("\nDo more panels help?\n"), "{said}");
     assert!(said.contains("  deployed 16 of 16 jobs"), "{said}");
     assert!(said.contains("not counted by this model"), "{said}");
-    assert!(said.contains("billow compare results/grid --by M --base 2"), "{said}");
+    assert!(said.contains("billow compare results/grid --by residual_gas_mass --base 0"), "{said}");
 
     let answer = json_of(&desk, &["run", "grid.json", "-q"]);
     let rows = desk.rows("results/grid");

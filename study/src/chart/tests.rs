@@ -170,7 +170,7 @@ fn read(id: &JobId) -> Result<StoredHistory> {
         job: id.clone(),
         scene: String::new(),
         status: "done".to_owned(),
-        content_hash: history_file::content_hash(&deployment.history),
+        content_hash: history_file::content_hash(&deployment),
         history: deployment.history,
         tracks: BTreeMap::from([("smallest_gap".to_owned(), vec![1e-3; 900])]),
         labels: BTreeMap::from([(
@@ -259,8 +259,8 @@ fn a_study_gets_the_charts_that_fit_it() {
             "history-z_rim",
             "history-vz",
             "history-pressure",
-            "peak_vz-over-N",
-            "peak_vz-map-N-mass_flow_rate"
+            "peak_vz-over-mass_flow_rate",
+            "peak_vz-map-mass_flow_rate-N"
         ]
     );
     assert!(notes.is_empty(), "{notes:?}");
