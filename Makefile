@@ -1,4 +1,4 @@
-# make study    install what is missing, build, run studies/first.json, print its table
+# make study    install what is missing, build, run studies/first.json, print its table, draw its charts
 # make test     the quick tier of the tests and of the reference cases (what CI runs)
 # make test-all the quick tier, the long ones, every reference case, and the Python readers
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
@@ -21,6 +21,7 @@ READER_PACKAGES := python3 python3-venv
 study: build
 	$(BILLOW) run studies/first.json
 	$(BILLOW) table studies/first.json
+	$(BILLOW) chart studies/first.json
 
 test: deps
 	$(CARGO) test $(FLAGS)

@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::error::{Error, Result};
 
 mod answer;
+mod chart;
 mod compare;
 mod completions;
 mod doctor;
@@ -112,6 +113,8 @@ pub enum Command {
     Solve(solve::Args),
     /// Print the summary table of a study's results.
     Table(table::Args),
+    /// Draw charts of a study's results.
+    Chart(chart::Args),
     /// Print the JSON Schema of the study file or the scene file.
     Schema(schema::Args),
     /// Run the reference cases and judge them; exit code 1 if one is out of band.
@@ -158,6 +161,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Frames(args) => frames::run(args, &cli.global, out),
         Command::Solve(args) => solve::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
+        Command::Chart(args) => chart::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),
         Command::Validate(args) => validate::run(args, &cli.global, out),
         Command::Completions(args) => completions::run(args, out),

@@ -19,7 +19,7 @@ use crate::study::Study;
 use crate::table::Table;
 
 /// What other commands leave in a results folder.
-const ALSO_OURS: [&str; 3] = ["charts", "frames", "report.html"];
+const ALSO_OURS: [&str; 1] = ["report.html"];
 /// What runs a job again, or writes a table.
 const RUN: &str = "`billow run` of its study runs the job again";
 

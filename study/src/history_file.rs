@@ -229,6 +229,8 @@ pub struct StoredHistory {
     pub history: History,
     /// What was followed beside it, by name.
     pub tracks: BTreeMap<String, Vec<f64>>,
+    /// Unit and meaning of what was followed, by name.
+    pub labels: BTreeMap<String, (String, String)>,
 }
 
 /// Reads a history file.
@@ -240,13 +242,15 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
     let file = open(path)?;
     let damaged = |error| damaged(path, &error);
     let job = read_text(&file, "job").map_err(damaged)?;
+    let (tracks, labels) = read_tracks(&file).map_err(damaged)?;
     Ok(StoredHistory {
         job: JobId::from_digits(&job).ok_or_else(|| damaged("no job id".into()))?,
         scene: read_text(&file, "scene").map_err(damaged)?,
         status: read_text(&file, "status").map_err(damaged)?,
         content_hash: read_text(&file, "content_hash").map_err(damaged)?,
         history: read_history(&file).map_err(damaged)?,
-        tracks: read_tracks(&file).map_err(damaged)?,
+        tracks,
+        labels,
     })
 }
 
@@ -326,15 +330,20 @@ fn read_history(file: &File) -> hdf5::Result<History> {
     Ok(if rings { history } else { history.without_rings() })
 }
 
-fn read_tracks(file: &File) -> hdf5::Result<BTreeMap<String, Vec<f64>>> {
+/// Values by name, and unit and meaning by name.
+type Tracks = (BTreeMap<String, Vec<f64>>, BTreeMap<String, (String, String)>);
+
+fn read_tracks(file: &File) -> hdf5::Result<Tracks> {
     let group = file.group("history")?;
     let followed = |name: &String| COLUMNS.iter().all(|column| column.name != name);
     let mut tracks = BTreeMap::new();
+    let mut labels = BTreeMap::new();
     for name in group.member_names()?.into_iter().filter(followed) {
-        let values = group.dataset(&name)?.read_raw::<f64>()?;
-        tracks.insert(name, values);
+        let dataset = group.dataset(&name)?;
+        tracks.insert(name.clone(), dataset.read_raw::<f64>()?);
+        labels.insert(name, (read_text(&dataset, "units")?, read_text(&dataset, "long_name")?));
     }
-    Ok(tracks)
+    Ok((tracks, labels))
 }
 
 fn read_text(location: &Location, name: &str) -> hdf5::Result<String> {

@@ -11,6 +11,7 @@
 
 pub mod answer;
 pub mod cases;
+pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod doctor;

@@ -1,8 +1,10 @@
 //! Pictures, as SVG text, and PNG from it.
 
 pub mod crease_pattern;
+pub mod figure;
 pub mod filmstrip;
 pub mod font;
+pub mod page;
 pub mod painter;
 pub mod png;
 pub mod projection;

@@ -6,6 +6,7 @@
 //!                 jobs/<ab>/<id>.h5 histories (crate::history_file)
 //!                 references/*.json static states of the designs (crate::references)
 //!                 summary.parquet   the table, rebuilt from plan and journal (crate::table)
+//!                 charts/           pictures (crate::chart)
 //!                 lock              held while a command changes the folder
 //! ```
 //!
@@ -33,8 +34,8 @@ const FORMAT: &str = "billow-study";
 const VERSION: u64 = 1;
 
 /// Names of what a run leaves in a folder.
-pub const OURS: [&str; 6] =
-    ["study.json", "journal", "jobs", "references", "summary.parquet", "lock"];
+pub const OURS: [&str; 7] =
+    ["study.json", "journal", "jobs", "references", "summary.parquet", "charts", "lock"];
 /// How often a lock that is held is looked at before it counts as held.
 const LOOKS: u32 = 5;
 
@@ -93,6 +94,11 @@ impl<'a> Results<'a> {
     /// Path of the static states runs are judged against.
     pub fn references_path(&self) -> PathBuf {
         self.root.join("references")
+    }
+
+    /// Path of the pictures.
+    pub fn charts_path(&self) -> PathBuf {
+        self.root.join("charts")
     }
 
     /// Path of the summary table.

@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
 
 mod broken_studies;
+mod charts;
 mod comparing;
 mod contact;
 mod contact_audit;

@@ -6,8 +6,7 @@ use std::path::PathBuf;
 
 use super::print::print_rows;
 use super::run::count;
-use super::table::{filtered, find};
-use super::target::folder;
+use super::target::{filtered, find, folder};
 use super::{Format, Global, output_error};
 use crate::compare::{
     self, Better, Compared, LARGER_IS_BETTER, Pair, SMALLER_IS_BETTER, Sets, TIE, Tally,

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::print::print_rows;
 use super::run::{count, run_study};
-use super::table::filtered;
-use super::target::folder;
+
+use super::target::{filtered, folder};
 use super::{Format, Global};
 use crate::error::{Error, InputError, Result};
 use crate::files::Disk;

@@ -5,17 +5,10 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::print::print_rows;
-use super::target::folder;
+use super::target::{self, filtered, find};
 use super::{Format, Global};
-use crate::error::{Error, InputError, Result};
-use crate::expression::{Expression, Type, Variable};
-use crate::files::Disk;
-use crate::keys;
-use crate::results::Results;
-use crate::row::Kind;
-use crate::study::Study;
+use crate::error::{InputError, Result};
 use crate::table::{Column, Table};
-use crate::units::Dimension;
 use crate::value::{Value, short_number};
 
 /// Measures shown after the parameters, in this order, as far as they fit.
@@ -53,19 +46,7 @@ pub struct Args {
 
 /// Runs `billow table`.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let root = folder(args.study.as_deref(), global)?;
-    let results = Results::new(&Disk, &root);
-    let table = results.read_table()?;
-    if let Some(path) = args.study.as_deref().filter(|path| path.is_file()) {
-        let study = Study::load(path, &global.set)?;
-        if !results.holds(&study.name, &study.resolved())? {
-            eprintln!(
-                "billow: {} says another study than the one these rows were run for; `billow run` \
-                 brings them up to date",
-                path.display()
-            );
-        }
-    }
+    let table = target::open(args.study.as_deref(), global)?.table;
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = global.format();
     let columns = chosen(&table, &args.columns, format)?;
@@ -91,64 +72,6 @@ fn legend(shown: &[&Column], all: usize) -> String {
     let units =
         if units.is_empty() { String::new() } else { format!("units: {}; ", units.join(", ")) };
     format!("{units}{} of {all} columns (--columns all)", shown.len())
-}
-
-/// The column of that name.
-///
-/// # Errors
-/// [`Error::Input`] naming the flag, with the nearest name.
-pub(super) fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
-    let names = || table.columns.iter().map(|column| column.name.as_str());
-    table.column(name).ok_or_else(|| {
-        let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
-        Error::from(InputError {
-            file: flag.to_owned(),
-            key: String::new(),
-            value: name.to_owned(),
-            problem: "no such column".to_owned(),
-            allowed: names().collect::<Vec<_>>().join(", "),
-            hint: hint.unwrap_or_default(),
-        })
-    })
-}
-
-/// Rows of which the condition holds, in plan order.
-///
-/// # Errors
-/// [`Error::Input`] for a condition that does not fit the columns.
-pub(super) fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
-    let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
-    let variables: Vec<Variable> = table
-        .columns
-        .iter()
-        .map(|column| Variable { name: column.name.clone(), kind: kind(column) })
-        .collect();
-    let condition = Expression::condition(text, &variables).map_err(|error| InputError {
-        file: "--where".to_owned(),
-        key: String::new(),
-        value: String::new(),
-        problem: error.to_string(),
-        allowed: error.allowed,
-        hint: String::new(),
-    })?;
-    let holds = |row: &usize| {
-        let values: Vec<Value> =
-            table.columns.iter().map(|column| column.cells[*row].clone()).collect();
-        condition.holds(&values)
-    };
-    Ok((0..table.rows()).filter(holds).collect())
-}
-
-/// What a column is to an expression.
-fn kind(column: &Column) -> Type {
-    match column.kind {
-        Kind::Bool => Type::Bool,
-        Kind::Text => Type::Text(None),
-        Kind::Integer | Kind::Number => {
-            let known = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
-            Type::Quantity(known.unwrap_or(Dimension::Number), &[])
-        }
-    }
 }
 
 /// Rows in the order asked for; equal ones stay in plan order.

@@ -1,12 +1,48 @@
-//! Which results a reading command means.
+//! Which results a command means, and which rows of their table.
 
 use std::path::{Path, PathBuf};
 
 use super::Global;
 use super::run::results_folder;
 use crate::error::{Error, InputError, Result};
+use crate::expression::{Expression, Type, Variable};
 use crate::files::{Disk, Files};
+use crate::keys;
+use crate::results::Results;
+use crate::row::Kind;
 use crate::study::Study;
+use crate::table::{Column, Table};
+use crate::units::Dimension;
+use crate::value::Value;
+
+/// Results of a study, and their table.
+pub struct Target {
+    /// Their folder.
+    pub results: Results<'static>,
+    /// The table.
+    pub table: Table,
+}
+
+/// Opens the results meant, as [`folder`] finds them. Says on stderr where a study file given is not the
+/// one they were run for.
+///
+/// # Errors
+/// Where there are none, or their table cannot be read.
+pub fn open(given: Option<&Path>, global: &Global) -> Result<Target> {
+    let results = Results::new(&Disk, &folder(given, global)?);
+    let table = results.read_table()?;
+    if let Some(path) = given.filter(|path| path.is_file()) {
+        let study = Study::load(path, &global.set)?;
+        if !results.holds(&study.name, &study.resolved())? {
+            eprintln!(
+                "billow: {} says another study than the one these rows were run for; `billow run` \
+                 brings them up to date",
+                path.display()
+            );
+        }
+    }
+    Ok(Target { results, table })
+}
 
 /// The results folder meant: a folder, or that of a study file, or the only one there is.
 ///
@@ -63,4 +99,115 @@ fn only_folder() -> Result<PathBuf> {
             .into())
         }
     }
+}
+
+/// The column of that name, asked for by a flag.
+///
+/// # Errors
+/// Where there is none; the nearest name is told.
+pub fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
+    let names = || table.columns.iter().map(|column| column.name.as_str());
+    table.column(name).ok_or_else(|| {
+        let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        Error::from(InputError {
+            file: flag.to_owned(),
+            key: String::new(),
+            value: name.to_owned(),
+            problem: "no such column".to_owned(),
+            allowed: names().collect::<Vec<_>>().join(", "),
+            hint: hint.unwrap_or_default(),
+        })
+    })
+}
+
+/// Rows of which the condition holds (`--where`), in plan order.
+///
+/// # Errors
+/// A condition that is none, or of columns there are not.
+pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
+    let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
+    let variables: Vec<Variable> = table
+        .columns
+        .iter()
+        .map(|column| Variable { name: column.name.clone(), kind: kind(column) })
+        .collect();
+    let condition = Expression::condition(text, &variables).map_err(|error| InputError {
+        file: "--where".to_owned(),
+        key: String::new(),
+        value: String::new(),
+        problem: error.to_string(),
+        allowed: error.allowed,
+        hint: String::new(),
+    })?;
+    let holds = |row: &usize| {
+        let values: Vec<Value> =
+            table.columns.iter().map(|column| column.cells[*row].clone()).collect();
+        condition.holds(&values)
+    };
+    Ok((0..table.rows()).filter(holds).collect())
+}
+
+/// What a column is to an expression.
+fn kind(column: &Column) -> Type {
+    match column.kind {
+        Kind::Bool => Type::Bool,
+        Kind::Text => Type::Text(None),
+        Kind::Integer | Kind::Number => {
+            let known = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
+            Type::Quantity(known.unwrap_or(Dimension::Number), &[])
+        }
+    }
+}
+
+/// Rows of the jobs whose ids begin so (`--jobs`), in the order given.
+///
+/// # Errors
+/// A beginning that no job has, or several; the nearest, or those, are told.
+pub fn jobs(table: &Table, beginnings: &[String]) -> Result<Vec<usize>> {
+    let ids: Vec<&str> = table
+        .column("job")
+        .into_iter()
+        .flat_map(|column| &column.cells)
+        .map(|cell| if let Value::Text(id) = cell { id.as_str() } else { "" })
+        .collect();
+    let mut rows = Vec::with_capacity(beginnings.len());
+    for beginning in beginnings.iter().map(|beginning| beginning.trim()) {
+        let found: Vec<usize> =
+            (0..ids.len()).filter(|row| ids[*row].starts_with(beginning)).collect();
+        match found.as_slice() {
+            [row] if !rows.contains(row) => rows.push(*row),
+            [_] => {}
+            several => {
+                return Err(InputError {
+                    file: "--jobs".to_owned(),
+                    key: String::new(),
+                    value: beginning.to_owned(),
+                    problem: if several.is_empty() {
+                        "no job's id begins so".to_owned()
+                    } else {
+                        format!("{} jobs' ids begin so", several.len())
+                    },
+                    allowed: near(&ids, beginning),
+                    hint: "billow table --columns job,status lists them".to_owned(),
+                }
+                .into());
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Ids that share the longest beginning with this one, a few of them.
+fn near(ids: &[&str], beginning: &str) -> String {
+    let shared = |id: &str| id.bytes().zip(beginning.bytes()).take_while(|(a, b)| a == b).count();
+    let longest = ids.iter().map(|id| shared(id)).max().unwrap_or(0);
+    let mut nearest: Vec<&str> = ids
+        .iter()
+        .filter(|id| shared(id) == longest)
+        .map(|id| id.get(..12).unwrap_or(id))
+        .collect();
+    nearest.sort_unstable();
+    nearest.dedup();
+    let more = if nearest.len() > 6 { ", …" } else { "" };
+    format!("{}{more}", nearest[..nearest.len().min(6)].join(", "))
 }

@@ -1,6 +1,6 @@
-//! The one font of the pictures: DejaVu Sans, embedded, so that a picture is the same on any machine.
+//! The one font of the pictures: `DejaVu Sans`, embedded, so that a picture is the same on any machine.
 //!
-//! `assets/DejaVuSans-subset.ttf` is a subset (Latin, Greek, signs of mathematics) of DejaVu Sans
+//! `assets/DejaVuSans-subset.ttf` is a subset (Latin, Greek, signs of mathematics) of `DejaVu Sans`
 //! 2.37; its licence lies beside it. SVG files name the font, and [`super::png`] draws with it. The
 //! widths of texts, which a layout needs, are read from its tables `cmap` and `hmtx`.
 
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn units_and_signs_are_there() {
-        for letter in "AZaz09 .,·×−–²³°µϕα∠≥≤…₀⁻¹½√→←∞≈()/%&<>\"'_".chars()
+        for letter in "AZaz09 .,·×−–²³°µϕα∠≥≤…₀⁻¹½√→←∞≈∅()/%&<>\"'_".chars()
         {
             assert!(has(letter), "{letter}");
         }

@@ -1,0 +1,215 @@
+//! What tells one series from another: colour, dashes and marker, each by itself enough.
+//!
+//! Colours are those of Okabe and Ito (without the yellow, which print loses on white), told apart
+//! by the colour-blind; dashes and markers say the same in black and white. Cells of a map take
+//! viridis, whose lightness rises evenly, so that it reads in grey as well.
+
+use crate::render::page::{Page, Place, Stroke};
+
+/// Size of the numbers of axes, legends and notes, mm: 8 pt and more.
+pub const SMALL: f64 = 2.9;
+/// Size of the labels of axes and panels, mm: 9 pt.
+pub const MEDIUM: f64 = 3.2;
+/// Size of the title, mm: 11 pt.
+pub const LARGE: f64 = 3.9;
+/// Width of every figure, mm: a column of text on A4.
+pub const PAGE_WIDTH: f64 = 160.0;
+/// Margin round a figure, mm.
+pub const MARGIN: f64 = 4.0;
+
+/// Colours of series.
+const COLOURS: [&str; 7] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"];
+/// Dashes of series, mm. Five against seven colours and markers: 35 series before one comes back.
+const DASHES: [&[f64]; 5] =
+    [&[], &[2.8, 1.1], &[0.7, 0.8], &[3.2, 0.9, 0.7, 0.9], &[5.0, 0.9, 1.4, 0.9, 1.4, 0.9]];
+/// Width of the line of a series, mm.
+const LINE: f64 = 0.45;
+/// Lines of axes and frames.
+pub const AXIS: Stroke = Stroke::solid("#333333", 0.25);
+/// Lines behind the data.
+pub const GRID: Stroke = Stroke::solid("#dddddd", 0.15);
+/// Letters of notes.
+pub const GREY: &str = "#444444";
+/// Ground of cells and lanes without a value.
+pub const EMPTY: &str = "#e8e8e8";
+/// Hatch of cells without a value.
+pub const HATCH: Stroke = Stroke::solid("#b0b0b0", 0.2);
+
+/// Colour of a series.
+pub fn colour(series: usize) -> &'static str {
+    COLOURS[series % COLOURS.len()]
+}
+
+/// Line of a series.
+pub fn line(series: usize) -> Stroke {
+    Stroke { colour: colour(series), width: LINE, dashes: DASHES[series % DASHES.len()] }
+}
+
+/// How a marker tells what became of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fill {
+    /// Whole: all is well.
+    Filled,
+    /// White inside.
+    Open,
+    /// White inside, with a cross.
+    Crossed,
+}
+
+/// Draws the marker of a series: a shape of its own about `size` mm across.
+pub fn marker(page: &mut Page, at: Place, series: usize, fill: Fill, size: f64) {
+    let colour = colour(series);
+    let inside = if fill == Fill::Filled { colour } else { "#ffffff" };
+    shape(page, at, series % COLOURS.len(), colour, (inside, fill), size);
+}
+
+/// Draws the marker of an outcome where no series is meant: a circle in one colour.
+pub fn plain_marker(page: &mut Page, at: Place, colour: &'static str, fill: Fill, size: f64) {
+    shape(page, at, 0, colour, (if fill == Fill::Filled { colour } else { "#ffffff" }, fill), size);
+}
+
+/// The same on the colour of a cell.
+pub fn map_marker(page: &mut Page, at: Place, colour: &'static str, fill: Fill, size: f64) {
+    shape(page, at, 0, colour, (if fill == Fill::Filled { colour } else { "none" }, fill), size);
+}
+
+fn shape(
+    page: &mut Page,
+    at: Place,
+    kind: usize,
+    colour: &'static str,
+    (inside, fill): (&str, Fill),
+    size: f64,
+) {
+    let stroke = Stroke::solid(colour, 0.35);
+    let half = 0.5 * size;
+    let corners = |corners: &[Place]| -> Vec<Place> {
+        corners.iter().map(|[x, y]| [at[0] + half * x, at[1] + half * y]).collect()
+    };
+    match kind {
+        0 => page.circle(at, half, inside, &stroke),
+        1 => page.polygon(
+            &corners(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
+            inside,
+            &stroke,
+        ),
+        2 => page.polygon(&corners(&[[0.0, -1.15], [1.1, 0.8], [-1.1, 0.8]]), inside, &stroke),
+        3 => page.polygon(
+            &corners(&[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]]),
+            inside,
+            &stroke,
+        ),
+        4 => page.polygon(&corners(&[[0.0, 1.15], [1.1, -0.8], [-1.1, -0.8]]), inside, &stroke),
+        5 => page.polygon(&corners(&[[1.15, 0.0], [-0.8, 1.1], [-0.8, -1.1]]), inside, &stroke),
+        _ => page.polygon(&corners(&[[-1.15, 0.0], [0.8, 1.1], [0.8, -1.1]]), inside, &stroke),
+    }
+    if fill == Fill::Crossed {
+        let thin = Stroke::solid(colour, 0.25);
+        let arm = 0.55 * half;
+        page.line([at[0] - arm, at[1] - arm], [at[0] + arm, at[1] + arm], &thin);
+        page.line([at[0] - arm, at[1] + arm], [at[0] + arm, at[1] - arm], &thin);
+    }
+}
+
+/// Draws the end of a run that failed: a cross.
+pub fn cross(page: &mut Page, at: Place, colour: &'static str, size: f64) {
+    let stroke = Stroke::solid(colour, 0.5);
+    let arm = 0.5 * size;
+    page.line([at[0] - arm, at[1] - arm], [at[0] + arm, at[1] + arm], &stroke);
+    page.line([at[0] - arm, at[1] + arm], [at[0] + arm, at[1] - arm], &stroke);
+}
+
+/// Viridis (S. van der Walt, N. Smith; CC0) at 17 even places, sRGB.
+const VIRIDIS: [[f64; 3]; 17] = [
+    [68.0, 1.0, 84.0],
+    [72.0, 24.0, 106.0],
+    [71.0, 45.0, 123.0],
+    [66.0, 64.0, 134.0],
+    [59.0, 82.0, 139.0],
+    [51.0, 99.0, 141.0],
+    [44.0, 114.0, 142.0],
+    [38.0, 130.0, 142.0],
+    [33.0, 145.0, 140.0],
+    [31.0, 160.0, 136.0],
+    [40.0, 174.0, 128.0],
+    [63.0, 188.0, 115.0],
+    [94.0, 201.0, 98.0],
+    [132.0, 212.0, 75.0],
+    [173.0, 220.0, 48.0],
+    [216.0, 226.0, 25.0],
+    [253.0, 231.0, 37.0],
+];
+
+/// Colour of a share (0 to 1) of the range of a map, and black or white, whichever letters on it need.
+pub fn map_colour(share: f64) -> (String, &'static str) {
+    let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 15")]
+    let below = (place as usize).min(VIRIDIS.len() - 2);
+    let rest = place - below as f64;
+    let mixed: [f64; 3] = std::array::from_fn(|channel| {
+        VIRIDIS[below][channel] * (1.0 - rest) + VIRIDIS[below + 1][channel] * rest
+    });
+    let [red, green, blue] = mixed.map(libm::round);
+    let letters = if luminance(mixed) > 0.2 { "#000000" } else { "#ffffff" };
+    (format!("rgb({red},{green},{blue})"), letters)
+}
+
+/// Relative luminance of an sRGB colour, 0 to 1.
+fn luminance(colour: [f64; 3]) -> f64 {
+    let [red, green, blue] = colour.map(|channel| {
+        let share = channel / 255.0;
+        if share <= 0.040_45 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) }
+    });
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rgb(text: &str) -> [f64; 3] {
+        let channel = |at| f64::from(u8::from_str_radix(&text[at..at + 2], 16).unwrap());
+        [channel(1), channel(3), channel(5)]
+    }
+
+    #[test]
+    fn the_first_35_series_differ_without_colour() {
+        let pairs: std::collections::BTreeSet<_> =
+            (0..35).map(|series| (series % COLOURS.len(), series % DASHES.len())).collect();
+        assert_eq!(pairs.len(), 35);
+    }
+
+    #[test]
+    fn colours_stand_out_from_white_and_from_one_another() {
+        let contrast =
+            |one: f64, other: f64| (f64::max(one, other) + 0.05) / (f64::min(one, other) + 0.05);
+        for (at, colour) in COLOURS.iter().enumerate() {
+            assert!(contrast(luminance(rgb(colour)), 1.0) > 2.0, "{colour}");
+            for other in &COLOURS[..at] {
+                let apart: f64 =
+                    (0..3).map(|channel| (rgb(colour)[channel] - rgb(other)[channel]).abs()).sum();
+                assert!(apart > 75.0, "{colour} {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_grows_lighter_all_the_way_and_its_letters_are_legible() {
+        let mut last = -1.0;
+        for step in 0..=200 {
+            let (colour, letters) = map_colour(f64::from(step) / 200.0);
+            let channels: Vec<f64> = colour[4..colour.len() - 1]
+                .split(',')
+                .map(|channel| channel.parse().unwrap())
+                .collect();
+            let light = luminance([channels[0], channels[1], channels[2]]);
+            assert!(light > last - 0.002, "{colour}");
+            last = light;
+            let ink = luminance(rgb(letters));
+            let contrast = (f64::max(ink, light) + 0.05) / (f64::min(ink, light) + 0.05);
+            assert!(contrast >= 4.0, "{colour} {letters} {contrast}");
+        }
+        assert_eq!(map_colour(f64::INFINITY).0, map_colour(1.0).0);
+    }
+}

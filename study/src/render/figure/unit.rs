@@ -1,0 +1,132 @@
+//! Units as people read them: SI inside, but 5 g/s, 32 ms and 1.2 kPa on an axis.
+
+/// The unit a column is shown in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unit {
+    /// Symbol; empty for a pure number.
+    pub symbol: String,
+    /// SI units one of it is.
+    size: f64,
+}
+
+/// Of an SI unit: symbol, size, and the largest value (in that unit) from which on it is used; the
+/// largest first.
+type Choice = (&'static str, f64, f64);
+
+const CHOICES: &[(&str, &[Choice])] = &[
+    ("s", &[("s", 1.0, 1.0), ("ms", 1e-3, 1.0), ("µs", 1e-6, 0.0)]),
+    ("m", &[("m", 1.0, 0.2), ("mm", 1e-3, 0.1), ("µm", 1e-6, 0.0)]),
+    ("m2", &[("m²", 1.0, 0.1), ("cm²", 1e-4, 0.1), ("mm²", 1e-6, 0.0)]),
+    ("m3", &[("m³", 1.0, 0.01), ("cm³", 1e-6, 0.0)]),
+    ("kg", &[("kg", 1.0, 1.0), ("g", 1e-3, 0.01), ("mg", 1e-6, 0.0)]),
+    ("kg/s", &[("kg/s", 1.0, 1.0), ("g/s", 1e-3, 0.01), ("mg/s", 1e-6, 0.0)]),
+    ("m/s", &[("m/s", 1.0, 0.1), ("mm/s", 1e-3, 0.0)]),
+    (
+        "Pa",
+        &[
+            ("GPa", 1e9, 1.0),
+            ("MPa", 1e6, 1.0),
+            ("kPa", 1e3, 1.0),
+            ("Pa", 1.0, 0.1),
+            ("mPa", 1e-3, 0.0),
+        ],
+    ),
+    ("J", &[("kJ", 1e3, 1.0), ("J", 1.0, 0.1), ("mJ", 1e-3, 0.1), ("µJ", 1e-6, 0.0)]),
+    ("N", &[("kN", 1e3, 1.0), ("N", 1.0, 0.1), ("mN", 1e-3, 0.0)]),
+    ("N/m", &[("kN/m", 1e3, 1.0), ("N/m", 1.0, 0.1), ("mN/m", 1e-3, 0.0)]),
+    ("Hz", &[("kHz", 1e3, 1.0), ("Hz", 1.0, 0.0)]),
+    ("rad", &[("°", std::f64::consts::PI / 180.0, 0.0)]),
+];
+
+impl Unit {
+    /// The unit fit for values of an SI unit of which `largest` is the largest in size.
+    pub fn of(si: &str, largest: f64) -> Self {
+        let choices = CHOICES.iter().find(|(known, _)| *known == si).map(|(_, choices)| *choices);
+        let Some(choices) = choices else {
+            return Self::si(si);
+        };
+        let chosen = if largest > 0.0 {
+            // Rounding up the last digit does not make it a unit more.
+            let holds = |(_, size, from): &&Choice| largest >= (1.0 - 1e-9) * size * from;
+            choices.iter().find(holds)
+        } else {
+            choices.iter().find(|(_, size, _)| size.total_cmp(&1.0).is_eq())
+        };
+        let (symbol, size, _) = chosen.unwrap_or(&choices[choices.len() - 1]);
+        Self { symbol: (*symbol).to_owned(), size: *size }
+    }
+
+    /// The SI unit itself.
+    pub fn si(si: &str) -> Self {
+        Self { symbol: raised(if si == "1" { "" } else { si }), size: 1.0 }
+    }
+
+    /// The unit fit for these values; those that are no numbers do not count.
+    pub fn fit(si: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let sizes = values.into_iter().filter(|value| value.is_finite()).map(f64::abs);
+        Self::of(si, sizes.fold(0.0, f64::max))
+    }
+
+    /// An SI value in this unit.
+    pub fn shown(&self, si: f64) -> f64 {
+        // Sizes below 1 are powers of ten that no binary number is: their reciprocals are whole.
+        if self.size < 1e-2 && self.symbol != "°" {
+            si * libm::round(1.0 / self.size)
+        } else {
+            si / self.size
+        }
+    }
+
+    /// A name with the unit behind it: `pressure (kPa)`; a pure number has none.
+    pub fn label(&self, name: &str) -> String {
+        if self.symbol.is_empty() { name.to_owned() } else { format!("{name} ({})", self.symbol) }
+    }
+}
+
+/// "kg/m3" as "kg/m³".
+fn raised(si: &str) -> String {
+    let mut text = String::with_capacity(si.len());
+    let mut after_letter = false;
+    for sign in si.chars() {
+        text.push(match sign {
+            '2' if after_letter => '²',
+            '3' if after_letter => '³',
+            other => other,
+        });
+        after_letter = sign.is_ascii_alphabetic();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_fit_the_values() {
+        for (si, largest, symbol, shown) in [
+            ("kg/s", 0.005, "g/s", 5.0),
+            ("kg", 5e-5, "g", 0.05),
+            ("s", 0.032, "ms", 32.0),
+            ("s", 1.5, "s", 1.5),
+            ("m", 0.97, "m", 0.97),
+            ("m", 0.04, "mm", 40.0),
+            ("m", 25.4e-6, "µm", 25.4),
+            ("m3", 0.58, "m³", 0.58),
+            ("Pa", 1200.0, "kPa", 1.2),
+            ("Pa", 999.999_999_999_9, "kPa", 0.999_999_999_999_9),
+            ("rad", std::f64::consts::PI, "°", 180.0),
+            ("W/(m2 K)", 0.3, "W/(m² K)", 0.3),
+            ("1", 12.0, "", 12.0),
+            ("", 12.0, "", 12.0),
+            ("K", 293.15, "K", 293.15),
+            ("J", 0.0, "J", 0.0),
+        ] {
+            let unit = Unit::of(si, largest);
+            assert_eq!(unit.symbol, symbol, "{si} {largest}");
+            assert!((unit.shown(largest) - shown).abs() <= 1e-12 * shown, "{si} {largest}");
+        }
+        assert_eq!(Unit::fit("s", [f64::NAN, -0.02, 0.01]).label("t"), "t (ms)");
+        assert_eq!(Unit::of("1", 1.0).label("N"), "N");
+    }
+}

@@ -1,0 +1,172 @@
+//! `billow chart` on a study that ran: every kind, as SVG and PNG.
+
+use std::fs;
+
+use serde_json::json;
+
+use crate::support::{Desk, grid, stderr};
+
+/// N × flow × strategy on the piston: points no pattern meets, runs that end before they deploy.
+fn study() -> serde_json::Value {
+    let mut study = grid(&json!({
+        "N": [5, 6],
+        "alpha1_over_phi": [1, 9.0],
+        "mass_flow_rate": ["1 g/s", "5 g/s"],
+        "solver.end_time": ["20 ms", "0.4 s"]
+    }));
+    study["design"]["M"] = json!(2);
+    study
+}
+
+/// Checks an SVG and gives its texts.
+fn texts(svg: &[u8]) -> Vec<String> {
+    let svg = std::str::from_utf8(svg).unwrap();
+    let parsed = resvg::usvg::roxmltree::Document::parse(svg).unwrap();
+    assert_eq!(parsed.root_element().tag_name().name(), "svg");
+    let texts = parsed.descendants().filter(|node| node.has_tag_name("text"));
+    texts.map(|node| node.text().unwrap_or("").to_owned()).collect()
+}
+
+/// Width and height of a PNG, from its header.
+fn size(png: &[u8]) -> [u32; 2] {
+    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    assert_eq!(&png[12..16], b"IHDR");
+    [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().unwrap()))
+}
+
+#[test]
+fn every_kind_is_drawn_as_svg_and_png() {
+    let desk = Desk::new(&study());
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let feasible = "alpha1_over_phi == 9";
+    for (arguments, name, expected) in [
+        (
+            &["--history", "z_rim,pressure", "--where", feasible, "--to", "50 ms"][..],
+            "history-z_rim-pressure",
+            &["time (ms)", "z_rim (m)", "gas pressure", "6, 5 g/s, 400 ms"][..],
+        ),
+        (
+            &["--measure", "peak_vz", "--over", "mass_flow_rate"],
+            "peak_vz-over-mass_flow_rate",
+            &["mass_flow_rate (g/s)", "peak_vz (m/s)", "infeasible (8)", "∅", "no value"],
+        ),
+        (
+            &["--measure", "peak_vz", "--over", "mass_flow_rate", "--by", "N", "--where", feasible],
+            "peak_vz-over-mass_flow_rate-by-N",
+            &["end_time 20 ms", "end_time 400 ms"],
+        ),
+        (
+            &["--measure", "peak_vz", "--map", "mass_flow_rate,N"],
+            "peak_vz-map-mass_flow_rate-N",
+            &["mass_flow_rate (g/s)", "peak_vz (m/s)", "N", "infeasible (8)"],
+        ),
+    ] {
+        let printed = desk.stdout(&[&["chart"], arguments].concat());
+        let paths: Vec<&str> = printed.lines().collect();
+        let folder = "results/grid/charts";
+        assert_eq!(paths, [format!("{folder}/{name}.svg"), format!("{folder}/{name}.png")]);
+        let shown = texts(&fs::read(desk.path().join(paths[0])).unwrap());
+        for text in expected {
+            let there = |shown: &String| shown == text || shown.replace("solver.", "") == **text;
+            assert!(shown.iter().any(there), "{name}: {text}: {shown:?}");
+        }
+        let png = fs::read(desk.path().join(paths[1])).unwrap();
+        let [width, height] = size(&png);
+        assert!(width == 1920 && height > 600, "{width} {height}");
+        assert!(png.len() > 20_000, "{name}: {} bytes are a blank page", png.len());
+    }
+}
+
+#[test]
+fn without_a_kind_a_set_is_drawn_and_again_with_the_same_bytes() {
+    let mut study = study();
+    study["grid"].as_object_mut().unwrap().remove("solver.end_time");
+    let desk = Desk::new(&study);
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let read = || -> Vec<(String, Vec<u8>)> {
+        let printed = desk.stdout(&["chart", "grid.json", "--json"]);
+        let rows: serde_json::Value = serde_json::from_str(&printed).unwrap();
+        let files = rows.as_array().unwrap().iter();
+        let names = files.map(|row| row["file"].as_str().unwrap().to_owned());
+        names.map(|name| (name.clone(), fs::read(desk.path().join(name)).unwrap())).collect()
+    };
+    let drawn = read();
+    let names: Vec<&str> = drawn.iter().map(|(name, _)| name.as_str()).collect();
+    for stem in
+        ["history-z_rim", "history-vz", "history-pressure", "t_90_z_rim-over-N", "peak_vz-over-N"]
+    {
+        for ending in ["svg", "png"] {
+            let path = format!("results/grid/charts/{stem}.{ending}");
+            assert!(names.contains(&path.as_str()), "{path}: {names:?}");
+        }
+    }
+    assert!(names.iter().any(|name| name.contains("-map-N-")), "{names:?}");
+    assert!(drawn == read());
+    // A folder of results with pictures in it is still one to run in.
+    desk.stdout(&["run", "grid.json", "-q"]);
+}
+
+#[test]
+fn jobs_are_chosen_by_the_beginnings_of_their_ids_and_files_by_their_ending() {
+    let desk = Desk::new(&study());
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let rows = desk.rows("results/grid");
+    let done: Vec<&str> = rows
+        .iter()
+        .filter(|row| row["status"] == "done")
+        .map(|row| &row["job"].as_str().unwrap()[..10])
+        .collect();
+    let ids = done[..2].join(",");
+    let arguments = ["chart", "--history", "vz", "--jobs", &ids, "--out"];
+    let printed = desk.stdout(&[&arguments[..], &["two.SVG"]].concat());
+    assert_eq!(printed, "two.SVG\n");
+    let shown = texts(&fs::read(desk.path().join("two.SVG")).unwrap());
+    assert!(shown.iter().any(|text| text.contains("2 points")), "{shown:?}");
+    desk.stdout(&[&arguments[..], &["two.png"]].concat());
+    size(&fs::read(desk.path().join("two.png")).unwrap());
+    assert!(!desk.results().join("charts").exists());
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_with_exit_code_2_and_leaves_nothing() {
+    let desk = Desk::new(&study());
+    desk.stdout(&["run", "grid.json", "-q"]);
+    for (arguments, expected) in [
+        (&["--history", "z_rims"][..], "did you mean z_rim?"),
+        (&["--measure", "peak_v", "--over", "N"], "did you mean peak_vz?"),
+        (&["--measure", "status", "--over", "N"], "not a column of numbers"),
+        (&["--measure", "peak_vz"], "does not say over what"),
+        (&["--measure", "peak_vz", "--over", "panels"], "not a parameter"),
+        (&["--measure", "peak_vz", "--map", "N"], "not two parameters"),
+        (&["--measure", "peak_vz", "--over", "N", "--by", "flow"], "--by = flow"),
+        (&["--history", "vz", "--jobs", "zz"], "no job's id begins so"),
+        (&["--history", "vz", "--jobs", ","], "jobs' ids begin so"),
+        (&["--history", "vz", "--from", "5 g"], "--from = 5 g"),
+        (&["--history", "vz", "--from", "0.3", "--to", "0.2"], "no time is between"),
+        (&["--history", "vz", "--where", "N == 7"], "holds of no row"),
+        (&["--history", "vz", "--where", "n_ == 7"], "^"),
+        (&["--history", "vz", "--out", "vz.pdf"], ".svg or .png"),
+        (&["--history", "vz", "--out", "nowhere/vz.png"], "nowhere/vz.png"),
+        (&["--out", "vz.png"], "one file for several charts"),
+        (&["nowhere"], "nowhere"),
+    ] {
+        let output = desk.run(&[&["chart"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+        assert!(output.stdout.is_empty());
+    }
+    assert!(!desk.results().join("charts").exists());
+}
+
+#[test]
+fn a_lost_history_is_told_and_nothing_is_drawn() {
+    let desk = Desk::new(&study());
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let row = desk.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
+    let job = row["job"].as_str().unwrap();
+    fs::remove_file(desk.results().join(format!("jobs/{}/{job}.h5", &job[..2]))).unwrap();
+    let output = desk.run(&["chart", "--history", "vz"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains(job), "{}", stderr(&output));
+    assert!(!desk.results().join("charts").exists());
+}
