@@ -170,7 +170,7 @@ fn read(id: &JobId) -> Result<StoredHistory> {
         job: id.clone(),
         scene: String::new(),
         status: "done".to_owned(),
-        content_hash: history_file::content_hash(&deployment.history),
+        content_hash: history_file::content_hash(&deployment),
         history: deployment.history,
         tracks: BTreeMap::from([("smallest_gap".to_owned(), vec![1e-3; 900])]),
         labels: BTreeMap::from([(
