@@ -53,8 +53,11 @@ pub fn kinds(source: &Source<'_>) -> (Vec<Kind>, Vec<String>) {
     }
     let (parameters, _) = vary::varying(source.table, &source.rows, &[]);
     let is_number = |each: &&vary::Parameter<'_>| each.is_number(&source.rows);
+    // Quantities before whole numbers: a trend along an inflow says more than one along panels.
+    let (quantities, counts): (Vec<_>, Vec<_>) =
+        parameters.iter().filter(is_number).partition(|each| each.is_quantity());
     let numeric: Vec<String> =
-        parameters.iter().filter(is_number).map(|each| each.name().to_owned()).collect();
+        quantities.into_iter().chain(counts).map(|each| each.name().to_owned()).collect();
     let first =
         numeric.first().cloned().or_else(|| parameters.first().map(|p| p.name().to_owned()));
     let Some(first) = first else {

@@ -92,6 +92,11 @@ impl<'a> Parameter<'a> {
         matches!(self.column.kind, Kind::Integer | Kind::Number)
             && rows.iter().all(|row| number(&self.column.cells[*row]).is_some())
     }
+
+    /// Whether it has a unit.
+    pub fn is_quantity(&self) -> bool {
+        !matches!(self.column.unit.as_str(), "" | "1")
+    }
 }
 
 /// Numbers to four significant digits, to six where that would make two of them the same.

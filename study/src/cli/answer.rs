@@ -62,7 +62,8 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     let root = root.display();
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
-    if let Some(effect) = answer.effects.first()
+    let quantity = answer.effects.iter().find(|effect| !matches!(effect.unit.as_str(), "" | "1"));
+    if let Some(effect) = quantity.or(answer.effects.first())
         && let Some((base, _)) = effect.values.first()
     {
         let base = word(base);
