@@ -40,7 +40,7 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
     }
 }
 
-/// The scene whose [`reference`] a run of this one is judged against: all that does not matter to
+/// The scene whose [`reference()`] a run of this one is judged against: all that does not matter to
 /// static states at its default, so that equal references are equal scenes. `None` for a model that
 /// knows its own.
 pub fn reference_scene(scene: &Scene) -> Option<Scene> {

@@ -17,6 +17,7 @@ mod doctor;
 mod fold;
 mod frames;
 mod notes;
+mod picture;
 mod plan;
 pub mod print;
 mod rerun;

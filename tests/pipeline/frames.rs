@@ -95,8 +95,8 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     let charts = desk.results().join("charts");
     let [svg, png] = ["svg", "png"].map(|kind| charts.join(format!("frames_{}.{kind}", &job[..8])));
     assert_eq!(rows.as_array().unwrap().len(), 2);
-    assert_eq!(desk.path().join(rows[0]["picture"].as_str().unwrap()), svg);
-    assert_eq!(desk.path().join(rows[1]["picture"].as_str().unwrap()), png);
+    assert_eq!(desk.path().join(rows[0]["file"].as_str().unwrap()), svg);
+    assert_eq!(desk.path().join(rows[1]["file"].as_str().unwrap()), png);
     assert_eq!((&rows[0]["frames"], &rows[0]["to"]), (&json!(4), &json!(0.004)));
     assert_eq!(panels(&svg), [elements; 4]);
     let text = fs::read_to_string(&svg).unwrap();
@@ -114,11 +114,10 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     desk.stdout(&[&["frames", path], arguments.as_slice()].concat());
     assert_eq!(panels(&desk.path().join("two.svg")), [elements; 2]);
     assert!(fs::read_to_string(desk.path().join("two.svg")).unwrap().contains("wrinkled"));
-    let output =
-        desk.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "pictures/a.PNG"]);
+    let output = desk.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "a.PNG"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("1 of these 3 times"), "{}", stderr(&output));
-    assert_eq!(pixels(&desk.path().join("pictures/a.PNG"))[0], 180 * 12);
+    assert_eq!(pixels(&desk.path().join("a.PNG"))[0], 180 * 12);
 }
 
 #[test]

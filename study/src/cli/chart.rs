@@ -1,19 +1,18 @@
 //! `billow chart`: draws charts of a study's results, as SVG and PNG.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, Target};
 use super::{Format, Global, output_error};
 use crate::chart::standard::{self, Kind};
 use crate::chart::{Source, history, map, over};
-use crate::error::{Error, InputError, Result};
-use crate::files::{self, Disk, Files, disk_error};
+use crate::error::{Error, Result};
+use crate::files::{Disk, Files, disk_error};
 use crate::history_file::{self, StoredHistory};
 use crate::job::JobId;
-use crate::render::png;
-use crate::units::{self, Dimension};
 use crate::value::Value;
 
 /// Arguments of `billow chart`.
@@ -60,7 +59,9 @@ pub struct Args {
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let asked = kind(args)?;
     let range = [time("--from", args.from.as_deref())?, time("--to", args.to.as_deref())?];
-    let format = args.out.as_deref().map(Picture::of).transpose()?;
+    if let Some(path) = &args.out {
+        Picture::of(path)?;
+    }
     let Target { results, table } = target::open(args.study.as_deref(), global)?;
     let rows = if args.jobs.is_empty() {
         target::filtered(&table, args.condition.as_deref())?
@@ -103,15 +104,15 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             }
             Err(error) => return Err(error),
         };
-        if let (Some(path), Some(format)) = (&args.out, format) {
-            store(path, &format.bytes(&svg, path)?)?;
+        if let Some(path) = &args.out {
+            picture::write(path, &svg)?;
             written.push(path.clone());
         } else {
             let folder = results.charts_path();
             Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-            for format in [Picture::Svg, Picture::Png] {
+            for format in Picture::ALL {
                 let path = folder.join(format!("{}.{}", kind.file_name(), format.ending()));
-                store(&path, &format.bytes(&svg, &path)?)?;
+                picture::write(&path, &svg)?;
                 written.push(path);
             }
         }
@@ -175,72 +176,9 @@ fn kind(args: &Args) -> Result<Option<Kind>> {
     }
 }
 
-fn refused(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
-    Error::from(InputError {
-        file: flag.to_owned(),
-        key: String::new(),
-        value: value.to_owned(),
-        problem: problem.to_owned(),
-        allowed: allowed.to_owned(),
-        hint: String::new(),
-    })
-}
-
 /// A time given on the command line, s.
 fn time(flag: &str, text: Option<&str>) -> Result<Option<f64>> {
-    let Some(text) = text else { return Ok(None) };
-    if let Ok(seconds) = text.trim().parse::<f64>()
-        && seconds.is_finite()
-    {
-        return Ok(Some(seconds));
-    }
-    match units::parse(text, Dimension::Time) {
-        Ok(seconds) => Ok(Some(seconds)),
-        Err(error) => Err(refused(flag, text, &error.problem, &error.allowed)),
-    }
-}
-
-/// Format of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Picture {
-    Svg,
-    Png,
-}
-
-impl Picture {
-    /// The format a file name asks for.
-    fn of(path: &Path) -> Result<Self> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        match ending.as_deref() {
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
-            _ => Err(refused(
-                "--out",
-                &path.display().to_string(),
-                "not a format of pictures",
-                "a name that ends in .svg or .png",
-            )),
-        }
-    }
-
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-        }
-    }
-
-    fn bytes(self, svg: &str, path: &Path) -> Result<Vec<u8>> {
-        match self {
-            Self::Svg => Ok(svg.as_bytes().to_vec()),
-            Self::Png => png::encode(svg, png::PRINT)
-                .map_err(|problem| Error::Disk { path: path.to_owned(), problem }),
-        }
-    }
-}
-
-fn store(path: &Path, bytes: &[u8]) -> Result<()> {
-    files::write_atomic(&Disk, path, bytes).map_err(|error| disk_error(path, &error))
+    text.map(|text| picture::seconds(flag, text)).transpose()
 }
 
 fn print(paths: &[PathBuf], format: Format, out: &mut dyn Write) -> Result<()> {

@@ -7,18 +7,17 @@ use billow_solver::frames::Frame;
 use clap::ValueEnum;
 
 use super::Global;
+use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::folder;
-use crate::error::{Error, InputError, Result};
-use crate::files::{Disk, Files, disk_error, write_atomic};
+use crate::error::{Error, Result};
+use crate::files::{Disk, Files, disk_error};
 use crate::history_file::{self, StoredFrames};
 use crate::job::JobId;
 use crate::render::filmstrip::{Colour, Filmstrip};
-use crate::render::png;
 use crate::render::projection::View;
 use crate::results::Results;
 use crate::stored::Stored;
-use crate::units::{self, Dimension};
 use crate::value::Value;
 
 /// Frames on one picture, at most.
@@ -115,9 +114,14 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         colour,
     }
     .svg();
+    if args.out.is_none()
+        && let Some(folder) = source.out.parent().filter(|folder| !folder.as_os_str().is_empty())
+    {
+        Disk.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
+    }
     let mut rows = Vec::with_capacity(pictures.len());
     for path in pictures {
-        write(&path, &svg)?;
+        picture::write(&path, &svg)?;
         let time = |frame: Option<&Frame>| frame.map_or(Value::Null, |f| Value::Number(f.time));
         rows.push(vec![
             Value::Text(path.display().to_string()),
@@ -126,7 +130,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             time(frames.last()),
         ]);
     }
-    print_rows(&["picture", "frames", "from", "to"], &rows, global.format(), out)
+    print_rows(&["file", "frames", "from", "to"], &rows, global.format(), out)
 }
 
 fn source(args: &Args, global: &Global) -> Result<Source> {
@@ -142,7 +146,7 @@ fn source(args: &Args, global: &Global) -> Result<Source> {
     Ok(Source {
         path: stored.history_path(&id)?,
         title: title(&stored, &id),
-        out: root.join("charts").join(format!("frames_{}", id.short())),
+        out: stored.results.charts_path().join(format!("frames_{}", id.short())),
     })
 }
 
@@ -160,34 +164,15 @@ fn title(stored: &Stored<'_>, id: &JobId) -> String {
 /// Files to write: the one asked for, or both.
 fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
     let Some(path) = &args.out else {
-        return Ok(["svg", "png"].map(|kind| source.out.with_extension(kind)).to_vec());
+        let path = |format: Picture| {
+            let mut path = source.out.clone().into_os_string();
+            path.push(format!(".{}", format.ending()));
+            PathBuf::from(path)
+        };
+        return Ok(Picture::ALL.map(path).to_vec());
     };
-    if extension(path).is_none() {
-        let allowed = "a file that ends in .svg or .png";
-        return Err(bad("--out", &path.display().to_string(), "no kind of picture", allowed));
-    }
+    Picture::of(path)?;
     Ok(vec![path.clone()])
-}
-
-fn extension(path: &Path) -> Option<&'static str> {
-    let extension = path.extension()?.to_str()?;
-    ["svg", "png"].into_iter().find(|known| extension.eq_ignore_ascii_case(known))
-}
-
-fn write(path: &Path, svg: &str) -> Result<()> {
-    let failed = |error: std::io::Error| disk_error(path, &error);
-    let encoded;
-    let bytes = if extension(path) == Some("png") {
-        encoded = png::encode(svg, png::PRINT)
-            .map_err(|problem| Error::Disk { path: path.to_owned(), problem })?;
-        &encoded
-    } else {
-        svg.as_bytes()
-    };
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        Disk.create_folder(folder).map_err(failed)?;
-    }
-    write_atomic(&Disk, path, bytes).map_err(failed)
 }
 
 /// What to colour by: storeys where there are some and nobody says otherwise.
@@ -196,29 +181,32 @@ fn colour(asked: Option<ColourArg>, stored: &StoredFrames) -> Result<Colour> {
     match asked {
         Some(ColourArg::Regime) => Ok(Colour::Regime),
         Some(ColourArg::Plain) => Ok(Colour::Plain),
-        Some(ColourArg::Storey) if !capsule => {
-            Err(bad("--colour", "storey", "this film is no capsule: no storeys", "regime, plain"))
-        }
+        Some(ColourArg::Storey) if !capsule => Err(refused(
+            "--colour",
+            "storey",
+            "this film is no capsule: no storeys",
+            "regime, plain",
+        )),
         Some(ColourArg::Storey) => Ok(Colour::Storey),
         None => Ok(if capsule { Colour::Storey } else { Colour::Plain }),
     }
 }
 
 fn view(text: &str) -> Result<View> {
-    let refused = |problem: &str| {
+    let wrong = |problem: &str| {
         let allowed = "azimuth,elevation in degrees, as 30,20; elevation -90 to 90";
-        bad("--view", text, problem, allowed)
+        refused("--view", text, problem, allowed)
     };
     let parts: Vec<&str> = text.split(',').collect();
     let [azimuth, elevation] = parts.as_slice() else {
-        return Err(refused("not two numbers"));
+        return Err(wrong("not two numbers"));
     };
     let degrees = |part: &str| part.trim().parse::<f64>().ok().filter(|angle| angle.is_finite());
     let (Some(azimuth), Some(elevation)) = (degrees(azimuth), degrees(elevation)) else {
-        return Err(refused("not two numbers"));
+        return Err(wrong("not two numbers"));
     };
     if elevation.abs() > 90.0 {
-        return Err(refused("looks from beyond the zenith"));
+        return Err(wrong("looks from beyond the zenith"));
     }
     Ok(View::new(azimuth.to_radians(), elevation.to_radians()))
 }
@@ -226,7 +214,12 @@ fn view(text: &str) -> Result<View> {
 /// Numbers of `count` frames of `stored`, first and last among them; of one, the last.
 fn evenly(count: usize, stored: usize) -> Result<Vec<usize>> {
     if count == 0 || count > MOST {
-        return Err(bad("--count", &count.to_string(), "no such picture", &format!("1 to {MOST}")));
+        return Err(refused(
+            "--count",
+            &count.to_string(),
+            "no such picture",
+            &format!("1 to {MOST}"),
+        ));
     }
     let last = stored - 1;
     if count == 1 {
@@ -244,16 +237,12 @@ fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<Vec<usize>> 
     let (first, last) = (stored[0], stored[stored.len() - 1]);
     let mut numbers = Vec::with_capacity(texts.len());
     for text in texts.iter().map(|text| text.trim()) {
-        let time = match text.parse::<f64>() {
-            Ok(time) => time,
-            Err(_) => units::parse(text, Dimension::Time)
-                .map_err(|error| bad("--times", text, &error.problem, &error.allowed))?,
-        };
+        let time = picture::seconds("--times", text)?;
         // Written out, the last time may be a little more than it is.
         let slack = 1e-6 * (last - first);
         if !(first - slack..=last + slack).contains(&time) {
             let allowed = format!("{first} to {last} s, of which there are {}", stored.len());
-            return Err(bad("--times", text, "no frame of that time", &allowed));
+            return Err(refused("--times", text, "no frame of that time", &allowed));
         }
         let distance = |number: &usize| (stored[*number] - time).abs();
         let nearest = (0..stored.len())
@@ -266,7 +255,7 @@ fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<Vec<usize>> 
     numbers.dedup();
     if numbers.len() > MOST {
         let problem = "too many for one picture";
-        return Err(bad("--times", &asked.to_string(), problem, &format!("at most {MOST}")));
+        return Err(refused("--times", &asked.to_string(), problem, &format!("at most {MOST}")));
     }
     if numbers.len() < asked && !quiet {
         eprintln!(
@@ -277,17 +266,6 @@ fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<Vec<usize>> 
         );
     }
     Ok(numbers)
-}
-
-fn bad(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
-    Error::Input(InputError {
-        file: "frames".to_owned(),
-        key: flag.to_owned(),
-        value: value.to_owned(),
-        problem: problem.to_owned(),
-        allowed: allowed.to_owned(),
-        hint: String::new(),
-    })
 }
 
 #[cfg(test)]
@@ -319,7 +297,7 @@ mod tests {
         assert_eq!(found, [0, 1, 3]);
         for wrong in ["-1", "0.6", "nan", "5 kg", "soon", ""] {
             let error = nearest(&texts(&[wrong]), &stored, true).unwrap_err().to_string();
-            assert!(error.starts_with("frames: --times"), "{error}");
+            assert!(error.starts_with("--times"), "{error}");
             assert!(error.contains("allowed: "), "{error}");
         }
     }

@@ -4,13 +4,12 @@
 //! Colours hold for the colour-blind. In grey, neighbouring storeys differ in brightness, and the three
 //! states of the film do so far more than the shading does.
 
-use std::fmt::Write;
-
 use billow_solver::frames::Frame;
 use billow_solver::material::Regime;
 
 use self::layout::Layout;
 use super::font;
+use super::page::{self, Anchor, Letters, Page, Stroke};
 use super::projection::{Facet, View};
 use crate::value::short_number;
 
@@ -85,46 +84,44 @@ impl Filmstrip<'_> {
         let legend = self.legend();
         let below = LINE * layout.lines_below(&legend) as f64;
         let height = layout.bottom() + below + MARGIN;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}mm\" height=\"{height:.2}mm\" \
-             viewBox=\"0 0 {WIDTH} {height:.2}\" font-family=\"{}, sans-serif\" \
-             font-size=\"{LETTER}\">\n<title>{}</title>\n\
-             <rect width=\"{WIDTH}\" height=\"{height:.2}\" fill=\"#ffffff\"/>\n",
-            font::FAMILY,
-            escaped(self.title),
-        );
-        text(&mut svg, [MARGIN, MARGIN + LETTER], "start", &cut(self.title));
+        let mut page = Page::new();
+        let title = page::cut(self.title, LETTER, WIDTH - 2.0 * MARGIN);
+        page.text([MARGIN, MARGIN + LETTER], &Letters::new(LETTER), &title);
         let seconds = self.frames.iter().any(|frame| frame.time >= 1.0);
         for (number, frame) in self.frames.iter().enumerate() {
-            self.panel(&mut svg, &layout, number, frame);
+            self.panel(&mut page, &layout, number, frame);
             let [x, y] = layout.corner(number);
             let under = [x + 0.5 * layout.width, y + 1.3 * LETTER];
-            text(&mut svg, under, "middle", &time_label(frame.time, seconds));
+            let letters = Letters::new(LETTER).at(Anchor::Middle);
+            page.text(under, &letters, &time_label(frame.time, seconds));
         }
         let mut at = [MARGIN, layout.bottom() + LETTER];
-        layout.scale_bar(&mut svg, at);
+        layout.scale_bar(&mut page, at);
         at[0] += layout.bar_width();
         for (name, colour) in &legend {
             let width = 1.6 * LETTER + font::width(name, LETTER);
             if at[0] + width > WIDTH - MARGIN {
                 at = [MARGIN, at[1] + LINE];
             }
-            swatch(&mut svg, at, *colour);
-            text(&mut svg, [at[0] + 1.6 * LETTER, at[1]], "start", name);
+            let (corner, size) = ([at[0], at[1] - 0.9 * LETTER], [1.2 * LETTER, LETTER]);
+            page.fill(corner, size, &hexadecimal(*colour));
+            page.frame(corner, size, &Stroke::solid("#000000", 0.12));
+            page.text([at[0] + 1.6 * LETTER, at[1]], &Letters::new(LETTER), name);
             at[0] += width + LETTER;
         }
-        svg.push_str("</svg>\n");
-        svg
+        page.finish(WIDTH, height, self.title)
     }
 
     /// One shape. The lines between its elements are thin where there are many.
-    fn panel(&self, svg: &mut String, layout: &Layout, number: usize, frame: &Frame) {
+    fn panel(&self, page: &mut Page, layout: &Layout, number: usize, frame: &Frame) {
         let facets = self.view.facets(self.triangles, frame);
         let line = (6.0 / (facets.len() as f64).sqrt()).clamp(0.03, 0.12);
-        let _ = writeln!(
-            svg,
-            "<g id=\"frame{number}\" stroke=\"#000000\" stroke-opacity=\"0.35\" \
-             stroke-width=\"{line:.3}\" stroke-linejoin=\"round\">"
+        page.open(
+            &format!("frame{number}"),
+            &format!(
+                "stroke=\"#000000\" stroke-opacity=\"0.35\" stroke-width=\"{line:.3}\" \
+                 stroke-linejoin=\"round\""
+            ),
         );
         for facet in &facets {
             // Hundredths of a millimetre, each corner from the one before: short, and no error adds
@@ -132,10 +129,8 @@ impl Filmstrip<'_> {
             let corners =
                 facet.corners.map(|corner| layout.page(number, corner).map(|mm| 100.0 * mm));
             let [a, b, c] = corners.map(|corner| corner.map(f64::round));
-            let [r, g, b_] = self.fill(facet, frame);
-            let _ = writeln!(
-                svg,
-                "<path fill=\"#{r:02x}{g:02x}{b_:02x}\" d=\"M{},{}l{},{} {},{}z\"/>",
+            let d = format!(
+                "M{},{}l{},{} {},{}z",
                 short(a[0]),
                 short(a[1]),
                 short(b[0] - a[0]),
@@ -143,8 +138,9 @@ impl Filmstrip<'_> {
                 short(c[0] - b[0]),
                 short(c[1] - b[1]),
             );
+            page.path(&hexadecimal(self.fill(facet, frame)), &d);
         }
-        svg.push_str("</g>\n");
+        page.close();
     }
 
     #[expect(
@@ -218,31 +214,8 @@ fn time_label(time: f64, seconds: bool) -> String {
     }
 }
 
-fn swatch(svg: &mut String, [x, y]: [f64; 2], [r, g, b]: [u8; 3]) {
-    let _ = writeln!(
-        svg,
-        "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" stroke=\"#000000\" \
-         stroke-width=\"0.12\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>",
-        y - 0.9 * LETTER,
-        1.2 * LETTER,
-        LETTER,
-    );
-}
-
-fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, text: &str) {
-    let text = escaped(text);
-    let _ = writeln!(svg, "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\">{text}</text>");
-}
-
-/// A heading no wider than the page.
-fn cut(title: &str) -> String {
-    let mut title = title.to_owned();
-    let fits = |title: &str| font::width(title, LETTER) <= WIDTH - 2.0 * MARGIN;
-    if fits(&title) {
-        return title;
-    }
-    while title.pop().is_some() && !fits(&format!("{title}…")) {}
-    format!("{}…", title.trim_end())
+fn hexadecimal([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// Hundredths of a millimetre as millimetres, in as few characters as it takes.
@@ -255,20 +228,6 @@ fn short(hundredths: f64) -> String {
             text.replacen("0.", ".", usize::from(text.starts_with("0.") || text.starts_with("-0.")))
         }
     }
-}
-
-fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for letter in text.chars().filter(|letter| !letter.is_control()) {
-        match letter {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '\u{fffe}' | '\u{ffff}' => {}
-            letter => safe.push(letter),
-        }
-    }
-    safe
 }
 
 #[cfg(test)]

@@ -188,6 +188,21 @@ impl Page {
         );
     }
 
+    /// Opens a group of this name whose members share `attributes`, until [`Self::close`].
+    pub fn open(&mut self, name: &str, attributes: &str) {
+        let _ = writeln!(self.body, "<g id=\"{name}\" {attributes}>");
+    }
+
+    /// A filled path with the stroke of its group; `d` says it as SVG does.
+    pub fn path(&mut self, fill: &str, d: &str) {
+        let _ = writeln!(self.body, "<path fill=\"{fill}\" d=\"{d}\"/>");
+    }
+
+    /// Ends what [`Self::open`] began.
+    pub fn close(&mut self) {
+        self.body.push_str("</g>\n");
+    }
+
     /// Draws only what lies in a rectangle, until [`Self::unclip`].
     pub fn clip(&mut self, corner: Place, size: [f64; 2]) {
         self.clips += 1;

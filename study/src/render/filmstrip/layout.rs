@@ -1,10 +1,9 @@
 //! Panels, scale bar and legend of a filmstrip on their page: one scale, rows as high as their highest
 //! shape.
 
-use std::fmt::Write;
-
-use super::{Filmstrip, HEIGHT, LETTER, LINE, MARGIN, WIDTH, text};
+use super::{Filmstrip, HEIGHT, LETTER, LINE, MARGIN, WIDTH};
 use crate::render::font;
+use crate::render::page::{Letters, Page, Stroke};
 use crate::value::short_number;
 
 /// Where everything lies on the page, mm.
@@ -104,20 +103,17 @@ impl Layout {
     }
 
     /// A length of 1, 2 or 5 times a power of ten, with its number beside it.
-    pub(super) fn scale_bar(&self, svg: &mut String, [x, y]: [f64; 2]) {
+    pub(super) fn scale_bar(&self, page: &mut Page, [x, y]: [f64; 2]) {
         let length = self.bar();
-        let (end, y_bar) = (x + length * self.scale, y - 0.35 * LETTER);
-        let tick = 0.35 * LETTER;
-        let _ = writeln!(
-            svg,
-            "<path id=\"scale\" fill=\"none\" stroke=\"#000000\" stroke-width=\"0.25\" \
-             d=\"M{x:.2},{:.2}v{:.2}M{x:.2},{y_bar:.2}H{end:.2}M{end:.2},{:.2}v{:.2}\"/>",
-            y_bar - tick,
-            2.0 * tick,
-            y_bar - tick,
-            2.0 * tick,
-        );
-        text(svg, [end + 0.5 * LETTER, y], "start", &length_label(length));
+        let (end, middle, tick) = (x + length * self.scale, y - 0.35 * LETTER, 0.35 * LETTER);
+        let stroke = Stroke::solid("#000000", 0.25);
+        page.open("scale", "");
+        page.line([x, middle], [end, middle], &stroke);
+        for at in [x, end] {
+            page.line([at, middle - tick], [at, middle + tick], &stroke);
+        }
+        page.close();
+        page.text([end + 0.5 * LETTER, y], &Letters::new(LETTER), &length_label(length));
     }
 
     /// Width of the scale bar, its number and the space behind it.

@@ -90,9 +90,9 @@ fn all_panels_have_one_scale_which_the_bar_tells() {
     };
     // Seen along x, shapes are 0.1 m wide and as high as they are.
     let bar = svg.descendants().find(|node| node.attribute("id") == Some("scale")).unwrap();
-    let d = bar.attribute("d").unwrap();
-    let number = |text: &str| text.split(['v', ',', 'M']).next().unwrap().parse::<f64>().unwrap();
-    let length = number(d.split_once('H').unwrap().1) - number(&d[1..]);
+    let line = bar.children().find(|node| node.has_tag_name("line")).unwrap();
+    let at = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
+    let length = at("x2") - at("x1");
     let label = texts(&svg)[4].clone();
     let told = label.strip_suffix(" mm").unwrap().parse::<f64>().unwrap() / 1e3;
     assert!([1.0, 2.0, 5.0].iter().any(|d| (libm::log10(told / d) % 1.0).abs() < 1e-9), "{label}");
