@@ -14,14 +14,16 @@ use crate::error::{Error, Result};
 use crate::files::{Disk, Files, disk_error};
 use crate::history_file::{self, StoredFrames};
 use crate::job::JobId;
+use crate::render::figure::unit::Unit;
 use crate::render::filmstrip::{Colour, Filmstrip};
 use crate::render::projection::View;
 use crate::results::Results;
 use crate::stored::Stored;
-use crate::value::Value;
+use crate::value::{Value, short_number};
 
-/// Frames on one picture, at most.
-const MOST: usize = 64;
+mod choose;
+
+use choose::{by_motion, nearest};
 
 /// Arguments of `billow frames`.
 #[derive(Debug, clap::Args)]
@@ -30,7 +32,7 @@ pub struct Args {
     pub job: String,
     /// Study file, or folder of its results [default: the only one under results].
     pub study: Option<PathBuf>,
-    /// How many frames, evenly over those stored: the last one, or first to last.
+    /// How many frames, first to last, with as much motion from each to the next; of one, the last.
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub count: usize,
     /// The frames nearest to these times instead, comma-separated: seconds, or with a unit, as in
@@ -99,7 +101,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     })?;
     let colour = colour(args.colour, &stored)?;
     let numbers = if args.times.is_empty() {
-        evenly(args.count, stored.times().len())?
+        by_motion(args.count, &ways(&stored)?)?
     } else {
         nearest(&args.times, stored.times(), global.quiet)?
     };
@@ -133,6 +135,22 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     print_rows(&["file", "frames", "from", "to"], &rows, global.format(), out)
 }
 
+/// How far the film moved on the way to each frame but the first: root mean square over its nodes, m.
+fn ways(stored: &StoredFrames) -> Result<Vec<f64>> {
+    let mut ways = Vec::with_capacity(stored.times().len());
+    let mut before = stored.frame(0)?;
+    for number in 1..stored.times().len() {
+        let frame = stored.frame(number)?;
+        let square = |(a, b): (&[f32; 3], &[f32; 3])| {
+            (0..3).map(|k| f64::from(a[k] - b[k]) * f64::from(a[k] - b[k])).sum::<f64>()
+        };
+        let sum: f64 = before.places.iter().zip(&frame.places).map(square).sum();
+        ways.push((sum / frame.places.len().max(1) as f64).sqrt());
+        before = frame;
+    }
+    Ok(ways)
+}
+
 fn source(args: &Args, global: &Global) -> Result<Source> {
     let path = Path::new(&args.job);
     if path.is_file() || path.extension().is_some_and(|extension| extension == "h5") {
@@ -154,9 +172,17 @@ fn source(args: &Args, global: &Global) -> Result<Source> {
 fn title(stored: &Stored<'_>, id: &JobId) -> String {
     let mut title = format!("{}, job {}", stored.study.name, id.short());
     for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
-        let unit = stored.study.unit(name);
-        let unit = if matches!(unit, "" | "1") { "" } else { unit };
-        title.push_str(format!(", {name} {value} {unit}").trim_end());
+        let unit = match stored.study.unit(name) {
+            "1" => "",
+            unit => unit,
+        };
+        let text = if let (Value::Number(si), false) = (value, unit.is_empty()) {
+            let fit = Unit::of(unit, si.abs());
+            format!(", {name} {} {}", short_number(fit.shown(*si)), fit.symbol)
+        } else {
+            format!(", {name} {value} {unit}")
+        };
+        title.push_str(text.trim_end());
     }
     title
 }
@@ -211,96 +237,9 @@ fn view(text: &str) -> Result<View> {
     Ok(View::new(azimuth.to_radians(), elevation.to_radians()))
 }
 
-/// Numbers of `count` frames of `stored`, first and last among them; of one, the last.
-fn evenly(count: usize, stored: usize) -> Result<Vec<usize>> {
-    if count == 0 || count > MOST {
-        return Err(refused(
-            "--count",
-            &count.to_string(),
-            "no such picture",
-            &format!("1 to {MOST}"),
-        ));
-    }
-    let last = stored - 1;
-    if count == 1 {
-        return Ok(vec![last]);
-    }
-    if count >= stored {
-        return Ok((0..stored).collect());
-    }
-    // Rounded to the nearest; as count is below stored, no number comes twice.
-    Ok((0..count).map(|k| (2 * k * last + count - 1) / (2 * (count - 1))).collect())
-}
-
-/// Numbers of the frames nearest to these times, in order, each once.
-fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<Vec<usize>> {
-    let (first, last) = (stored[0], stored[stored.len() - 1]);
-    let mut numbers = Vec::with_capacity(texts.len());
-    for text in texts.iter().map(|text| text.trim()) {
-        let time = picture::seconds("--times", text)?;
-        // Written out, the last time may be a little more than it is.
-        let slack = 1e-6 * (last - first);
-        if !(first - slack..=last + slack).contains(&time) {
-            let allowed = format!("{first} to {last} s, of which there are {}", stored.len());
-            return Err(refused("--times", text, "no frame of that time", &allowed));
-        }
-        let distance = |number: &usize| (stored[*number] - time).abs();
-        let nearest = (0..stored.len())
-            .min_by(|one, other| distance(one).total_cmp(&distance(other)))
-            .unwrap_or(0);
-        numbers.push(nearest);
-    }
-    let asked = numbers.len();
-    numbers.sort_unstable();
-    numbers.dedup();
-    if numbers.len() > MOST {
-        let problem = "too many for one picture";
-        return Err(refused("--times", &asked.to_string(), problem, &format!("at most {MOST}")));
-    }
-    if numbers.len() < asked && !quiet {
-        eprintln!(
-            "billow: {} of these {asked} times have the same nearest frame as another; {} frames \
-             are stored (outputs.frames)",
-            asked - numbers.len(),
-            stored.len()
-        );
-    }
-    Ok(numbers)
-}
-
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
-
-    proptest! {
-        #[test]
-        fn chosen_frames_rise_from_the_first_to_the_last(count in 1_usize..=MOST, stored in 1_usize..300) {
-            let numbers = evenly(count, stored).unwrap();
-            prop_assert_eq!(numbers.len(), count.min(stored));
-            prop_assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]));
-            prop_assert_eq!(*numbers.last().unwrap(), stored - 1);
-            prop_assert!(count == 1 || numbers[0] == 0);
-            let steps: Vec<usize> = numbers.windows(2).map(|pair| pair[1] - pair[0]).collect();
-            let (least, most) = (steps.iter().min(), steps.iter().max());
-            prop_assert!(most.unwrap_or(&0) - least.unwrap_or(&0) <= 1, "{:?}", numbers);
-        }
-    }
-
-    #[test]
-    fn times_take_the_nearest_frame_and_carry_units() {
-        let stored = [0.0, 0.01, 0.02, 0.5];
-        let texts =
-            |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect::<Vec<_>>();
-        let found = nearest(&texts(&["0.5", " 12 ms", "0", "0.011"]), &stored, true).unwrap();
-        assert_eq!(found, [0, 1, 3]);
-        for wrong in ["-1", "0.6", "nan", "5 kg", "soon", ""] {
-            let error = nearest(&texts(&[wrong]), &stored, true).unwrap_err().to_string();
-            assert!(error.starts_with("--times"), "{error}");
-            assert!(error.contains("allowed: "), "{error}");
-        }
-    }
 
     #[test]
     fn a_view_is_two_angles() {
