@@ -40,6 +40,26 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
     }
 }
 
+/// What a run takes, as far as that shows before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Cost {
+    /// Elements of the mesh; 0 for a model without one.
+    pub elements: u64,
+    /// Steps; 0 where the model chooses them on its way.
+    pub steps: u64,
+}
+
+/// What a run of a scene takes.
+///
+/// # Errors
+/// [`SceneError`] when the scene cannot be started.
+pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
+    match scene.solver.model {
+        ModelKind::Piston => Ok(Cost::default()),
+        ModelKind::Film => film::cost(scene),
+    }
+}
+
 /// The scene whose [`reference()`] a run of this one is judged against: all that does not matter to
 /// static states at its default, so that equal references are equal scenes. `None` for a model that
 /// knows its own.

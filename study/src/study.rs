@@ -182,6 +182,26 @@ impl Study {
         json
     }
 
+    /// What never flows: inflow windows that begin after every run has ended, in words.
+    pub(crate) fn late_windows(&self) -> Vec<String> {
+        let ends = self.points.iter().map(|point| point.scene.solver.end_time);
+        let end = ends.fold(0.0, f64::max);
+        let late = |from: &f64| *from >= end;
+        let of = |(name, strategy): (&String, &strategy::Strategy)| -> Vec<String> {
+            let starts = strategy.starts().into_iter().enumerate();
+            starts
+                .filter_map(|(at, from)| Some((at, from.filter(late)?)))
+                .map(|(at, from)| {
+                    format!(
+                        "strategies.{name}.inflow[{at}] begins at {from} s, when the run has ended \
+                         ({end} s): it lets nothing in"
+                    )
+                })
+                .collect()
+        };
+        self.base.strategies.iter().flat_map(of).collect()
+    }
+
     pub(crate) fn points(&self) -> &[StudyPoint] {
         &self.points
     }

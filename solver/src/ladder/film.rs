@@ -13,16 +13,18 @@
 
 use nalgebra::Vector3;
 
-use super::SceneError;
+use super::{Cost, SceneError};
 use crate::contact::intersections::intersections;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
 use crate::film_scene::{FilmContact, FilmScene};
+use crate::forces::damping;
 use crate::frames::Frame;
 use crate::history::{Sample, Track};
 use crate::integrate::explicit::{Explicit, Interior, State};
 use crate::measures::Reference;
 use crate::mesh::{Mesh, Part, Shape};
+use crate::model::FilmModel;
 use crate::scene::{Scene, Stepping};
 use crate::state::Field;
 
@@ -75,6 +77,24 @@ pub fn solve_scene(
 pub fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
     stable_share(scene).map(|_| ())
+}
+
+/// Elements and steps of a run: the stable step of the film alone, to which gas adds little.
+///
+/// # Errors
+/// As [`solve_scene`].
+pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
+    let stowed = Shape::Stowed(scene.design.stowed_height);
+    let (film, _) = capsule::film_scene(scene, stowed, stable_share(scene)?)?;
+    let model = FilmModel::of_shell(&film.film, &film.shell).map_err(|error| {
+        SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
+    })?;
+    let share = damping::stable_share(scene.film.viscosity);
+    let step = film.solver.cfl * share * 2.0 / model.largest_frequency();
+    let interval = scene.outputs.sample_interval;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts above 0")]
+    let steps = (libm::ceil(interval / step) * (scene.solver.end_time / interval)) as u64;
+    Ok(Cost { elements: model.elements() as u64, steps })
 }
 
 fn stable_share(scene: &Scene) -> Result<f64, SceneError> {

@@ -28,7 +28,19 @@ pub fn print(study: &Study) {
 
 fn lines(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.scene.solver.model == model);
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> =
+        study.late_windows().iter().map(|late| format!("note: {late}")).collect();
+    let empty = |point: &&crate::study::StudyPoint| {
+        let gas = &point.scene.gas;
+        gas.windows.is_empty() && gas.initial_mass <= 0.0
+    };
+    let without = study.points().iter().filter(empty).count();
+    if without > 0 {
+        lines.push(format!(
+            "note: {without} of {} points have no gas at all; nothing deploys them",
+            study.points().len()
+        ));
+    }
     if has(ModelKind::Piston) {
         lines.push(
             "model piston: how fast, not whether (it cannot lock, its speeds are upper bounds); \

@@ -27,6 +27,16 @@ impl Strategy {
         }
     }
 
+    /// When each inflow window begins, s; `None` at the release.
+    pub fn starts(&self) -> Vec<Option<f64>> {
+        let at = WINDOW_KEYS.iter().position(|key| key.path == "from");
+        let start = |window: &Vec<Value>| match at.map(|at| &window[at]) {
+            Some(Value::Number(from)) => Some(*from),
+            _ => None,
+        };
+        self.inflow.iter().map(start).collect()
+    }
+
     /// The strategy spelled out, without what is absent.
     pub fn to_json(&self) -> serde_json::Value {
         let members = |keys: &[Key], values: &[Value]| {
