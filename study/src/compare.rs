@@ -16,7 +16,7 @@
 //! measure is an outcome (`only_base`, `only_other`) and is never dropped. A pair with a job still to
 //! run is `pending` and counts for nothing.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::row::{self, Kind};
 use crate::statistics::Spread;
@@ -55,14 +55,9 @@ pub fn canonical(value: &Value) -> String {
 
 /// Values of a column in some rows, each once, in the order of first appearance.
 pub fn values(column: &Column, rows: &[usize]) -> Vec<Value> {
-    let mut found: Vec<Value> = Vec::new();
-    for row in rows {
-        let value = &column.cells[*row];
-        if !found.iter().any(|known| canonical(known) == canonical(value)) {
-            found.push(value.clone());
-        }
-    }
-    found
+    let mut known = BTreeSet::new();
+    let cells = rows.iter().map(|row| &column.cells[*row]);
+    cells.filter(|value| known.insert(canonical(value))).cloned().collect()
 }
 
 /// Rows that are equal in all parameters but one.

@@ -1,7 +1,10 @@
 //! What tells the points of a chart apart: the parameters that take more than one value, less those that
 //! go with another.
 
+use std::collections::BTreeMap;
+
 use super::number;
+use crate::compare::{self, canonical};
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
 use crate::row::Kind;
@@ -71,13 +74,7 @@ impl<'a> Parameter<'a> {
     /// Its different values over some rows: numbers from the smallest up, what is no number in the
     /// order of the plan.
     pub fn values(&self, rows: &[usize]) -> Vec<Value> {
-        let mut found: Vec<Value> = Vec::new();
-        for row in rows {
-            let value = &self.column.cells[*row];
-            if !found.contains(value) {
-                found.push(value.clone());
-            }
-        }
+        let mut found = compare::values(self.column, rows);
         if self.is_number(rows) {
             found.sort_by(|one, other| {
                 let key = |value| number(value).unwrap_or(f64::INFINITY);
@@ -140,16 +137,11 @@ pub fn varying<'a>(
 /// Whether one value of `one` always comes with the same value of `other`; without `one`, whether
 /// `other` is the same everywhere.
 fn decides(one: Option<&Column>, other: &Column, rows: &[usize]) -> bool {
-    let mut pairs: Vec<(Option<&Value>, &Value)> = Vec::new();
+    let mut pairs: BTreeMap<Option<String>, &Value> = BTreeMap::new();
     rows.iter().all(|row| {
-        let key = one.map(|column| &column.cells[*row]);
+        let key = one.map(|column| canonical(&column.cells[*row]));
         let value = &other.cells[*row];
-        if let Some((_, known)) = pairs.iter().find(|(known, _)| *known == key) {
-            *known == value
-        } else {
-            pairs.push((key, value));
-            true
-        }
+        *pairs.entry(key).or_insert(value) == value
     })
 }
 
