@@ -141,7 +141,7 @@ impl<W: Write> Lines<W> {
 fn standing((name, progress): &(String, Option<Progress>)) -> Option<String> {
     let own = (*progress)?;
     Some(format!(
-        "  {name}  t {:.4} of {} s  z {:.3} m  p {:.4} Pa",
+        "  {name}  t {:.4} of {} s  z_centre {:.3} m  p {:.4} Pa",
         own.time,
         short_number(own.end_time),
         own.z_centre,

@@ -62,8 +62,10 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     let root = root.display();
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
-    let quantity = answer.effects.iter().find(|effect| !matches!(effect.unit.as_str(), "" | "1"));
-    if let Some(effect) = quantity.or(answer.effects.first())
+    // A choice, as of a strategy, asks to be compared first, then a quantity.
+    let of = |unit: fn(&str) -> bool| answer.effects.iter().find(|effect| unit(&effect.unit));
+    let named = of(|unit| unit.is_empty()).or_else(|| of(|unit| unit != "1"));
+    if let Some(effect) = named.or(answer.effects.first())
         && let Some((base, _)) = effect.values.first()
     {
         let base = word(base);

@@ -9,7 +9,7 @@ use super::target::folder;
 use super::{Format, Global, output_error};
 use crate::doctor::{self, Depth, Finding};
 use crate::error::{Error, Result};
-use crate::files::Disk;
+use crate::files::{Disk, Files, disk_error};
 use crate::results::Results;
 use crate::value::Value;
 
@@ -26,6 +26,19 @@ pub struct Args {
 /// [`Error::JobsFailed`] (exit code 1) when something is broken.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let root = folder(args.study.as_deref(), global)?;
+    let names = Disk.list(&root).map_err(|error| disk_error(&root, &error))?;
+    let ours = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        ["study.json", "journal", "jobs", "summary.parquet"].contains(&name.as_ref())
+    };
+    if !names.iter().any(ours) {
+        return Err(Error::Disk {
+            path: root,
+            problem: "no folder of results: no study.json, journal, jobs or summary.parquet\n  \
+                      next: name one, or `billow run STUDY` first"
+                .to_owned(),
+        });
+    }
     let health = doctor::examine(&Results::new(&Disk, &root), Depth::Contents);
     let faults = health.faults();
     match global.format() {

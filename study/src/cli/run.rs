@@ -76,7 +76,9 @@ pub(super) fn run_study(
     if !global.quiet {
         notes::print(study);
     }
-    match (summary.signal, summary.failed()) {
+    // A signal that came when all was done has ended nothing.
+    let open = summary.status.contains_key(row::PENDING);
+    match (summary.signal.filter(|_| open), summary.failed()) {
         (Some(signal), _) => Err(Error::Signal(signal)),
         (None, _) if !summary.different.is_empty() => Err(Error::JobsFailed(format!(
             "{} gave other bits than before: {}\n  next: billow show JOB; same program, same \

@@ -57,6 +57,12 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         .collect();
     print_rows(&names, &cells, format, out)?;
     if format == Format::Table && !global.quiet {
+        if rows.is_empty() && args.condition.is_some() {
+            eprintln!(
+                "billow: --where holds of no row; numbers are SI unless they carry a unit, as in \
+                 mass_flow_rate == '5 g/s'"
+            );
+        }
         eprintln!("{}", legend(&columns, table.columns.len()));
     }
     Ok(())

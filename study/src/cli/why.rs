@@ -64,6 +64,9 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     }
 }
 
+/// Kinetic energy below which a deployment is none, J: a thousandth of the paper's slowest.
+const LITTLE: f64 = 5e-3;
+
 fn headline(cells: &Cells) -> String {
     let close = if *cells.get("close") == Value::Bool(true) { ", close" } else { "" };
     match cells.text("verdict") {
@@ -94,7 +97,22 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
         }
         status => {
             lines.extend(failure(cells, status));
-            advice(status, short, &root.to_string())
+            let energy = number(cells, "peak_kinetic_energy").unwrap_or(f64::INFINITY);
+            if status == "drifted" && energy < LITTLE {
+                lines.push((
+                    "energy",
+                    format!(
+                        "hardly any moved (peak kinetic energy {} J): the folded mesh's own strain is \
+                         as large, and no balance can be told",
+                        brief_number(energy)
+                    ),
+                ));
+                "does gas flow in before solver.end_time? look at gas.mass_flow_rate and at the \
+                 inflow windows of its strategy, whose times count from the start of the run"
+                    .to_owned()
+            } else {
+                advice(status, short, &root.to_string())
+            }
         }
     };
     lines.extend(trust(cells));
@@ -104,7 +122,8 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
     if let Some(record) = stored.journal.records.get(id)
         && let Some(damage) = stored.results.damage(record)?
     {
-        lines.push(("file", format!("{damage}: billow doctor {root}")));
+        lines
+            .push(("file", format!("{damage} by the next `billow run`; see billow doctor {root}")));
     }
     lines.push(("next", next));
     Ok(lines)

@@ -49,7 +49,7 @@ fn a_long_job_is_told_of_now_and_then_with_the_time_left() {
     let said = String::from_utf8(lines.out.clone()).unwrap();
     let expected = "4 jobs, 3 finished, 1 to run\n\
                     3 of 4 jobs finished, 0 failed, about 5 min left\n\
-                    \x20 abababab N=5 M=2  t 0.5000 of 2 s  z 0.300 m  p 51.0000 Pa\n";
+                    \x20 abababab N=5 M=2  t 0.5000 of 2 s  z_centre 0.300 m  p 51.0000 Pa\n";
     assert_eq!(said, expected, "once, not at every sample");
     lines.event(&finished);
     assert!(lines.running.is_empty());

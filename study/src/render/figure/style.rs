@@ -61,7 +61,9 @@ pub enum Fill {
 pub fn marker(page: &mut Page, at: Place, series: usize, fill: Fill, size: f64) {
     let colour = colour(series);
     let inside = if fill == Fill::Filled { colour } else { "#ffffff" };
-    shape(page, at, series % COLOURS.len(), colour, (inside, fill), size);
+    // Once the colours begin again, each has the next one's shape.
+    let own = (series + series / COLOURS.len()) % COLOURS.len();
+    shape(page, at, own, colour, (inside, fill), size);
 }
 
 /// Draws the marker of an outcome where no series is meant: a circle in one colour.
