@@ -174,16 +174,29 @@ impl Plots {
                 x.place(pair[1].0) - x.place(pair[0].0) > half(&pair[0].1) + half(&pair[1].1) + 1.5
             })
         };
-        if !self.x.ticks.is_empty() && (self.x.names || apart(&self.x.ticks)) {
+        // The last number of a panel stands clear of the first of the panel beside it.
+        let clear = |ticks: &[Tick]| match ticks {
+            [first, .., last] if self.across > 1 => {
+                let half = |text: &str| 0.5 * font::width(text, SMALL);
+                let next = x.place(first.0) + width + BETWEEN;
+                next - x.place(last.0) > half(&first.1) + half(&last.1) + 1.5
+            }
+            _ => true,
+        };
+        let fits = apart(&self.x.ticks) && clear(&self.x.ticks);
+        if !self.x.ticks.is_empty() && (self.x.names || fits) {
             return self.x.ticks.clone();
         }
         let [low, high] = self.x.range;
         for most in (2..=9).rev() {
-            let ticks = match self.x.spread {
+            let mut ticks = match self.x.spread {
                 Spread::Linear => ticks::linear(low, high, most),
                 Spread::Logarithmic => ticks::logarithmic(low, high, most),
             };
             if apart(&ticks) || most == 2 {
+                if !clear(&ticks) {
+                    ticks.pop();
+                }
                 return ticks;
             }
         }

@@ -63,6 +63,12 @@ fn same(one: [f64; 2], other: [f64; 2]) -> bool {
     one.map(f64::to_bits) == other.map(f64::to_bits)
 }
 
+#[test]
+fn numbers_of_panels_side_by_side_stand_clear() {
+    let range = axis(957.507, 957.507 + 5112.118);
+    check::figure(&plots(range, &[0.0], 2, 2, 1).svg());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
     #[test]
