@@ -142,6 +142,7 @@ impl Results<'_> {
 mod tests {
     use super::*;
     use crate::files::Disk;
+    use crate::files::failing::FailingFiles;
 
     #[test]
     fn what_is_stored_is_read_and_what_is_damaged_is_not() {
@@ -160,6 +161,17 @@ mod tests {
         let damaged = path.with_file_name(format!("{}.json", "cd".repeat(16)));
         files::write_atomic(&Disk, &damaged, other.as_bytes()).unwrap();
         assert_eq!(results.unread_references(), [damaged]);
+        // A disk that fails at any operation leaves the old file or the new one.
+        let sound = read(&results.files().read(&path).unwrap());
+        for nth in 1..=4 {
+            let failing = FailingFiles::new(nth, io::ErrorKind::StorageFull);
+            let other = Reference::new(vec![[1.0, 0.5, 0.9]]);
+            let told = Results::new(&failing, folder.path()).write_reference(&id, &other);
+            let found = read(&results.files().read(&path).unwrap());
+            assert_eq!(told.is_err(), nth < 4, "operation {nth}");
+            assert!(found == sound || found == Some(other), "operation {nth}");
+            results.write_reference(&id, &reference).unwrap();
+        }
         let loaded = References::load(&results);
         let slots = loaded.slots.lock().unwrap();
         assert_eq!(slots[&id].get(), Some(&Ok(reference)));
