@@ -64,7 +64,7 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     writeln!(out, "           billow chart {root}")?;
     // A choice, as of a strategy, asks to be compared first, then a quantity.
     let of = |unit: fn(&str) -> bool| answer.effects.iter().find(|effect| unit(&effect.unit));
-    let named = of(|unit| unit.is_empty()).or_else(|| of(|unit| unit != "1"));
+    let named = of(str::is_empty).or_else(|| of(|unit| unit != "1"));
     if let Some(effect) = named.or(answer.effects.first())
         && let Some((base, _)) = effect.values.first()
     {
