@@ -30,6 +30,7 @@ pub mod plan;
 pub mod point;
 pub mod progress;
 pub mod provenance;
+pub mod reference_file;
 pub mod references;
 pub mod render;
 pub mod results;

@@ -7,7 +7,7 @@ use std::path::Path;
 use billow_solver::audit::RESIDUAL_BOUND;
 use serde_json::{Map, json};
 
-use super::run::count;
+use super::print::count;
 use crate::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
 use crate::row;
 use crate::value::{Value, brief_number, json_value, short_number};

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
+use super::print::count;
 use super::print::print_rows;
-use super::run::count;
 use super::target::{filtered, find, folder};
 use super::{Format, Global, output_error};
 use crate::compare::{

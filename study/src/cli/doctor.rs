@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use super::print::count;
 use super::print::print_rows;
-use super::run::count;
 use super::target::folder;
 use super::{Format, Global, output_error};
 use crate::doctor::{self, Depth, Finding};

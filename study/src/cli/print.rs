@@ -146,6 +146,11 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
     writeln!(out, "{}]", if rows.is_empty() { "" } else { "\n" })
 }
 
+/// So many of something, as in "1 job", "2 jobs".
+pub fn count(number: usize, word: &str) -> String {
+    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

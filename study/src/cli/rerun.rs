@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
+use super::print::count;
 use super::print::print_rows;
-use super::run::{count, run_study};
+use super::run::run_study;
 
 use super::target::{filtered, folder};
 use super::{Format, Global};

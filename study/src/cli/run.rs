@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
+use super::print::count;
 use super::{Format, Global, notes, output_error};
 use crate::answer::Answer;
 use crate::error::{Error, InputError, Result};
@@ -63,7 +64,7 @@ pub(super) fn run_study(
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(study, finished),
             unit: &|name| study.unit(name).to_owned(),
-            executor: &Solver { references: References::load(&results) },
+            executor: &Solver { references: References::known(results.references()) },
             results: results.clone(),
             threads: threads(global)?,
             stop,
@@ -99,11 +100,6 @@ pub(super) fn run_study(
 /// Where the results of a study lie.
 pub fn results_folder(global: &Global, study: &Study) -> PathBuf {
     global.results.clone().unwrap_or_else(|| Path::new("results").join(&study.name))
-}
-
-/// So many of something, as in "1 job", "2 jobs".
-pub(super) fn count(number: usize, word: &str) -> String {
-    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
 /// The number of threads asked for.

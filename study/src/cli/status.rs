@@ -6,8 +6,9 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::print::count;
 use super::print::print_rows;
-use super::run::{count, listed, threads};
+use super::run::{listed, threads};
 use super::target::folder;
 use super::{Format, Global, output_error};
 use crate::doctor::{self, Depth, Health};
