@@ -22,7 +22,12 @@ root=$(mktemp -d)
 cargo_home=${CARGO_HOME:-$HOME/.cargo}
 rustup_home=${RUSTUP_HOME:-$HOME/.rustup}
 clean() {
-  umount -R "$root" 2> /dev/null || true
+  # A folder of this machine may still be mounted below, on the same device: nothing is deleted through it.
+  umount -R "$root" 2> /dev/null || umount -R -l "$root" 2> /dev/null || true
+  if grep -qF " $root" /proc/self/mounts; then
+    echo "$root is still in use and is left there; unmount what is below it, then remove it" >&2
+    return
+  fi
   rm -rf --one-file-system "$root"
 }
 trap clean EXIT
