@@ -235,6 +235,14 @@ pub struct Deployment {
     pub elements: usize,
 }
 
+impl Deployment {
+    /// The series of that name among what was followed; empty where it was not.
+    pub fn followed(&self, name: &str) -> &[f64] {
+        let own = self.tracks.iter().find(|track| track.name == name);
+        own.map_or(&[], |track| track.values.as_slice())
+    }
+}
+
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stop {

@@ -1,10 +1,8 @@
 //! The answer of a study, as far as its table can give one: how many deploy, which job is fastest,
 //! which hits hardest, what the results are worth, and what each parameter does, all else equal.
 
-use std::collections::BTreeMap;
-
 use crate::compare::{self, Sets};
-use crate::row;
+use crate::row::{self, Counts};
 use crate::statistics::Spread;
 use crate::stored::Stored;
 use crate::table::{Column, Table};
@@ -20,12 +18,8 @@ const MOST_VALUES: usize = 6;
 pub struct Answer {
     /// The question, in the words of the study file.
     pub question: String,
-    /// Rows by status, jobs only: infeasible points are counted beside.
-    pub status: BTreeMap<String, usize>,
-    /// Done jobs by verdict.
-    pub verdict: BTreeMap<String, usize>,
-    /// Done jobs whose verdict a change of less than the margin would change.
-    pub close: usize,
+    /// How the rows ended.
+    pub counts: Counts,
     /// The done job with the least `t_90_z_rim`.
     pub fastest: Option<Extreme>,
     /// The one with the largest `peak_vz`.
@@ -98,32 +92,18 @@ impl Answer {
         let mut answer = Self::default();
         let rows: Vec<usize> = (0..table.rows()).collect();
         for row in &rows {
-            *answer.status.entry(compare::status(table, *row).to_owned()).or_default() += 1;
-            if let Some(Value::Text(verdict)) = cell(table, "verdict", *row) {
-                *answer.verdict.entry(verdict.clone()).or_default() += 1;
-            }
-            answer.close += usize::from(cell(table, "close", *row) == Some(&Value::Bool(true)));
+            let verdict = match cell(table, "verdict", *row) {
+                Some(Value::Text(verdict)) => verdict.as_str(),
+                _ => "",
+            };
+            let close = cell(table, "close", *row) == Some(&Value::Bool(true));
+            answer.counts.add(compare::status(table, *row), verdict, close);
         }
         answer.fastest = extreme(table, "t_90_z_rim", |one, best| one < best);
         answer.hardest = extreme(table, "peak_vz", |one, best| one > best);
         answer.most_energy = extreme(table, "peak_kinetic_energy", |one, best| one > best);
         answer.trust = trust(table, &rows);
         answer
-    }
-
-    /// Rows of that status.
-    pub fn count(&self, status: &str) -> usize {
-        self.status.get(status).copied().unwrap_or(0)
-    }
-
-    /// Rows of failed jobs.
-    pub fn failed(&self) -> usize {
-        self.status.iter().filter(|(status, _)| row::is_failure(status)).map(|(_, n)| n).sum()
-    }
-
-    /// Points that have a job.
-    pub fn jobs(&self) -> usize {
-        self.status.values().sum::<usize>() - self.count(row::INFEASIBLE)
     }
 }
 
@@ -272,11 +252,10 @@ mod tests {
     #[test]
     fn only_done_jobs_are_fastest_hardest_or_trusted() {
         let answer = Answer::of_jobs(&table());
-        assert_eq!((answer.jobs(), answer.failed(), answer.count("infeasible")), (7, 1, 1));
-        assert_eq!(
-            (answer.verdict["deployed"], answer.verdict["stalled"], answer.close),
-            (4, 1, 1)
-        );
+        let counts = &answer.counts;
+        assert_eq!((counts.jobs(), counts.failed(), counts.of("infeasible")), (7, 1, 1));
+        let verdicts = (counts.verdict["deployed"], counts.verdict["stalled"], counts.close);
+        assert_eq!(verdicts, (4, 1, 1));
         let fastest = answer.fastest.unwrap();
         assert_eq!((fastest.job.as_str(), fastest.value), ("b", 2.0));
         assert_eq!(fastest.parameters[0], ("flow".to_owned(), Value::Number(2.0)));

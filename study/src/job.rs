@@ -57,6 +57,18 @@ impl fmt::Display for JobId {
 /// The varied parameters of a point, in the order of the study's axes: name and value (SI).
 pub type Parameters = Vec<(String, Value)>;
 
+/// Parameters as "N=5 M=2".
+pub fn label(parameters: &Parameters) -> String {
+    let texts: Vec<String> =
+        parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    texts.join(" ")
+}
+
+/// How many leading characters two ids have in common.
+pub fn agreement(one: &str, other: &str) -> usize {
+    one.bytes().zip(other.bytes()).take_while(|(one, other)| one == other).count()
+}
+
 /// One scene to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Job {

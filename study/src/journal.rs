@@ -23,6 +23,7 @@ use serde_json::Map;
 use crate::error::{Error, Result};
 use crate::files::{Append, Files, disk_error};
 use crate::job::JobId;
+use crate::point::Point;
 use crate::provenance;
 use crate::row::{self, Cells, Kind};
 use crate::value::Value;
@@ -41,6 +42,14 @@ pub struct Record {
     pub cells: Cells,
     /// SHA-256 of the bytes of its history file; `None` for a job that left none.
     pub file_hash: Option<String>,
+}
+
+/// How a point ended; `None` while its job has not.
+pub fn cells_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<Cells> {
+    match &point.infeasible {
+        Some(infeasible) => Some(Cells::infeasible(infeasible)),
+        None => records.get(&point.job.id).map(|record| record.cells.clone()),
+    }
 }
 
 /// What the journals of a study hold.

@@ -8,6 +8,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use crate::job::{Job, JobId};
 use crate::point::Point;
+use crate::row::Cells;
 use crate::study::Study;
 
 /// The jobs that can be planned together.
@@ -28,6 +29,18 @@ pub struct FinishedRow {
     pub status: String,
     /// Its verdict, as in the table.
     pub verdict: Option<String>,
+}
+
+impl FinishedRow {
+    /// Of a job that ended with these cells.
+    pub fn of(id: &JobId, cells: &Cells) -> Self {
+        let verdict = Some(cells.text("verdict")).filter(|text| !text.is_empty());
+        Self {
+            id: id.clone(),
+            status: cells.status().to_owned(),
+            verdict: verdict.map(str::to_owned),
+        }
+    }
 }
 
 /// The next generation of a study, or `None` when nothing is left to plan. Pure: the same study and

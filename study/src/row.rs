@@ -12,8 +12,10 @@ use crate::provenance;
 use crate::value::Value;
 
 mod columns;
+mod counts;
 
 pub use columns::{COLUMNS, Kind, RowColumn, index};
+pub use counts::Counts;
 
 /// Status of a point whose job has not ended yet.
 pub const PENDING: &str = "pending";
@@ -179,9 +181,8 @@ impl Cells {
         let audit = &deployment.audit;
         self.set("passages", audit.passages.map(integer));
         self.set("intersections", audit.intersections.map(integer));
-        let followed = |name: &str| deployment.tracks.iter().find(|track| track.name == name);
         let extreme = |name: &str, pick: fn(f64, f64) -> f64| {
-            followed(name).and_then(|track| track.values.iter().copied().reduce(pick))
+            deployment.followed(name).iter().copied().reduce(pick)
         };
         self.set("interlayer_pressure", extreme("interlayer_pressure", f64::max));
         self.set("contact_area_fraction", extreme("contact_area_fraction", f64::max));

@@ -17,11 +17,11 @@ use crate::event::{Event, Reporter};
 use crate::executor::Executor;
 use crate::history_file;
 use crate::job::{Job, JobId};
-use crate::journal::{Record, Writer};
+use crate::journal::{self, Record, Writer};
 use crate::plan::{FinishedRow, Generation};
 use crate::point::Point;
 use crate::results::Results;
-use crate::row::{self, Cells};
+use crate::row::{self, Cells, Counts};
 use crate::stop::Stop;
 use crate::study_file::Json;
 use crate::table::Table;
@@ -62,10 +62,8 @@ pub struct Run<'a> {
 /// What a run left.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Summary {
-    /// Rows by status.
-    pub status: BTreeMap<String, usize>,
-    /// Done rows by verdict.
-    pub verdict: BTreeMap<String, usize>,
+    /// How the rows ended.
+    pub counts: Counts,
     /// Jobs this run has computed and stored.
     pub ran: usize,
     /// The signal that ended it early.
@@ -74,13 +72,6 @@ pub struct Summary {
     pub same: usize,
     /// Those that left another one than before, or ended otherwise.
     pub different: Vec<JobId>,
-}
-
-impl Summary {
-    /// Rows of failed jobs.
-    pub fn failed(&self) -> usize {
-        self.status.iter().filter(|(status, _)| row::is_failure(status)).map(|(_, n)| n).sum()
-    }
 }
 
 /// Runs what is missing of a study.
@@ -305,23 +296,12 @@ impl State<'_> {
     }
 
     fn cells(&self, point: &Point) -> Option<Cells> {
-        match &point.infeasible {
-            Some(infeasible) => Some(Cells::infeasible(infeasible)),
-            None => self.records.get(&point.job.id).map(|record| record.cells.clone()),
-        }
+        journal::cells_of(point, &self.records)
     }
 
     /// What planning may know, in plan order.
     fn finished(&self) -> Vec<FinishedRow> {
-        let row = |point: &Point| {
-            let cells = self.cells(point)?;
-            let verdict = cells.text("verdict");
-            Some(FinishedRow {
-                id: point.job.id.clone(),
-                status: cells.status().to_owned(),
-                verdict: (!verdict.is_empty()).then(|| verdict.to_owned()),
-            })
-        };
+        let row = |point: &Point| Some(FinishedRow::of(&point.job.id, &self.cells(point)?));
         self.points.iter().filter_map(row).collect()
     }
 
@@ -335,11 +315,7 @@ impl State<'_> {
         };
         for point in &self.points {
             let cells = self.cells(point).unwrap_or_else(|| Cells::new(row::PENDING));
-            *summary.status.entry(cells.status().to_owned()).or_default() += 1;
-            let verdict = cells.text("verdict");
-            if !verdict.is_empty() {
-                *summary.verdict.entry(verdict.to_owned()).or_default() += 1;
-            }
+            summary.counts.add_cells(&cells);
         }
         summary
     }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use crate::error::{Error, InputError, Result};
-use crate::job::{JobId, Parameters};
+use crate::job::{self, JobId};
 use crate::journal::{self, Journal, Record};
 use crate::plan::{self, FinishedRow};
 use crate::point::Point;
@@ -61,11 +61,7 @@ impl<'a> Stored<'a> {
 
     /// How a point ended so far.
     pub fn cells(&self, point: &Point) -> Cells {
-        match (&point.infeasible, self.journal.records.get(&point.job.id)) {
-            (Some(infeasible), _) => Cells::infeasible(infeasible),
-            (None, Some(record)) => record.cells.clone(),
-            (None, None) => Cells::new(row::PENDING),
-        }
+        journal::cells_of(point, &self.journal.records).unwrap_or_else(|| Cells::new(row::PENDING))
     }
 
     /// The table, from plan and journal.
@@ -135,7 +131,8 @@ impl<'a> Stored<'a> {
             [] => {
                 let mut near: Vec<&JobId> = known.into_iter().collect();
                 // Stable: ids that agree equally far stay sorted.
-                near.sort_by_key(|id| std::cmp::Reverse(agreement(id.as_str(), &wanted)));
+                let agreed = |id: &&JobId| job::agreement(id.as_str(), &wanted);
+                near.sort_by_key(|id| std::cmp::Reverse(agreed(id)));
                 Err(self.no_job(prefix, "no job has this id", &near))
             }
             several => Err(self.no_job(
@@ -168,24 +165,12 @@ impl<'a> Stored<'a> {
 
     /// A job as a person tells it: short id and parameters.
     pub fn label(&self, id: &JobId) -> String {
-        let parameters = self.point(id).map(|point| label(&point.job.parameters));
+        let parameters = self.point(id).map(|point| job::label(&point.job.parameters));
         match parameters {
             Some(text) if !text.is_empty() => format!("{} ({text})", id.short()),
             _ => id.short().to_owned(),
         }
     }
-}
-
-/// Parameters as "N=5 M=2".
-pub fn label(parameters: &Parameters) -> String {
-    let texts: Vec<String> =
-        parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
-    texts.join(" ")
-}
-
-/// How many leading characters two texts have in common.
-fn agreement(one: &str, other: &str) -> usize {
-    one.bytes().zip(other.bytes()).take_while(|(one, other)| one == other).count()
 }
 
 /// Every point the study plans on what is finished: generation after generation, as a run does.
@@ -198,17 +183,11 @@ pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
     {
         last = Some(generation.number);
         points.extend(generation.points);
-        finished = points.iter().filter_map(|point| row_of(point, records)).collect();
+        let row = |point: &Point| {
+            let cells = journal::cells_of(point, records)?;
+            Some(FinishedRow::of(&point.job.id, &cells))
+        };
+        finished = points.iter().filter_map(row).collect();
     }
     points
-}
-
-fn row_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<FinishedRow> {
-    let id = point.job.id.clone();
-    if point.infeasible.is_some() {
-        return Some(FinishedRow { id, status: row::INFEASIBLE.to_owned(), verdict: None });
-    }
-    let cells = &records.get(&id)?.cells;
-    let verdict = Some(cells.text("verdict").to_owned()).filter(|text| !text.is_empty());
-    Some(FinishedRow { id, status: cells.status().to_owned(), verdict })
 }

@@ -179,17 +179,13 @@ fn in_motion(
 fn contact(run: &FilmRun, deployment: &billow_solver::deployment::Deployment) -> Json {
     let Some(law) = &run.film.setting.contact else { return Json::Null };
     let meeting = &run.film.state.meeting;
-    let track = |name: &str| {
-        let own = deployment.tracks.iter().find(|track| track.name == name);
-        own.map(|track| track.values.as_slice()).unwrap_or_default()
-    };
-    let most = |name: &str| track(name).iter().copied().fold(0.0, f64::max);
+    let most = |name: &str| deployment.followed(name).iter().copied().fold(0.0, f64::max);
     let plates = law.plates.iter().zip(&meeting.plates);
     let stored = meeting.contacts.iter().map(|contact| contact.energy).sum::<f64>()
         + meeting.plates.iter().map(|plate| plate.energy).sum::<f64>();
     json!({
         "distance": law.distance,
-        "smallest_gap": track("smallest_gap").iter().copied().fold(law.radius, f64::min),
+        "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(law.radius, f64::min),
         "interlayer_pressure": most("interlayer_pressure"),
         "contact_area_fraction": most("contact_area_fraction"),
         "searches": meeting.searches,

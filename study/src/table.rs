@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::job::JobId;
-use crate::journal::Record;
+use crate::journal::{self, Record};
 use crate::point::Point;
 use crate::row::{self, COLUMNS, Cells, Kind};
 use crate::value::Value;
@@ -52,7 +52,10 @@ impl Table {
         columns.extend(parameter_columns(points, unit));
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
-        let rows: Vec<Cells> = points.iter().map(|point| row_of(point, records)).collect();
+        let row = |point: &Point| {
+            journal::cells_of(point, records).unwrap_or_else(|| Cells::new(row::PENDING))
+        };
+        let rows: Vec<Cells> = points.iter().map(row).collect();
         for (at, column) in COLUMNS.iter().enumerate() {
             let taken = parameters.iter().any(|name| name == column.name);
             columns.push(Column {
@@ -80,15 +83,6 @@ impl Table {
     pub fn parameters(&self) -> impl Iterator<Item = &Column> {
         self.columns.iter().skip(1).take_while(|column| column.name != "status")
     }
-}
-
-fn row_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Cells {
-    if let Some(infeasible) = &point.infeasible {
-        return Cells::infeasible(infeasible);
-    }
-    records
-        .get(&point.job.id)
-        .map_or_else(|| Cells::new(row::PENDING), |record| record.cells.clone())
 }
 
 /// Every parameter any point has, in the order of first appearance.

@@ -25,7 +25,7 @@ fn injected(subdivisions: u32, end_time: f64) -> Scene {
 }
 
 fn run(scene: &Scene, cfl: f64) -> Deployment {
-    film::solve(scene, cfl, None, unread(), &mut Unobserved).expect("a scene that can be run")
+    film::solve(scene, cfl, None, Some(unread()), &mut Unobserved).expect("a scene that can be run")
 }
 
 fn report(name: &str, deployment: &Deployment, wall: f64) {
@@ -177,7 +177,7 @@ fn every_entry_of_the_ledger_is_kept() {
 #[test]
 fn a_step_share_out_of_range_is_refused() {
     for cfl in [0.0, 1.5, f64::NAN] {
-        let refused = film::solve(&injected(2, 0.1), cfl, None, unread(), &mut Unobserved);
+        let refused = film::solve(&injected(2, 0.1), cfl, None, Some(unread()), &mut Unobserved);
         assert!(matches!(refused, Err(SceneError::Invalid { key, .. }) if key == "cfl"));
     }
 }

@@ -48,10 +48,10 @@ pub fn solve(
     scene: &Scene,
     cfl: f64,
     contact: Option<FilmContact>,
-    reference: Reference,
+    reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let mut run = FilmRun::from_scene(scene, cfl, contact, Some(reference))?;
+    let mut run = FilmRun::from_scene(scene, cfl, contact, reference)?;
     Ok(deployment::run(&mut run, &Course::new(scene), observer))
 }
 
@@ -64,10 +64,8 @@ pub fn solve_scene(
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let cfl = stable_share(scene)?;
     let contact = FilmContact::of(&scene.contact);
-    let mut run = FilmRun::from_scene(scene, cfl, Some(contact), reference)?;
-    Ok(deployment::run(&mut run, &Course::new(scene), observer))
+    solve(scene, stable_share(scene)?, Some(contact), reference, observer)
 }
 
 /// Whether a scene is sound for this model, as far as that shows without its pattern.

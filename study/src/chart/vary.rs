@@ -35,13 +35,13 @@ impl<'a> Parameter<'a> {
     /// A value as people write it, with its unit. A number among names is SI.
     pub fn text(&self, value: &Value) -> String {
         let text = self.bare(value);
-        let symbol = match value {
-            Value::Integer(_) | Value::Number(_) => self.unit.symbol.clone(),
-            Value::Text(text) if text.parse::<f64>().is_ok() => Unit::si(&self.column.unit).symbol,
-            _ => String::new(),
-        };
-        let gap = if symbol.is_empty() || symbol == "°" { "" } else { " " };
-        format!("{text}{gap}{symbol}")
+        match value {
+            Value::Integer(_) | Value::Number(_) => self.unit.behind(&text),
+            Value::Text(number) if number.parse::<f64>().is_ok() => {
+                Unit::si(&self.column.unit).behind(&text)
+            }
+            _ => text,
+        }
     }
 
     /// The value of a row, so written.

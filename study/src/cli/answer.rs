@@ -85,23 +85,24 @@ pub fn word(value: &Value) -> String {
 }
 
 fn deployed(answer: &Answer) -> String {
-    let of = |verdict: &str| answer.verdict.get(verdict).copied().unwrap_or(0);
-    let jobs = answer.jobs();
+    let counts = &answer.counts;
+    let of = |verdict: &str| counts.verdict.get(verdict).copied().unwrap_or(0);
+    let jobs = counts.jobs();
     let mut text = format!("{} of {}", of("deployed"), count(jobs, "job"));
     for (number, word) in [
         (of("partial"), "partial"),
         (of("stalled"), "stalled"),
-        (answer.failed(), "failed"),
-        (answer.count(row::PENDING), "pending"),
+        (counts.failed(), "failed"),
+        (counts.of(row::PENDING), "pending"),
     ] {
         if number > 0 {
             let _ = write!(text, ", {number} {word}");
         }
     }
-    if answer.close > 0 {
-        let _ = write!(text, ", {} close to a threshold", answer.close);
+    if counts.close > 0 {
+        let _ = write!(text, ", {} close to a threshold", counts.close);
     }
-    let infeasible = answer.count(row::INFEASIBLE);
+    let infeasible = counts.of(row::INFEASIBLE);
     if infeasible > 0 {
         let _ = write!(text, "; {} infeasible", count(infeasible, "point"));
     }
@@ -226,8 +227,8 @@ pub fn json(answer: &Answer) -> serde_json::Value {
     });
     json!({
         "question": answer.question,
-        "jobs": answer.jobs(),
-        "close": answer.close,
+        "jobs": answer.counts.jobs(),
+        "close": answer.counts.close,
         "fastest": extreme(&answer.fastest, "t_90_z_rim"),
         "hardest": extreme(&answer.hardest, "peak_vz"),
         "most_energy": extreme(&answer.most_energy, "peak_kinetic_energy"),

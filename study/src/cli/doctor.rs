@@ -10,7 +10,7 @@ use super::{Format, Global, output_error};
 use crate::doctor::{self, Depth, Finding};
 use crate::error::{Error, Result};
 use crate::files::{Disk, Files, disk_error};
-use crate::results::Results;
+use crate::results::{OURS, Results};
 use crate::value::Value;
 
 /// Arguments of `billow doctor`.
@@ -29,13 +29,13 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let names = Disk.list(&root).map_err(|error| disk_error(&root, &error))?;
     let ours = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        ["study.json", "journal", "jobs", "summary.parquet"].contains(&name.as_ref())
+        OURS.contains(&name.as_ref())
     };
     if !names.iter().any(ours) {
         return Err(Error::Disk {
             path: root,
-            problem: "no folder of results: no study.json, journal, jobs or summary.parquet\n  \
-                      next: name one, or `billow run STUDY` first"
+            problem: "no folder of results: nothing in it is of a study\n  next: name one, or `billow run \
+                      STUDY` first"
                 .to_owned(),
         });
     }

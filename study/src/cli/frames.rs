@@ -1,5 +1,6 @@
 //! `billow frames`: the shapes of one job side by side.
 
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -172,17 +173,13 @@ fn source(args: &Args, global: &Global) -> Result<Source> {
 fn title(stored: &Stored<'_>, id: &JobId) -> String {
     let mut title = format!("{}, job {}", stored.study.name, id.short());
     for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
-        let unit = match stored.study.unit(name) {
-            "1" => "",
-            unit => unit,
-        };
-        let text = if let (Value::Number(si), false) = (value, unit.is_empty()) {
-            let fit = Unit::of(unit, si.abs());
-            format!(", {name} {} {}", short_number(fit.shown(*si)), fit.symbol)
+        let text = if let Value::Number(si) = value {
+            let unit = Unit::of(stored.study.unit(name), si.abs());
+            unit.behind(&short_number(unit.shown(*si)))
         } else {
-            format!(", {name} {value} {unit}")
+            value.to_string()
         };
-        title.push_str(text.trim_end());
+        let _ = write!(title, ", {name} {text}");
     }
     title
 }

@@ -1,17 +1,17 @@
 //! `billow plan`.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::ladder::{self, Cost};
-use billow_solver::scene::ModelKind;
+mod forecast;
+
+use forecast::forecast;
 
 use super::print::print_rows;
 use super::{Format, Global, notes};
 use crate::error::Result;
-use crate::job::{Parameters, canonical_json};
+use crate::job::Parameters;
 use crate::plan::{Generation, next_jobs};
 use crate::point::Point;
 use crate::study::Study;
@@ -48,53 +48,6 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         notes::print(&study);
     }
     Ok(())
-}
-
-/// Nanoseconds an element and step of the film model take on one core, about: measured on the paper's
-/// capsule at n 5 over half a second.
-const NS: f64 = 130.0;
-/// Meshes that are made to foretell a cost, at most.
-const MESHES: usize = 100;
-
-/// What the jobs will cost, about; nothing for models that cost next to nothing.
-fn forecast(generation: &Generation) -> Option<String> {
-    let mut known: BTreeMap<String, Cost> = BTreeMap::new();
-    let (mut jobs, mut element_steps) = (0_usize, 0.0);
-    for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
-        let scene = &point.job.scene;
-        if scene.solver.model == ModelKind::Piston {
-            continue;
-        }
-        let decides = (&scene.design, &scene.film, &scene.solver, scene.outputs.sample_interval);
-        let key = canonical_json(&decides);
-        if !known.contains_key(&key) {
-            if known.len() == MESHES {
-                return Some(format!(
-                    "forecast: over {MESHES} meshes, none made to foretell a cost"
-                ));
-            }
-            known.insert(key.clone(), ladder::cost(scene).ok()?);
-        }
-        let cost = known[&key];
-        jobs += 1;
-        element_steps += cost.elements as f64 * cost.steps as f64;
-    }
-    (jobs > 0).then(|| {
-        format!(
-            "forecast: {jobs} {} of film, {} million element-steps, about {} of one core",
-            if jobs == 1 { "job" } else { "jobs" },
-            short_number(libm::round(element_steps / 1e6)),
-            spent(element_steps * NS * 1e-9)
-        )
-    })
-}
-
-fn spent(seconds: f64) -> String {
-    match seconds {
-        _ if seconds < 120.0 => format!("{} s", libm::ceil(seconds)),
-        _ if seconds < 7200.0 => format!("{} min", libm::ceil(seconds / 60.0)),
-        _ => format!("{} h", libm::ceil(seconds / 3600.0)),
-    }
 }
 
 /// What the fold solves; a parameter of the same name is what was asked for, so it keeps its column

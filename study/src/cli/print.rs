@@ -5,7 +5,7 @@ use std::io::{self, IsTerminal, Write};
 
 use super::{Format, output_error};
 use crate::error::Result;
-use crate::value::{Value, json_value, short_number};
+use crate::value::{Value, brief_number, json_value, short_number};
 
 /// Prints rows under their columns.
 ///
@@ -149,6 +149,19 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
 /// So many of something, as in "1 job", "2 jobs".
 pub fn count(number: usize, word: &str) -> String {
     format!("{number} {word}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A time as a person says it.
+pub fn duration(seconds: f64) -> String {
+    if seconds < 120.0 {
+        return format!("{} s", brief_number(seconds));
+    }
+    let (value, unit) = match seconds {
+        ..7200.0 => (seconds / 60.0, "min"),
+        ..172_800.0 => (seconds / 3600.0, "h"),
+        _ => (seconds / 86_400.0, "d"),
+    };
+    format!("{value:.1} {unit}")
 }
 
 #[cfg(test)]

@@ -78,8 +78,8 @@ pub(super) fn run_study(
         notes::print(study);
     }
     // A signal that came when all was done has ended nothing.
-    let open = summary.status.contains_key(row::PENDING);
-    match (summary.signal.filter(|_| open), summary.failed()) {
+    let open = summary.counts.of(row::PENDING) > 0;
+    match (summary.signal.filter(|_| open), summary.counts.failed()) {
         (Some(signal), _) => Err(Error::Signal(signal)),
         (None, _) if !summary.different.is_empty() => Err(Error::JobsFailed(format!(
             "{} gave other bits than before: {}\n  next: billow show JOB; same program, same \
@@ -140,14 +140,15 @@ fn print(
     format: Format,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    let counts = &summary.counts;
     if format == Format::Json {
         let mut json = serde_json::json!({
             "study": name,
             "results": root.display().to_string(),
             "ran": summary.ran,
-            "failed": summary.failed(),
-            "status": summary.status,
-            "verdict": summary.verdict,
+            "failed": counts.failed(),
+            "status": counts.status,
+            "verdict": counts.verdict,
             "same_bits": summary.same,
             "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
         });
@@ -158,17 +159,15 @@ fn print(
         }
         return writeln!(out, "{json}");
     }
-    let points: usize = summary.status.values().sum();
-    let without_job = summary.status.get(row::INFEASIBLE).copied().unwrap_or(0);
-    let pending = summary.status.get(row::PENDING).copied().unwrap_or(0);
-    if summary.ran == 0 && pending == 0 {
-        writeln!(out, "{name}: nothing to run, all {} jobs are finished", points - without_job)?;
+    if summary.ran == 0 && counts.of(row::PENDING) == 0 {
+        writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
     } else {
-        writeln!(out, "{name}: {} run, {}", count(summary.ran, "job"), count(points, "point"))?;
+        let (ran, points) = (count(summary.ran, "job"), count(counts.rows(), "point"));
+        writeln!(out, "{name}: {ran} run, {points}")?;
     }
-    writeln!(out, "  status   {}", listed(&summary.status))?;
-    if !summary.verdict.is_empty() {
-        writeln!(out, "  verdict  {}", listed(&summary.verdict))?;
+    writeln!(out, "  status   {}", listed(&counts.status))?;
+    if !counts.verdict.is_empty() {
+        writeln!(out, "  verdict  {}", listed(&counts.verdict))?;
     }
     if summary.same > 0 {
         writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;

@@ -1,13 +1,11 @@
 //! `billow status`: how far a study is.
 
-use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 
 use serde_json::json;
 
-use super::print::count;
-use super::print::print_rows;
+use super::print::{count, duration, print_rows};
 use super::run::{listed, threads};
 use super::target::folder;
 use super::{Format, Global, output_error};
@@ -15,10 +13,10 @@ use crate::doctor::{self, Depth, Health};
 use crate::error::Result;
 use crate::files::Disk;
 use crate::results::Results;
-use crate::row;
+use crate::row::{self, Counts};
 use crate::stored::Stored;
 use crate::summary;
-use crate::value::{Value, brief_number};
+use crate::value::Value;
 
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]
@@ -29,12 +27,8 @@ pub struct Args {
 
 /// How far a study is.
 struct Status {
-    counts: BTreeMap<String, usize>,
-    verdict: BTreeMap<String, usize>,
-    close: usize,
-    points: usize,
-    /// Ended jobs, and the wall time of each summed, s.
-    ended: usize,
+    counts: Counts,
+    /// Wall time of the jobs that have one, s, and how many have.
     seconds: f64,
     timed: usize,
     threads: usize,
@@ -65,39 +59,16 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 
 impl Status {
     fn of(stored: &Stored<'_>) -> Self {
-        let mut status = Self {
-            counts: BTreeMap::new(),
-            verdict: BTreeMap::new(),
-            close: 0,
-            points: stored.points.len(),
-            ended: 0,
-            seconds: 0.0,
-            timed: 0,
-            threads: 1,
-        };
+        let mut status = Self { counts: Counts::default(), seconds: 0.0, timed: 0, threads: 1 };
         for point in &stored.points {
             let cells = stored.cells(point);
-            *status.counts.entry(cells.status().to_owned()).or_default() += 1;
-            status.ended += usize::from(!matches!(cells.status(), row::PENDING | row::INFEASIBLE));
-            if !cells.text("verdict").is_empty() {
-                *status.verdict.entry(cells.text("verdict").to_owned()).or_default() += 1;
-            }
-            status.close += usize::from(*cells.get("close") == Value::Bool(true));
+            status.counts.add_cells(&cells);
             if let Value::Number(seconds) = cells.get("wall_seconds") {
                 status.seconds += seconds;
                 status.timed += 1;
             }
         }
         status
-    }
-
-    fn count(&self, status: &str) -> usize {
-        self.counts.get(status).copied().unwrap_or(0)
-    }
-
-    fn failed(&self) -> BTreeMap<String, usize> {
-        let failed = self.counts.iter().filter(|(status, _)| row::is_failure(status));
-        failed.map(|(status, number)| (status.clone(), *number)).collect()
     }
 
     /// Mean wall time of a job, s.
@@ -107,28 +78,28 @@ impl Status {
 
     /// Wall time until all has run, s, on `threads` at once; none while nothing has run.
     fn left(&self) -> Option<f64> {
-        let pending = self.count(row::PENDING);
+        let pending = self.counts.of(row::PENDING);
         let at_once = self.threads.min(pending).max(1);
         self.mean().map(|mean| mean * pending as f64 / at_once as f64)
     }
 
     fn json(&self, stored: &Stored<'_>, health: &Health) -> serde_json::Value {
-        let infeasible = self.count(row::INFEASIBLE);
+        let infeasible = self.counts.of(row::INFEASIBLE);
         json!({
             "study": stored.study.name,
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
             "running": health.running,
-            "points": self.points,
-            "jobs": self.points - infeasible,
-            "done": self.count(row::DONE),
-            "failed": self.failed().values().sum::<usize>(),
-            "pending": self.count(row::PENDING),
+            "points": self.counts.rows(),
+            "jobs": self.counts.jobs(),
+            "done": self.counts.of(row::DONE),
+            "failed": self.counts.failed(),
+            "pending": self.counts.of(row::PENDING),
             "infeasible": infeasible,
             "withdrawn": stored.journal.withdrawn.len(),
-            "status": self.counts,
-            "verdict": self.verdict,
-            "close": self.close,
+            "status": self.counts.status,
+            "verdict": self.counts.verdict,
+            "close": self.counts.close,
             "wall_seconds": self.seconds,
             "mean_wall_seconds": self.mean(),
             "seconds_left": self.left(),
@@ -141,9 +112,9 @@ impl Status {
     }
 
     fn print(&self, stored: &Stored<'_>, health: &Health, out: &mut dyn Write) -> Result<()> {
-        let infeasible = self.count(row::INFEASIBLE);
-        let pending = self.count(row::PENDING);
-        let failed = self.failed();
+        let infeasible = self.counts.of(row::INFEASIBLE);
+        let pending = self.counts.of(row::PENDING);
+        let failed = self.counts.failures();
         let state = match (health.running, pending) {
             (true, _) => "running: another process holds its lock",
             (false, 0) => "finished",
@@ -154,24 +125,27 @@ impl Status {
         if !stored.study.question.is_empty() {
             line("question", stored.study.question.clone());
         }
-        let jobs = count(self.points - infeasible, "job");
-        line("points", format!("{}: {jobs}, {infeasible} infeasible", self.points));
+        let jobs = count(self.counts.jobs(), "job");
+        line("points", format!("{}: {jobs}, {infeasible} infeasible", self.counts.rows()));
         let withdrawn = stored.journal.withdrawn.len();
         let again = if withdrawn > 0 { format!(" ({withdrawn} withdrawn)") } else { String::new() };
-        let number: usize = failed.values().sum();
+        let number = self.counts.failed();
         line(
             "jobs",
-            format!("{} done, {number} failed, {pending} pending{again}", self.count(row::DONE)),
+            format!(
+                "{} done, {number} failed, {pending} pending{again}",
+                self.counts.of(row::DONE)
+            ),
         );
         if !failed.is_empty() {
             line("failed", format!("{}; billow why JOB says why", listed(&failed)));
         }
-        if !self.verdict.is_empty() {
-            let close = match self.close {
+        if !self.counts.verdict.is_empty() {
+            let close = match self.counts.close {
                 0 => String::new(),
                 close => format!(" ({close} close to a threshold)"),
             };
-            line("verdict", format!("{}{close}", listed(&self.verdict)));
+            line("verdict", format!("{}{close}", listed(&self.counts.verdict)));
         }
         if let Some(mean) = self.mean() {
             let spent = duration(self.seconds);
@@ -217,17 +191,4 @@ impl Status {
         }
         Ok(())
     }
-}
-
-/// A time as a person says it.
-pub(super) fn duration(seconds: f64) -> String {
-    if seconds < 120.0 {
-        return format!("{} s", brief_number(seconds));
-    }
-    let (value, unit) = match seconds {
-        ..7200.0 => (seconds / 60.0, "min"),
-        ..172_800.0 => (seconds / 3600.0, "h"),
-        _ => (seconds / 86_400.0, "d"),
-    };
-    format!("{value:.1} {unit}")
 }

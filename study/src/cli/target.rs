@@ -7,6 +7,7 @@ use super::run::results_folder;
 use crate::error::{Error, InputError, Result};
 use crate::expression::{Expression, Type, Variable};
 use crate::files::{Disk, Files};
+use crate::job;
 use crate::keys;
 use crate::results::Results;
 use crate::row::Kind;
@@ -199,7 +200,7 @@ pub fn jobs(table: &Table, beginnings: &[String]) -> Result<Vec<usize>> {
 
 /// Ids that share the longest beginning with this one, a few of them.
 fn near(ids: &[&str], beginning: &str) -> String {
-    let shared = |id: &str| id.bytes().zip(beginning.bytes()).take_while(|(a, b)| a == b).count();
+    let shared = |id: &str| job::agreement(id, beginning);
     let longest = ids.iter().map(|id| shared(id)).max().unwrap_or(0);
     let mut nearest: Vec<&str> = ids
         .iter()

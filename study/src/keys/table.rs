@@ -48,15 +48,6 @@ pub(super) const FRACTION: Kind = above(Dimension::Number, 0.0, 1.0);
 pub(super) const KELVIN: Kind = from(Dimension::Temperature, 1.0, 5000.0);
 pub(super) const CLOCK: Kind = from(Dimension::Time, 0.0, 1e6);
 
-/// Shapes kept of a run.
-pub(super) const FRAMES: Key = key(
-    "outputs.frames",
-    Kind::Integer(0, 10_000),
-    Integer(40),
-    "40",
-    "Shapes kept of a run, densest after the release; 0 for none. Models without a shape ignore it.",
-);
-
 /// Every key that holds one value.
 #[rustfmt::skip]
 pub static KEYS: &[Key] = &[
@@ -175,7 +166,9 @@ pub static KEYS: &[Key] = &[
 
     key("outputs.sample_interval", above(Dimension::Time, 0.0, 1e6), Number(0.001), "\"1 ms\"",
         "Time between samples of the history; at most a million samples a run."),
-    FRAMES,
+    key("outputs.frames", Kind::Integer(0, 10_000), Integer(40), "40",
+        "Shapes kept of a run, densest after the release; 0 for none. Models without a shape \
+         ignore it."),
     key("outputs.thresholds.deployed_volume", FRACTION, Number(0.93), "0.93",
         "Deployed needs this fraction of the reference volume."),
     key("outputs.thresholds.deployed_height", FRACTION, Number(0.95), "0.95",

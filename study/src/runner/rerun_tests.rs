@@ -95,7 +95,7 @@ fn a_rerun_leaves_other_open_jobs_alone() {
     run_on(&Disk, folder.path(), Some(&[0]), ran).0.unwrap();
     let (ended, asked) = run_on(&Disk, folder.path(), Some(&[0]), ran);
     let summary = ended.unwrap();
-    assert_eq!((asked, summary.status["pending"], summary.status["done"]), (1, 3, 1));
+    assert_eq!((asked, summary.counts.status["pending"], summary.counts.status["done"]), (1, 3, 1));
 }
 
 #[test]

@@ -117,8 +117,11 @@ fn any_number_of_threads_and_any_batch_leave_the_same_bytes() {
         executor.batch = batch;
         let summary = run_quiet(&root, 20, threads, &executor);
         assert_eq!(summary.ran, 19);
-        assert_eq!(summary.status, [("done".to_owned(), 19), ("infeasible".to_owned(), 1)].into());
-        assert_eq!(summary.verdict, [("deployed".to_owned(), 19)].into());
+        assert_eq!(
+            summary.counts.status,
+            [("done".to_owned(), 19), ("infeasible".to_owned(), 1)].into()
+        );
+        assert_eq!(summary.counts.verdict, [("deployed".to_owned(), 19)].into());
         left.push((histories(&root), fs::read(root.join("summary.parquet")).unwrap()));
     }
     assert_eq!(left[0].0.len(), 19);
@@ -135,7 +138,7 @@ fn a_second_run_computes_nothing_and_changes_no_file() {
     let mut heard = Heard(Vec::new());
     let summary = run_on(&Disk, folder.path(), 6, 2, &again, &mut heard).unwrap();
     assert_eq!((asked(&again), summary.ran), (0, 0));
-    assert_eq!(summary.status["done"], 5);
+    assert_eq!(summary.counts.status["done"], 5);
     assert_eq!(files_under(folder.path()), before);
     assert!(heard.0.contains(&Event::GenerationStarted { number: 0, jobs: 5, finished: 5 }));
 }
@@ -169,7 +172,7 @@ fn a_panic_and_a_refusal_are_rows_with_their_reason() {
         let mut executor = Scripted::new(script);
         executor.batch = batch;
         let summary = run_quiet(folder.path(), 6, 2, &executor);
-        assert_eq!(summary.failed(), 2, "batch {batch}");
+        assert_eq!(summary.counts.failed(), 2, "batch {batch}");
         let table = table(folder.path());
         let cell = |name: &str, row: usize| table.column(name).unwrap().cells[row].to_string();
         let status: Vec<String> = (0..6).map(|row| cell("status", row)).collect();
@@ -179,7 +182,7 @@ fn a_panic_and_a_refusal_are_rows_with_their_reason() {
 
         let again = Scripted::new(script);
         let summary = run_quiet(folder.path(), 6, 2, &again);
-        assert_eq!((asked(&again), summary.failed()), (0, 2), "a failure is an answer too");
+        assert_eq!((asked(&again), summary.counts.failed()), (0, 2), "a failure is an answer too");
     }
 }
 
@@ -284,8 +287,8 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
     };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
-    assert_eq!(summary.status["done"], 4, "0, 1, 3 and the one that was running");
-    assert_eq!(summary.status["pending"], 7);
+    assert_eq!(summary.counts.status["done"], 4, "0, 1, 3 and the one that was running");
+    assert_eq!(summary.counts.status["pending"], 7);
     assert_eq!(table(folder.path()).rows(), 12);
     let again = Scripted::new(ran);
     run_quiet(folder.path(), 12, 1, &again);

@@ -11,7 +11,7 @@ use rayon::ThreadPool;
 use crate::event::Event;
 use crate::executor::{Executor, Outcome, execute_guarded};
 use crate::history_file;
-use crate::job::Job;
+use crate::job::{self, Job};
 use crate::row::Cells;
 
 /// Least time between two samples told of one thread.
@@ -54,9 +54,7 @@ pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
     match message {
         Message::Started { index, thread } => {
             let job = &jobs[*index];
-            let label: Vec<String> =
-                job.parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
-            let label = label.join(" ");
+            let label = job::label(&job.parameters);
             Some(Event::JobStarted { id: job.id.clone(), label, thread: *thread })
         }
         Message::Sample { thread, progress } => {

@@ -168,16 +168,15 @@ impl Plots {
     /// Marks of the x axis that there is room for.
     fn x_ticks(&self, width: f64) -> Vec<Tick> {
         let x = self.x_scale(0.0, width);
+        let half = |text: &str| 0.5 * font::width(text, SMALL);
         let apart = |ticks: &[Tick]| {
             ticks.windows(2).all(|pair| {
-                let half = |text: &str| 0.5 * font::width(text, SMALL);
                 x.place(pair[1].0) - x.place(pair[0].0) > half(&pair[0].1) + half(&pair[1].1) + 1.5
             })
         };
         // The last number of a panel stands clear of the first of the panel beside it.
         let clear = |ticks: &[Tick]| match ticks {
             [first, .., last] if self.across > 1 => {
-                let half = |text: &str| 0.5 * font::width(text, SMALL);
                 let next = x.place(first.0) + width + BETWEEN;
                 next - x.place(last.0) > half(&first.1) + half(&last.1) + 1.5
             }

@@ -77,6 +77,12 @@ impl Unit {
         }
     }
 
+    /// A number, or words for one, with the unit behind it.
+    pub fn behind(&self, text: &str) -> String {
+        let gap = if self.symbol.is_empty() || self.symbol == "°" { "" } else { " " };
+        format!("{text}{gap}{}", self.symbol)
+    }
+
     /// A name with the unit behind it: `pressure (kPa)`; a pure number has none.
     pub fn label(&self, name: &str) -> String {
         if self.symbol.is_empty() { name.to_owned() } else { format!("{name} ({})", self.symbol) }

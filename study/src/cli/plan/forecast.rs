@@ -1,0 +1,50 @@
+//! What the jobs of a plan will cost.
+
+use std::collections::BTreeMap;
+
+use billow_solver::ladder::{self, Cost};
+use billow_solver::scene::ModelKind;
+
+use crate::cli::print::{count, duration};
+use crate::job::canonical_json;
+use crate::plan::Generation;
+use crate::value::short_number;
+
+/// Nanoseconds an element and step of the film model take on one core, about: measured on the paper's
+/// capsule at n 5 over half a second.
+const NS: f64 = 130.0;
+/// Meshes that are made to foretell a cost, at most.
+const MESHES: usize = 100;
+
+/// What the jobs will cost, about; nothing for models that cost next to nothing.
+pub(super) fn forecast(generation: &Generation) -> Option<String> {
+    let mut known: BTreeMap<String, Cost> = BTreeMap::new();
+    let (mut jobs, mut element_steps) = (0_usize, 0.0);
+    for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
+        let scene = &point.job.scene;
+        if scene.solver.model == ModelKind::Piston {
+            continue;
+        }
+        let decides = (&scene.design, &scene.film, &scene.solver, scene.outputs.sample_interval);
+        let key = canonical_json(&decides);
+        if !known.contains_key(&key) {
+            if known.len() == MESHES {
+                return Some(format!(
+                    "forecast: over {MESHES} meshes, none made to foretell a cost"
+                ));
+            }
+            known.insert(key.clone(), ladder::cost(scene).ok()?);
+        }
+        let cost = known[&key];
+        jobs += 1;
+        element_steps += cost.elements as f64 * cost.steps as f64;
+    }
+    (jobs > 0).then(|| {
+        format!(
+            "forecast: {} of film, {} million element-steps, about {} of one core",
+            count(jobs, "job"),
+            short_number(libm::round(element_steps / 1e6)),
+            duration(libm::ceil(element_steps * NS * 1e-9))
+        )
+    })
+}
