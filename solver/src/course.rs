@@ -66,7 +66,7 @@ impl Course {
     }
 
     /// Times at which the phase changes, rising, s.
-    pub(crate) fn breaks(&self) -> Vec<f64> {
+    pub fn breaks(&self) -> Vec<f64> {
         let mut breaks = self.schedule.edges().to_vec();
         breaks.push(self.release_time);
         breaks.sort_by(f64::total_cmp);
@@ -75,13 +75,13 @@ impl Course {
     }
 
     /// The phase between two times (s) without a break between them.
-    pub(crate) fn phase(&self, from: f64, to: f64) -> Phase {
+    pub fn phase(&self, from: f64, to: f64) -> Phase {
         let packed = 0.5 * (from + to) < self.release_time;
         Phase { packed, inflow: self.schedule.between(from, to) }
     }
 
     /// Time of sample `index`, s; the last is the end.
-    pub(crate) fn sample_time(&self, index: u64) -> f64 {
+    pub fn sample_time(&self, index: u64) -> f64 {
         let time = index as f64 * self.sample_interval;
         // A sample this near to the end is the end.
         if time > self.end_time - 1e-6 * self.sample_interval { self.end_time } else { time }

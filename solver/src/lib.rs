@@ -44,6 +44,7 @@ pub mod resultants;
 pub mod scene;
 pub mod shell;
 pub mod simd;
+pub mod stages;
 pub mod state;
 pub mod statics;
 pub mod supports;

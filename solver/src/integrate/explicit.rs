@@ -30,6 +30,7 @@ use crate::gas::{Gas, GasState, Inflow};
 use crate::model::FilmModel;
 use crate::mutation::{Mutation, Term};
 use crate::simd::Path;
+use crate::stages::{Stage, Stopwatch, Untimed};
 use crate::state::Field;
 use crate::supports::Supports;
 
@@ -134,7 +135,7 @@ impl Explicit {
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
         film.meet_first();
-        let sums = film.pass_at(0.0);
+        let sums = film.pass_at(0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
             Interior::Gas(gas) => {
@@ -150,7 +151,7 @@ impl Explicit {
     /// Goes on from a state of the same film under the same setting, bit for bit.
     pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
         let mut film = Self::with(model, setting, state);
-        let _ = film.pass_at(film.state.time);
+        let _ = film.pass_at(film.state.time, &mut Untimed);
         film
     }
 
@@ -180,6 +181,20 @@ impl Explicit {
         phase: &Phase,
         steps: &mut u64,
     ) -> Result<bool, Failure> {
+        self.advance_timed(target, phase, steps, &mut Untimed)
+    }
+
+    /// The same, telling a stopwatch what is done when.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    pub fn advance_timed(
+        &mut self,
+        target: f64,
+        phase: &Phase,
+        steps: &mut u64,
+        stopwatch: &mut dyn Stopwatch,
+    ) -> Result<bool, Failure> {
         let mut stretch = match self.state.stretch.take() {
             Some(stretch) => stretch,
             None => Stretch::new(self.state.time, target, self.stable_step()).ok_or_else(|| {
@@ -189,6 +204,7 @@ impl Explicit {
         while let Some(until) = stretch.next_end() {
             if *steps == 0 {
                 self.state.stretch = Some(stretch);
+                stopwatch.begins(Stage::Audit);
                 self.look()?;
                 return Ok(false);
             }
@@ -201,11 +217,12 @@ impl Explicit {
             if phase.packed && self.setting.contact.is_none() {
                 self.wait(stretch.length, phase.inflow);
             } else {
-                self.step(stretch.length, until, phase.inflow)?;
+                self.step(stretch.length, until, phase.inflow, stopwatch)?;
             }
             self.state.time = until;
             self.state.steps += 1;
         }
+        stopwatch.begins(Stage::Audit);
         self.look()?;
         Ok(true)
     }
@@ -237,13 +254,22 @@ impl Explicit {
     }
 
     /// A step that ends at the time `until` (s).
-    fn step(&mut self, length: f64, until: f64, inflow: Inflow) -> Result<(), Failure> {
+    fn step(
+        &mut self,
+        length: f64,
+        until: f64,
+        inflow: Inflow,
+        stopwatch: &mut dyn Stopwatch,
+    ) -> Result<(), Failure> {
+        stopwatch.begins(Stage::Update);
         self.kick(0.5 * (self.state.last_step + length), length, until);
-        self.keep_apart(0.5 * (self.state.last_step + length), length)?;
+        self.keep_apart(0.5 * (self.state.last_step + length), length, stopwatch)?;
+        stopwatch.begins(Stage::Update);
         self.share_work(length);
         let fastest = self.drift(length);
         self.plate_work(until);
-        let sums = self.pass_at(until);
+        let sums = self.pass_at(until, stopwatch);
+        stopwatch.begins(Stage::Gas);
         self.plate_work(until);
         let volume = sums.six_volumes / 6.0;
         // No NaN passes either of these.
@@ -258,8 +284,10 @@ impl Explicit {
             return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
         }
         self.step_gas(volume, length, inflow);
+        stopwatch.begins(Stage::Update);
         self.share_work(length);
         self.state.last_step = length;
+        stopwatch.begins(Stage::Audit);
         self.seen()
     }
 
@@ -335,7 +363,8 @@ impl Explicit {
     }
 
     /// Element and node passes at the places now, which are those of `time` (s).
-    fn pass_at(&mut self, time: f64) -> Sums {
+    fn pass_at(&mut self, time: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
+        stopwatch.begins(Stage::Membrane);
         let (model, state) = (&self.model, &self.state);
         let path = self.setting.path;
         let mut sums =
@@ -345,6 +374,7 @@ impl Explicit {
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
         }
+        stopwatch.begins(Stage::Pairs);
         self.press(time);
         sums
     }

@@ -4,6 +4,7 @@ use super::{Explicit, State};
 use crate::contact::guard::{Stopped, taken};
 use crate::contact::{Kind, Pair};
 use crate::deployment::{Failure, FailureKind};
+use crate::stages::{Stage, Stopwatch};
 use crate::state::Field;
 
 /// How often pairs and plates take turns in a step, at most.
@@ -56,7 +57,12 @@ impl Explicit {
 
     /// Looks for pairs the drift to come could bring together, and keeps them apart, and off the plates:
     /// in turn, until neither changes anything and no node is faster than the pairs were looked for.
-    pub(super) fn keep_apart(&mut self, kick: f64, length: f64) -> Result<(), Failure> {
+    pub(super) fn keep_apart(
+        &mut self,
+        kick: f64,
+        length: f64,
+        stopwatch: &mut dyn Stopwatch,
+    ) -> Result<(), Failure> {
         let Some(law) = &self.setting.contact else { return Ok(()) };
         let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
         let State { places, velocities, meeting, .. } = &mut self.state;
@@ -64,7 +70,9 @@ impl Explicit {
             velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
         };
         let mut way = fastest(velocities) * length;
+        stopwatch.begins(Stage::Search);
         law.prepare(places, meeting, way);
+        stopwatch.begins(Stage::Pairs);
         law.rub(model, supports, places, &self.next, velocities, kick, meeting);
         let mut stopped = Stopped::new();
         for turn in 0..MOST_TURNS {
