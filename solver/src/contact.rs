@@ -16,9 +16,8 @@
 //!   node counts only if every element there agrees that it is nearest, and then once. A contact that
 //!   slides to a bordering feature keeps offset and stiffness.
 //! - Two edges meet where their closest points lie inside both, at half the distance.
-//! - **Search.** All pairs nearer than a radius are listed; a pair far off is not looked at again
-//!   before the largest displacement of any node could have brought it near; the list is made anew
-//!   before that displacement could have brought in a pair that is not on it.
+//! - **Search.** A pair far off is not looked at again before the largest displacement of any node
+//!   could have brought it near; film far off is looked at patch by patch ([`crate::proximity`]).
 //! - **Guard.** Before nodes move, each near pair is swept along its straight paths. A pair that
 //!   would close more than nine tenths of its distance has its approach taken out by an impulse that
 //!   keeps momentum; what energy that takes is counted. So no accepted step lets film through.
@@ -34,7 +33,6 @@ pub mod distance;
 pub mod friction;
 pub mod guard;
 pub mod intersections;
-pub mod order;
 pub mod plates;
 pub mod pressure;
 pub mod search;
@@ -116,8 +114,8 @@ pub struct Law {
     pub distance: f64,
     /// k over the mass of the pair: κ ω², 1/s².
     pub stiffness: f64,
-    /// Pairs nearer than this are listed by a search, m.
-    pub radius: f64,
+    /// Mean edge length, m.
+    pub edge_length: f64,
     /// Rigid plates the film lies against.
     pub plates: Vec<Plate>,
     /// Coulomb friction coefficient.
@@ -148,8 +146,6 @@ const STIFFNESS: f64 = 0.8;
 const STEP_LEFT: f64 = 0.8;
 /// How many times the stiffness of one pair may act on a mode.
 const AT_ONCE: f64 = 3.0;
-/// Share of the mean edge length within which pairs are listed.
-const RADIUS: f64 = 0.1;
 
 /// Share of the smallest gap that is the contact distance where none is given.
 pub const OF_GAP: f64 = 0.4;
@@ -176,14 +172,7 @@ impl Law {
             (OF_GAP * smallest).min(OF_EDGE * edge)
         });
         law.distance = distance;
-        law.radius = (RADIUS * edge).max(4.0 * distance);
         law
-    }
-
-    /// Makes film adhere; pairs are listed that much farther out.
-    pub fn adhere(&mut self, adhesion: Adhesion) {
-        self.radius += adhesion.range - self.adhesion.range;
-        self.adhesion = adhesion;
     }
 
     /// Contact of film of these elements, at this distance (m), whose fastest mode is ω (rad/s) and
@@ -193,7 +182,7 @@ impl Law {
             topology,
             distance,
             stiffness: STIFFNESS * frequency * frequency,
-            radius: (RADIUS * edge).max(4.0 * distance),
+            edge_length: edge,
             plates: Vec::new(),
             friction: 0.0,
             adhesion: Adhesion::default(),
@@ -226,8 +215,7 @@ impl Law {
 }
 
 /// A near pair and how far apart it was when last looked at, m.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
     /// The pair.
     pub pair: Pair,
@@ -239,14 +227,8 @@ pub struct Near {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Meeting {
-    /// Largest displacement any node can have had since the last search, m.
-    pub travelled: f64,
-    /// Pairs looked at every step, in order.
-    pub near: Vec<Near>,
-    /// Pairs not to be looked at before `travelled` reaches their number, m.
-    pub far: Vec<Vec<Pair>>,
-    /// First of `far` not yet looked at.
-    pub reached: usize,
+    /// Sum over the steps of the largest displacement of any node, m.
+    pub path: f64,
     /// Contacts now, in order.
     pub contacts: Vec<active::Contact>,
     /// What each plate bears.
@@ -254,7 +236,7 @@ pub struct Meeting {
     /// Room for the next contacts.
     #[serde(skip)]
     spare: Vec<active::Contact>,
-    /// Searches so far.
+    /// Searches for what is near from nothing so far.
     pub searches: u64,
     /// Approaches taken out so far.
     pub impulses: u64,
@@ -262,7 +244,4 @@ pub struct Meeting {
     pub taken: f64,
     /// Energy friction took, J.
     pub rubbed: f64,
-    /// Smallest distance of any near pair now, m; infinite where none is near.
-    #[serde(skip)]
-    pub smallest_gap: f64,
 }

@@ -40,6 +40,7 @@ pub mod mesh;
 pub mod mesh_io;
 pub mod model;
 pub mod mutation;
+pub mod proximity;
 pub mod resultants;
 pub mod scene;
 pub mod shell;
@@ -48,7 +49,6 @@ pub mod stages;
 pub mod state;
 pub mod statics;
 pub mod supports;
-pub mod tree;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

@@ -56,6 +56,25 @@ impl Field {
         self.z[index] = vector.z;
     }
 
+    /// Takes the vectors of a field of the same length.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.x.copy_from_slice(&other.x);
+        self.y.copy_from_slice(&other.y);
+        self.z.copy_from_slice(&other.z);
+    }
+
+    /// The largest length of a vector; 1 where there is none, or none that is a number.
+    pub fn size(&self) -> f64 {
+        let size = self.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        if size > 0.0 && size < f64::INFINITY { size } else { 1.0 }
+    }
+
+    /// The largest distance of a vector here from its own in another field.
+    pub fn largest_way(&self, other: &Self) -> f64 {
+        let way = |(a, b): (Vector3<f64>, Vector3<f64>)| (b - a).norm_squared();
+        self.iter().zip(other.iter()).map(way).fold(0.0, f64::max).sqrt()
+    }
+
     /// All vectors.
     pub fn iter(&self) -> impl Iterator<Item = Vector3<f64>> + '_ {
         (0..self.len()).map(|index| self.get(index))

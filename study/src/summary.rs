@@ -185,7 +185,7 @@ fn contact(run: &FilmRun, deployment: &billow_solver::deployment::Deployment) ->
         + meeting.plates.iter().map(|plate| plate.energy).sum::<f64>();
     json!({
         "distance": law.distance,
-        "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(law.radius, f64::min),
+        "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(law.distance, f64::min),
         "interlayer_pressure": most("interlayer_pressure"),
         "contact_area_fraction": most("contact_area_fraction"),
         "searches": meeting.searches,

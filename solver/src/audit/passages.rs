@@ -15,9 +15,12 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
+use crate::contact::distance::{Closest, point_triangle, segment_segment};
+use crate::contact::intersections::Piercings;
 use crate::contact::topology::Topology;
+use crate::proximity::boxes::Boxes;
+use crate::proximity::lookout::{Candidate, Lookout, Next, Rule, Sought, nearer};
 use crate::state::Field;
-use crate::tree::{Bounds, Tree};
 
 /// One passage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,6 +65,32 @@ impl Passage {
         }
     }
 
+    fn places(self, topology: &Topology, places: &Field) -> Four {
+        self.nodes(topology).map(|node| places.get(node as usize))
+    }
+
+    /// Closest points of the pair.
+    fn closest(self, topology: &Topology, places: &Field) -> Closest {
+        let x = self.places(topology, places);
+        match self {
+            Self::Node { .. } => point_triangle(&x),
+            Self::Edge { .. } => segment_segment(&x),
+        }
+    }
+
+    /// Whether a plane across the line between the closest points at the start of a straight way still
+    /// parts the pair at its end: it parted it at the start, and so on the whole way.
+    fn stays_apart(self, topology: &Topology, to: &Field, between: &Vector3<f64>) -> bool {
+        let along = self.places(topology, to).map(|x| between.dot(&x));
+        let (one, other) = along.split_at(match self {
+            Self::Node { .. } => 1,
+            Self::Edge { .. } => 2,
+        });
+        let least = one.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = other.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        least - most > CLEAR * between.norm_squared()
+    }
+
     /// Whether the pair passes through itself on the straight way between two places of its nodes.
     fn happens(self, topology: &Topology, from: &Field, to: &Field) -> bool {
         let nodes = self.nodes(topology).map(|node| node as usize);
@@ -78,6 +107,9 @@ impl Passage {
         }
     }
 }
+
+/// Share of its distance a pair must keep to count as parted, so that rounding does not count.
+const CLEAR: f64 = 1e-3;
 
 /// Share of their lengths within which two edges count as meeting where both are in one plane.
 const MEET: f64 = 1e-6;
@@ -153,39 +185,22 @@ fn edges_inside([a, b, c, d]: &Four) -> bool {
     (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) && apart.norm() <= MEET * size
 }
 
-/// Box of some nodes along the straight way from one place to another.
-fn swept(from: &Field, to: &Field, nodes: &[u32]) -> Bounds {
-    let first = Bounds::of(&[from.get(nodes[0] as usize), to.get(nodes[0] as usize)]);
-    nodes[1..].iter().fold(first, |bounds, node| {
-        let node = *node as usize;
-        bounds.with(Bounds::of(&[from.get(node), to.get(node)]))
-    })
+/// The passage a pair may make.
+fn passage(candidate: Candidate) -> Option<Passage> {
+    match candidate {
+        Candidate::NodeElement(node, element) => Some(Passage::Node { node, element }),
+        Candidate::EdgeEdge(edge, other) => Some(Passage::Edge { edge, other }),
+        Candidate::EdgeElement(..) => None,
+    }
 }
 
 /// Every passage on the straight way between two places of all nodes, in order.
 pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
+    let mut boxes = Boxes::new(&topology.patches, from);
+    boxes.hold(&topology.patches, to);
     let mut found = Vec::new();
-    let mut test = |passage: Passage| {
-        if passage.happens(topology, from, to) {
-            found.push(passage);
-        }
-    };
-    let order = &topology.order;
-    let nodes = Tree::new(&order.nodes, |node| swept(from, to, &[node]));
-    let elements =
-        Tree::new(&order.elements, |own| swept(from, to, &topology.triangles[own as usize]));
-    nodes.pairs_with(&elements, |node, element| {
-        if !topology.triangles[element as usize].contains(&node) {
-            test(Passage::Node { node, element });
-        }
-    });
-    let edges = Tree::new(&order.edges, |own| swept(from, to, &topology.edges[own as usize]));
-    edges.pairs(|one, two| {
-        let [a, b] = topology.edges[one as usize];
-        let [c, d] = topology.edges[two as usize];
-        if a != c && a != d && b != c && b != d {
-            test(Passage::Edge { edge: one.min(two), other: one.max(two) });
-        }
+    nearer(Sought::Meetings, topology, &boxes, 0.0, |candidate| {
+        found.extend(passage(candidate).filter(|own| own.happens(topology, from, to)));
     });
     found.sort_unstable();
     found
@@ -219,6 +234,9 @@ impl Watchfulness {
     }
 }
 
+/// Path of a bin of the lookout, as a share of the film's size.
+const BIN: f64 = 1e-3;
+
 /// Watches a run step by step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Watch {
@@ -228,6 +246,11 @@ pub struct Watch {
     /// Places at the audit frame and after each step since.
     frames: Vec<Field>,
     used: usize,
+    /// Pairs waiting to come near, and the path so far, m.
+    lookout: Lookout,
+    path: f64,
+    /// Intersections of the mesh.
+    pub piercings: Piercings,
     /// Passages so far.
     pub passages: u64,
     /// The first, and where its first node was (m).
@@ -236,17 +259,25 @@ pub struct Watch {
 
 impl Watch {
     /// Starts at these places (m), after so many steps of the run.
-    pub fn new(how: Watchfulness, places: &Field, steps: u64) -> Self {
+    pub fn new(how: Watchfulness, topology: &Topology, places: &Field, steps: u64) -> Self {
         let frames = vec![places.clone(); how.block as usize + 1];
-        Self { how, start: steps, frames, used: 1, passages: 0, first: None }
+        let lookout = Lookout::new(Sought::Meetings, topology, BIN * places.size(), 0.0);
+        Self {
+            how,
+            start: steps,
+            frames,
+            used: 1,
+            lookout,
+            path: 0.0,
+            piercings: Piercings::new(topology, places),
+            passages: 0,
+            first: None,
+        }
     }
 
     /// Takes note of the places (m) after a step; looks at a block when it is full.
     pub fn step(&mut self, topology: &Topology, places: &Field) {
-        let frame = &mut self.frames[self.used];
-        frame.x.copy_from_slice(&places.x);
-        frame.y.copy_from_slice(&places.y);
-        frame.z.copy_from_slice(&places.z);
+        self.frames[self.used].copy_from(places);
         self.used += 1;
         if self.used == self.frames.len() {
             self.look(topology);
@@ -259,19 +290,12 @@ impl Watch {
         if steps == 0 {
             return;
         }
-        let mut found = Vec::new();
-        if self.how.closely(self.start) {
-            for step in 0..steps {
-                found.extend(passages(topology, &self.frames[step], &self.frames[step + 1]));
-            }
+        let found = if self.how.closely(self.start) {
+            self.path += self.frames[0].largest_way(&self.frames[steps]);
+            passages_step_by_step(topology, &self.frames[..=steps])
         } else {
-            for suspect in passages(topology, &self.frames[0], &self.frames[steps]) {
-                let happens = |step: &usize| {
-                    suspect.happens(topology, &self.frames[*step], &self.frames[step + 1])
-                };
-                found.extend((0..steps).filter(happens).map(|_| suspect));
-            }
-        }
+            self.passages_of_block(topology, steps)
+        };
         if self.first.is_none() {
             self.first = found.first().map(|passage| {
                 let [node, ..] = passage.nodes(topology);
@@ -283,6 +307,62 @@ impl Watch {
         self.frames.swap(0, steps);
         self.used = 1;
     }
+
+    /// Looks at the straight way from the first to the last place of a block, and at each step where a
+    /// pair seems to pass on it.
+    fn passages_of_block(&mut self, topology: &Topology, steps: usize) -> Vec<Passage> {
+        let (frames, mut found) = (&self.frames, Vec::new());
+        let (from, to) = (&frames[0], &frames[steps]);
+        let (path, until) = (self.path, self.path + from.largest_way(to));
+        let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
+        self.lookout.advance(topology, from, [path, until], &rule, |candidate| {
+            let Some(own) = passage(candidate) else { return Next::Taken };
+            let closest = own.closest(topology, from);
+            let due = path + 0.5 * closest.squared.sqrt();
+            // Written so that what is no number is looked at.
+            let waits = due > until;
+            if !waits
+                && !own.stays_apart(topology, to, &closest.between)
+                && own.happens(topology, from, to)
+            {
+                let happens =
+                    |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
+                found.extend((0..steps).filter(happens).map(|_| own));
+            }
+            Next::Wait(due)
+        });
+        self.path = until;
+        found.sort_unstable();
+        found
+    }
+}
+
+/// Every passage of some steps, told from nothing but their places.
+fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> {
+    if let [from, to] = frames {
+        return passages(topology, from, to);
+    }
+    let (first, mut way) = (&frames[0], 0.0_f64);
+    let mut boxes = Boxes::new(&topology.patches, first);
+    for frame in &frames[1..] {
+        boxes.hold(&topology.patches, frame);
+        way = way.max(first.largest_way(frame));
+    }
+    let mut found = Vec::new();
+    nearer(Sought::Meetings, topology, &boxes, 0.0, |candidate| {
+        let Some(own) = passage(candidate) else { return };
+        // Farther apart than both can have come towards each other.
+        if own.closest(topology, first).squared > 4.0 * way * way {
+            return;
+        }
+        for (step, pair) in frames.windows(2).enumerate() {
+            if own.happens(topology, &pair[0], &pair[1]) {
+                found.push((step, own));
+            }
+        }
+    });
+    found.sort_unstable();
+    found.into_iter().map(|(_, own)| own).collect()
 }
 
 #[cfg(test)]
@@ -326,7 +406,7 @@ mod tests {
         let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
         let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
         let count = |how: Watchfulness| {
-            let mut watch = Watch::new(how, &from, 0);
+            let mut watch = Watch::new(how, &topology, &from, 0);
             watch.step(&topology, &to);
             watch.step(&topology, &from);
             watch.look(&topology);
@@ -334,7 +414,7 @@ mod tests {
         };
         assert_eq!(count(Watchfulness::EVERY_STEP), 2);
         assert_eq!(count(Watchfulness { every_step_of_one_in: 1, ..Watchfulness::FRAMES }), 2);
-        let mut watch = Watch::new(Watchfulness::FRAMES, &from, 0);
+        let mut watch = Watch::new(Watchfulness::FRAMES, &topology, &from, 0);
         assert!(!Watchfulness::FRAMES.closely(0));
         watch.step(&topology, &to);
         watch.look(&topology);

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::distance::Closest;
+use super::search::Search;
 use super::topology::Feature;
 use super::{Kind, Law, Meeting, Near, Pair, at};
 use crate::state::Field;
@@ -67,12 +68,12 @@ impl Law {
         mass: &[f64],
         forces: &mut Field,
         meeting: &mut Meeting,
+        search: &mut Search,
     ) -> f64 {
-        let mut near = core::mem::take(&mut meeting.near);
+        let Search { near, smallest_gap, .. } = &mut *search;
         let mut old =
             core::mem::replace(&mut meeting.contacts, core::mem::take(&mut meeting.spare));
         meeting.contacts.clear();
-        meeting.smallest_gap = f64::INFINITY;
         let mut from = 0;
         while from < near.len() {
             let mut to = from + 1;
@@ -90,19 +91,8 @@ impl Law {
             }
             from = to;
         }
-        near.retain(|own| {
-            let stays = own.gap < self.distance + self.adhesion.range + 8.0 * self.bin();
-            if !stays {
-                self.place(meeting, own.pair, own.gap, 0.0);
-            }
-            stays
-        });
-        // A pair put off may have come straight back.
-        if !meeting.near.is_empty() {
-            near.append(&mut meeting.near);
-            near.sort_unstable_by_key(|own| own.pair);
-        }
-        meeting.near = near;
+        *smallest_gap = near.iter().map(|own| own.gap).fold(f64::INFINITY, f64::min);
+        self.let_go(meeting.path, search);
         old.clear();
         meeting.spare = old;
         self.push(places, forces, meeting)
@@ -126,7 +116,6 @@ impl Law {
             let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
             let before = own.gap;
             own.gap = closest.squared.sqrt();
-            meeting.smallest_gap = meeting.smallest_gap.min(own.gap);
             if closest.squared < square && count < MOST {
                 let [_, a, b, c] = closest.weights;
                 let feature = self.topology.feature(own.pair.second, [a, b, c]);
@@ -184,7 +173,6 @@ impl Law {
         let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
         let before = own.gap;
         own.gap = closest.squared.sqrt();
-        meeting.smallest_gap = meeting.smallest_gap.min(own.gap);
         let distance = self.distance_of(Kind::EdgeEdge);
         let inside = closest.weights.iter().all(|weight| *weight != 0.0);
         if own.gap >= distance || !inside {

@@ -18,7 +18,7 @@
 use nalgebra::Vector3;
 
 use super::sweep::clear_until;
-use super::{Law, Meeting, Pair, at};
+use super::{Law, Meeting, Near, Pair, at};
 use crate::model::FilmModel;
 use crate::state::Field;
 use crate::supports::Supports;
@@ -73,14 +73,14 @@ impl Law {
         before: &Field,
         velocities: &mut Field,
         length: f64,
+        near: &[Near],
         meeting: &mut Meeting,
         turn: u32,
         stopped: &mut Stopped,
     ) -> Result<(), Pair> {
         for round in 0..MOST_ROUNDS {
             let mut touched = None;
-            for k in 0..meeting.near.len() {
-                let own = meeting.near[k];
+            for own in near {
                 let nodes = own.pair.nodes(&self.topology);
                 let moves = at(velocities, nodes).map(|velocity| velocity * length);
                 let x = at(places, nodes);

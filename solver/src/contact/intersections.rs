@@ -2,23 +2,20 @@
 
 use nalgebra::Vector3;
 
+use super::distance::{point_triangle, segment_segment};
 use super::topology::Topology;
+use crate::proximity::boxes::Boxes;
+use crate::proximity::lookout::{Candidate, Lookout, Next, Rule, Sought, nearer};
 use crate::state::Field;
-use crate::tree::{Bounds, Tree};
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
 pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
-    let place = |node: u32| places.get(node as usize);
-    let corners = |element: u32| topology.triangles[element as usize].map(place);
-    let ends = |edge: u32| topology.edges[edge as usize].map(place);
-    let order = &topology.order;
-    let edges = Tree::new(&order.edges, |edge| Bounds::of(&ends(edge)));
-    let elements = Tree::new(&order.elements, |element| Bounds::of(&corners(element)));
+    let boxes = Boxes::new(&topology.patches, places);
     let mut found = Vec::new();
-    edges.pairs_with(&elements, |edge, element| {
-        let nodes = topology.triangles[element as usize];
-        let apart = !topology.edges[edge as usize].iter().any(|node| nodes.contains(node));
-        if apart && pierces(ends(edge), corners(element)) {
+    nearer(Sought::Piercings, topology, &boxes, 0.0, |candidate| {
+        if let Candidate::EdgeElement(edge, element) = candidate
+            && pierces(topology, places, edge, element)
+        {
             found.push((edge, element));
         }
     });
@@ -26,8 +23,69 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
     found
 }
 
+/// Counts intersections again and again while film moves, looking only at what may have met since.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piercings {
+    lookout: Lookout,
+    /// Sum of the largest displacements so far, m.
+    path: f64,
+    last: Field,
+    /// Intersections at the last look.
+    pub count: u64,
+}
+
+impl Piercings {
+    /// Looks for the first time, at these places (m).
+    pub fn new(topology: &Topology, places: &Field) -> Self {
+        let lookout = Lookout::new(Sought::Piercings, topology, BIN * places.size(), 0.0);
+        let mut own = Self { lookout, path: 0.0, last: places.clone(), count: 0 };
+        own.look(topology, places);
+        own
+    }
+
+    /// Counts the intersections at these places (m).
+    pub fn look(&mut self, topology: &Topology, places: &Field) {
+        self.path += self.last.largest_way(places);
+        self.last.clone_from(places);
+        let (path, mut count) = (self.path, 0);
+        let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
+        self.lookout.advance(topology, places, [path, path], &rule, |candidate| {
+            let Candidate::EdgeElement(edge, element) = candidate else { return Next::Taken };
+            if pierces(topology, places, edge, element) {
+                count += 1;
+                return Next::Wait(path);
+            }
+            Next::Wait(path + 0.5 * distance(topology, places, edge, element))
+        });
+        self.count = count;
+    }
+}
+
+/// Path of a bin, as a share of the film's size.
+const BIN: f64 = 1e-3;
+
+/// Distance of an edge and an element that do not pierce each other, m.
+fn distance(topology: &Topology, places: &Field, edge: u32, element: u32) -> f64 {
+    let place = |node: u32| places.get(node as usize);
+    let [p, q] = topology.edges[edge as usize].map(place);
+    let [a, b, c] = topology.triangles[element as usize].map(place);
+    let ends = [p, q].map(|end| point_triangle(&[end, a, b, c]).squared);
+    let sides = [[a, b], [b, c], [c, a]].map(|[u, v]| segment_segment(&[p, q, u, v]).squared);
+    let least = ends.into_iter().chain(sides).fold(f64::INFINITY, f64::min);
+    least.sqrt()
+}
+
+/// Whether an edge passes through an element.
+fn pierces(topology: &Topology, places: &Field, edge: u32, element: u32) -> bool {
+    let place = |node: u32| places.get(node as usize);
+    passes(
+        topology.edges[edge as usize].map(place),
+        topology.triangles[element as usize].map(place),
+    )
+}
+
 /// Whether a segment passes through a triangle.
-fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+fn passes([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     let normal = (b - a).cross(&(c - a));
     let (start, end) = (normal.dot(&(p - a)), normal.dot(&(q - a)));
     // Both on the plane, or both on one side of it.

@@ -1,122 +1,151 @@
-//! Which pairs are near, and when a far one has to be looked at again.
+//! Which pairs are near.
 //!
 //! ```text
-//! due = travelled + (d − o)/2       two nodes that each move by less than (d − o)/2 stay o apart
+//! looked at again when  path = path then + (d − o)/2     ([`crate::proximity::lookout`])
 //! ```
 //!
-//! `travelled` grows by the largest node displacement of each step. Far pairs lie in bins by their
-//! due number; a bin is opened before a step that could pass it.
+//! o: the distance at which a pair begins to matter. What is near follows from the places alone, up
+//! to pairs that are farther apart than they matter: no result depends on when it was looked for.
 
 use super::{Kind, Law, Meeting, Near, Pair, at};
+use crate::proximity::boxes::Boxes;
+use crate::proximity::lookout::{Candidate, Lookout, Next, Rule, Sought, nearer};
 use crate::state::Field;
-use crate::tree::{Bounds, Tree};
 
-/// Bins the travel between two searches is divided into.
-const BINS: f64 = 64.0;
+/// Path of a bin of the lookout, as a share of the contact distance.
+const BIN: f64 = 0.1;
+/// A pair that may be in contact within this path is near, as a share of the contact distance.
+const SOON: f64 = 0.25;
+/// A pair that cannot be in contact before this path is near no longer.
+const LEAVE: f64 = 0.75;
+/// Patches of film are taken apart so much path before they have to, as a share of the mean edge length.
+const AHEAD: f64 = 1.0 / 64.0;
+/// Path after which all is looked for anew, in mean edge lengths: what came near once and went far
+/// away need not be followed pair by pair for ever.
+const RENEW: f64 = 1.0;
+
+/// What is near now, and what will have to be looked at when.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    lookout: Lookout,
+    /// Pairs looked at every step, in order.
+    pub near: Vec<Near>,
+    /// Smallest distance of any near pair now, m; infinite where none is near.
+    pub smallest_gap: f64,
+}
+
+impl Search {
+    /// Looks at nothing yet; at this path (m).
+    pub fn new(law: &Law, path: f64) -> Self {
+        let lookout = Lookout::new(Sought::Meetings, &law.topology, BIN * law.distance, path);
+        Self { lookout, near: Vec::new(), smallest_gap: f64::INFINITY }
+    }
+}
 
 impl Law {
-    /// How far nodes may travel before the list has to be made anew, m.
-    fn reach(&self) -> f64 {
-        0.5 * (self.radius - self.distance - self.adhesion.range) * self.bounds
+    /// Path after which a pair this far apart (m) may matter, m.
+    fn free_path(&self, kind: Kind, gap: f64) -> f64 {
+        let reach = match kind {
+            Kind::NodeTriangle => self.adhesion.range,
+            Kind::EdgeEdge => 0.0,
+        };
+        0.5 * self.bounds * (gap - self.distance_of(kind) - reach)
     }
 
-    pub(super) fn bin(&self) -> f64 {
-        self.reach() / BINS
-    }
-
-    /// The bin that this way (m) falls into; the first where it is past.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates at 0")]
-    fn bin_of(&self, way: f64) -> usize {
-        (way / self.bin()) as usize
-    }
-
-    /// Lists all pairs nearer than the radius at these places (m). Contacts stay as they are.
-    pub fn search(&self, places: &Field, meeting: &mut Meeting) {
-        meeting.travelled = 0.0;
-        meeting.reached = 0;
-        meeting.near.clear();
-        for bin in &mut meeting.far {
-            bin.clear();
-        }
-        meeting.searches += 1;
-        self.pairs_within(places, self.radius, |pair, distance| {
-            self.place(meeting, pair, distance, 0.0);
-        });
-        meeting.near.sort_unstable_by_key(|own| own.pair);
+    /// Distance of a pair at these places (m), m.
+    fn gap(&self, pair: Pair, places: &Field) -> f64 {
+        pair.closest(&at(places, pair.nodes(&self.topology))).squared.sqrt()
     }
 
     /// Calls `found` with every pair nearer than `radius` (m), and its distance (m).
     pub fn pairs_within(&self, places: &Field, radius: f64, mut found: impl FnMut(Pair, f64)) {
-        let topology = &self.topology;
-        let square = radius * radius;
-        let mut test = |pair: Pair| {
-            let near = pair.closest(&at(places, pair.nodes(topology)));
-            if near.squared < square {
-                found(pair, near.squared.sqrt());
+        let boxes = Boxes::new(&self.topology.patches, places);
+        nearer(Sought::Meetings, &self.topology, &boxes, radius, |candidate| {
+            if let Some(pair) = self.pair(candidate) {
+                let gap = self.gap(pair, places);
+                if gap < radius {
+                    found(pair, gap);
+                }
             }
+        });
+    }
+
+    /// The pair of a candidate; none of edges where edges do not meet.
+    fn pair(&self, candidate: Candidate) -> Option<Pair> {
+        match candidate {
+            Candidate::NodeElement(first, second) => {
+                Some(Pair { kind: Kind::NodeTriangle, first, second })
+            }
+            Candidate::EdgeEdge(first, second) => {
+                self.edges.then_some(Pair { kind: Kind::EdgeEdge, first, second })
+            }
+            Candidate::EdgeElement(..) => None,
+        }
+    }
+
+    /// Prepares for a step in which no node moves farther than `way` (m): fetches the pairs that could
+    /// come near.
+    pub fn prepare(&self, places: &Field, meeting: &mut Meeting, search: &mut Search, way: f64) {
+        let (path, until) = (meeting.path, meeting.path + way);
+        meeting.path = until;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+        let renewals = 1 + (until / (RENEW * self.edge_length)) as u64;
+        if renewals > meeting.searches {
+            meeting.searches = renewals;
+            *search = Search { smallest_gap: search.smallest_gap, ..Search::new(self, path) };
+        }
+        self.fetch(places, [path, until], search);
+    }
+
+    /// What is near at these places (m), the path being so long (m).
+    pub fn look(&self, places: &Field, path: f64) -> Search {
+        let mut search = Search::new(self, path);
+        self.fetch(places, [path, path], &mut search);
+        search
+    }
+
+    /// Fetches what may come near while the path goes from one length to another (m).
+    fn fetch(&self, places: &Field, [path, until]: [f64; 2], search: &mut Search) {
+        let rule = Rule {
+            keep: self.distance + self.adhesion.range,
+            bounds: self.bounds,
+            ahead: AHEAD * self.edge_length,
         };
-        // Each side is grown by half the radius.
-        let half = 0.5 * radius;
-        let place = |node: u32| places.get(node as usize);
-        let order = &topology.order;
-        let nodes = Tree::new(&order.nodes, |node| Bounds::of(&[place(node)]).grown(half));
-        let elements = Tree::new(&order.elements, |element| {
-            Bounds::of(&topology.triangles[element as usize].map(place)).grown(half)
-        });
-        nodes.pairs_with(&elements, |node, element| {
-            if !topology.triangles[element as usize].contains(&node) {
-                test(Pair { kind: Kind::NodeTriangle, first: node, second: element });
+        let Search { lookout, near, .. } = search;
+        let before = near.len();
+        let soon = until + SOON * self.distance;
+        lookout.advance(&self.topology, places, [path, until], &rule, |candidate| {
+            let Some(pair) = self.pair(candidate) else { return Next::Taken };
+            let gap = self.gap(pair, places);
+            let due = path + self.free_path(pair.kind, gap);
+            // Written so that what is no number is near.
+            if due > soon {
+                return Next::Wait(due);
             }
+            near.push(Near { pair, gap });
+            Next::Taken
         });
-        if !self.edges {
-            return;
+        if near.len() > before {
+            near[before..].sort_unstable_by_key(|own| own.pair);
+            // Two runs in order: merged in one pass.
+            near.sort_by_key(|own| own.pair);
         }
-        let edges = Tree::new(&order.edges, |edge| {
-            Bounds::of(&topology.edges[edge as usize].map(place)).grown(half)
-        });
-        edges.pairs(|a, b| {
-            let [p, q] = topology.edges[a as usize];
-            if !topology.edges[b as usize].iter().any(|node| *node == p || *node == q) {
-                test(Pair { kind: Kind::EdgeEdge, first: a.min(b), second: a.max(b) });
-            }
-        });
     }
 
-    /// Puts a pair this far apart (m) where it belongs, given the displacement of the step to come.
-    pub(super) fn place(&self, meeting: &mut Meeting, pair: Pair, distance: f64, step: f64) {
-        let due = meeting.travelled
-            + 0.5 * self.bounds * (distance - self.distance - self.adhesion.range);
-        if due <= meeting.travelled + step + self.bin() {
-            meeting.near.push(Near { pair, gap: distance });
-            return;
-        }
-        let bin = self.bin_of(due);
-        if meeting.far.len() <= bin {
-            meeting.far.resize_with(bin + 1, Vec::new);
-        }
-        meeting.far[bin].push(pair);
-    }
-
-    /// Prepares for a step in which no node moves farther than `step` (m): searches anew where the list
-    /// could miss a pair, and fetches the far pairs that could come near.
-    pub fn prepare(&self, places: &Field, meeting: &mut Meeting, step: f64) {
-        if meeting.searches == 0 || meeting.travelled + step > self.reach() {
-            self.search(places, meeting);
-        }
-        let until = self.bin_of(meeting.travelled + step);
-        let before = meeting.near.len();
-        while meeting.reached <= until {
-            let bin = meeting.reached;
-            meeting.reached += 1;
-            let Some(pairs) = meeting.far.get_mut(bin).map(core::mem::take) else { continue };
-            for pair in pairs {
-                let apart = pair.closest(&at(places, pair.nodes(&self.topology)));
-                self.place(meeting, pair, apart.squared.sqrt(), step);
+    /// Lets the near pairs go that cannot matter for a while.
+    pub(super) fn let_go(&self, path: f64, search: &mut Search) {
+        let Search { lookout, near, .. } = search;
+        near.retain(|own| {
+            let free = self.free_path(own.pair.kind, own.gap);
+            let stays = free < LEAVE * self.distance;
+            if !stays {
+                let candidate = match own.pair.kind {
+                    Kind::NodeTriangle => Candidate::NodeElement(own.pair.first, own.pair.second),
+                    Kind::EdgeEdge => Candidate::EdgeEdge(own.pair.first, own.pair.second),
+                };
+                lookout.wait(candidate, path + free);
             }
-        }
-        if meeting.near.len() > before {
-            meeting.near.sort_unstable_by_key(|own| own.pair);
-        }
-        meeting.travelled += step;
+            stays
+        });
     }
 }

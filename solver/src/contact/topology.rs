@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::order;
+use crate::proximity::patches::Patches;
 
 /// A feature of the film a node can be nearest to.
 pub type Feature = u32;
@@ -16,8 +16,8 @@ pub struct Topology {
     pub edges: Vec<[u32; 2]>,
     /// Edges of each element: between its nodes 0-1, 1-2, 2-0.
     pub sides: Vec<[u32; 3]>,
-    /// An order in which neighbours on the film are near.
-    pub order: Order,
+    /// The film in patches of neighbours.
+    pub patches: Patches,
     /// Elements at each edge.
     at_edge: Vec<u32>,
     /// Elements at each node.
@@ -27,17 +27,6 @@ pub struct Topology {
 /// A place in a list as the elements count, in 32 bits.
 fn index(at: usize) -> u32 {
     u32::try_from(at).expect("under 2^32")
-}
-
-/// Elements, edges and nodes in an order in which neighbours on the film are near.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Order {
-    /// Elements.
-    pub elements: Vec<u32>,
-    /// Edges.
-    pub edges: Vec<u32>,
-    /// Nodes of the elements.
-    pub nodes: Vec<u32>,
 }
 
 impl Topology {
@@ -67,13 +56,8 @@ impl Topology {
                 })
             })
             .collect();
-        let elements = order::of_elements(&sides, edges.len());
-        let order = Order {
-            edges: order::of_parts(&elements, &sides, edges.len()),
-            nodes: order::of_parts(&elements, triangles, nodes),
-            elements,
-        };
-        Self { triangles: triangles.to_vec(), edges, sides, order, at_edge, at_node }
+        let patches = Patches::new(nodes, triangles, &sides, edges.len());
+        Self { triangles: triangles.to_vec(), edges, sides, patches, at_edge, at_node }
     }
 
     /// The feature of an element that a closest point with these weights (of its three nodes; nought

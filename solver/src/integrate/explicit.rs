@@ -21,6 +21,7 @@ use nalgebra::Vector3;
 
 use crate::audit::passages::{Watch, Watchfulness};
 use crate::contact::Law;
+use crate::contact::search::Search;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
@@ -118,6 +119,8 @@ pub struct Explicit {
     pub forces: NodeForces,
     /// Who counts passages; nobody where film has no contact.
     pub watch: Option<Watch>,
+    /// What is near: a function of the state, made when first asked for.
+    search: Option<Search>,
     elements: ElementForces,
     next: Field,
 }
@@ -158,8 +161,10 @@ impl Explicit {
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
         let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
-        let watch = setting.watch.map(|how| Watch::new(how, &state.places, state.steps));
-        Self { model, setting, state, forces, watch, elements, next }
+        let watch = setting.watch.zip(setting.contact.as_ref());
+        let watch =
+            watch.map(|(how, law)| Watch::new(how, &law.topology, &state.places, state.steps));
+        Self { model, setting, state, forces, watch, search: None, elements, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.

@@ -14,7 +14,6 @@
 use nalgebra::Vector3;
 
 use super::{Cost, SceneError};
-use crate::contact::intersections::intersections;
 use crate::course::{Course, Phase};
 use crate::deployment::{self, Deployment, Failure, Model, Observer};
 use crate::film_scene::{FilmContact, FilmScene};
@@ -271,14 +270,10 @@ impl Model for FilmRun {
             sample.vz = mean_z(&film.velocities(), &rings.top_ring);
             lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
         }
-        let through = match &film.setting.contact {
-            Some(law) => intersections(&law.topology, places).len() as u64,
-            None => 0,
-        };
         Sample {
             time: film.state.time,
             passages: self.passages(),
-            intersections: through,
+            intersections: film.intersections(),
             z_max: self.largest_height(),
             volume: self.volume(),
             pressure: film.state.pressure,

@@ -73,8 +73,8 @@ pub(super) fn check_plates(film: &FilmScene, source: &Source) -> Result<(), Inpu
     Ok(())
 }
 
-/// Share of the contact distance below which film lies on film, and has no side.
-const TOUCHING: f64 = 1e-6;
+/// Share of the mean edge length below which film lies on film, and has no side.
+const TOUCHING: f64 = 1e-7;
 
 /// Whether the film lies on itself at the start, so that contact could not tell its sides.
 ///
@@ -83,10 +83,10 @@ const TOUCHING: f64 = 1e-6;
 pub(super) fn lies_on_itself(film: &FilmScene) -> Result<bool, SceneError> {
     let (_, setting, _) = capsule::constants(film)?;
     let Some(law) = &setting.contact else { return Ok(false) };
-    let mut meeting = Meeting::default();
-    law.search(&Field::of(&film.shell.positions), &mut meeting);
-    let gap = meeting.near.iter().map(|near| near.gap).fold(law.radius, f64::min);
-    Ok(gap < TOUCHING * law.radius)
+    let mut touches = false;
+    let places = Field::of(&film.shell.positions);
+    law.pairs_within(&places, TOUCHING * law.edge_length, |_, _| touches = true);
+    Ok(touches)
 }
 
 fn plates(

@@ -20,11 +20,11 @@ fn unkept(pair: Pair) -> String {
 }
 
 impl Explicit {
-    /// The pairs and plates of the start.
+    /// The plates of the start.
     pub(super) fn meet_first(&mut self) {
         let Some(law) = &self.setting.contact else { return };
         let places = &self.state.places;
-        law.search(places, &mut self.state.meeting);
+        self.state.meeting.searches = 1;
         let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
         self.state.meeting.plates = start.collect();
     }
@@ -38,7 +38,8 @@ impl Explicit {
             column.fill(0.0);
         }
         let (places, meeting) = (&self.state.places, &mut self.state.meeting);
-        law.meet(places, &self.model.mass, &mut self.forces.contact, meeting);
+        let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
+        law.meet(places, &self.model.mass, &mut self.forces.contact, meeting, search);
         let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
         for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
             plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
@@ -69,9 +70,10 @@ impl Explicit {
         let fastest = |velocities: &Field| {
             velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
         };
+        let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
         let mut way = fastest(velocities) * length;
         stopwatch.begins(Stage::Search);
-        law.prepare(places, meeting, way);
+        law.prepare(places, meeting, search, way);
         stopwatch.begins(Stage::Pairs);
         law.rub(model, supports, places, &self.next, velocities, kick, meeting);
         let mut stopped = Stopped::new();
@@ -83,6 +85,7 @@ impl Explicit {
                 &self.next,
                 velocities,
                 length,
+                &search.near,
                 meeting,
                 turn,
                 &mut stopped,
@@ -97,8 +100,8 @@ impl Explicit {
             let now = fastest(velocities) * length;
             let farther = now > way;
             if farther {
-                meeting.travelled -= way;
-                law.prepare(places, meeting, now);
+                meeting.path -= way;
+                law.prepare(places, meeting, search, now);
                 way = now;
             }
             if !farther && stopped.len() == before {
@@ -108,6 +111,16 @@ impl Explicit {
         }
         Err(self
             .failure(FailureKind::Interpenetrated, "film between plates could not be kept apart"))
+    }
+
+    /// Smallest distance of film from film, m; infinite where none is near.
+    pub fn smallest_gap(&self) -> f64 {
+        self.search.as_ref().map_or(f64::INFINITY, |search| search.smallest_gap)
+    }
+
+    /// Intersections of the mesh now, or when it last came to a target.
+    pub fn intersections(&self) -> u64 {
+        self.watch.as_ref().map_or(0, |watch| watch.piercings.count)
     }
 
     /// Half a step's work of the plates, by their force now, on the way to `until` (s).
@@ -133,6 +146,7 @@ impl Explicit {
     pub(super) fn look(&mut self) -> Result<(), Failure> {
         if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
             watch.look(&law.topology);
+            watch.piercings.look(&law.topology, &self.state.places);
         }
         self.nothing_passed()
     }

@@ -164,7 +164,7 @@ fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> Law {
     law.friction = contact.friction;
     if contact.adhesion > 0.0 {
         let range = contact.adhesion_range.unwrap_or(law.distance);
-        law.adhere(Adhesion { pressure: contact.adhesion, range });
+        law.adhesion = Adhesion { pressure: contact.adhesion, range };
     }
     law.plates = contact.plates;
     if scene.release_time > 0.0 {

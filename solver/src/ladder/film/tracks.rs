@@ -11,9 +11,13 @@ const CONTACT: [(&str, &str, &str); 7] = [
     ("interlayer_pressure", "Pa", "largest pressure of film on film at a node"),
     ("interlayer_pressure_mean", "Pa", "mean of it over the area in contact"),
     ("contact_area_fraction", "1", "share of the film's area in contact"),
-    ("smallest_gap", "m", "smallest distance of film from film; at least it, where none is near"),
+    (
+        "smallest_gap",
+        "m",
+        "smallest distance of film from film; the contact distance where none is nearer",
+    ),
     ("contact_pairs", "1", "pairs of film pressed together"),
-    ("contact_searches", "1", "searches for near pairs since time 0"),
+    ("contact_searches", "1", "searches for near pairs from nothing since time 0"),
     ("contact_impulses", "1", "approaches of film to film taken out by an impulse since time 0"),
 ];
 
@@ -68,7 +72,7 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
             pressed.largest,
             pressed.mean,
             pressed.area_fraction,
-            meeting.smallest_gap.min(law.radius),
+            run.film.smallest_gap().min(law.distance),
             meeting.contacts.len() as f64,
             meeting.searches as f64,
             meeting.impulses as f64,

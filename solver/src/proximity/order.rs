@@ -1,4 +1,4 @@
-//! An order of the film's elements, edges and nodes in which neighbours on the film are near.
+//! An order of the film's elements in which neighbours on the film are near.
 //!
 //! The film is halved again and again: from an element far from all others of its part, outward
 //! over shared edges; the first half of what is met so is one part, the rest the other. Whatever the
@@ -6,11 +6,9 @@
 
 use std::collections::VecDeque;
 
-/// Patches are not halved below so many elements.
-const PATCH: usize = 4;
-
-/// The order of elements whose sides (edges) these are; `edges`: how many there are.
-pub fn of_elements(sides: &[[u32; 3]], edges: usize) -> Vec<u32> {
+/// The order of elements whose sides (edges) these are; `edges`: how many there are. Parts are not
+/// halved below `patch` elements.
+pub fn of_elements(sides: &[[u32; 3]], edges: usize, patch: usize) -> Vec<u32> {
     let mut at_edge: Vec<Vec<u32>> = vec![Vec::new(); edges];
     for (element, own) in (0_u32..).zip(sides) {
         for side in own {
@@ -23,7 +21,7 @@ pub fn of_elements(sides: &[[u32; 3]], edges: usize) -> Vec<u32> {
     let mut later = vec![(0, order.len())];
     let mut number = 0;
     while let Some((from, to)) = later.pop() {
-        if to - from <= PATCH {
+        if to - from <= patch {
             continue;
         }
         number += 1;
@@ -41,13 +39,6 @@ pub fn of_elements(sides: &[[u32; 3]], edges: usize) -> Vec<u32> {
         later.extend([(from, middle), (middle, to)]);
     }
     order
-}
-
-/// What these list, in the order of the elements that name them, each once.
-pub fn of_parts(elements: &[u32], parts: &[[u32; 3]], count: usize) -> Vec<u32> {
-    let mut seen = vec![false; count];
-    let all = elements.iter().flat_map(|element| parts[*element as usize]);
-    all.filter(|part| !core::mem::replace(&mut seen[*part as usize], true)).collect()
 }
 
 struct Walk<'a> {
@@ -107,12 +98,12 @@ mod tests {
         // Shuffled, so that numbers say nothing.
         let shuffled: Vec<_> = (0..128).map(|k| triangles[k * 37 % 128]).collect();
         let topology = Topology::new(81, &shuffled);
-        let mut sorted = topology.order.elements.clone();
+        let order = super::of_elements(&topology.sides, topology.edges.len(), 4);
+        let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.iter().copied().eq(0..128));
-        assert_eq!((topology.order.edges.len(), topology.order.nodes.len()), (208, 81));
         // Sixteen elements of a patch, eight cells' worth, lie within a few cells.
-        for patch in topology.order.elements.chunks(16) {
+        for patch in order.chunks(16) {
             let nodes = patch.iter().flat_map(|element| shuffled[*element as usize]);
             let (columns, rows): (Vec<u32>, Vec<u32>) =
                 nodes.map(|node| (node % 9, node / 9)).unzip();

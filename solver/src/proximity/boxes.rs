@@ -1,0 +1,175 @@
+//! Boxes round patches, cut by planes of eight directions: how far apart two are at least.
+//!
+//! ```text
+//! separation = max over directions n and both orders of   min n·x_a − max n·x_b
+//! ```
+//!
+//! Unit directions: the three axes, the four diagonals of a cube and one of a face. Single
+//! precision, with what rounding could hide taken off: a separation is never too large.
+
+use super::patches::Patches;
+use crate::state::Field;
+
+/// Directions of the planes.
+const DIRECTIONS: usize = 8;
+const D: f64 = 0.577_350_269_189_625_8;
+const F: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// Components of the directions, x, y, z.
+const NORMALS: [[f64; DIRECTIONS]; 3] = [
+    [1.0, 0.0, 0.0, D, D, -D, -D, F],
+    [0.0, 1.0, 0.0, D, -D, D, -D, F],
+    [0.0, 0.0, 1.0, D, D, D, D, 0.0],
+];
+
+/// Least n·x, and least −n·x, of some points in each direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+struct Extent([f32; 2 * DIRECTIONS]);
+
+impl Extent {
+    /// That of no points: apart from everything.
+    const NONE: Self = Self([f32::INFINITY; 2 * DIRECTIONS]);
+
+    #[inline]
+    fn with(self, other: &Self) -> Self {
+        let mut both = self;
+        for (own, other) in both.0.iter_mut().zip(&other.0) {
+            *own = if *other < *own { *other } else { *own };
+        }
+        both
+    }
+}
+
+/// Boxes round the patches of a film, and round the nodes of their tree.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Boxes {
+    extents: Vec<Extent>,
+    nodes: Vec<Extent>,
+    /// What rounding can add to a separation at most, m.
+    rounding: f32,
+}
+
+impl Boxes {
+    /// Boxes round patches at these places (m).
+    pub fn new(patches: &Patches, places: &Field) -> Self {
+        let mut boxes = Self::default();
+        boxes.fit(patches, places);
+        boxes
+    }
+
+    /// Fits the boxes to places (m).
+    pub fn fit(&mut self, patches: &Patches, places: &Field) {
+        self.fit_nodes(places);
+        self.extents.resize(patches.tree(), Extent::NONE);
+        for leaf in patches.leaves()..patches.tree() {
+            let mut all = Extent::NONE;
+            for node in patches.corners(leaf) {
+                all = all.with(&self.nodes[*node as usize]);
+            }
+            self.extents[leaf] = all;
+        }
+        self.fit_tree(patches);
+    }
+
+    /// Grows the boxes so that they hold these places (m) too.
+    pub fn hold(&mut self, patches: &Patches, places: &Field) {
+        let rounding = self.rounding;
+        self.fit_nodes(places);
+        self.rounding = self.rounding.max(rounding);
+        for leaf in patches.leaves()..patches.tree() {
+            let mut all = self.extents[leaf];
+            for node in patches.corners(leaf) {
+                all = all.with(&self.nodes[*node as usize]);
+            }
+            self.extents[leaf] = all;
+        }
+        self.fit_tree(patches);
+    }
+
+    fn fit_tree(&mut self, patches: &Patches) {
+        for node in (1..patches.leaves()).rev() {
+            self.extents[node] = self.extents[2 * node].with(&self.extents[2 * node + 1]);
+        }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "single precision is what boxes have")]
+    fn fit_nodes(&mut self, places: &Field) {
+        self.nodes.resize(places.len(), Extent::NONE);
+        let mut largest = 0.0_f32;
+        let [along_x, along_y, along_z] = &NORMALS;
+        for (node, own) in self.nodes.iter_mut().enumerate() {
+            let (x, y, z) = (places.x[node], places.y[node], places.z[node]);
+            for direction in 0..DIRECTIONS {
+                let along =
+                    x * along_x[direction] + y * along_y[direction] + z * along_z[direction];
+                let along = along as f32;
+                own.0[direction] = along;
+                own.0[DIRECTIONS + direction] = -along;
+                let size = along.abs();
+                largest = if size > largest { size } else { largest };
+            }
+        }
+        // Each of two numbers is rounded once, and their difference.
+        self.rounding = 4.0 * f32::EPSILON * largest;
+    }
+
+    /// How far apart the boxes of two nodes of the tree are at least, m; not above 0 where they may meet.
+    #[inline]
+    pub fn separation(&self, a: usize, b: usize) -> f64 {
+        let (a, b) = (&self.extents[a].0, &self.extents[b].0);
+        let mut gaps = [0.0_f32; DIRECTIONS];
+        for direction in 0..DIRECTIONS {
+            let above = a[direction] + b[DIRECTIONS + direction];
+            let below = b[direction] + a[DIRECTIONS + direction];
+            gaps[direction] = if above > below { above } else { below };
+        }
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let [a, b, c, d, e, f, g, h] = gaps;
+        let largest =
+            larger(larger(larger(a, e), larger(b, f)), larger(larger(c, g), larger(d, h)));
+        f64::from(largest - self.rounding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    #[test]
+    fn directions_have_unit_length() {
+        for k in 0..DIRECTIONS {
+            let n = Vector3::new(NORMALS[0][k], NORMALS[1][k], NORMALS[2][k]);
+            assert!((n.norm() - 1.0).abs() < 1e-15, "{k}");
+        }
+    }
+
+    proptest! {
+        /// No two points of two patches are nearer than the separation of their boxes.
+        #[test]
+        fn a_separation_is_never_too_large(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
+            shift in -3.0..3.0_f64,
+        ) {
+            let sides = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
+            let patches = Patches::new(12, &sides, &sides, 12);
+            let mut places: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
+            for place in &mut places[..6] {
+                place.x += shift;
+            }
+            let boxes = Boxes::new(&patches, &Field::of(&places));
+            for a in patches.leaves()..patches.tree() {
+                for b in a + 1..patches.tree() {
+                    let apart = boxes.separation(a, b);
+                    for p in patches.corners(a) {
+                        for q in patches.corners(b) {
+                            let real = (places[*p as usize] - places[*q as usize]).norm();
+                            prop_assert!(apart <= real, "{apart} {real}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
