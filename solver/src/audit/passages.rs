@@ -19,7 +19,7 @@ use crate::contact::distance::{Closest, point_triangle, segment_segment};
 use crate::contact::intersections::Piercings;
 use crate::contact::topology::Topology;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Candidate, Lookout, Next, Rule, Sought, nearer};
+use crate::proximity::lookout::{Candidate, Lookout, Rule, Sought, nearer};
 use crate::state::Field;
 
 /// One passage.
@@ -315,8 +315,8 @@ impl Watch {
         let (from, to) = (&frames[0], &frames[steps]);
         let (path, until) = (self.path, self.path + from.largest_way(to));
         let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
-        self.lookout.advance(topology, from, [path, until], &rule, |candidate| {
-            let Some(own) = passage(candidate) else { return Next::Taken };
+        self.lookout.pass(topology, from, [path, until], &rule, |candidate| {
+            let Some(own) = passage(candidate) else { return f64::INFINITY };
             let closest = own.closest(topology, from);
             let due = path + 0.5 * closest.squared.sqrt();
             // Written so that what is no number is looked at.
@@ -329,7 +329,7 @@ impl Watch {
                     |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
                 found.extend((0..steps).filter(happens).map(|_| own));
             }
-            Next::Wait(due)
+            due
         });
         self.path = until;
         found.sort_unstable();

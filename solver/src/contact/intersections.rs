@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::distance::{point_triangle, segment_segment};
 use super::topology::Topology;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Candidate, Lookout, Next, Rule, Sought, nearer};
+use crate::proximity::lookout::{Candidate, Lookout, Rule, Sought, nearer};
 use crate::state::Field;
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
@@ -49,13 +49,13 @@ impl Piercings {
         self.last.clone_from(places);
         let (path, mut count) = (self.path, 0);
         let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
-        self.lookout.advance(topology, places, [path, path], &rule, |candidate| {
-            let Candidate::EdgeElement(edge, element) = candidate else { return Next::Taken };
+        self.lookout.pass(topology, places, [path, path], &rule, |candidate| {
+            let Candidate::EdgeElement(edge, element) = candidate else { return f64::INFINITY };
             if pierces(topology, places, edge, element) {
                 count += 1;
-                return Next::Wait(path);
+                return path;
             }
-            Next::Wait(path + 0.5 * distance(topology, places, edge, element))
+            path + 0.5 * distance(topology, places, edge, element)
         });
         self.count = count;
     }

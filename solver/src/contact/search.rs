@@ -9,7 +9,7 @@
 
 use super::{Kind, Law, Meeting, Near, Pair, at};
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Candidate, Lookout, Next, Rule, Sought, nearer};
+use crate::proximity::lookout::{Candidate, Lookout, Rule, Sought, nearer};
 use crate::state::Field;
 
 /// Path of a bin of the lookout, as a share of the contact distance.
@@ -19,10 +19,10 @@ const SOON: f64 = 0.25;
 /// A pair that cannot be in contact before this path is near no longer.
 const LEAVE: f64 = 0.75;
 /// Patches of film are taken apart so much path before they have to, as a share of the mean edge length.
-const AHEAD: f64 = 1.0 / 64.0;
+const AHEAD: f64 = 1.0 / 32.0;
 /// Path after which all is looked for anew, in mean edge lengths: what came near once and went far
 /// away need not be followed pair by pair for ever.
-const RENEW: f64 = 1.0;
+const RENEW: f64 = 4.0;
 
 /// What is near now, and what will have to be looked at when.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,16 +114,13 @@ impl Law {
         let Search { lookout, near, .. } = search;
         let before = near.len();
         let soon = until + SOON * self.distance;
-        lookout.advance(&self.topology, places, [path, until], &rule, |candidate| {
-            let Some(pair) = self.pair(candidate) else { return Next::Taken };
-            let gap = self.gap(pair, places);
-            let due = path + self.free_path(pair.kind, gap);
-            // Written so that what is no number is near.
-            if due > soon {
-                return Next::Wait(due);
-            }
-            near.push(Near { pair, gap });
-            Next::Taken
+        let due = |candidate| {
+            let Some(pair) = self.pair(candidate) else { return f64::INFINITY };
+            path + self.free_path(pair.kind, self.gap(pair, places))
+        };
+        lookout.fetch(&self.topology, places, [path, until, soon], &rule, due, |candidate| {
+            let pair = self.pair(candidate);
+            near.extend(pair.map(|pair| Near { pair, gap: self.gap(pair, places) }));
         });
         if near.len() > before {
             near[before..].sort_unstable_by_key(|own| own.pair);

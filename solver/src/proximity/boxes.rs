@@ -139,9 +139,9 @@ mod tests {
 
     #[test]
     fn directions_have_unit_length() {
-        for k in 0..DIRECTIONS {
-            let n = Vector3::new(NORMALS[0][k], NORMALS[1][k], NORMALS[2][k]);
-            assert!((n.norm() - 1.0).abs() < 1e-15, "{k}");
+        let [x, y, z] = NORMALS;
+        for ((x, y), z) in x.into_iter().zip(y).zip(z) {
+            assert!((Vector3::new(x, y, z).norm() - 1.0).abs() < 1e-15);
         }
     }
 

@@ -12,6 +12,9 @@ use super::boxes::Boxes;
 use crate::contact::topology::Topology;
 use crate::state::Field;
 
+/// stats
+pub static STATS: [[std::sync::atomic::AtomicU64; 6]; 4] =
+    [const { [const { std::sync::atomic::AtomicU64::new(0) }; 6] }; 4];
 /// What a lookout is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sought {
@@ -32,15 +35,6 @@ pub enum Candidate {
     EdgeElement(u32, u32),
 }
 
-/// What becomes of a pair that was looked at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Next {
-    /// It waits until the path is so long, m.
-    Wait(f64),
-    /// Whoever looked sees to it.
-    Taken,
-}
-
 /// How long pairs may wait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rule {
@@ -48,12 +42,12 @@ pub struct Rule {
     pub keep: f64,
     /// What displacement bounds are multiplied by: 1 but in tests of the audit.
     pub bounds: f64,
-    /// Patches that are due within so much more path are taken apart as well, m.
+    /// Patches that are due within so much more path are looked at as well, m.
     pub ahead: f64,
 }
 
 /// Things waiting for the path to reach their number, in bins.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 struct Bins {
     /// Path of a bin, m.
     width: f64,
@@ -159,67 +153,107 @@ impl Lookout {
         self.pairs.put(due, pair);
     }
 
-    /// Shows `look` every pair that could come nearer than the rule keeps while the path goes from
-    /// `path` to `until` (m); the film is at these places (m) where the path is `path`.
-    pub fn advance(
+    /// Asks `due` of every pair that could come nearer than the rule keeps while the path goes from
+    /// `path` to `until` (m) how long it may wait (m of path); the film is at these places (m) where the
+    /// path is `path`. Of two patches all pairs wait as long as the first of them.
+    pub fn pass(
         &mut self,
         topology: &Topology,
         places: &Field,
         [path, until]: [f64; 2],
         rule: &Rule,
-        mut look: impl FnMut(Candidate) -> Next,
+        mut due: impl FnMut(Candidate) -> f64,
     ) {
-        let mut due = core::mem::take(&mut self.due);
-        self.pairs.take(until, &mut due);
-        for pair in due.drain(..) {
-            if let Next::Wait(until) = look(candidate(pair)) {
-                self.pairs.put(until, pair);
+        self.patches_due(topology, places, [path, until], rule, |patches, pair, primitives| {
+            // Written so that what is no number waits for nothing.
+            let first = |a: f64, b: f64| if a < b { a } else { b };
+            let wait = primitives.iter().map(|own| due(candidate(*own))).fold(f64::INFINITY, first);
+            if wait < f64::INFINITY {
+                patches.put(wait, pair);
             }
-        }
-        if self.patches.reached <= self.patches.number(until) {
-            let mut later = core::mem::take(&mut self.later);
-            self.patches.take(until + rule.ahead, &mut later);
-            if !later.is_empty() {
-                self.boxes.fit(&topology.patches, places);
-            }
-            self.take_apart(topology, [path, until], rule, &mut later, &mut due);
-            self.later = later;
-            for pair in due.drain(..) {
-                if let Next::Wait(until) = look(candidate(pair)) {
-                    self.pairs.put(until, pair);
-                }
-            }
-        }
-        self.due = due;
+        });
     }
 
-    /// Takes pairs of patches apart until each can wait; what is left as primitives goes to `due`.
-    fn take_apart(
+    /// The same, but that pairs of near patches wait each for itself, and whatever is due by `soon` (m)
+    /// is told to `take`, who sees to it from then on.
+    pub fn fetch(
         &mut self,
         topology: &Topology,
+        places: &Field,
+        [path, until, soon]: [f64; 3],
+        rule: &Rule,
+        mut due: impl FnMut(Candidate) -> f64,
+        mut take: impl FnMut(Candidate),
+    ) {
+        let mut sort = |pairs: &mut Bins, pair: [u32; 2], due: f64| {
+            // Written so that what is no number is taken.
+            if due > soon { pairs.put(due, pair) } else { take(candidate(pair)) }
+        };
+        let mut all = core::mem::take(&mut self.due);
+        self.pairs.take(until, &mut all);
+        for pair in all.drain(..) {
+            sort(&mut self.pairs, pair, due(candidate(pair)));
+        }
+        self.due = all;
+        let mut singles = core::mem::take(&mut self.pairs);
+        let mut waits = Vec::new();
+        self.patches_due(topology, places, [path, until], rule, |patches, pair, primitives| {
+            waits.clear();
+            waits.extend(primitives.iter().map(|own| due(candidate(*own))));
+            let calm = until + rule.ahead + patches.width;
+            if waits.iter().all(|wait| *wait > calm) {
+                let first = waits.iter().copied().fold(f64::INFINITY, f64::min);
+                if first < f64::INFINITY {
+                    patches.put(first, pair);
+                }
+            } else {
+                for (own, wait) in primitives.iter().zip(&waits) {
+                    sort(&mut singles, *own, *wait);
+                }
+            }
+        });
+        self.pairs = singles;
+    }
+
+    /// Takes pairs of patches that are due apart until each can wait; `leaves` is told of every pair of
+    /// leaves left, and its primitives.
+    fn patches_due(
+        &mut self,
+        topology: &Topology,
+        places: &Field,
         [path, until]: [f64; 2],
         rule: &Rule,
-        later: &mut Vec<[u32; 2]>,
-        due: &mut Vec<[u32; 2]>,
+        mut leaves: impl FnMut(&mut Bins, [u32; 2], &[[u32; 2]]),
     ) {
-        let leaves = topology.patches.leaves();
+        if self.patches.overdue.is_empty() && self.patches.reached > self.patches.number(until) {
+            return;
+        }
+        let Self { sought, patches, boxes, due, later, .. } = self;
+        patches.take(until + rule.ahead, later);
+        if later.is_empty() {
+            return;
+        }
+        boxes.fit(&topology.patches, places);
+        let first_leaf = topology.patches.leaves();
         while let Some([a, b]) = later.pop() {
             let (one, two) = (a as usize, b as usize);
             if one != two {
-                let free = self.boxes.separation(one, two) - rule.keep;
-                let wait = path + 0.5 * rule.bounds * free;
+                let free = boxes.separation(one, two) - rule.keep;
                 // A place for patches that no patch is in is apart from everything.
                 if free == f64::INFINITY {
                     continue;
                 }
+                let wait = path + 0.5 * rule.bounds * free;
                 // Never into a bin taken already: patches are looked at by whole bins.
-                if wait > until + rule.ahead + self.patches.width {
-                    self.patches.put(wait, [a, b]);
+                if wait > until + rule.ahead + patches.width {
+                    patches.put(wait, [a, b]);
                     continue;
                 }
             }
-            if one >= leaves {
-                primitives(self.sought, topology, one, two, due);
+            if one >= first_leaf {
+                due.clear();
+                primitives(*sought, topology, one, two, due);
+                leaves(patches, [a, b], due);
             } else if one == two {
                 later.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
             } else {
@@ -228,6 +262,7 @@ impl Lookout {
                 }
             }
         }
+        due.clear();
     }
 }
 

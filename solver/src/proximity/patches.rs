@@ -12,7 +12,7 @@
 use super::order;
 
 /// Elements of a patch, a power of two.
-pub const PATCH: usize = 2;
+pub const PATCH: usize = 1;
 
 /// Lists of numbers, one a patch.
 #[derive(Debug, Clone, PartialEq, Default)]

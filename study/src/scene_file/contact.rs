@@ -1,6 +1,5 @@
 //! `contact`: film against film and against plates.
 
-use billow_solver::contact::Meeting;
 use billow_solver::contact::plates::Plate;
 use billow_solver::film_scene::{FilmContact, FilmScene};
 use billow_solver::ladder::SceneError;
