@@ -26,11 +26,13 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::model::FilmModel;
+use crate::simd::Path;
 use crate::state::Field;
 
 pub mod active;
 pub mod distance;
 pub mod friction;
+pub mod gaps;
 pub mod guard;
 pub mod intersections;
 pub mod plates;
@@ -128,6 +130,8 @@ pub struct Law {
     pub edges: bool,
     /// What displacement bounds are multiplied by: 1 but in tests of the audit.
     pub bounds: f64,
+    /// Instruction set; the bits are the same on each.
+    pub path: Path,
 }
 
 /// Adhesion of film to film: a pull that grows from nothing at the offset to the pull-off pressure in
@@ -189,6 +193,7 @@ impl Law {
             area_density: 1.0,
             edges: true,
             bounds: 1.0,
+            path: Path::best(),
         }
     }
 

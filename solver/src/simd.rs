@@ -281,6 +281,21 @@ fn gather(column: &[f64], at: &[u32; WIDTH]) -> Lanes {
     Lanes(lanes)
 }
 
+/// The vectors at these places of three columns of one length.
+///
+/// # Panics
+/// When a place is beyond the columns.
+#[inline(always)]
+pub fn gather_vectors([x, y, z]: [&[f64]; 3], at: &[u32; WIDTH]) -> Vectors {
+    let mut last = 0;
+    for place in at {
+        last = if *place > last { *place } else { last };
+    }
+    let last = last as usize;
+    assert!(last < x.len() && last < y.len() && last < z.len(), "one value a place");
+    Vectors { x: gather(x, at), y: gather(y, at), z: gather(z, at) }
+}
+
 /// One vector of each of eight elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vectors {

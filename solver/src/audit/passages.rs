@@ -16,10 +16,12 @@ use core::fmt;
 use nalgebra::Vector3;
 
 use crate::contact::distance::{Closest, point_triangle, segment_segment};
+use crate::contact::gaps::{edge_gaps, element_gaps};
 use crate::contact::intersections::Piercings;
 use crate::contact::topology::Topology;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Candidate, Lookout, Rule, Sought, nearer};
+use crate::proximity::lookout::{Couple, Lookout, Rule, Sought, nearer};
+use crate::simd::Path;
 use crate::state::Field;
 
 /// One passage.
@@ -186,11 +188,10 @@ fn edges_inside([a, b, c, d]: &Four) -> bool {
 }
 
 /// The passage a pair may make.
-fn passage(candidate: Candidate) -> Option<Passage> {
-    match candidate {
-        Candidate::NodeElement(node, element) => Some(Passage::Node { node, element }),
-        Candidate::EdgeEdge(edge, other) => Some(Passage::Edge { edge, other }),
-        Candidate::EdgeElement(..) => None,
+fn passage(couple: Couple, [first, second]: [u32; 2]) -> Passage {
+    match couple {
+        Couple::NodeElement | Couple::EdgeElement => Passage::Node { node: first, element: second },
+        Couple::EdgeEdge => Passage::Edge { edge: first, other: second },
     }
 }
 
@@ -199,8 +200,8 @@ pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
     let mut boxes = Boxes::new(&topology.patches, from);
     boxes.hold(&topology.patches, to);
     let mut found = Vec::new();
-    nearer(Sought::Meetings, topology, &boxes, 0.0, |candidate| {
-        found.extend(passage(candidate).filter(|own| own.happens(topology, from, to)));
+    nearer(Sought::Meetings, topology, &boxes, 0.0, |couple, pair| {
+        found.extend(Some(passage(couple, pair)).filter(|own| own.happens(topology, from, to)));
     });
     found.sort_unstable();
     found
@@ -261,7 +262,7 @@ impl Watch {
     /// Starts at these places (m), after so many steps of the run.
     pub fn new(how: Watchfulness, topology: &Topology, places: &Field, steps: u64) -> Self {
         let frames = vec![places.clone(); how.block as usize + 1];
-        let lookout = Lookout::new(Sought::Meetings, topology, BIN * places.size(), 0.0);
+        let lookout = Lookout::new(Sought::Meetings, BIN * places.size(), 0.0);
         Self {
             how,
             start: steps,
@@ -315,21 +316,26 @@ impl Watch {
         let (from, to) = (&frames[0], &frames[steps]);
         let (path, until) = (self.path, self.path + from.largest_way(to));
         let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
-        self.lookout.pass(topology, from, [path, until], &rule, |candidate| {
-            let Some(own) = passage(candidate) else { return f64::INFINITY };
-            let closest = own.closest(topology, from);
-            let due = path + 0.5 * closest.squared.sqrt();
-            // Written so that what is no number is looked at.
-            let waits = due > until;
-            if !waits
-                && !own.stays_apart(topology, to, &closest.between)
-                && own.happens(topology, from, to)
-            {
-                let happens =
-                    |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
-                found.extend((0..steps).filter(happens).map(|_| own));
+        self.lookout.pass(topology, from, [path, until], &rule, |couple, pairs, dues| {
+            match couple {
+                Couple::EdgeEdge => edge_gaps(Path::best(), topology, from, pairs, dues),
+                _ => element_gaps(Path::best(), topology, from, pairs, dues),
             }
-            due
+            for (pair, due) in pairs.iter().zip(dues) {
+                *due = path + 0.5 * *due;
+                // Written so that what is no number is looked at.
+                let waits = *due > until;
+                if waits {
+                    continue;
+                }
+                let own = passage(couple, *pair);
+                let between = own.closest(topology, from).between;
+                if !own.stays_apart(topology, to, &between) && own.happens(topology, from, to) {
+                    let happens =
+                        |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
+                    found.extend((0..steps).filter(happens).map(|_| own));
+                }
+            }
         });
         self.path = until;
         found.sort_unstable();
@@ -349,8 +355,8 @@ fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> 
         way = way.max(first.largest_way(frame));
     }
     let mut found = Vec::new();
-    nearer(Sought::Meetings, topology, &boxes, 0.0, |candidate| {
-        let Some(own) = passage(candidate) else { return };
+    nearer(Sought::Meetings, topology, &boxes, 0.0, |couple, pair| {
+        let own = passage(couple, pair);
         // Farther apart than both can have come towards each other.
         if own.closest(topology, first).squared > 4.0 * way * way {
             return;

@@ -5,17 +5,15 @@ use nalgebra::Vector3;
 use super::distance::{point_triangle, segment_segment};
 use super::topology::Topology;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Candidate, Lookout, Rule, Sought, nearer};
+use crate::proximity::lookout::{Lookout, Rule, Sought, nearer};
 use crate::state::Field;
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
 pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
     let boxes = Boxes::new(&topology.patches, places);
     let mut found = Vec::new();
-    nearer(Sought::Piercings, topology, &boxes, 0.0, |candidate| {
-        if let Candidate::EdgeElement(edge, element) = candidate
-            && pierces(topology, places, edge, element)
-        {
+    nearer(Sought::Piercings, topology, &boxes, 0.0, |_, [edge, element]| {
+        if pierces(topology, places, edge, element) {
             found.push((edge, element));
         }
     });
@@ -37,7 +35,7 @@ pub struct Piercings {
 impl Piercings {
     /// Looks for the first time, at these places (m).
     pub fn new(topology: &Topology, places: &Field) -> Self {
-        let lookout = Lookout::new(Sought::Piercings, topology, BIN * places.size(), 0.0);
+        let lookout = Lookout::new(Sought::Piercings, BIN * places.size(), 0.0);
         let mut own = Self { lookout, path: 0.0, last: places.clone(), count: 0 };
         own.look(topology, places);
         own
@@ -49,13 +47,14 @@ impl Piercings {
         self.last.clone_from(places);
         let (path, mut count) = (self.path, 0);
         let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
-        self.lookout.pass(topology, places, [path, path], &rule, |candidate| {
-            let Candidate::EdgeElement(edge, element) = candidate else { return f64::INFINITY };
-            if pierces(topology, places, edge, element) {
-                count += 1;
-                return path;
-            }
-            path + 0.5 * distance(topology, places, edge, element)
+        self.lookout.pass(topology, places, [path, path], &rule, |_, pairs, dues| {
+            dues.extend(pairs.iter().map(|[edge, element]| {
+                if pierces(topology, places, *edge, *element) {
+                    count += 1;
+                    return path;
+                }
+                path + 0.5 * distance(topology, places, *edge, *element)
+            }));
         });
         self.count = count;
     }

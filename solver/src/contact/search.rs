@@ -7,9 +7,10 @@
 //! o: the distance at which a pair begins to matter. What is near follows from the places alone, up
 //! to pairs that are farther apart than they matter: no result depends on when it was looked for.
 
+use super::gaps::{edge_gaps, element_gaps};
 use super::{Kind, Law, Meeting, Near, Pair, at};
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Candidate, Lookout, Rule, Sought, nearer};
+use crate::proximity::lookout::{Couple, Lookout, Rule, Sought, nearer};
 use crate::state::Field;
 
 /// Path of a bin of the lookout, as a share of the contact distance.
@@ -37,7 +38,7 @@ pub struct Search {
 impl Search {
     /// Looks at nothing yet; at this path (m).
     pub fn new(law: &Law, path: f64) -> Self {
-        let lookout = Lookout::new(Sought::Meetings, &law.topology, BIN * law.distance, path);
+        let lookout = Lookout::new(Sought::Meetings, BIN * law.distance, path);
         Self { lookout, near: Vec::new(), smallest_gap: f64::INFINITY }
     }
 }
@@ -60,8 +61,8 @@ impl Law {
     /// Calls `found` with every pair nearer than `radius` (m), and its distance (m).
     pub fn pairs_within(&self, places: &Field, radius: f64, mut found: impl FnMut(Pair, f64)) {
         let boxes = Boxes::new(&self.topology.patches, places);
-        nearer(Sought::Meetings, &self.topology, &boxes, radius, |candidate| {
-            if let Some(pair) = self.pair(candidate) {
+        nearer(Sought::Meetings, &self.topology, &boxes, radius, |couple, pair| {
+            if let Some(pair) = self.pair(couple, pair) {
                 let gap = self.gap(pair, places);
                 if gap < radius {
                     found(pair, gap);
@@ -70,16 +71,39 @@ impl Law {
         });
     }
 
-    /// The pair of a candidate; none of edges where edges do not meet.
-    fn pair(&self, candidate: Candidate) -> Option<Pair> {
-        match candidate {
-            Candidate::NodeElement(first, second) => {
-                Some(Pair { kind: Kind::NodeTriangle, first, second })
+    /// The pair of two primitives; none of edges where edges do not meet.
+    fn pair(&self, couple: Couple, [first, second]: [u32; 2]) -> Option<Pair> {
+        match couple {
+            Couple::NodeElement => Some(Pair { kind: Kind::NodeTriangle, first, second }),
+            Couple::EdgeEdge => self.edges.then_some(Pair { kind: Kind::EdgeEdge, first, second }),
+            Couple::EdgeElement => None,
+        }
+    }
+
+    /// Paths after which pairs at these places (m) may matter, the path now being so long (m).
+    fn dues(
+        &self,
+        places: &Field,
+        path: f64,
+        couple: Couple,
+        pairs: &[[u32; 2]],
+        dues: &mut Vec<f64>,
+    ) {
+        let kind = match couple {
+            Couple::NodeElement => {
+                element_gaps(self.path, &self.topology, places, pairs, dues);
+                Kind::NodeTriangle
             }
-            Candidate::EdgeEdge(first, second) => {
-                self.edges.then_some(Pair { kind: Kind::EdgeEdge, first, second })
+            Couple::EdgeEdge if self.edges => {
+                edge_gaps(self.path, &self.topology, places, pairs, dues);
+                Kind::EdgeEdge
             }
-            Candidate::EdgeElement(..) => None,
+            Couple::EdgeEdge | Couple::EdgeElement => {
+                return dues.resize(pairs.len(), f64::INFINITY);
+            }
+        };
+        for due in dues {
+            *due = path + self.free_path(kind, *due);
         }
     }
 
@@ -114,12 +138,11 @@ impl Law {
         let Search { lookout, near, .. } = search;
         let before = near.len();
         let soon = until + SOON * self.distance;
-        let due = |candidate| {
-            let Some(pair) = self.pair(candidate) else { return f64::INFINITY };
-            path + self.free_path(pair.kind, self.gap(pair, places))
+        let due = |couple: Couple, pairs: &[[u32; 2]], dues: &mut Vec<f64>| {
+            self.dues(places, path, couple, pairs, dues);
         };
-        lookout.fetch(&self.topology, places, [path, until, soon], &rule, due, |candidate| {
-            let pair = self.pair(candidate);
+        lookout.fetch(&self.topology, places, [path, until, soon], &rule, due, |couple, pair| {
+            let pair = self.pair(couple, pair);
             near.extend(pair.map(|pair| Near { pair, gap: self.gap(pair, places) }));
         });
         if near.len() > before {
@@ -136,11 +159,11 @@ impl Law {
             let free = self.free_path(own.pair.kind, own.gap);
             let stays = free < LEAVE * self.distance;
             if !stays {
-                let candidate = match own.pair.kind {
-                    Kind::NodeTriangle => Candidate::NodeElement(own.pair.first, own.pair.second),
-                    Kind::EdgeEdge => Candidate::EdgeEdge(own.pair.first, own.pair.second),
+                let couple = match own.pair.kind {
+                    Kind::NodeTriangle => Couple::NodeElement,
+                    Kind::EdgeEdge => Couple::EdgeEdge,
                 };
-                lookout.wait(candidate, path + free);
+                lookout.wait(couple, [own.pair.first, own.pair.second], path + free);
             }
             stays
         });

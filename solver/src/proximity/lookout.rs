@@ -24,15 +24,25 @@ pub enum Sought {
     Piercings,
 }
 
-/// A pair of primitives that share no node.
+/// A kind of pairs of primitives that share no node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Candidate {
+pub enum Couple {
     /// A node and an element.
-    NodeElement(u32, u32),
+    NodeElement,
     /// Two edges, the lower number first.
-    EdgeEdge(u32, u32),
+    EdgeEdge,
     /// An edge and an element.
-    EdgeElement(u32, u32),
+    EdgeElement,
+}
+
+impl Sought {
+    /// The kinds of pairs sought.
+    fn couples(self) -> [Option<Couple>; 2] {
+        match self {
+            Self::Meetings => [Some(Couple::NodeElement), Some(Couple::EdgeEdge)],
+            Self::Piercings => [Some(Couple::EdgeElement), None],
+        }
+    }
 }
 
 /// How long pairs may wait.
@@ -106,72 +116,72 @@ fn place(bin: u64) -> usize {
     (bin % RING as u64) as usize
 }
 
-/// Kind of a pair of primitives, in the upper bits of its first number.
-const EDGES: u32 = 1 << 30;
-const PIERCING: u32 = 2 << 30;
-const NUMBER: u32 = EDGES - 1;
+/// Pairs of primitives, those of one kind apart from those of the other.
+type Pairs = [Vec<[u32; 2]>; 2];
+
+/// Two leaves, and how many pairs of primitives of each kind there were with them.
+type Leaves = ([u32; 2], [usize; 2]);
 
 /// Every pair of a film, each waiting for its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lookout {
     sought: Sought,
     patches: Bins,
-    pairs: Bins,
+    pairs: [Bins; 2],
     boxes: Boxes,
-    /// Room for what is due.
-    due: Vec<[u32; 2]>,
+    // Room for what is due.
     later: Vec<[u32; 2]>,
+    leaves: Vec<Leaves>,
+    due: Pairs,
+    waits: [Vec<f64>; 2],
 }
 
 impl Lookout {
     /// A lookout that has looked at nothing yet, at this path (m). `width`: path below which no pair is
     /// looked at twice, m.
-    ///
-    /// # Panics
-    /// For film of 2^30 elements or more.
-    pub fn new(sought: Sought, topology: &Topology, width: f64, path: f64) -> Self {
-        assert!(topology.edges.len() < NUMBER as usize, "under 2^30 edges");
+    pub fn new(sought: Sought, width: f64, path: f64) -> Self {
+        let bins = || Bins::new(width, path);
         let mut lookout = Self {
             sought,
-            patches: Bins::new(width, path),
-            pairs: Bins::new(width, path),
+            patches: bins(),
+            pairs: [bins(), bins()],
             boxes: Boxes::default(),
-            due: Vec::new(),
             later: Vec::new(),
+            leaves: Vec::new(),
+            due: Pairs::default(),
+            waits: <[Vec<f64>; 2]>::default(),
         };
         lookout.patches.put(path, [1, 1]);
         lookout
     }
 
-    /// Has a pair wait until the path is `due` (m).
-    pub fn wait(&mut self, candidate: Candidate, due: f64) {
-        let pair = match candidate {
-            Candidate::NodeElement(node, element) => [node, element],
-            Candidate::EdgeEdge(edge, other) => [edge | EDGES, other],
-            Candidate::EdgeElement(edge, element) => [edge | PIERCING, element],
-        };
-        self.pairs.put(due, pair);
+    /// Has a pair of two nodes, elements or edges wait until the path is `due` (m).
+    pub fn wait(&mut self, couple: Couple, pair: [u32; 2], due: f64) {
+        let at = self.sought.couples().iter().position(|own| *own == Some(couple));
+        self.pairs[at.unwrap_or(0)].put(due, pair);
     }
 
-    /// Asks `due` of every pair that could come nearer than the rule keeps while the path goes from
-    /// `path` to `until` (m) how long it may wait (m of path); the film is at these places (m) where the
-    /// path is `path`. Of two patches all pairs wait as long as the first of them.
+    /// Asks `due` of all pairs that could come nearer than the rule keeps while the path goes from
+    /// `path` to `until` (m) how long each may wait (m of path); the film is at these places (m) where
+    /// the path is `path`. Of two patches all pairs wait as long as the first of them.
     pub fn pass(
         &mut self,
         topology: &Topology,
         places: &Field,
         [path, until]: [f64; 2],
         rule: &Rule,
-        mut due: impl FnMut(Candidate) -> f64,
+        mut due: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
     ) {
-        self.patches_due(topology, places, [path, until], rule, |patches, pair, primitives| {
-            // Written so that what is no number waits for nothing.
-            let first = |a: f64, b: f64| if a < b { a } else { b };
-            let wait = primitives.iter().map(|own| due(candidate(*own))).fold(f64::INFINITY, first);
+        self.patches_due(topology, places, [path, until], rule);
+        self.ask(&mut due);
+        let mut from = [0; 2];
+        for (pair, to) in &self.leaves {
+            let wait = self.first(&from, to);
             if wait < f64::INFINITY {
-                patches.put(wait, pair);
+                self.patches.put(wait, *pair);
             }
-        });
+            from = *to;
+        }
     }
 
     /// The same, but that pairs of near patches wait each for itself, and whatever is due by `soon` (m)
@@ -182,53 +192,83 @@ impl Lookout {
         places: &Field,
         [path, until, soon]: [f64; 3],
         rule: &Rule,
-        mut due: impl FnMut(Candidate) -> f64,
-        mut take: impl FnMut(Candidate),
+        mut due: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
+        mut take: impl FnMut(Couple, [u32; 2]),
     ) {
-        let mut sort = |pairs: &mut Bins, pair: [u32; 2], due: f64| {
-            // Written so that what is no number is taken.
-            if due > soon { pairs.put(due, pair) } else { take(candidate(pair)) }
+        let couples = self.sought.couples();
+        let mut sort = |bins: &mut [Bins; 2], kind: usize, pair: [u32; 2], due: f64| {
+            if due > soon {
+                bins[kind].put(due, pair);
+            } else if let Some(couple) = couples[kind] {
+                take(couple, pair);
+            }
         };
-        let mut all = core::mem::take(&mut self.due);
-        self.pairs.take(until, &mut all);
-        for pair in all.drain(..) {
-            sort(&mut self.pairs, pair, due(candidate(pair)));
+        for kind in 0..2 {
+            self.due[kind].clear();
+            self.pairs[kind].take(until, &mut self.due[kind]);
         }
-        self.due = all;
-        let mut singles = core::mem::take(&mut self.pairs);
-        let mut waits = Vec::new();
-        self.patches_due(topology, places, [path, until], rule, |patches, pair, primitives| {
-            waits.clear();
-            waits.extend(primitives.iter().map(|own| due(candidate(*own))));
-            let calm = until + rule.ahead + patches.width;
-            if waits.iter().all(|wait| *wait > calm) {
-                let first = waits.iter().copied().fold(f64::INFINITY, f64::min);
-                if first < f64::INFINITY {
-                    patches.put(first, pair);
+        self.ask(&mut due);
+        for kind in 0..2 {
+            for (pair, wait) in self.due[kind].iter().zip(&self.waits[kind]) {
+                sort(&mut self.pairs, kind, *pair, *wait);
+            }
+        }
+        self.patches_due(topology, places, [path, until], rule);
+        self.ask(&mut due);
+        let calm = until + rule.ahead + self.patches.width;
+        let mut from = [0; 2];
+        for (pair, to) in &self.leaves {
+            let wait = self.first(&from, to);
+            if wait > calm {
+                if wait < f64::INFINITY {
+                    self.patches.put(wait, *pair);
                 }
             } else {
-                for (own, wait) in primitives.iter().zip(&waits) {
-                    sort(&mut singles, *own, *wait);
+                for kind in 0..2 {
+                    for at in from[kind]..to[kind] {
+                        sort(&mut self.pairs, kind, self.due[kind][at], self.waits[kind][at]);
+                    }
                 }
             }
-        });
-        self.pairs = singles;
+            from = *to;
+        }
     }
 
-    /// Takes pairs of patches that are due apart until each can wait; `leaves` is told of every pair of
-    /// leaves left, and its primitives.
+    /// The first due of some pairs of each kind, m.
+    fn first(&self, from: &[usize; 2], to: &[usize; 2]) -> f64 {
+        let of = |kind: usize| &self.waits[kind][from[kind]..to[kind]];
+        of(0).iter().chain(of(1)).copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Asks how long what is due may wait.
+    fn ask(&mut self, due: &mut impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>)) {
+        for (kind, couple) in self.sought.couples().into_iter().enumerate() {
+            self.waits[kind].clear();
+            if let Some(couple) = couple {
+                due(couple, &self.due[kind], &mut self.waits[kind]);
+                // What is no number waits for nothing.
+                for wait in self.waits[kind].iter_mut().filter(|wait| wait.is_nan()) {
+                    *wait = f64::NEG_INFINITY;
+                }
+            }
+        }
+    }
+
+    /// Takes pairs of patches that are due apart until each can wait; the leaves that are left, and
+    /// their primitives, are then due.
     fn patches_due(
         &mut self,
         topology: &Topology,
         places: &Field,
         [path, until]: [f64; 2],
         rule: &Rule,
-        mut leaves: impl FnMut(&mut Bins, [u32; 2], &[[u32; 2]]),
     ) {
-        if self.patches.overdue.is_empty() && self.patches.reached > self.patches.number(until) {
+        let Self { sought, patches, boxes, due, later, leaves, .. } = self;
+        leaves.clear();
+        due.iter_mut().for_each(Vec::clear);
+        if patches.overdue.is_empty() && patches.reached > patches.number(until) {
             return;
         }
-        let Self { sought, patches, boxes, due, later, .. } = self;
         patches.take(until + rule.ahead, later);
         if later.is_empty() {
             return;
@@ -251,9 +291,8 @@ impl Lookout {
                 }
             }
             if one >= first_leaf {
-                due.clear();
                 primitives(*sought, topology, one, two, due);
-                leaves(patches, [a, b], due);
+                leaves.push(([a, b], [due[0].len(), due[1].len()]));
             } else if one == two {
                 later.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
             } else {
@@ -262,32 +301,17 @@ impl Lookout {
                 }
             }
         }
-        due.clear();
-    }
-}
-
-fn candidate([first, second]: [u32; 2]) -> Candidate {
-    let number = first & NUMBER;
-    match first & !NUMBER {
-        EDGES => Candidate::EdgeEdge(number, second),
-        PIERCING => Candidate::EdgeElement(number, second),
-        _ => Candidate::NodeElement(number, second),
     }
 }
 
 /// Adds the pairs of primitives of two leaves that share no node.
-fn primitives(
-    sought: Sought,
-    topology: &Topology,
-    one: usize,
-    two: usize,
-    pairs: &mut Vec<[u32; 2]>,
-) {
+fn primitives(sought: Sought, topology: &Topology, one: usize, two: usize, pairs: &mut Pairs) {
     let patches = &topology.patches;
     let apart = |edge: u32, element: u32| {
         let corners = topology.triangles[element as usize];
         !topology.edges[edge as usize].iter().any(|node| corners.contains(node))
     };
+    let [first, second] = pairs;
     let both = [(one, two), (two, one)];
     for (a, b) in both.into_iter().take(if one == two { 1 } else { 2 }) {
         for element in patches.elements(b) {
@@ -295,11 +319,11 @@ fn primitives(
                 Sought::Meetings => {
                     let corners = topology.triangles[*element as usize];
                     let nodes = patches.nodes(a).iter().filter(|node| !corners.contains(node));
-                    pairs.extend(nodes.map(|node| [*node, *element]));
+                    first.extend(nodes.map(|node| [*node, *element]));
                 }
                 Sought::Piercings => {
                     let edges = patches.edges(a).iter().filter(|edge| apart(**edge, *element));
-                    pairs.extend(edges.map(|edge| [*edge | PIERCING, *element]));
+                    first.extend(edges.map(|edge| [*edge, *element]));
                 }
             }
         }
@@ -312,7 +336,7 @@ fn primitives(
             for other in others {
                 let [r, s] = topology.edges[*other as usize];
                 if p != r && p != s && q != r && q != s {
-                    pairs.push([(*edge).min(*other) | EDGES, (*edge).max(*other)]);
+                    second.push([(*edge).min(*other), (*edge).max(*other)]);
                 }
             }
         }
@@ -325,18 +349,23 @@ pub fn nearer(
     topology: &Topology,
     boxes: &Boxes,
     radius: f64,
-    mut found: impl FnMut(Candidate),
+    mut found: impl FnMut(Couple, [u32; 2]),
 ) {
     let leaves = topology.patches.leaves();
     let mut later = vec![[1_usize, 1]];
-    let mut pairs = Vec::new();
+    let mut pairs = Pairs::default();
     while let Some([one, two]) = later.pop() {
         if one != two && boxes.separation(one, two) > radius {
             continue;
         }
         if one >= leaves {
             primitives(sought, topology, one, two, &mut pairs);
-            pairs.drain(..).for_each(|pair| found(candidate(pair)));
+            for (couple, pairs) in sought.couples().into_iter().zip(&mut pairs) {
+                let Some(couple) = couple else { continue };
+                for pair in pairs.drain(..) {
+                    found(couple, pair);
+                }
+            }
         } else if one == two {
             later.extend([[2 * one, 2 * one], [2 * one + 1, 2 * one + 1], [2 * one, 2 * one + 1]]);
         } else {

@@ -161,6 +161,7 @@ fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> Law {
     let contact = scene.contact.clone().unwrap_or_default();
     let mut law = Law::of_film(model, places, contact.distance);
     law.soften(scene.solver.cfl);
+    law.path = scene.solver.path;
     law.friction = contact.friction;
     if contact.adhesion > 0.0 {
         let range = contact.adhesion_range.unwrap_or(law.distance);
