@@ -12,9 +12,6 @@ use super::boxes::Boxes;
 use crate::contact::topology::Topology;
 use crate::state::Field;
 
-/// stats
-pub static STATS: [[std::sync::atomic::AtomicU64; 6]; 4] =
-    [const { [const { std::sync::atomic::AtomicU64::new(0) }; 6] }; 4];
 /// What a lookout is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sought {
