@@ -2,10 +2,12 @@
 //!
 //! The film is cut into patches of a few neighbouring elements, and they into a tree
 //! ([`patches`]); boxes round them ([`boxes`]) say how far two patches are apart at least; a
-//! [`lookout`] keeps every pair of patches or primitives waiting until the film has moved so far
-//! that they could have met.
+//! [`lookout`] keeps every pair of patches waiting ([`bins`]) until their parts of the film
+//! ([`zones`]) have moved so far that they could have met.
 
+pub mod bins;
 pub mod boxes;
 pub mod lookout;
 mod order;
 pub mod patches;
+pub mod zones;

@@ -20,7 +20,7 @@ use crate::contact::gaps::{edge_gaps, element_gaps};
 use crate::contact::intersections::Piercings;
 use crate::contact::topology::Topology;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Couple, Lookout, Rule, Sought, nearer};
+use crate::proximity::lookout::{Couple, Lookout, Sought, nearer};
 use crate::simd::Path;
 use crate::state::Field;
 
@@ -247,9 +247,8 @@ pub struct Watch {
     /// Places at the audit frame and after each step since.
     frames: Vec<Field>,
     used: usize,
-    /// Pairs waiting to come near, and the path so far, m.
+    /// Patches of film waiting to come near each other.
     lookout: Lookout,
-    path: f64,
     /// Intersections of the mesh.
     pub piercings: Piercings,
     /// Passages so far.
@@ -262,14 +261,13 @@ impl Watch {
     /// Starts at these places (m), after so many steps of the run.
     pub fn new(how: Watchfulness, topology: &Topology, places: &Field, steps: u64) -> Self {
         let frames = vec![places.clone(); how.block as usize + 1];
-        let lookout = Lookout::new(Sought::Meetings, BIN * places.size(), 0.0);
+        let lookout = Lookout::new(Sought::Meetings, topology, BIN * places.size());
         Self {
             how,
             start: steps,
             frames,
             used: 1,
             lookout,
-            path: 0.0,
             piercings: Piercings::new(topology, places),
             passages: 0,
             first: None,
@@ -292,7 +290,7 @@ impl Watch {
             return;
         }
         let found = if self.how.closely(self.start) {
-            self.path += self.frames[0].largest_way(&self.frames[steps]);
+            self.lookout.travel(&self.frames[0], &self.frames[steps]);
             passages_step_by_step(topology, &self.frames[..=steps])
         } else {
             self.passages_of_block(topology, steps)
@@ -314,30 +312,19 @@ impl Watch {
     fn passages_of_block(&mut self, topology: &Topology, steps: usize) -> Vec<Passage> {
         let (frames, mut found) = (&self.frames, Vec::new());
         let (from, to) = (&frames[0], &frames[steps]);
-        let (path, until) = (self.path, self.path + from.largest_way(to));
-        let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
-        self.lookout.pass(topology, from, [path, until], &rule, |couple, pairs, dues| {
-            match couple {
-                Couple::EdgeEdge => edge_gaps(Path::best(), topology, from, pairs, dues),
-                _ => element_gaps(Path::best(), topology, from, pairs, dues),
-            }
-            for (pair, due) in pairs.iter().zip(dues) {
-                *due = path + 0.5 * *due;
-                // Written so that what is no number is looked at.
-                let waits = *due > until;
-                if waits {
-                    continue;
-                }
-                let own = passage(couple, *pair);
-                let between = own.closest(topology, from).between;
-                if !own.stays_apart(topology, to, &between) && own.happens(topology, from, to) {
-                    let happens =
-                        |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
-                    found.extend((0..steps).filter(happens).map(|_| own));
-                }
+        let gaps = |couple: Couple, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| match couple {
+            Couple::EdgeEdge => edge_gaps(Path::best(), topology, from, pairs, gaps),
+            _ => element_gaps(Path::best(), topology, from, pairs, gaps),
+        };
+        self.lookout.pass(topology, [from, to], gaps, |couple, pair| {
+            let own = passage(couple, pair);
+            let between = own.closest(topology, from).between;
+            if !own.stays_apart(topology, to, &between) && own.happens(topology, from, to) {
+                let happens =
+                    |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
+                found.extend((0..steps).filter(happens).map(|_| own));
             }
         });
-        self.path = until;
         found.sort_unstable();
         found
     }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::distance::{point_triangle, segment_segment};
 use super::topology::Topology;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Lookout, Rule, Sought, nearer};
+use crate::proximity::lookout::{Lookout, Sought, nearer};
 use crate::state::Field;
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
@@ -25,8 +25,7 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piercings {
     lookout: Lookout,
-    /// Sum of the largest displacements so far, m.
-    path: f64,
+    /// Where the film was at the last look, m.
     last: Field,
     /// Intersections at the last look.
     pub count: u64,
@@ -35,26 +34,27 @@ pub struct Piercings {
 impl Piercings {
     /// Looks for the first time, at these places (m).
     pub fn new(topology: &Topology, places: &Field) -> Self {
-        let lookout = Lookout::new(Sought::Piercings, BIN * places.size(), 0.0);
-        let mut own = Self { lookout, path: 0.0, last: places.clone(), count: 0 };
+        let lookout = Lookout::new(Sought::Piercings, topology, BIN * places.size());
+        let mut own = Self { lookout, last: places.clone(), count: 0 };
         own.look(topology, places);
         own
     }
 
     /// Counts the intersections at these places (m).
     pub fn look(&mut self, topology: &Topology, places: &Field) {
-        self.path += self.last.largest_way(places);
-        self.last.clone_from(places);
-        let (path, mut count) = (self.path, 0);
-        let rule = Rule { keep: 0.0, bounds: 1.0, ahead: 0.0 };
-        self.lookout.pass(topology, places, [path, path], &rule, |_, pairs, dues| {
-            dues.extend(pairs.iter().map(|[edge, element]| {
-                if pierces(topology, places, *edge, *element) {
-                    count += 1;
-                    return path;
-                }
-                path + 0.5 * distance(topology, places, *edge, *element)
-            }));
+        self.lookout.travel(&self.last, places);
+        self.last.copy_from(places);
+        let mut count = 0;
+        let gaps = |_, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| {
+            let gap = |[edge, element]: &[u32; 2]| {
+                let pierced = pierces(topology, places, *edge, *element);
+                if pierced { 0.0 } else { distance(topology, places, *edge, *element) }
+            };
+            gaps.extend(pairs.iter().map(gap));
+        };
+        self.lookout.now(topology, places, gaps, |_, [edge, element]| {
+            // Film that touches is not through.
+            count += u64::from(pierces(topology, places, edge, element));
         });
         self.count = count;
     }

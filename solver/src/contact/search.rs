@@ -9,17 +9,20 @@
 
 use super::gaps::{edge_gaps, element_gaps};
 use super::{Kind, Law, Meeting, Near, Pair, at};
+use crate::proximity::bins::Bins;
 use crate::proximity::boxes::Boxes;
-use crate::proximity::lookout::{Couple, Lookout, Rule, Sought, nearer};
+use crate::proximity::lookout::{Couple, Lookout, Sought, nearer};
 use crate::state::Field;
 
-/// Path of a bin of the lookout, as a share of the contact distance.
+/// Path of a bin of pairs waiting, as a share of the contact distance.
 const BIN: f64 = 0.1;
+/// Number of such bins.
+const BINS: usize = 1024;
 /// A pair that may be in contact within this path is near, as a share of the contact distance.
 const SOON: f64 = 0.25;
 /// A pair that cannot be in contact before this path is near no longer.
 const LEAVE: f64 = 0.75;
-/// Patches of film are taken apart so much path before they have to, as a share of the mean edge length.
+/// Path between two looks at patches of film, as a share of the mean edge length.
 const AHEAD: f64 = 1.0 / 32.0;
 /// Path after which all is looked for anew, in mean edge lengths: what came near once and went far
 /// away need not be followed pair by pair for ever.
@@ -28,18 +31,55 @@ const RENEW: f64 = 4.0;
 /// What is near now, and what will have to be looked at when.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
+    /// Patches of film.
     lookout: Lookout,
+    /// Where the film was when they were looked at, m.
+    seen: Field,
+    /// Path up to which that was enough, m.
+    enough: f64,
+    /// Pairs of nodes and elements, and of edges, waiting for the path.
+    singles: [Bins; 2],
     /// Pairs looked at every step, in order.
     pub near: Vec<Near>,
     /// Smallest distance of any near pair now, m; infinite where none is near.
     pub smallest_gap: f64,
+    // Room for what is due.
+    due: Vec<[u32; 2]>,
+    gaps: Vec<f64>,
+}
+
+/// Place of a kind of pairs among the singles.
+fn place(kind: Kind) -> usize {
+    match kind {
+        Kind::NodeTriangle => 0,
+        Kind::EdgeEdge => 1,
+    }
+}
+
+fn kind_of(couple: Couple) -> Kind {
+    if couple == Couple::EdgeEdge { Kind::EdgeEdge } else { Kind::NodeTriangle }
 }
 
 impl Search {
-    /// Looks at nothing yet; at this path (m).
-    pub fn new(law: &Law, path: f64) -> Self {
-        let lookout = Lookout::new(Sought::Meetings, BIN * law.distance, path);
-        Self { lookout, near: Vec::new(), smallest_gap: f64::INFINITY }
+    /// Has looked at nothing yet; the film is at these places (m), the path so long (m).
+    fn new(law: &Law, places: &Field, path: f64) -> Self {
+        let width = 0.25 * AHEAD * law.edge_length;
+        let bins = || Bins::new(BIN * law.distance, BINS, path);
+        Self {
+            lookout: Lookout::new(Sought::Meetings, &law.topology, width),
+            seen: places.clone(),
+            enough: f64::NEG_INFINITY,
+            singles: [bins(), bins()],
+            near: Vec::new(),
+            smallest_gap: f64::INFINITY,
+            due: Vec::new(),
+            gaps: Vec::new(),
+        }
+    }
+
+    /// Forgets all but the smallest gap.
+    fn forget(&mut self, law: &Law, places: &Field, path: f64) {
+        *self = Self { smallest_gap: self.smallest_gap, ..Self::new(law, places, path) };
     }
 }
 
@@ -61,49 +101,24 @@ impl Law {
     /// Calls `found` with every pair nearer than `radius` (m), and its distance (m).
     pub fn pairs_within(&self, places: &Field, radius: f64, mut found: impl FnMut(Pair, f64)) {
         let boxes = Boxes::new(&self.topology.patches, places);
-        nearer(Sought::Meetings, &self.topology, &boxes, radius, |couple, pair| {
-            if let Some(pair) = self.pair(couple, pair) {
-                let gap = self.gap(pair, places);
-                if gap < radius {
-                    found(pair, gap);
-                }
+        nearer(Sought::Meetings, &self.topology, &boxes, radius, |couple, [first, second]| {
+            let pair = Pair { kind: kind_of(couple), first, second };
+            let gap = self.gap(pair, places);
+            if gap < radius && (self.edges || pair.kind == Kind::NodeTriangle) {
+                found(pair, gap);
             }
         });
     }
 
-    /// The pair of two primitives; none of edges where edges do not meet.
-    fn pair(&self, couple: Couple, [first, second]: [u32; 2]) -> Option<Pair> {
-        match couple {
-            Couple::NodeElement => Some(Pair { kind: Kind::NodeTriangle, first, second }),
-            Couple::EdgeEdge => self.edges.then_some(Pair { kind: Kind::EdgeEdge, first, second }),
-            Couple::EdgeElement => None,
-        }
-    }
-
-    /// Paths after which pairs at these places (m) may matter, the path now being so long (m).
-    fn dues(
-        &self,
-        places: &Field,
-        path: f64,
-        couple: Couple,
-        pairs: &[[u32; 2]],
-        dues: &mut Vec<f64>,
-    ) {
-        let kind = match couple {
-            Couple::NodeElement => {
-                element_gaps(self.path, &self.topology, places, pairs, dues);
-                Kind::NodeTriangle
+    /// Adds the distances (m) of pairs of one kind at these places (m) to `gaps`; edges that do not meet
+    /// are infinitely far apart.
+    fn gaps(&self, places: &Field, kind: Kind, pairs: &[[u32; 2]], gaps: &mut Vec<f64>) {
+        match kind {
+            Kind::NodeTriangle => element_gaps(self.path, &self.topology, places, pairs, gaps),
+            Kind::EdgeEdge if self.edges => {
+                edge_gaps(self.path, &self.topology, places, pairs, gaps);
             }
-            Couple::EdgeEdge if self.edges => {
-                edge_gaps(self.path, &self.topology, places, pairs, dues);
-                Kind::EdgeEdge
-            }
-            Couple::EdgeEdge | Couple::EdgeElement => {
-                return dues.resize(pairs.len(), f64::INFINITY);
-            }
-        };
-        for due in dues {
-            *due = path + self.free_path(kind, *due);
+            Kind::EdgeEdge => gaps.resize(gaps.len() + pairs.len(), f64::INFINITY),
         }
     }
 
@@ -116,35 +131,56 @@ impl Law {
         let renewals = 1 + (until / (RENEW * self.edge_length)) as u64;
         if renewals > meeting.searches {
             meeting.searches = renewals;
-            *search = Search { smallest_gap: search.smallest_gap, ..Search::new(self, path) };
+            search.forget(self, places, path);
         }
         self.fetch(places, [path, until], search);
     }
 
     /// What is near at these places (m), the path being so long (m).
     pub fn look(&self, places: &Field, path: f64) -> Search {
-        let mut search = Search::new(self, path);
+        let mut search = Search::new(self, places, path);
         self.fetch(places, [path, path], &mut search);
         search
     }
 
     /// Fetches what may come near while the path goes from one length to another (m).
     fn fetch(&self, places: &Field, [path, until]: [f64; 2], search: &mut Search) {
-        let rule = Rule {
-            keep: self.distance + self.adhesion.range,
-            bounds: self.bounds,
-            ahead: AHEAD * self.edge_length,
-        };
-        let Search { lookout, near, .. } = search;
-        let before = near.len();
+        let before = search.near.len();
         let soon = until + SOON * self.distance;
-        let due = |couple: Couple, pairs: &[[u32; 2]], dues: &mut Vec<f64>| {
-            self.dues(places, path, couple, pairs, dues);
+        let Search { lookout, singles, near, due, gaps, .. } = search;
+        let mut sort = |bins: &mut [Bins; 2], kind: Kind, [first, second]: [u32; 2], gap: f64| {
+            let due = path + self.free_path(kind, gap);
+            if due > soon {
+                bins[place(kind)].put(due, [first, second]);
+            } else {
+                near.push(Near { pair: Pair { kind, first, second }, gap });
+            }
         };
-        lookout.fetch(&self.topology, places, [path, until, soon], &rule, due, |couple, pair| {
-            let pair = self.pair(couple, pair);
-            near.extend(pair.map(|pair| Near { pair, gap: self.gap(pair, places) }));
-        });
+        for kind in [Kind::NodeTriangle, Kind::EdgeEdge] {
+            due.clear();
+            gaps.clear();
+            singles[place(kind)].take(until, due);
+            self.gaps(places, kind, due, gaps);
+            for (pair, gap) in due.iter().zip(&*gaps) {
+                sort(singles, kind, *pair, *gap);
+            }
+        }
+        let ahead = (AHEAD * self.edge_length).max(2.0 * (until - path));
+        if until > search.enough {
+            lookout.travel(&search.seen, places);
+            search.seen.copy_from(places);
+            search.enough = path + ahead;
+            lookout.fetch(
+                &self.topology,
+                places,
+                ahead,
+                self.distance + self.adhesion.range,
+                self.bounds,
+                |couple, pairs, gaps| self.gaps(places, kind_of(couple), pairs, gaps),
+                |couple, pair, gap| sort(singles, kind_of(couple), pair, gap),
+            );
+        }
+        let near = &mut search.near;
         if near.len() > before {
             near[before..].sort_unstable_by_key(|own| own.pair);
             // Two runs in order: merged in one pass.
@@ -154,16 +190,13 @@ impl Law {
 
     /// Lets the near pairs go that cannot matter for a while.
     pub(super) fn let_go(&self, path: f64, search: &mut Search) {
-        let Search { lookout, near, .. } = search;
+        let Search { singles, near, .. } = search;
         near.retain(|own| {
             let free = self.free_path(own.pair.kind, own.gap);
             let stays = free < LEAVE * self.distance;
             if !stays {
-                let couple = match own.pair.kind {
-                    Kind::NodeTriangle => Couple::NodeElement,
-                    Kind::EdgeEdge => Couple::EdgeEdge,
-                };
-                lookout.wait(couple, [own.pair.first, own.pair.second], path + free);
+                let pair = [own.pair.first, own.pair.second];
+                singles[place(own.pair.kind)].put(path + free, pair);
             }
             stays
         });

@@ -1,14 +1,16 @@
 //! Which pairs may have come near each other, looked at no more often than they can have moved.
 //!
 //! ```text
-//! due = path + (d − keep)/2     two points that each moved by less than (d − keep)/2 are still keep apart
+//! due = way + d        film of two zones that came towards each other by less than d since is still apart
 //! ```
 //!
-//! Symbols: path sum of the largest displacement of any node, step by step, m; d distance of a pair,
-//! or a lower bound of it, m. Two patches wait as one until they are due; then they are taken apart,
-//! down to pairs of primitives, which wait each for itself. Who looks says for how long.
+//! Symbols: way how far two zones of the film have come towards each other so far at most
+//! ([`super::zones`]), m; d distance of two patches of theirs, m, or a lower bound of it. Two patches
+//! wait as one until they are due; then they are looked at closer, or taken apart.
 
+use super::bins::Bins;
 use super::boxes::Boxes;
+use super::zones::Zones;
 use crate::contact::topology::Topology;
 use crate::state::Field;
 
@@ -42,188 +44,189 @@ impl Sought {
     }
 }
 
-/// How long pairs may wait.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rule {
-    /// Distance pairs must not come nearer than unseen, m.
-    pub keep: f64,
-    /// What displacement bounds are multiplied by: 1 but in tests of the audit.
-    pub bounds: f64,
-    /// Patches that are due within so much more path are looked at as well, m.
-    pub ahead: f64,
-}
-
-/// Things waiting for the path to reach their number, in bins.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Bins {
-    /// Path of a bin, m.
-    width: f64,
-    /// First bin not taken yet, counted from path 0.
-    reached: u64,
-    /// A ring of bins; what is due beyond its end waits in the last.
-    ring: Vec<Vec<[u32; 2]>>,
-    /// What was put into a bin taken already.
-    overdue: Vec<[u32; 2]>,
-}
-
-/// Bins of a ring.
-const RING: usize = 1024;
-
-impl Bins {
-    fn new(width: f64, path: f64) -> Self {
-        let ring = vec![Vec::new(); RING];
-        let mut bins = Self { width, reached: 0, ring, overdue: Vec::new() };
-        bins.reached = bins.number(path);
-        bins
-    }
-
-    /// The bin of a path (m); the first where it is past, or no number.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    fn number(&self, path: f64) -> u64 {
-        (path / self.width) as u64
-    }
-
-    fn put(&mut self, due: f64, pair: [u32; 2]) {
-        let bin = self.number(due).min(self.reached + (RING as u64 - 1));
-        if bin < self.reached {
-            self.overdue.push(pair);
-        } else {
-            self.ring[place(bin)].push(pair);
-        }
-    }
-
-    /// Moves to `due` what is due until then (m).
-    fn take(&mut self, until: f64, due: &mut Vec<[u32; 2]>) {
-        due.append(&mut self.overdue);
-        let last = self.number(until);
-        // One round empties the ring.
-        for _ in 0..RING {
-            if self.reached > last {
-                return;
-            }
-            due.append(&mut self.ring[place(self.reached)]);
-            self.reached += 1;
-        }
-        self.reached = self.reached.max(last + 1);
-    }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "below the length of the ring")]
-fn place(bin: u64) -> usize {
-    (bin % RING as u64) as usize
-}
-
 /// Pairs of primitives, those of one kind apart from those of the other.
 type Pairs = [Vec<[u32; 2]>; 2];
 
-/// Two leaves, and how many pairs of primitives of each kind there were with them.
-type Leaves = ([u32; 2], [usize; 2]);
+/// Two leaves, how far they may come towards each other before they are looked at again (m), and how
+/// many pairs of primitives of each kind there were with them.
+type Leaves = ([u32; 2], f64, [usize; 2]);
+
+/// Bins of a pair of zones.
+const RING: usize = 128;
+/// Bins after which all is looked for anew: what came near once and went far away need not be
+/// followed leaf by leaf for ever.
+const RENEWAL: f64 = 256.0;
 
 /// Every pair of a film, each waiting for its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lookout {
     sought: Sought,
-    patches: Bins,
-    pairs: [Bins; 2],
+    zones: Zones,
+    /// How far each pair of zones has come towards each other so far at most, m.
+    ways: Vec<f64>,
+    /// Patches waiting, by their pair of zones.
+    waiting: Vec<Bins>,
+    width: f64,
+    /// Sum of the largest displacements since all was looked for anew, m.
+    path: f64,
     boxes: Boxes,
     // Room for what is due.
     later: Vec<[u32; 2]>,
     leaves: Vec<Leaves>,
     due: Pairs,
-    waits: [Vec<f64>; 2],
+    gaps: [Vec<f64>; 2],
 }
 
 impl Lookout {
-    /// A lookout that has looked at nothing yet, at this path (m). `width`: path below which no pair is
-    /// looked at twice, m.
-    pub fn new(sought: Sought, width: f64, path: f64) -> Self {
-        let bins = || Bins::new(width, path);
+    /// A lookout that has looked at nothing yet. `width`: way below which no pair of patches is looked
+    /// at twice, m.
+    pub fn new(sought: Sought, topology: &Topology, width: f64) -> Self {
+        let zones = Zones::new(&topology.patches);
+        let pairs = zones.pairs();
         let mut lookout = Self {
             sought,
-            patches: bins(),
-            pairs: [bins(), bins()],
+            zones,
+            ways: vec![0.0; pairs],
+            waiting: vec![Bins::new(width, RING, 0.0); pairs],
+            width,
+            path: 0.0,
             boxes: Boxes::default(),
             later: Vec::new(),
             leaves: Vec::new(),
             due: Pairs::default(),
-            waits: <[Vec<f64>; 2]>::default(),
+            gaps: <[Vec<f64>; 2]>::default(),
         };
-        lookout.patches.put(path, [1, 1]);
+        lookout.begin();
         lookout
     }
 
-    /// Has a pair of two nodes, elements or edges wait until the path is `due` (m).
-    pub fn wait(&mut self, couple: Couple, pair: [u32; 2], due: f64) {
-        let at = self.sought.couples().iter().position(|own| *own == Some(couple));
-        self.pairs[at.unwrap_or(0)].put(due, pair);
+    /// Has every pair of zones wait for nothing.
+    fn begin(&mut self) {
+        self.path = 0.0;
+        self.ways.fill(0.0);
+        self.waiting.iter_mut().for_each(Bins::clear);
+        let zones = self.zones.first()..2 * self.zones.first();
+        for one in zones.clone() {
+            for two in one..zones.end {
+                let pair = [one, two].map(|zone| u32::try_from(zone).expect("few zones"));
+                self.waiting[self.zones.pair(one, two)].put(0.0, pair);
+            }
+        }
     }
 
-    /// Asks `due` of all pairs that could come nearer than the rule keeps while the path goes from
-    /// `path` to `until` (m) how long each may wait (m of path); the film is at these places (m) where
-    /// the path is `path`. Of two patches all pairs wait as long as the first of them.
+    /// The film goes from one place of its nodes to another.
+    pub fn travel(&mut self, from: &Field, to: &Field) {
+        self.path += self.zones.travel(from, to, &mut self.ways);
+    }
+
+    /// Looks at all pairs that could come together on the straight way from one place of all nodes to
+    /// another, and goes there: of those pairs `meet` is told. `gaps`: distances of pairs of one kind at
+    /// the first place, m.
     pub fn pass(
         &mut self,
         topology: &Topology,
-        places: &Field,
-        [path, until]: [f64; 2],
-        rule: &Rule,
-        mut due: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
+        [from, to]: [&Field; 2],
+        gaps: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
+        meet: impl FnMut(Couple, [u32; 2]),
     ) {
-        self.patches_due(topology, places, [path, until], rule);
-        self.ask(&mut due);
+        self.renew();
+        let mut reach = vec![0.0; self.ways.len()];
+        self.zones.travel(from, to, &mut reach);
+        self.look(topology, from, &reach, gaps, meet);
+        self.travel(from, to);
+    }
+
+    /// Looks at all pairs that are together now, at these places (m): of those `meet` is told.
+    pub fn now(
+        &mut self,
+        topology: &Topology,
+        places: &Field,
+        gaps: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
+        meet: impl FnMut(Couple, [u32; 2]),
+    ) {
+        self.renew();
+        let reach = vec![0.0; self.ways.len()];
+        self.look(topology, places, &reach, gaps, meet);
+    }
+
+    /// Begins anew, now and then.
+    fn renew(&mut self) {
+        if self.path > RENEWAL * self.width {
+            self.begin();
+        }
+    }
+
+    /// Tells `meet` of the pairs that come together where zones come towards each other by `reach` (m
+    /// for each pair of zones).
+    fn look(
+        &mut self,
+        topology: &Topology,
+        places: &Field,
+        reach: &[f64],
+        mut gaps: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
+        mut meet: impl FnMut(Couple, [u32; 2]),
+    ) {
+        self.take_apart(topology, places, reach, 0.0, 1.0);
+        self.ask(&mut gaps);
+        let couples = self.sought.couples();
         let mut from = [0; 2];
-        for (pair, to) in &self.leaves {
-            let wait = self.first(&from, to);
-            if wait < f64::INFINITY {
-                self.patches.put(wait, *pair);
+        for (pair, reach, to) in &self.leaves {
+            let mut first = f64::INFINITY;
+            for kind in 0..2 {
+                for at in from[kind]..to[kind] {
+                    let gap = self.gaps[kind][at];
+                    first = first.min(gap);
+                    if gap <= *reach
+                        && let Some(couple) = couples[kind]
+                    {
+                        meet(couple, self.due[kind][at]);
+                    }
+                }
+            }
+            if first < f64::INFINITY {
+                let zones = self.zones.pair(pair[0] as usize, pair[1] as usize);
+                self.waiting[zones].put(self.ways[zones] + first, *pair);
             }
             from = *to;
         }
     }
 
-    /// The same, but that pairs of near patches wait each for itself, and whatever is due by `soon` (m)
-    /// is told to `take`, who sees to it from then on.
+    /// The pairs of all patches that could come within `keep` (m) of each other while no node moves
+    /// farther than `ahead` (m) from these places (m): `take` is told of each, and its distance (m), and
+    /// sees to it from then on.
+    #[expect(clippy::too_many_arguments, reason = "one pass over what is due")]
     pub fn fetch(
         &mut self,
         topology: &Topology,
         places: &Field,
-        [path, until, soon]: [f64; 3],
-        rule: &Rule,
-        mut due: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
-        mut take: impl FnMut(Couple, [u32; 2]),
+        ahead: f64,
+        keep: f64,
+        bounds: f64,
+        mut gaps: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
+        mut take: impl FnMut(Couple, [u32; 2], f64),
     ) {
+        let reach = vec![2.0 * ahead; self.ways.len()];
+        self.take_apart(topology, places, &reach, keep, bounds);
+        self.ask(&mut gaps);
         let couples = self.sought.couples();
-        let mut sort = |bins: &mut [Bins; 2], kind: usize, pair: [u32; 2], due: f64| {
-            if due > soon {
-                bins[kind].put(due, pair);
-            } else if let Some(couple) = couples[kind] {
-                take(couple, pair);
-            }
-        };
-        for kind in 0..2 {
-            self.due[kind].clear();
-            self.pairs[kind].take(until, &mut self.due[kind]);
-        }
-        self.ask(&mut due);
-        for kind in 0..2 {
-            for (pair, wait) in self.due[kind].iter().zip(&self.waits[kind]) {
-                sort(&mut self.pairs, kind, *pair, *wait);
-            }
-        }
-        self.patches_due(topology, places, [path, until], rule);
-        self.ask(&mut due);
-        let calm = until + rule.ahead + self.patches.width;
         let mut from = [0; 2];
-        for (pair, to) in &self.leaves {
-            let wait = self.first(&from, to);
-            if wait > calm {
-                if wait < f64::INFINITY {
-                    self.patches.put(wait, *pair);
+        for (pair, reach, to) in &self.leaves {
+            let of = |kind: usize| &self.gaps[kind][from[kind]..to[kind]];
+            let first = of(0).iter().chain(of(1)).copied().fold(f64::INFINITY, f64::min);
+            let free = bounds * (first - keep);
+            if free > *reach {
+                // Leaves without pairs of primitives wait for nothing.
+                if free == f64::INFINITY {
+                    from = *to;
+                    continue;
                 }
+                let zones = self.zones.pair(pair[0] as usize, pair[1] as usize);
+                self.waiting[zones].put(self.ways[zones] + free, *pair);
             } else {
                 for kind in 0..2 {
+                    let Some(couple) = couples[kind] else { continue };
                     for at in from[kind]..to[kind] {
-                        sort(&mut self.pairs, kind, self.due[kind][at], self.waits[kind][at]);
+                        take(couple, self.due[kind][at], self.gaps[kind][at]);
                     }
                 }
             }
@@ -231,21 +234,15 @@ impl Lookout {
         }
     }
 
-    /// The first due of some pairs of each kind, m.
-    fn first(&self, from: &[usize; 2], to: &[usize; 2]) -> f64 {
-        let of = |kind: usize| &self.waits[kind][from[kind]..to[kind]];
-        of(0).iter().chain(of(1)).copied().fold(f64::INFINITY, f64::min)
-    }
-
-    /// Asks how long what is due may wait.
-    fn ask(&mut self, due: &mut impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>)) {
+    /// Asks how far what is due is apart.
+    fn ask(&mut self, gaps: &mut impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>)) {
         for (kind, couple) in self.sought.couples().into_iter().enumerate() {
-            self.waits[kind].clear();
+            self.gaps[kind].clear();
             if let Some(couple) = couple {
-                due(couple, &self.due[kind], &mut self.waits[kind]);
+                gaps(couple, &self.due[kind], &mut self.gaps[kind]);
                 // What is no number waits for nothing.
-                for wait in self.waits[kind].iter_mut().filter(|wait| wait.is_nan()) {
-                    *wait = f64::NEG_INFINITY;
+                for gap in self.gaps[kind].iter_mut().filter(|gap| gap.is_nan()) {
+                    *gap = f64::NEG_INFINITY;
                 }
             }
         }
@@ -253,48 +250,44 @@ impl Lookout {
 
     /// Takes pairs of patches that are due apart until each can wait; the leaves that are left, and
     /// their primitives, are then due.
-    fn patches_due(
+    fn take_apart(
         &mut self,
         topology: &Topology,
         places: &Field,
-        [path, until]: [f64; 2],
-        rule: &Rule,
+        reach: &[f64],
+        keep: f64,
+        bounds: f64,
     ) {
-        let Self { sought, patches, boxes, due, later, leaves, .. } = self;
-        leaves.clear();
-        due.iter_mut().for_each(Vec::clear);
-        if patches.overdue.is_empty() && patches.reached > patches.number(until) {
-            return;
-        }
-        patches.take(until + rule.ahead, later);
-        if later.is_empty() {
-            return;
-        }
-        boxes.fit(&topology.patches, places);
+        self.leaves.clear();
+        self.due.iter_mut().for_each(Vec::clear);
+        self.boxes.fit(&topology.patches, places);
+        let Self { sought, ways, waiting, boxes, due, later, leaves, .. } = self;
         let first_leaf = topology.patches.leaves();
-        while let Some([a, b]) = later.pop() {
-            let (one, two) = (a as usize, b as usize);
-            if one != two {
-                let free = boxes.separation(one, two) - rule.keep;
-                // A place for patches that no patch is in is apart from everything.
-                if free == f64::INFINITY {
-                    continue;
+        for (zones, bins) in waiting.iter_mut().enumerate() {
+            let (way, reach) = (ways[zones], reach[zones]);
+            bins.take(way + reach, later);
+            while let Some([a, b]) = later.pop() {
+                let (one, two) = (a as usize, b as usize);
+                if one != two {
+                    let free = bounds * (boxes.separation(one, two) - keep);
+                    // A place for patches that no patch is in is apart from everything.
+                    if free == f64::INFINITY {
+                        continue;
+                    }
+                    if free > reach + bins.width {
+                        bins.put(way + free, [a, b]);
+                        continue;
+                    }
                 }
-                let wait = path + 0.5 * rule.bounds * free;
-                // Never into a bin taken already: patches are looked at by whole bins.
-                if wait > until + rule.ahead + patches.width {
-                    patches.put(wait, [a, b]);
-                    continue;
-                }
-            }
-            if one >= first_leaf {
-                primitives(*sought, topology, one, two, due);
-                leaves.push(([a, b], [due[0].len(), due[1].len()]));
-            } else if one == two {
-                later.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
-            } else {
-                for a in [2 * a, 2 * a + 1] {
-                    later.extend([[a, 2 * b], [a, 2 * b + 1]]);
+                if one >= first_leaf {
+                    primitives(*sought, topology, one, two, due);
+                    leaves.push(([a, b], reach, [due[0].len(), due[1].len()]));
+                } else if one == two {
+                    later.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
+                } else {
+                    for a in [2 * a, 2 * a + 1] {
+                        later.extend([[a, 2 * b], [a, 2 * b + 1]]);
+                    }
                 }
             }
         }

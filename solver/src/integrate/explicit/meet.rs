@@ -71,7 +71,12 @@ impl Explicit {
             velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
         };
         let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
-        let mut way = fastest(velocities) * length;
+        let speed = fastest(velocities);
+        if speed >= model.wave_speed() {
+            // The step ends the run; nothing is near or far for film that fast.
+            return Ok(());
+        }
+        let mut way = speed * length;
         stopwatch.begins(Stage::Search);
         law.prepare(places, meeting, search, way);
         stopwatch.begins(Stage::Pairs);
