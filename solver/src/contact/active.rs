@@ -56,6 +56,9 @@ impl Contact {
     }
 }
 
+/// A feature within reach of a node, by one of its elements: feature, pair, gap now and before, m.
+pub(super) type Found = (Feature, Pair, f64, f64);
+
 /// Most elements looked at for one node; beyond, the farther ones of the list are left to the guard.
 const MOST: usize = 64;
 
@@ -70,7 +73,8 @@ impl Law {
         meeting: &mut Meeting,
         search: &mut Search,
     ) -> f64 {
-        let Search { near, smallest_gap, .. } = &mut *search;
+        self.measure(places, search);
+        let Search { near, smallest_gap, gaps, found, .. } = &mut *search;
         let mut old =
             core::mem::replace(&mut meeting.contacts, core::mem::take(&mut meeting.spare));
         meeting.contacts.clear();
@@ -85,9 +89,10 @@ impl Law {
                 {
                     to += 1;
                 }
-                self.meet_node(places, mass, &mut near[from..to], &old, meeting);
+                let own = &mut near[from..to];
+                self.meet_node(places, mass, own, &gaps[from..to], found, &old, meeting);
             } else {
-                self.meet_edges(places, mass, &mut near[from], &old, meeting);
+                self.meet_edges(places, mass, &mut near[from], gaps[from], &old, meeting);
             }
             from = to;
         }
@@ -98,43 +103,43 @@ impl Law {
         self.push(places, forces, meeting)
     }
 
-    /// Contacts of one node with the features nearest to it.
+    /// Contacts of one node with the features nearest to it; `gaps`: distances of its pairs now, m.
+    #[expect(clippy::too_many_arguments, reason = "one pass over what is near")]
     fn meet_node(
         &self,
         places: &Field,
         mass: &[f64],
         near: &mut [Near],
+        gaps: &[f64],
+        found: &mut Vec<Found>,
         old: &[Contact],
         meeting: &mut Meeting,
     ) {
         let node = near[0].pair.first;
-        let mut found: [Option<(Feature, Pair, f64, f64)>; MOST] = [None; MOST];
-        let mut count = 0;
+        found.clear();
         let far = self.distance + self.adhesion.range;
         let square = far * far;
-        for own in near.iter_mut() {
+        for (own, gap) in near.iter_mut().zip(gaps) {
+            let before = core::mem::replace(&mut own.gap, *gap);
+            // Their squares may still tell otherwise, by a rounding.
+            if *gap > far * (1.0 + 1e-9) || found.len() == MOST {
+                continue;
+            }
             let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
-            let before = own.gap;
-            own.gap = closest.squared.sqrt();
-            if closest.squared < square && count < MOST {
+            if closest.squared < square {
                 let [_, a, b, c] = closest.weights;
                 let feature = self.topology.feature(own.pair.second, [a, b, c]);
-                found[count] = Some((feature, own.pair, own.gap, before));
-                count += 1;
+                found.push((feature, own.pair, own.gap, before));
             }
         }
-        let found = &found[..count];
         let mine = range_of(old, Kind::NodeTriangle, node);
         let agreed_on = |feature: Feature| {
-            let agreed = found.iter().flatten().filter(|other| other.0 == feature).count();
+            let agreed = found.iter().filter(|other| other.0 == feature).count();
             agreed == self.topology.elements_at(feature) as usize
         };
         for (k, entry) in found.iter().enumerate() {
-            let Some((feature, pair, gap, before)) = *entry else { continue };
-            let same = |other: &&Option<(Feature, Pair, f64, f64)>| {
-                other.is_some_and(|other| other.0 == feature)
-            };
-            let first = !found[..k].iter().any(|other| same(&other));
+            let (feature, pair, gap, before) = *entry;
+            let first = !found[..k].iter().any(|other| other.0 == feature);
             if !first || !agreed_on(feature) {
                 continue;
             }
@@ -167,15 +172,18 @@ impl Law {
         places: &Field,
         mass: &[f64],
         own: &mut Near,
+        gap: f64,
         old: &[Contact],
         meeting: &mut Meeting,
     ) {
-        let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
-        let before = own.gap;
-        own.gap = closest.squared.sqrt();
+        let before = core::mem::replace(&mut own.gap, gap);
         let distance = self.distance_of(Kind::EdgeEdge);
+        if gap >= distance {
+            return;
+        }
+        let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
         let inside = closest.weights.iter().all(|weight| *weight != 0.0);
-        if own.gap >= distance || !inside {
+        if !inside {
             return;
         }
         let kept = old.binary_search_by_key(&own.pair, |old| old.pair).ok().map(|at| &old[at]);

@@ -7,6 +7,7 @@
 //! o: the distance at which a pair begins to matter. What is near follows from the places alone, up
 //! to pairs that are farther apart than they matter: no result depends on when it was looked for.
 
+use super::active::Found;
 use super::gaps::{edge_gaps, element_gaps};
 use super::{Kind, Law, Meeting, Near, Pair, at};
 use crate::proximity::bins::Bins;
@@ -43,9 +44,10 @@ pub struct Search {
     pub near: Vec<Near>,
     /// Smallest distance of any near pair now, m; infinite where none is near.
     pub smallest_gap: f64,
-    // Room for what is due.
+    // Room for pairs, their distances, and what a node has found.
     due: Vec<[u32; 2]>,
-    gaps: Vec<f64>,
+    pub(super) gaps: Vec<f64>,
+    pub(super) found: Vec<Found>,
 }
 
 /// Place of a kind of pairs among the singles.
@@ -74,6 +76,7 @@ impl Search {
             smallest_gap: f64::INFINITY,
             due: Vec::new(),
             gaps: Vec::new(),
+            found: Vec::new(),
         }
     }
 
@@ -185,6 +188,18 @@ impl Law {
             near[before..].sort_unstable_by_key(|own| own.pair);
             // Two runs in order: merged in one pass.
             near.sort_by_key(|own| own.pair);
+        }
+    }
+
+    /// Distances of the near pairs at these places (m), in their order.
+    pub(super) fn measure(&self, places: &Field, search: &mut Search) {
+        let Search { near, due, gaps, .. } = search;
+        gaps.clear();
+        for kind in [Kind::NodeTriangle, Kind::EdgeEdge] {
+            due.clear();
+            let own = near.iter().filter(|own| own.pair.kind == kind);
+            due.extend(own.map(|own| [own.pair.first, own.pair.second]));
+            self.gaps(places, kind, due, gaps);
         }
     }
 

@@ -7,7 +7,10 @@
 //! Unit directions: the three axes, the four diagonals of a cube and one of a face. Single
 //! precision, with what rounding could hide taken off: a separation is never too large.
 
+#![allow(clippy::inline_always, reason = "inside the loop over pairs")]
+
 use super::patches::Patches;
+use crate::simd::{Path, dispatch};
 use crate::state::Field;
 
 /// Directions of the planes.
@@ -116,19 +119,46 @@ impl Boxes {
     /// How far apart the boxes of two nodes of the tree are at least, m; not above 0 where they may meet.
     #[inline]
     pub fn separation(&self, a: usize, b: usize) -> f64 {
-        let (a, b) = (&self.extents[a].0, &self.extents[b].0);
-        let mut gaps = [0.0_f32; DIRECTIONS];
-        for direction in 0..DIRECTIONS {
-            let above = a[direction] + b[DIRECTIONS + direction];
-            let below = b[direction] + a[DIRECTIONS + direction];
-            gaps[direction] = if above > below { above } else { below };
-        }
-        let larger = |a: f32, b: f32| if a > b { a } else { b };
-        let [a, b, c, d, e, f, g, h] = gaps;
-        let largest =
-            larger(larger(larger(a, e), larger(b, f)), larger(larger(c, g), larger(d, h)));
-        f64::from(largest - self.rounding)
+        f64::from(separation(&self.extents[a], &self.extents[b]) - self.rounding)
     }
+
+    /// The separations (m) of pairs of nodes of the tree, in place of what `apart` held.
+    pub fn separations(&self, path: Path, pairs: &[[u32; 2]], apart: &mut Vec<f32>) {
+        apart.clear();
+        separations(path, self, pairs, apart);
+    }
+}
+
+#[inline(always)]
+fn separation(Extent(a): &Extent, Extent(b): &Extent) -> f32 {
+    let larger = |a: f32, b: f32| if a > b { a } else { b };
+    let mut gaps = [0.0_f32; DIRECTIONS];
+    for direction in 0..DIRECTIONS {
+        let above = a[direction] + b[DIRECTIONS + direction];
+        let below = b[direction] + a[DIRECTIONS + direction];
+        gaps[direction] = larger(above, below);
+    }
+    let mut half = [0.0_f32; DIRECTIONS / 2];
+    for at in 0..DIRECTIONS / 2 {
+        half[at] = larger(gaps[at], gaps[at + DIRECTIONS / 2]);
+    }
+    larger(larger(half[0], half[2]), larger(half[1], half[3]))
+}
+
+#[inline(always)]
+fn separations_kernel(boxes: &Boxes, pairs: &[[u32; 2]], apart: &mut Vec<f32>) {
+    for [a, b] in pairs {
+        let (a, b) = (&boxes.extents[*a as usize], &boxes.extents[*b as usize]);
+        apart.push(separation(a, b) - boxes.rounding);
+    }
+}
+
+dispatch! {
+    fn separations / separations_kernel(
+        boxes: &Boxes,
+        pairs: &[[u32; 2]],
+        apart: &mut Vec<f32>,
+    )
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use super::bins::Bins;
 use super::boxes::Boxes;
 use super::zones::Zones;
 use crate::contact::topology::Topology;
+use crate::simd::Path;
 use crate::state::Field;
 
 /// What a lookout is for.
@@ -72,6 +73,8 @@ pub struct Lookout {
     boxes: Boxes,
     // Room for what is due.
     later: Vec<[u32; 2]>,
+    next: Vec<[u32; 2]>,
+    apart: Vec<f32>,
     leaves: Vec<Leaves>,
     due: Pairs,
     gaps: [Vec<f64>; 2],
@@ -92,6 +95,8 @@ impl Lookout {
             path: 0.0,
             boxes: Boxes::default(),
             later: Vec::new(),
+            next: Vec::new(),
+            apart: Vec::new(),
             leaves: Vec::new(),
             due: Pairs::default(),
             gaps: <[Vec<f64>; 2]>::default(),
@@ -261,34 +266,41 @@ impl Lookout {
         self.leaves.clear();
         self.due.iter_mut().for_each(Vec::clear);
         self.boxes.fit(&topology.patches, places);
-        let Self { sought, ways, waiting, boxes, due, later, leaves, .. } = self;
+        let path = Path::best();
+        let Self { sought, zones, ways, waiting, boxes, due, later, next, apart, leaves, .. } =
+            self;
         let first_leaf = topology.patches.leaves();
-        for (zones, bins) in waiting.iter_mut().enumerate() {
-            let (way, reach) = (ways[zones], reach[zones]);
+        for zones in zones.all() {
+            let (way, reach, bins) = (ways[zones], reach[zones], &mut waiting[zones]);
             bins.take(way + reach, later);
-            while let Some([a, b]) = later.pop() {
-                let (one, two) = (a as usize, b as usize);
-                if one != two {
-                    let free = bounds * (boxes.separation(one, two) - keep);
-                    // A place for patches that no patch is in is apart from everything.
-                    if free == f64::INFINITY {
-                        continue;
+            // Row by row down the tree.
+            while !later.is_empty() {
+                boxes.separations(path, later, apart);
+                for (pair, apart) in later.drain(..).zip(&*apart) {
+                    let [a, b] = pair;
+                    if a != b {
+                        let free = bounds * (f64::from(*apart) - keep);
+                        // A place for patches that no patch is in is apart from everything.
+                        if free == f64::INFINITY {
+                            continue;
+                        }
+                        if free > reach + bins.width {
+                            bins.put(way + free, pair);
+                            continue;
+                        }
                     }
-                    if free > reach + bins.width {
-                        bins.put(way + free, [a, b]);
-                        continue;
+                    if a as usize >= first_leaf {
+                        primitives(*sought, topology, a as usize, b as usize, due);
+                        leaves.push((pair, reach, [due[0].len(), due[1].len()]));
+                    } else if a == b {
+                        next.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
+                    } else {
+                        for a in [2 * a, 2 * a + 1] {
+                            next.extend([[a, 2 * b], [a, 2 * b + 1]]);
+                        }
                     }
                 }
-                if one >= first_leaf {
-                    primitives(*sought, topology, one, two, due);
-                    leaves.push(([a, b], reach, [due[0].len(), due[1].len()]));
-                } else if one == two {
-                    later.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
-                } else {
-                    for a in [2 * a, 2 * a + 1] {
-                        later.extend([[a, 2 * b], [a, 2 * b + 1]]);
-                    }
-                }
+                core::mem::swap(later, next);
             }
         }
     }

@@ -48,6 +48,12 @@ impl Zones {
         self.count * self.count
     }
 
+    /// All pairs of zones.
+    pub fn all(&self) -> impl Iterator<Item = usize> + use<> {
+        let count = self.count;
+        (0..count).flat_map(move |one| (one..count).map(move |two| one * count + two))
+    }
+
     /// First node of the tree that is a zone.
     pub fn first(&self) -> usize {
         self.count

@@ -81,6 +81,9 @@ impl Explicit {
         law.prepare(places, meeting, search, way);
         stopwatch.begins(Stage::Pairs);
         law.rub(model, supports, places, &self.next, velocities, kick, meeting);
+        // Friction may have made a node faster.
+        let rubbed = if law.friction > 0.0 { fastest(velocities) * length } else { way };
+        let mut own_way = way.max(rubbed);
         let mut stopped = Stopped::new();
         for turn in 0..MOST_TURNS {
             let kept = law.guard(
@@ -91,6 +94,7 @@ impl Explicit {
                 velocities,
                 length,
                 &search.near,
+                own_way,
                 meeting,
                 turn,
                 &mut stopped,
@@ -108,6 +112,7 @@ impl Explicit {
                 meeting.path -= way;
                 law.prepare(places, meeting, search, now);
                 way = now;
+                own_way = now;
             }
             if !farther && stopped.len() == before {
                 meeting.taken += taken(&stopped, &self.next, velocities);
