@@ -236,7 +236,7 @@ impl Watchfulness {
 }
 
 /// Path of a bin of the lookout, as a share of the film's size.
-const BIN: f64 = 1e-3;
+const BIN: f64 = 2e-3;
 
 /// Watches a run step by step.
 #[derive(Debug, Clone, PartialEq)]

@@ -27,6 +27,8 @@ pub struct Piercings {
     lookout: Lookout,
     /// Where the film was at the last look, m.
     last: Field,
+    /// Distance from the plane of an element with which an edge beside it may wait, m.
+    clear: f64,
     /// Intersections at the last look.
     pub count: u64,
 }
@@ -35,7 +37,7 @@ impl Piercings {
     /// Looks for the first time, at these places (m).
     pub fn new(topology: &Topology, places: &Field) -> Self {
         let lookout = Lookout::new(Sought::Piercings, topology, BIN * places.size());
-        let mut own = Self { lookout, last: places.clone(), count: 0 };
+        let mut own = Self { lookout, last: places.clone(), clear: BIN * places.size(), count: 0 };
         own.look(topology, places);
         own
     }
@@ -44,11 +46,17 @@ impl Piercings {
     pub fn look(&mut self, topology: &Topology, places: &Field) {
         self.lookout.travel(&self.last, places);
         self.last.copy_from(places);
-        let mut count = 0;
+        let (mut count, clear) = (0, self.clear);
         let gaps = |_, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| {
             let gap = |[edge, element]: &[u32; 2]| {
-                let pierced = pierces(topology, places, *edge, *element);
-                if pierced { 0.0 } else { distance(topology, places, *edge, *element) }
+                let beside = beside(topology, places, *edge, *element);
+                if beside > clear {
+                    beside
+                } else if pierces(topology, places, *edge, *element) {
+                    0.0
+                } else {
+                    distance(topology, places, *edge, *element)
+                }
             };
             gaps.extend(pairs.iter().map(gap));
         };
@@ -61,7 +69,7 @@ impl Piercings {
 }
 
 /// Path of a bin, as a share of the film's size.
-const BIN: f64 = 1e-3;
+const BIN: f64 = 2e-3;
 
 /// Distance of an edge and an element that do not pierce each other, m.
 fn distance(topology: &Topology, places: &Field, edge: u32, element: u32) -> f64 {
@@ -72,6 +80,18 @@ fn distance(topology: &Topology, places: &Field, edge: u32, element: u32) -> f64
     let sides = [[a, b], [b, c], [c, a]].map(|[u, v]| segment_segment(&[p, q, u, v]).squared);
     let least = ends.into_iter().chain(sides).fold(f64::INFINITY, f64::min);
     least.sqrt()
+}
+
+/// Least distance of the ends of an edge from the plane of an element, m, where both are on one side
+/// of it: the two are not nearer than that. 0 where they are not, or the element has no area.
+fn beside(topology: &Topology, places: &Field, edge: u32, element: u32) -> f64 {
+    let place = |node: u32| places.get(node as usize);
+    let [p, q] = topology.edges[edge as usize].map(place);
+    let [a, b, c] = topology.triangles[element as usize].map(place);
+    let normal = (b - a).cross(&(c - a));
+    let (start, end) = (normal.dot(&(p - a)), normal.dot(&(q - a)));
+    let size = normal.norm();
+    if start * end > 0.0 && size > 0.0 { start.abs().min(end.abs()) / size } else { 0.0 }
 }
 
 /// Whether an edge passes through an element.

@@ -53,10 +53,10 @@ type Pairs = [Vec<[u32; 2]>; 2];
 type Leaves = ([u32; 2], f64, [usize; 2]);
 
 /// Bins of a pair of zones.
-const RING: usize = 128;
+const RING: usize = 64;
 /// Bins after which all is looked for anew: what came near once and went far away need not be
 /// followed leaf by leaf for ever.
-const RENEWAL: f64 = 256.0;
+const RENEWAL: f64 = 128.0;
 
 /// Every pair of a film, each waiting for its time.
 #[derive(Debug, Clone, PartialEq)]
