@@ -221,6 +221,14 @@ impl PlaneLanes {
     }
 }
 
+impl core::ops::Add for PlaneLanes {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { xx: self.xx + other.xx, yy: self.yy + other.yy, xy: self.xy + other.xy }
+    }
+}
+
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {

@@ -10,6 +10,10 @@
 
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
+mod vectors;
+
+pub use vectors::Vectors;
+
 /// Elements handled at once.
 pub const WIDTH: usize = 8;
 
@@ -155,8 +159,13 @@ impl Lanes {
     /// `yes` where this is above 0, else `no`.
     #[must_use]
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
     pub fn if_positive(self, yes: Self, no: Self) -> Self {
-        Self(core::array::from_fn(|lane| if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] }))
+        let mut lanes = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            lanes[lane] = if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] };
+        }
+        Self(lanes)
     }
 
     /// Sum of the eight, as a tree: ((0+4)+(2+6)) + ((1+5)+(3+7)).
@@ -266,6 +275,52 @@ impl Corners {
     }
 }
 
+/// A node's sums over its elements, in one line of the cache: x, y, z and a number without meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(align(64))]
+pub struct NodeSum {
+    /// Force of the film, N.
+    pub film: [f64; 4],
+    /// ∂V/∂x, m².
+    pub area: [f64; 4],
+}
+
+impl Corners {
+    /// Adds what each element of a block gives to its corners, element by element and for each corner
+    /// by corner: the force on that corner, and one area for all three.
+    ///
+    /// # Panics
+    /// When there are fewer sums than nodes.
+    #[inline(always)]
+    #[expect(unsafe_code, reason = "nodes are checked when `Corners` is made, sums here")]
+    pub fn scatter(&self, block: usize, film: [Vectors; 3], area: Vectors, sums: &mut [NodeSum]) {
+        assert!(sums.len() >= self.nodes, "one sum a node");
+        let film = [rows(film[0]), rows(film[1]), rows(film[2])];
+        let area = rows(area);
+        for lane in 0..WIDTH {
+            for corner in 0..3 {
+                let node = self.blocks[block][corner][lane] as usize;
+                // SAFETY: every node is below `self.nodes`, and there are as many sums.
+                let sum = unsafe { sums.get_unchecked_mut(node) };
+                for k in 0..4 {
+                    sum.film[k] += film[corner][lane][k];
+                    sum.area[k] += area[lane][k];
+                }
+            }
+        }
+    }
+}
+
+/// Eight vectors one by one; the fourth number of each is nought.
+#[inline(always)]
+fn rows(vectors: Vectors) -> [[f64; 4]; WIDTH] {
+    let mut rows = [[0.0; 4]; WIDTH];
+    for lane in 0..WIDTH {
+        rows[lane] = [vectors.x.0[lane], vectors.y.0[lane], vectors.z.0[lane], 0.0];
+    }
+    rows
+}
+
 /// The numbers at these places of a column, which must reach beyond each of them.
 #[inline(always)]
 #[expect(
@@ -279,67 +334,6 @@ fn gather(column: &[f64], at: &[u32; WIDTH]) -> Lanes {
         lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
     }
     Lanes(lanes)
-}
-
-/// One vector of each of eight elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Vectors {
-    /// x components.
-    pub x: Lanes,
-    /// y components.
-    pub y: Lanes,
-    /// z components.
-    pub z: Lanes,
-}
-
-impl Vectors {
-    /// Scalar products.
-    #[inline(always)]
-    pub fn dot(self, other: Self) -> Lanes {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    /// Vector products.
-    #[must_use]
-    #[inline(always)]
-    pub fn cross(self, other: Self) -> Self {
-        Self {
-            x: self.y * other.z - self.z * other.y,
-            y: self.z * other.x - self.x * other.z,
-            z: self.x * other.y - self.y * other.x,
-        }
-    }
-
-    /// Each vector times its own number.
-    #[must_use]
-    #[inline(always)]
-    pub fn scale(self, factor: Lanes) -> Self {
-        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
-    }
-}
-
-impl Add for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
-    }
-}
-
-impl Sub for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-}
-
-impl Neg for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { x: -self.x, y: -self.y, z: -self.z }
-    }
 }
 
 #[cfg(test)]

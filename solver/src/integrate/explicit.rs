@@ -24,7 +24,7 @@ use crate::contact::Law;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
-use crate::forces::membrane::{ElementForces, NodeForces, Sums, element_pass, node_pass};
+use crate::forces::membrane::{Drag, NodeForces, Sums, film_pass, viscous_forces};
 use crate::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::gas::{Gas, GasState, Inflow};
 use crate::model::FilmModel;
@@ -34,10 +34,13 @@ use crate::stages::{Stage, Stopwatch, Untimed};
 use crate::state::Field;
 use crate::supports::Supports;
 
+use update::{drift_nodes, sparse_power};
+
 mod books;
 mod kick;
 mod meet;
 mod state;
+pub mod update;
 
 pub use state::{State, Stretch, Works};
 
@@ -118,7 +121,7 @@ pub struct Explicit {
     pub forces: NodeForces,
     /// Who counts passages; nobody where film has no contact.
     pub watch: Option<Watch>,
-    elements: ElementForces,
+    drag: Drag,
     next: Field,
 }
 
@@ -135,7 +138,7 @@ impl Explicit {
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
         film.meet_first();
-        let sums = film.pass_at(0.0, &mut Untimed);
+        let sums = film.pass_at(0.0, 0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
             Interior::Gas(gas) => {
@@ -151,15 +154,15 @@ impl Explicit {
     /// Goes on from a state of the same film under the same setting, bit for bit.
     pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
         let mut film = Self::with(model, setting, state);
-        let _ = film.pass_at(film.state.time, &mut Untimed);
+        let _ = film.pass_at(film.state.time, 0.0, &mut Untimed);
         film
     }
 
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
-        let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
+        let (drag, forces) = (Drag::new(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
         let watch = setting.watch.map(|how| Watch::new(how, &state.places, state.steps));
-        Self { model, setting, state, forces, watch, elements, next }
+        Self { model, setting, state, forces, watch, drag, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -266,9 +269,11 @@ impl Explicit {
         self.keep_apart(0.5 * (self.state.last_step + length), length, stopwatch)?;
         stopwatch.begins(Stage::Update);
         self.share_work(length);
-        let fastest = self.drift(length);
+        let way = length * self.setting.fault(Term::Drift);
+        let state = &mut self.state;
+        let fastest = drift_nodes(self.setting.path, &state.velocities, way, &mut state.places);
         self.plate_work(until);
-        let sums = self.pass_at(until, stopwatch);
+        let sums = self.pass_at(until, way, stopwatch);
         stopwatch.begins(Stage::Gas);
         self.plate_work(until);
         let volume = sums.six_volumes / 6.0;
@@ -295,7 +300,10 @@ impl Explicit {
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
-        self.contact_work(half);
+        if self.setting.contact.is_some() {
+            let (contact, velocities) = (&self.forces.contact, &self.state.velocities);
+            self.state.works.contact += half * sparse_power(self.setting.path, contact, velocities);
+        }
         self.state.works.support -= half * self.support_power();
         if let Interior::Overpressure(pressure) = self.setting.interior {
             let sweep: f64 = (0..self.model.nodes())
@@ -345,31 +353,15 @@ impl Explicit {
             + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
 
-    /// Moves the nodes; gives the largest squared speed.
-    fn drift(&mut self, length: f64) -> f64 {
-        let (mut fastest, mut taken) = (0.0_f64, 0.0);
-        let way = length * self.setting.fault(Term::Drift);
-        let state = &mut self.state;
-        for node in 0..self.model.nodes() {
-            let velocity = state.velocities.get(node);
-            state.places.set(node, state.places.get(node) + velocity * way);
-            taken -= self.forces.viscous.get(node).dot(&velocity);
-            let squared = velocity.norm_squared();
-            // `max` would let a NaN pass.
-            fastest = if squared <= fastest { fastest } else { squared };
-        }
-        state.works.viscous += 0.5 * length * taken * self.setting.fault(Term::ViscousPower);
-        fastest
-    }
-
-    /// Element and node passes at the places now, which are those of `time` (s).
-    fn pass_at(&mut self, time: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
+    /// Forces at the places now, which are those of `time` (s), `way` (s) times the velocities from where
+    /// they were last asked for.
+    fn pass_at(&mut self, time: f64, way: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
         stopwatch.begins(Stage::Membrane);
         let (model, state) = (&self.model, &self.state);
         let path = self.setting.path;
+        let (places, velocities) = (&state.places, &state.velocities);
         let mut sums =
-            element_pass(path, model, &state.places, &state.velocities, &mut self.elements);
-        node_pass(model, &self.elements, &mut self.forces);
+            film_pass(path, model, places, velocities, way, &mut self.drag, &mut self.forces);
         sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
@@ -383,8 +375,8 @@ impl Explicit {
     fn suffer(&mut self, sums: &mut Sums) {
         let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
             .map(|term| self.setting.fault(term));
-        for node in 0..self.model.nodes() {
-            let drag = self.forces.viscous.get(node);
+        let drags = viscous_forces(&self.model, &self.state.places, &self.state.velocities);
+        for (node, drag) in drags.iter().enumerate() {
             let rest = self.forces.film.get(node) - drag;
             self.forces.film.set(node, rest * elastic + drag * viscous);
             self.forces.area.set(node, self.forces.area.get(node) * area);
