@@ -11,6 +11,8 @@
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 mod vectors;
+#[cfg(target_arch = "x86_64")]
+pub mod x86;
 
 pub use vectors::Vectors;
 
@@ -97,6 +99,80 @@ macro_rules! dispatch {
     };
 }
 pub(crate) use dispatch;
+
+/// Defines `pub fn $name(path, arguments…)` as `dispatch!` does, for a kernel that is written over any
+/// [`Wide`] and runs on the registers of each instruction set.
+macro_rules! dispatch_wide {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)?) => {
+        $(#[$meta])*
+        #[expect(unsafe_code, reason = "each instruction set is entered only where it is detected")]
+        $vis fn $name(path: $crate::simd::Path, $($arg: $ty),*) $(-> $ret)? {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2")]
+                fn avx2($($arg: $ty),*) $(-> $ret)? {
+                    $kernel::<$crate::simd::x86::Avx2>($($arg),*)
+                }
+                #[target_feature(enable = "avx512f,avx512dq")]
+                fn avx512($($arg: $ty),*) $(-> $ret)? {
+                    $kernel::<$crate::simd::x86::Avx512>($($arg),*)
+                }
+                use $crate::simd::Path;
+                match path {
+                    // SAFETY: the features are there, just asked for.
+                    Path::Avx2 if path.available() => return unsafe { avx2($($arg),*) },
+                    // SAFETY: as above.
+                    Path::Avx512 if path.available() => return unsafe { avx512($($arg),*) },
+                    _ => {}
+                }
+            }
+            let _ = path;
+            $kernel::<$crate::simd::Lanes>($($arg),*)
+        }
+    };
+}
+pub(crate) use dispatch_wide;
+
+/// One number of each of eight elements, in whatever an instruction set has for it. All of its
+/// operations give the bits that eight plain numbers would.
+pub trait Wide:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Neg<Output = Self>
+{
+    /// The same number eight times.
+    fn splat(value: f64) -> Self;
+    /// Eight numbers from `column[at..]`.
+    fn load(column: &[f64], at: usize) -> Self;
+    /// Writes to `column[at..]`.
+    fn store(self, column: &mut [f64], at: usize);
+    /// As plain numbers.
+    fn lanes(self) -> Lanes;
+    /// Square roots.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Quotients.
+    #[must_use]
+    fn over(self, other: Self) -> Self;
+    /// The larger of each pair; the other where either is no number.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// `yes` where this is above 0, else `no`.
+    #[must_use]
+    fn if_positive(self, yes: Self, no: Self) -> Self;
+    /// The numbers at these places of a column.
+    ///
+    /// # Safety
+    /// The column must reach beyond each place, and no place be 2^31 or more.
+    #[expect(unsafe_code, reason = "places are checked once, not at each call")]
+    unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self;
+    /// Vectors one by one: the first three numbers of each four from `first`, the last three from
+    /// `second`, as [`NodeSum`] has them.
+    fn rows(first: &Vectors<Self>, second: &Vectors<Self>) -> [NodeSum; WIDTH];
+}
 
 /// One number of each of eight elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -228,6 +304,62 @@ impl Neg for Lanes {
     }
 }
 
+impl Wide for Lanes {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self::splat(value)
+    }
+    #[inline(always)]
+    fn load(column: &[f64], at: usize) -> Self {
+        Self::load(column, at)
+    }
+    #[inline(always)]
+    fn store(self, column: &mut [f64], at: usize) {
+        self.store(column, at);
+    }
+    #[inline(always)]
+    fn lanes(self) -> Lanes {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        self.over(other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.max(other)
+    }
+    #[inline(always)]
+    fn if_positive(self, yes: Self, no: Self) -> Self {
+        self.if_positive(yes, no)
+    }
+    #[inline(always)]
+    #[expect(unsafe_code, reason = "as the trait says")]
+    unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self {
+        let mut lanes = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            // SAFETY: the caller's promise.
+            lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
+        }
+        Self(lanes)
+    }
+    #[inline(always)]
+    fn rows(first: &Vectors, second: &Vectors) -> [NodeSum; WIDTH] {
+        let mut rows = [NodeSum::default(); WIDTH];
+        for lane in 0..WIDTH {
+            rows[lane] = NodeSum {
+                film: [first.x.0[lane], first.y.0[lane], first.z.0[lane], 0.0],
+                area: [second.x.0[lane], second.y.0[lane], second.z.0[lane], 0.0],
+            };
+        }
+        rows
+    }
+}
+
 /// The corners of elements, eight elements a block, checked once to lie within a number of nodes so
 /// that a kernel need not check them again.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -244,6 +376,7 @@ impl Corners {
     /// When a triangle names a node that is not there.
     pub fn new(triangles: &[[u32; 3]], nodes: usize) -> Self {
         assert!(triangles.iter().flatten().all(|node| (*node as usize) < nodes), "nodes there are");
+        assert!(nodes <= 1 << 31, "at most 2^31 nodes");
         let block = |chunk: &[[u32; 3]]| {
             let node =
                 |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
@@ -267,11 +400,18 @@ impl Corners {
     /// # Panics
     /// When a column is shorter than there are nodes.
     #[inline(always)]
-    pub fn gather(&self, block: usize, corner: usize, [x, y, z]: [&[f64]; 3]) -> Vectors {
+    #[expect(unsafe_code, reason = "places are checked when `Corners` is made, columns here")]
+    pub fn gather<L: Wide>(
+        &self,
+        block: usize,
+        corner: usize,
+        [x, y, z]: [&[f64]; 3],
+    ) -> Vectors<L> {
         let whole = x.len() >= self.nodes && y.len() >= self.nodes && z.len() >= self.nodes;
         assert!(whole, "one value a node");
         let at = &self.blocks[block][corner];
-        Vectors { x: gather(x, at), y: gather(y, at), z: gather(z, at) }
+        // SAFETY: every node is below `self.nodes`, which is at most 2^31, and so are the columns long.
+        unsafe { Vectors { x: L::gather(x, at), y: L::gather(y, at), z: L::gather(z, at) } }
     }
 }
 
@@ -285,6 +425,18 @@ pub struct NodeSum {
     pub area: [f64; 4],
 }
 
+impl NodeSum {
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        for k in 0..4 {
+            self.film[k] += other.film[k];
+        }
+        for k in 0..4 {
+            self.area[k] += other.area[k];
+        }
+    }
+}
+
 impl Corners {
     /// Adds what each element of a block gives to its corners, element by element and for each corner
     /// by corner: the force on that corner, and one area for all three.
@@ -293,47 +445,24 @@ impl Corners {
     /// When there are fewer sums than nodes.
     #[inline(always)]
     #[expect(unsafe_code, reason = "nodes are checked when `Corners` is made, sums here")]
-    pub fn scatter(&self, block: usize, film: [Vectors; 3], area: Vectors, sums: &mut [NodeSum]) {
+    pub fn scatter<L: Wide>(
+        &self,
+        block: usize,
+        film: &[Vectors<L>; 3],
+        area: &Vectors<L>,
+        sums: &mut [NodeSum],
+    ) {
         assert!(sums.len() >= self.nodes, "one sum a node");
-        let film = [rows(film[0]), rows(film[1]), rows(film[2])];
-        let area = rows(area);
+        let rows = [L::rows(&film[0], area), L::rows(&film[1], area), L::rows(&film[2], area)];
+        let nodes = &self.blocks[block];
         for lane in 0..WIDTH {
             for corner in 0..3 {
-                let node = self.blocks[block][corner][lane] as usize;
                 // SAFETY: every node is below `self.nodes`, and there are as many sums.
-                let sum = unsafe { sums.get_unchecked_mut(node) };
-                for k in 0..4 {
-                    sum.film[k] += film[corner][lane][k];
-                    sum.area[k] += area[lane][k];
-                }
+                let sum = unsafe { sums.get_unchecked_mut(nodes[corner][lane] as usize) };
+                sum.add(&rows[corner][lane]);
             }
         }
     }
-}
-
-/// Eight vectors one by one; the fourth number of each is nought.
-#[inline(always)]
-fn rows(vectors: Vectors) -> [[f64; 4]; WIDTH] {
-    let mut rows = [[0.0; 4]; WIDTH];
-    for lane in 0..WIDTH {
-        rows[lane] = [vectors.x.0[lane], vectors.y.0[lane], vectors.z.0[lane], 0.0];
-    }
-    rows
-}
-
-/// The numbers at these places of a column, which must reach beyond each of them.
-#[inline(always)]
-#[expect(
-    unsafe_code,
-    reason = "places are checked when `Corners` is made, columns before each call"
-)]
-fn gather(column: &[f64], at: &[u32; WIDTH]) -> Lanes {
-    let mut lanes = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        // SAFETY: every place is below the length of the column: see `Corners::gather`.
-        lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
-    }
-    Lanes(lanes)
 }
 
 #[cfg(test)]

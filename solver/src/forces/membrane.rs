@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use super::damping::viscous_stress;
 use crate::material::{PlaneLanes, PlaneTensor};
 use crate::model::FilmModel;
-use crate::simd::{Lanes, NodeSum, Path, Vectors, WIDTH, dispatch};
+use crate::simd::{Lanes, NodeSum, Path, Vectors, WIDTH, Wide, dispatch, dispatch_wide};
 use crate::state::Field;
 
 /// What a pass remembers of elements for the next: `S_v`, Pa.
@@ -46,36 +46,36 @@ pub struct Sums {
 
 /// F by columns.
 #[inline(always)]
-fn gradient([a, b, c, d]: [Lanes; 4], [p, q]: [Vectors; 2]) -> [Vectors; 2] {
+fn gradient<L: Wide>([a, b, c, d]: [L; 4], [p, q]: [Vectors<L>; 2]) -> [Vectors<L>; 2] {
     [p.scale(a) + q.scale(c), p.scale(b) + q.scale(d)]
 }
 
 #[inline(always)]
-fn edges([a, b, c]: [Vectors; 3]) -> [Vectors; 2] {
+fn edges<L: Wide>([a, b, c]: [Vectors<L>; 3]) -> [Vectors<L>; 2] {
     [b - a, c - a]
 }
 
 #[inline(always)]
-fn green([f, g]: [Vectors; 2]) -> PlaneLanes {
-    let one = Lanes::splat(1.0);
+fn green<L: Wide>([f, g]: [Vectors<L>; 2]) -> PlaneLanes<L> {
+    let one = L::splat(1.0);
     PlaneLanes { xx: (f.dot(f) - one) * 0.5, yy: (g.dot(g) - one) * 0.5, xy: f.dot(g) * 0.5 }
 }
 
 /// Sum of two rates of the same entry: Ė of F and Ḟ.
 #[inline(always)]
-fn green_rate([f, g]: [Vectors; 2], [fr, gr]: [Vectors; 2]) -> PlaneLanes {
+fn green_rate<L: Wide>([f, g]: [Vectors<L>; 2], [fr, gr]: [Vectors<L>; 2]) -> PlaneLanes<L> {
     PlaneLanes { xx: f.dot(fr), yy: g.dot(gr), xy: (f.dot(gr) + g.dot(fr)) * 0.5 }
 }
 
 /// `ḞᵀḞ` by its columns.
 #[inline(always)]
-fn gram([f, g]: [Vectors; 2]) -> PlaneLanes {
+fn gram<L: Wide>([f, g]: [Vectors<L>; 2]) -> PlaneLanes<L> {
     PlaneLanes { xx: f.dot(f), yy: g.dot(g), xy: f.dot(g) }
 }
 
 /// A field at the corners of a block of eight elements.
 #[inline(always)]
-fn corners_of(model: &FilmModel, field: &Field, block: usize) -> [Vectors; 3] {
+fn corners_of<L: Wide>(model: &FilmModel, field: &Field, block: usize) -> [Vectors<L>; 3] {
     let columns = [&field.x[..], &field.y[..], &field.z[..]];
     let corners = &model.blocks;
     [
@@ -87,12 +87,12 @@ fn corners_of(model: &FilmModel, field: &Field, block: usize) -> [Vectors; 3] {
 
 /// −A t F S Dm⁻ᵀ, and what balances it.
 #[inline(always)]
-fn corner_forces(
-    [a, b, c, d]: [Lanes; 4],
-    volume: Lanes,
-    [f, g]: [Vectors; 2],
-    s: PlaneLanes,
-) -> [Vectors; 3] {
+fn corner_forces<L: Wide>(
+    [a, b, c, d]: [L; 4],
+    volume: L,
+    [f, g]: [Vectors<L>; 2],
+    s: PlaneLanes<L>,
+) -> [Vectors<L>; 3] {
     let (p, q) = (f.scale(s.xx) + g.scale(s.xy), f.scale(s.xy) + g.scale(s.yy));
     let loss = -volume;
     let first = (p.scale(a) + q.scale(b)).scale(loss);
@@ -101,7 +101,7 @@ fn corner_forces(
 }
 
 #[inline(always)]
-fn element_kernel(
+fn element_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
     velocities: &Field,
@@ -110,53 +110,46 @@ fn element_kernel(
     nodes: &mut [NodeSum],
 ) -> Sums {
     let material = model.material;
-    let (mut volumes, mut power, mut largest) =
-        (Lanes::default(), Lanes::default(), Lanes::splat(0.0));
+    let (mut volumes, mut power, mut largest) = (L::splat(0.0), L::splat(0.0), L::splat(0.0));
     let [s11, s22, s12] = &mut drag.stress;
     for block in 0..model.blocks.blocks() {
         let at = block * WIDTH;
         let [d11, d12, d21, d22] = &model.inverse_shape;
-        let shape = [
-            Lanes::load(d11, at),
-            Lanes::load(d12, at),
-            Lanes::load(d21, at),
-            Lanes::load(d22, at),
-        ];
-        let volume = Lanes::load(&model.volume, at);
-        let corners = corners_of(model, positions, block);
-        volumes += corners[0].dot(corners[1].cross(corners[2]));
+        let shape = [L::load(d11, at), L::load(d12, at), L::load(d21, at), L::load(d22, at)];
+        let volume = L::load(&model.volume, at);
+        let corners = corners_of::<L>(model, positions, block);
+        volumes = volumes + corners[0].dot(corners[1].cross(corners[2]));
         let edge = edges(corners);
-        let area = edge[0].cross(edge[1]).scale(Lanes::splat(1.0 / 6.0));
+        let area = edge[0].cross(edge[1]).scale(L::splat(1.0 / 6.0));
         let slope = gradient(shape, edge);
         let (stress, most) = material.stresses(green(slope));
         largest = largest.max(most);
         let turn = gradient(shape, edges(corners_of(model, velocities, block)));
         let rate = green_rate(slope, turn);
-        let viscous = viscous_stress(&material, Lanes::load(&model.viscous_time, at), rate);
+        let viscous = viscous_stress(&material, L::load(&model.viscous_time, at), rate);
 
         let before =
-            PlaneLanes { xx: Lanes::load(s11, at), yy: Lanes::load(s22, at), xy: Lanes::load(s12, at) };
+            PlaneLanes { xx: L::load(s11, at), yy: L::load(s22, at), xy: L::load(s12, at) };
         viscous.xx.store(s11, at);
         viscous.yy.store(s22, at);
         viscous.xy.store(s12, at);
         // A way ago F was F - way Ḟ.
         let taken = (before + viscous).contract(rate) - before.contract(gram(turn)) * way;
-        power += taken * volume;
+        power = power + taken * volume;
 
         let elastic = corner_forces(shape, volume, slope, stress);
         let slowing = corner_forces(shape, volume, slope, viscous);
-        let film =
-            [elastic[0] + slowing[0], elastic[1] + slowing[1], elastic[2] + slowing[2]];
-        model.blocks.scatter(block, film, area, nodes);
+        let film = [elastic[0] + slowing[0], elastic[1] + slowing[1], elastic[2] + slowing[2]];
+        model.blocks.scatter(block, &film, &area, nodes);
     }
     Sums {
-        six_volumes: volumes.sum(),
-        viscous_power: power.sum(),
-        largest_stress: largest.largest(),
+        six_volumes: volumes.lanes().sum(),
+        viscous_power: power.lanes().sum(),
+        largest_stress: largest.lanes().largest(),
     }
 }
 
-dispatch! {
+dispatch_wide! {
     /// Adds forces and areas of all elements to their nodes.
     fn element_pass / element_kernel(
         model: &FilmModel,

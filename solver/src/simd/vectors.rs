@@ -4,23 +4,23 @@
 
 use core::ops::{Add, Neg, Sub};
 
-use super::Lanes;
+use super::{Lanes, Wide};
 
 /// One vector of each of eight elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Vectors {
+pub struct Vectors<L = Lanes> {
     /// x components.
-    pub x: Lanes,
+    pub x: L,
     /// y components.
-    pub y: Lanes,
+    pub y: L,
     /// z components.
-    pub z: Lanes,
+    pub z: L,
 }
 
-impl Vectors {
+impl<L: Wide> Vectors<L> {
     /// Scalar products.
     #[inline(always)]
-    pub fn dot(self, other: Self) -> Lanes {
+    pub fn dot(self, other: Self) -> L {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
@@ -38,12 +38,12 @@ impl Vectors {
     /// Each vector times its own number.
     #[must_use]
     #[inline(always)]
-    pub fn scale(self, factor: Lanes) -> Self {
+    pub fn scale(self, factor: L) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
 }
 
-impl Add for Vectors {
+impl<L: Wide> Add for Vectors<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -51,7 +51,7 @@ impl Add for Vectors {
     }
 }
 
-impl Sub for Vectors {
+impl<L: Wide> Sub for Vectors<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -59,7 +59,7 @@ impl Sub for Vectors {
     }
 }
 
-impl Neg for Vectors {
+impl<L: Wide> Neg for Vectors<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {

@@ -51,8 +51,8 @@ fn column_mut(field: &mut Field, axis: usize) -> &mut [f64] {
 macro_rules! kicked {
     ($velocity:expr, $film:expr, $contact:expr, $area:expr, $mass:expr, $gain:expr, $free:expr,
      $push:expr, $gravity:expr) => {{
-        let force = $film + $contact + $area * $push.overpressure
-            + $gravity * ($mass * $push.weight);
+        let force =
+            $film + $contact + $area * $push.overpressure + $gravity * ($mass * $push.weight);
         $velocity + ($velocity * ($push.keep - 1.0) + force * ($gain * $push.gain)) * $free
     }};
 }
@@ -80,15 +80,29 @@ fn kick_kernel(
         for at in (0..whole).step_by(WIDTH) {
             let load = |column| Lanes::load(column, at);
             kicked!(
-                load(velocity), load(film), load(contact), load(area), load(mass), load(inverse),
-                load(free), push, Lanes::splat(gravity)
+                load(velocity),
+                load(film),
+                load(contact),
+                load(area),
+                load(mass),
+                load(inverse),
+                load(free),
+                push,
+                Lanes::splat(gravity)
             )
             .store(next, at);
         }
         for at in whole..nodes {
             next[at] = kicked!(
-                velocity[at], film[at], contact[at], area[at], mass[at], inverse[at], free[at],
-                push, gravity
+                velocity[at],
+                film[at],
+                contact[at],
+                area[at],
+                mass[at],
+                inverse[at],
+                free[at],
+                push,
+                gravity
             );
         }
     }
@@ -148,9 +162,8 @@ fn power_kernel(forces: &Field, velocities: &Field) -> f64 {
     for first in (0..nodes).step_by(WIDTH) {
         let own = first..(first + WIDTH).min(nodes);
         // Whether any bit but a sign is set: a number that is none counts as a force.
-        let bits = |column: &[f64]| {
-            column.iter().fold(0, |bits, value| bits | (value.to_bits() << 1))
-        };
+        let bits =
+            |column: &[f64]| column.iter().fold(0, |bits, value| bits | (value.to_bits() << 1));
         if bits(&fx[own.clone()]) | bits(&fy[own.clone()]) | bits(&fz[own.clone()]) != 0 {
             for node in own {
                 power += forces.get(node).dot(&velocities.get(node));
