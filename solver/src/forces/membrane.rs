@@ -22,7 +22,7 @@ use crate::state::Field;
 /// What a pass remembers of elements for the next: `S_v`, Pa.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drag {
-    stress: [Vec<f64>; 3],
+    pub(crate) stress: [Vec<f64>; 3],
 }
 
 impl Drag {
@@ -230,7 +230,7 @@ pub struct NodeForces {
     /// Of contact, N.
     pub contact: Field,
     /// Both of the film while they are being summed; nought between passes.
-    sums: Vec<NodeSum>,
+    pub(crate) sums: Vec<NodeSum>,
 }
 
 impl NodeForces {

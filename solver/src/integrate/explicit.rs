@@ -39,6 +39,7 @@ use update::{drift_nodes, sparse_power};
 mod books;
 mod kick;
 mod meet;
+pub mod plain;
 mod state;
 pub mod update;
 
