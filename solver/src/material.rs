@@ -148,9 +148,17 @@ impl Material {
     /// S of eight elements, and its larger principal value, Pa.
     #[inline(always)]
     pub fn stresses<L: Wide>(&self, strain: PlaneLanes<L>) -> (PlaneLanes<L>, L) {
-        let half = (strain.xx - strain.yy) * 0.5;
-        let mean = (strain.xx + strain.yy) * 0.5;
-        let radius = (half * half + strain.xy * strain.xy).sqrt();
+        self.stresses_in(strain, Circle::of(strain))
+    }
+
+    /// The same where Mohr's circle of the strain is known: its root takes long, and whoever asks for it
+    /// early has other work to do meanwhile.
+    #[inline(always)]
+    pub fn stresses_in<L: Wide>(
+        &self,
+        strain: PlaneLanes<L>,
+        Circle { half, mean, radius }: Circle<L>,
+    ) -> (PlaneLanes<L>, L) {
         let (e1, e2) = (mean + radius, mean - radius);
         let full = self.full_stress(strain);
         let full_largest = (e1 + e2 * self.poisson_ratio) * self.plane_modulus;
@@ -178,6 +186,24 @@ impl Material {
     pub fn stress(&self, strain: PlaneTensor) -> Stress {
         let (tensor, largest) = self.stresses(PlaneLanes::splat(strain));
         Stress { tensor: tensor.first(), largest: largest.0[0] }
+    }
+}
+
+/// Mohr's circles of eight tensors: half the difference of the diagonal, centre, radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle<L> {
+    half: L,
+    mean: L,
+    radius: L,
+}
+
+impl<L: Wide> Circle<L> {
+    /// Of these tensors.
+    #[inline(always)]
+    pub fn of(tensor: PlaneLanes<L>) -> Self {
+        let half = (tensor.xx - tensor.yy) * 0.5;
+        let mean = (tensor.xx + tensor.yy) * 0.5;
+        Self { half, mean, radius: (half * half + tensor.xy * tensor.xy).sqrt() }
     }
 }
 

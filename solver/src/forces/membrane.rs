@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 
 use super::damping::viscous_stress;
-use crate::material::{PlaneLanes, PlaneTensor};
+use crate::material::{Circle, PlaneLanes, PlaneTensor};
 use crate::model::FilmModel;
 use crate::simd::{Lanes, NodeSum, Path, Vectors, WIDTH, Wide, dispatch, dispatch_wide};
 use crate::state::Field;
@@ -118,16 +118,15 @@ fn element_kernel<L: Wide>(
         let shape = [L::load(d11, at), L::load(d12, at), L::load(d21, at), L::load(d22, at)];
         let volume = L::load(&model.volume, at);
         let corners = corners_of::<L>(model, positions, block);
-        volumes = volumes + corners[0].dot(corners[1].cross(corners[2]));
         let edge = edges(corners);
-        let area = edge[0].cross(edge[1]).scale(L::splat(1.0 / 6.0));
         let slope = gradient(shape, edge);
-        let (stress, most) = material.stresses(green(slope));
-        largest = largest.max(most);
+        // The root is long in coming: all that does not wait for it stands between.
+        let strain = green(slope);
+        let circle = Circle::of(strain);
+
         let turn = gradient(shape, edges(corners_of(model, velocities, block)));
         let rate = green_rate(slope, turn);
         let viscous = viscous_stress(&material, L::load(&model.viscous_time, at), rate);
-
         let before =
             PlaneLanes { xx: L::load(s11, at), yy: L::load(s22, at), xy: L::load(s12, at) };
         viscous.xx.store(s11, at);
@@ -136,9 +135,13 @@ fn element_kernel<L: Wide>(
         // A way ago F was F - way Ḟ.
         let taken = (before + viscous).contract(rate) - before.contract(gram(turn)) * way;
         power = power + taken * volume;
-
-        let elastic = corner_forces(shape, volume, slope, stress);
+        volumes = volumes + corners[0].dot(corners[1].cross(corners[2]));
+        let area = edge[0].cross(edge[1]).scale(L::splat(1.0 / 6.0));
         let slowing = corner_forces(shape, volume, slope, viscous);
+
+        let (stress, most) = material.stresses_in(strain, circle);
+        largest = largest.max(most);
+        let elastic = corner_forces(shape, volume, slope, stress);
         let film = [elastic[0] + slowing[0], elastic[1] + slowing[1], elastic[2] + slowing[2]];
         model.blocks.scatter(block, &film, &area, nodes);
     }

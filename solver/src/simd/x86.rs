@@ -8,8 +8,8 @@
 #![expect(unsafe_code, reason = "an instruction is called where its set was detected")]
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
 // SAFETY, of every block below: the types are used only under the target feature they are named for.
-#![allow(clippy::undocumented_unsafe_blocks, reason = "said once, above")]
 
+#[allow(clippy::wildcard_imports, reason = "forty instructions, each named once")]
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -136,8 +136,8 @@ impl Wide for Avx2 {
     #[inline(always)]
     unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self {
         unsafe {
-            let (own, at) = (column.as_ptr(), at.as_ptr().cast::<__m128i>());
-            let (low, high) = (_mm_loadu_si128(at), _mm_loadu_si128(at.add(1)));
+            let (own, at) = (column.as_ptr(), at.as_ptr());
+            let (low, high) = (_mm_loadu_si128(at.cast()), _mm_loadu_si128(at.add(4).cast()));
             Self(_mm256_i32gather_pd::<8>(own, low), _mm256_i32gather_pd::<8>(own, high))
         }
     }
@@ -268,5 +268,63 @@ unsafe fn fours(v: &Vectors<Avx512>) -> [[__m512d; 2]; 2] {
                 _mm512_shuffle_f64x2::<0xEE>(odd, last_odd),
             ],
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::simd::{Lanes, Path, Vectors, WIDTH, Wide, dispatch_wide};
+
+    /// Every operation, one after the other, of eight numbers and eight others.
+    #[inline(always)]
+    fn kernel<L: Wide>(values: &[f64], at: &[u32; WIDTH], out: &mut Vec<u64>) {
+        let (a, b) = (L::load(values, 0), L::load(values, WIDTH));
+        // SAFETY: the test's places are below 16.
+        let gathered = unsafe { L::gather(values, at) };
+        let told = [
+            a + b,
+            a - b,
+            a * b,
+            a * 0.3,
+            -a,
+            a.over(b),
+            a.sqrt(),
+            a.max(b),
+            b.max(a),
+            a.if_positive(b, L::splat(7.0)),
+            gathered,
+        ];
+        for lanes in told {
+            for number in lanes.lanes().0 {
+                // Which NaN it is may differ: all that follows from it is none either.
+                out.push(if number.is_nan() { 1 } else { number.to_bits() });
+            }
+        }
+        let one = Vectors { x: a.max(L::splat(0.0)), y: gathered, z: L::splat(3.0) };
+        let other = Vectors { x: gathered, y: L::splat(5.0), z: a.max(L::splat(0.0)) };
+        for row in L::rows(&one, &other) {
+            for number in row.film.into_iter().chain(row.area) {
+                out.push(if number.is_nan() { 1 } else { number.to_bits() });
+            }
+        }
+    }
+    dispatch_wide! { fn run / kernel(values: &[f64], at: &[u32; WIDTH], out: &mut Vec<u64>) }
+
+    #[test]
+    fn registers_do_what_plain_numbers_do() {
+        let odd = [0.0, -0.0, f64::NAN, f64::INFINITY, -1.5, 2.5e-310, 3.7, -f64::INFINITY];
+        for turn in 0..WIDTH {
+            let values: Vec<f64> =
+                odd.into_iter().chain((0..WIDTH).map(|lane| odd[(lane + turn) % WIDTH])).collect();
+            let at = [3, 15, 0, 9, 9, 1, 12, 6];
+            let mut plain = Vec::new();
+            kernel::<Lanes>(&values, &at, &mut plain);
+            assert_eq!(plain.len(), 19 * WIDTH);
+            for path in Path::ALL {
+                let mut own = Vec::new();
+                run(path, &values, &at, &mut own);
+                assert_eq!(own, plain, "{}", path.name());
+            }
+        }
     }
 }
