@@ -52,4 +52,4 @@ pub mod supports;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.
-pub const PHYSICS_VERSION: u32 = 1;
+pub const PHYSICS_VERSION: u32 = 2;

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Wide};
 
 /// A symmetric tensor in the developed plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -136,7 +136,7 @@ impl Material {
 
     /// C:e, Pa: the stress of the film if it bore compression as it bears tension.
     #[inline(always)]
-    pub fn full_stress(&self, strain: PlaneLanes) -> PlaneLanes {
+    pub fn full_stress<L: Wide>(&self, strain: PlaneLanes<L>) -> PlaneLanes<L> {
         let (k, nu) = (self.plane_modulus, self.poisson_ratio);
         PlaneLanes {
             xx: (strain.xx + strain.yy * nu) * k,
@@ -147,10 +147,18 @@ impl Material {
 
     /// S of eight elements, and its larger principal value, Pa.
     #[inline(always)]
-    pub fn stresses(&self, strain: PlaneLanes) -> (PlaneLanes, Lanes) {
-        let half = (strain.xx - strain.yy) * 0.5;
-        let mean = (strain.xx + strain.yy) * 0.5;
-        let radius = (half * half + strain.xy * strain.xy).sqrt();
+    pub fn stresses<L: Wide>(&self, strain: PlaneLanes<L>) -> (PlaneLanes<L>, L) {
+        self.stresses_in(strain, Circle::of(strain))
+    }
+
+    /// The same where Mohr's circle of the strain is known: its root takes long, and whoever asks for it
+    /// early has other work to do meanwhile.
+    #[inline(always)]
+    pub fn stresses_in<L: Wide>(
+        &self,
+        strain: PlaneLanes<L>,
+        Circle { half, mean, radius }: Circle<L>,
+    ) -> (PlaneLanes<L>, L) {
         let (e1, e2) = (mean + radius, mean - radius);
         let full = self.full_stress(strain);
         let full_largest = (e1 + e2 * self.poisson_ratio) * self.plane_modulus;
@@ -164,17 +172,14 @@ impl Material {
             xy: lean * strain.xy,
         };
         let taut = e2 + e1 * self.poisson_ratio;
-        let choose = |wrinkled: Lanes, full: Lanes| {
-            let relaxed = e1.if_positive(wrinkled, Lanes::default());
-            let blend = relaxed + (full - relaxed) * self.compression;
-            taut.if_positive(full, blend)
-        };
+        let c = self.compression;
+        // No closure: one is not inlined into another instruction set.
         let tensor = PlaneLanes {
-            xx: choose(wrinkled.xx, full.xx),
-            yy: choose(wrinkled.yy, full.yy),
-            xy: choose(wrinkled.xy, full.xy),
+            xx: relaxed(taut, e1, wrinkled.xx, full.xx, c),
+            yy: relaxed(taut, e1, wrinkled.yy, full.yy, c),
+            xy: relaxed(taut, e1, wrinkled.xy, full.xy, c),
         };
-        (tensor, choose(tension, full_largest))
+        (tensor, relaxed(taut, e1, tension, full_largest, c))
     }
 
     /// S of one element: one lane of [`Self::stresses`].
@@ -184,15 +189,42 @@ impl Material {
     }
 }
 
+/// Mohr's circles of eight tensors: half the difference of the diagonal, centre, radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle<L> {
+    half: L,
+    mean: L,
+    radius: L,
+}
+
+impl<L: Wide> Circle<L> {
+    /// Of these tensors.
+    #[inline(always)]
+    pub fn of(tensor: PlaneLanes<L>) -> Self {
+        let half = (tensor.xx - tensor.yy) * 0.5;
+        let mean = (tensor.xx + tensor.yy) * 0.5;
+        Self { half, mean, radius: (half * half + tensor.xy * tensor.xy).sqrt() }
+    }
+}
+
+/// The stress of taut film where `taut` is above 0, else that of wrinkled film where `e1` is, else
+/// nought; the last two with a share of the first.
+#[inline(always)]
+fn relaxed<L: Wide>(taut: L, e1: L, wrinkled: L, full: L, compression: f64) -> L {
+    let relaxed = e1.if_positive(wrinkled, L::splat(0.0));
+    let blend = relaxed + (full - relaxed) * compression;
+    taut.if_positive(full, blend)
+}
+
 /// A symmetric tensor in the developed plane of each of eight elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PlaneLanes {
+pub struct PlaneLanes<L = Lanes> {
     /// First diagonal entries.
-    pub xx: Lanes,
+    pub xx: L,
     /// Second diagonal entries.
-    pub yy: Lanes,
+    pub yy: L,
     /// Off-diagonal entries.
-    pub xy: Lanes,
+    pub xy: L,
 }
 
 impl PlaneLanes {
@@ -206,18 +238,28 @@ impl PlaneLanes {
     pub fn first(self) -> PlaneTensor {
         PlaneTensor { xx: self.xx.0[0], yy: self.yy.0[0], xy: self.xy.0[0] }
     }
+}
 
+impl<L: Wide> PlaneLanes<L> {
     /// Each times its own number.
     #[must_use]
     #[inline(always)]
-    pub fn scale(self, factor: Lanes) -> Self {
+    pub fn scale(self, factor: L) -> Self {
         Self { xx: self.xx * factor, yy: self.yy * factor, xy: self.xy * factor }
     }
 
     /// Double contractions.
     #[inline(always)]
-    pub fn contract(self, other: Self) -> Lanes {
+    pub fn contract(self, other: Self) -> L {
         self.xx * other.xx + self.yy * other.yy + (self.xy * other.xy) * 2.0
+    }
+}
+
+impl<L: Wide> core::ops::Add for PlaneLanes<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { xx: self.xx + other.xx, yy: self.yy + other.yy, xy: self.xy + other.xy }
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is constant while film moves: elements, masses, incidence.
+//! What is constant while film moves: elements, masses.
 //!
 //! ```text
 //! Dm = [X1 − X0, X2 − X0]      A = det Dm/2      F = [x1 − x0, x2 − x0] Dm⁻¹
@@ -79,10 +79,6 @@ pub struct FilmModel {
     pub mass: Vec<f64>,
     /// 1/m of each node, 1/kg; 0 where it has no mass, so that no force moves it.
     pub inverse_mass: Vec<f64>,
-    /// Where each node's corners begin in `corners`; one more entry than nodes.
-    pub first_corner: Vec<u32>,
-    /// Corners (4 element + corner) of each node, in order.
-    pub corners: Vec<u32>,
 }
 
 impl FilmModel {
@@ -129,8 +125,6 @@ impl FilmModel {
             viscous_time: Vec::with_capacity(triangles.len()),
             mass: vec![0.0; nodes],
             inverse_mass: Vec::new(),
-            first_corner: Vec::new(),
-            corners: Vec::new(),
         };
         for (element, (triangle, [a, b, c])) in triangles.iter().zip(reference).enumerate() {
             if triangle.iter().any(|node| *node as usize >= nodes) {
@@ -165,26 +159,8 @@ impl FilmModel {
         }
         let inverse = |mass: &f64| if *mass > 0.0 { 1.0 / mass } else { 0.0 };
         model.inverse_mass = model.mass.iter().map(inverse).collect();
-        model.link();
         model.pad();
         Ok(model)
-    }
-
-    /// Lists the corners of each node, in the order of elements.
-    fn link(&mut self) {
-        let mut corners: Vec<Vec<u32>> = vec![Vec::new(); self.mass.len()];
-        for (element, triangle) in (0_u32..).zip(&self.triangles) {
-            for (corner, node) in (0_u32..).zip(triangle) {
-                corners[*node as usize].push(4 * element + corner);
-            }
-        }
-        let mut first = 0;
-        self.first_corner.push(0);
-        for own in &corners {
-            first += u32::try_from(own.len()).expect("under 2^32 corners");
-            self.first_corner.push(first);
-        }
-        self.corners = corners.concat();
     }
 
     /// Groups the elements by eight; fills the last group with elements of no volume.

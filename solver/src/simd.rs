@@ -10,6 +10,14 @@
 
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
+mod corners;
+mod vectors;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod x86;
+
+pub use corners::{Corners, NodeSum, vectors_at};
+pub use vectors::Vectors;
+
 /// Elements handled at once.
 pub const WIDTH: usize = 8;
 
@@ -94,6 +102,80 @@ macro_rules! dispatch {
 }
 pub(crate) use dispatch;
 
+/// Defines `pub fn $name(path, arguments…)` as `dispatch!` does, for a kernel that is written over any
+/// [`Wide`] and runs on the registers of each instruction set.
+macro_rules! dispatch_wide {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)?) => {
+        $(#[$meta])*
+        #[expect(unsafe_code, reason = "each instruction set is entered only where it is detected")]
+        $vis fn $name(path: $crate::simd::Path, $($arg: $ty),*) $(-> $ret)? {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2")]
+                fn avx2($($arg: $ty),*) $(-> $ret)? {
+                    $kernel::<$crate::simd::x86::Avx2>($($arg),*)
+                }
+                #[target_feature(enable = "avx512f,avx512dq")]
+                fn avx512($($arg: $ty),*) $(-> $ret)? {
+                    $kernel::<$crate::simd::x86::Avx512>($($arg),*)
+                }
+                use $crate::simd::Path;
+                match path {
+                    // SAFETY: the features are there, just asked for.
+                    Path::Avx2 if path.available() => return unsafe { avx2($($arg),*) },
+                    // SAFETY: as above.
+                    Path::Avx512 if path.available() => return unsafe { avx512($($arg),*) },
+                    _ => {}
+                }
+            }
+            let _ = path;
+            $kernel::<$crate::simd::Lanes>($($arg),*)
+        }
+    };
+}
+pub(crate) use dispatch_wide;
+
+/// One number of each of eight elements, in whatever an instruction set has for it. All of its
+/// operations give the bits that eight plain numbers would.
+pub trait Wide:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Neg<Output = Self>
+{
+    /// The same number eight times.
+    fn splat(value: f64) -> Self;
+    /// Eight numbers from `column[at..]`.
+    fn load(column: &[f64], at: usize) -> Self;
+    /// Writes to `column[at..]`.
+    fn store(self, column: &mut [f64], at: usize);
+    /// As plain numbers.
+    fn lanes(self) -> Lanes;
+    /// Square roots.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Quotients.
+    #[must_use]
+    fn over(self, other: Self) -> Self;
+    /// The larger of each pair; the other where either is no number.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// `yes` where this is above 0, else `no`.
+    #[must_use]
+    fn if_positive(self, yes: Self, no: Self) -> Self;
+    /// The numbers at these places of a column.
+    ///
+    /// # Safety
+    /// The column must reach beyond each place, and no place be 2^31 or more.
+    #[expect(unsafe_code, reason = "places are checked once, not at each call")]
+    unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self;
+    /// Vectors one by one: the first three numbers of each four from `first`, the last three from
+    /// `second`, as [`NodeSum`] has them.
+    fn rows(first: &Vectors<Self>, second: &Vectors<Self>) -> [NodeSum; WIDTH];
+}
+
 /// One number of each of eight elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(64))]
@@ -155,8 +237,13 @@ impl Lanes {
     /// `yes` where this is above 0, else `no`.
     #[must_use]
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
     pub fn if_positive(self, yes: Self, no: Self) -> Self {
-        Self(core::array::from_fn(|lane| if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] }))
+        let mut lanes = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            lanes[lane] = if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] };
+        }
+        Self(lanes)
     }
 
     /// Sum of the eight, as a tree: ((0+4)+(2+6)) + ((1+5)+(3+7)).
@@ -219,141 +306,60 @@ impl Neg for Lanes {
     }
 }
 
-/// The corners of elements, eight elements a block, checked once to lie within a number of nodes so
-/// that a kernel need not check them again.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Corners {
-    nodes: usize,
-    blocks: Vec<[[u32; WIDTH]; 3]>,
-}
-
-impl Corners {
-    /// The corners of these triangles over `nodes` nodes; the last block is filled up with triangles of
-    /// one node thrice.
-    ///
-    /// # Panics
-    /// When a triangle names a node that is not there.
-    pub fn new(triangles: &[[u32; 3]], nodes: usize) -> Self {
-        assert!(triangles.iter().flatten().all(|node| (*node as usize) < nodes), "nodes there are");
-        let block = |chunk: &[[u32; 3]]| {
-            let node =
-                |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
-            [0, 1, 2].map(|corner| core::array::from_fn(|lane| node(corner, lane)))
-        };
-        Self { nodes, blocks: triangles.chunks(WIDTH).map(block).collect() }
-    }
-
-    /// Number of blocks.
-    pub fn blocks(&self) -> usize {
-        self.blocks.len()
-    }
-
-    /// The nodes of one corner of a block's elements.
-    pub fn nodes(&self, block: usize, corner: usize) -> &[u32; WIDTH] {
-        &self.blocks[block][corner]
-    }
-
-    /// Three columns over the nodes, at one corner of a block's elements.
-    ///
-    /// # Panics
-    /// When a column is shorter than there are nodes.
+impl Wide for Lanes {
     #[inline(always)]
-    pub fn gather(&self, block: usize, corner: usize, [x, y, z]: [&[f64]; 3]) -> Vectors {
-        let whole = x.len() >= self.nodes && y.len() >= self.nodes && z.len() >= self.nodes;
-        assert!(whole, "one value a node");
-        let at = &self.blocks[block][corner];
-        Vectors { x: gather(x, at), y: gather(y, at), z: gather(z, at) }
+    fn splat(value: f64) -> Self {
+        Self::splat(value)
     }
-}
-
-/// The numbers at these places of a column, which must reach beyond each of them.
-#[inline(always)]
-#[expect(
-    unsafe_code,
-    reason = "places are checked when `Corners` is made, columns before each call"
-)]
-fn gather(column: &[f64], at: &[u32; WIDTH]) -> Lanes {
-    let mut lanes = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        // SAFETY: every place is below the length of the column: see `Corners::gather`.
-        lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
-    }
-    Lanes(lanes)
-}
-
-/// The vectors at these places of three columns of one length.
-///
-/// # Panics
-/// When a place is beyond the columns.
-#[inline(always)]
-pub fn gather_vectors([x, y, z]: [&[f64]; 3], at: &[u32; WIDTH]) -> Vectors {
-    let mut last = 0;
-    for place in at {
-        last = if *place > last { *place } else { last };
-    }
-    let last = last as usize;
-    assert!(last < x.len() && last < y.len() && last < z.len(), "one value a place");
-    Vectors { x: gather(x, at), y: gather(y, at), z: gather(z, at) }
-}
-
-/// One vector of each of eight elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Vectors {
-    /// x components.
-    pub x: Lanes,
-    /// y components.
-    pub y: Lanes,
-    /// z components.
-    pub z: Lanes,
-}
-
-impl Vectors {
-    /// Scalar products.
     #[inline(always)]
-    pub fn dot(self, other: Self) -> Lanes {
-        self.x * other.x + self.y * other.y + self.z * other.z
+    fn load(column: &[f64], at: usize) -> Self {
+        Self::load(column, at)
     }
-
-    /// Vector products.
-    #[must_use]
     #[inline(always)]
-    pub fn cross(self, other: Self) -> Self {
-        Self {
-            x: self.y * other.z - self.z * other.y,
-            y: self.z * other.x - self.x * other.z,
-            z: self.x * other.y - self.y * other.x,
+    fn store(self, column: &mut [f64], at: usize) {
+        self.store(column, at);
+    }
+    #[inline(always)]
+    fn lanes(self) -> Lanes {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        self.over(other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.max(other)
+    }
+    #[inline(always)]
+    fn if_positive(self, yes: Self, no: Self) -> Self {
+        self.if_positive(yes, no)
+    }
+    #[inline(always)]
+    #[expect(unsafe_code, reason = "as the trait says")]
+    unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self {
+        let mut lanes = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            // SAFETY: the caller's promise.
+            lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
         }
+        Self(lanes)
     }
-
-    /// Each vector times its own number.
-    #[must_use]
     #[inline(always)]
-    pub fn scale(self, factor: Lanes) -> Self {
-        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
-    }
-}
-
-impl Add for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
-    }
-}
-
-impl Sub for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-}
-
-impl Neg for Vectors {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { x: -self.x, y: -self.y, z: -self.z }
+    #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
+    fn rows(first: &Vectors, second: &Vectors) -> [NodeSum; WIDTH] {
+        let mut rows = [NodeSum::default(); WIDTH];
+        for lane in 0..WIDTH {
+            rows[lane] = NodeSum {
+                film: [first.x.0[lane], first.y.0[lane], first.z.0[lane], 0.0],
+                area: [second.x.0[lane], second.y.0[lane], second.z.0[lane], 0.0],
+            };
+        }
+        rows
     }
 }
 

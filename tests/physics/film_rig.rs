@@ -1,7 +1,7 @@
 //! Small films for the tests of the explicit solver.
 
 use billow_solver::course::Phase;
-use billow_solver::forces::membrane::{ElementForces, NodeForces, element_pass, node_pass};
+use billow_solver::forces::membrane::{Drag, NodeForces, film_pass};
 use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
 use billow_solver::model::FilmModel;
@@ -112,10 +112,9 @@ pub fn icosphere(level: u32, radius: f64) -> Piece {
 
 /// Film forces on nodes at these places and velocities, with the power viscosity takes.
 pub fn film_forces(model: &FilmModel, places: &Field, velocities: &Field) -> (NodeForces, f64) {
-    let mut elements = ElementForces::new(model);
     let mut nodes = NodeForces::new(model);
-    let sums = element_pass(Path::best(), model, places, velocities, &mut elements);
-    node_pass(model, &elements, &mut nodes);
+    let drag = &mut Drag::new(model);
+    let sums = film_pass(Path::best(), model, places, velocities, 0.0, drag, &mut nodes);
     (nodes, sums.viscous_power)
 }
 

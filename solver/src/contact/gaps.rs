@@ -7,40 +7,41 @@
 
 use super::distance::point_triangle;
 use super::topology::Topology;
-use crate::simd::{Lanes, Path, Vectors, WIDTH, dispatch, gather_vectors};
+use crate::simd::{Path, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
 use crate::state::Field;
 
 /// 0 below 0, 1 above 1.
 #[inline(always)]
-fn clamped(value: Lanes) -> Lanes {
-    let one = Lanes::splat(1.0);
-    let low = (-value).if_positive(Lanes::default(), value);
+fn clamped<L: Wide>(value: L) -> L {
+    let one = L::splat(1.0);
+    let low = (-value).if_positive(L::splat(0.0), value);
     (low - one).if_positive(one, low)
 }
 
 /// above/below within 0 and 1; 0 where below is not above 0.
 #[inline(always)]
-fn share(above: Lanes, below: Lanes) -> Lanes {
-    below.if_positive(clamped(above.over(below)), Lanes::default())
+fn share<L: Wide>(above: L, below: L) -> L {
+    below.if_positive(clamped(above.over(below)), L::splat(0.0))
 }
 
 /// Σ w x squared.
 #[inline(always)]
-fn squared(weights: [Lanes; 4], x: [Vectors; 4]) -> Lanes {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k| x[k].scale(weights[k]));
+fn squared<L: Wide>(weights: [L; 4], x: [Vectors<L>; 4]) -> L {
+    let (a, b) = (x[0].scale(weights[0]), x[1].scale(weights[1]));
+    let (c, d) = (x[2].scale(weights[2]), x[3].scale(weights[3]));
     let between = a + b + c + d;
     between.dot(between)
 }
 
 /// Squared distances of segments, m²: [`super::distance::segment_segment`].
 #[inline(always)]
-fn segments([a, b, c, d]: [Vectors; 4]) -> Lanes {
-    let (one, none) = (Lanes::splat(1.0), Lanes::default());
+fn segments<L: Wide>([a, b, c, d]: [Vectors<L>; 4]) -> L {
+    let (one, none) = (L::splat(1.0), L::splat(0.0));
     let (u, v, r) = (b - a, d - c, a - c);
     let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
     let (ur, vr) = (u.dot(r), v.dot(r));
     let determinant = uu * vv - uv * uv;
-    let parallel = Lanes::splat(1e-12) * uu * vv;
+    let parallel = L::splat(1e-12) * uu * vv;
     let first = (determinant - parallel).if_positive(share(uv * vr - ur * vv, determinant), none);
     let free = vv.if_positive((uv * first + vr).over(vv), none);
     let t = clamped(free);
@@ -54,8 +55,8 @@ fn segments([a, b, c, d]: [Vectors; 4]) -> Lanes {
 /// Squared distances of points and triangles, m²: [`point_triangle`]; no number where a triangle has no
 /// area.
 #[inline(always)]
-fn triangles([p, a, b, c]: [Vectors; 4]) -> Lanes {
-    let (one, none) = (Lanes::splat(1.0), Lanes::default());
+fn triangles<L: Wide>([p, a, b, c]: [Vectors<L>; 4]) -> L {
+    let (one, none) = (L::splat(1.0), L::splat(0.0));
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     let bp = p - b;
@@ -67,25 +68,31 @@ fn triangles([p, a, b, c]: [Vectors; 4]) -> Lanes {
     let va = d3 * d6 - d5 * d4;
     let sum = va + vb + vc;
     let (v, w) = (vb.over(sum), vc.over(sum));
-    let undone = Lanes::splat(f64::NAN);
+    let undone = L::splat(f64::NAN);
     // From the last region to the first: each takes what the ones before it left.
-    let mut weights = [one - v - w, v, w].map(|own| sum.if_positive(own, undone));
-    let mut take = |outside: Lanes, own: [Lanes; 3]| {
-        for (weight, own) in weights.iter_mut().zip(own) {
-            *weight = outside.if_positive(*weight, own);
-        }
-    };
+    let mut own = [one - v - w, v, w];
+    own = choose(sum, own, [undone; 3]);
     let (along, back) = (d4 - d3, d5 - d6);
     let w = along.over(along + back);
-    take(va.max(-along).max(-back), [none, one - w, w]);
+    own = choose(va.max(-along).max(-back), own, [none, one - w, w]);
     let w = d2.over(d2 - d6);
-    take(vb.max(-d2).max(d6), [one - w, none, w]);
-    take((-d6).max(d5 - d6), [none, none, one]);
+    own = choose(vb.max(-d2).max(d6), own, [one - w, none, w]);
+    own = choose((-d6).max(d5 - d6), own, [none, none, one]);
     let v = d1.over(d1 - d3);
-    take(vc.max(-d1).max(d3), [one - v, v, none]);
-    take((-d3).max(d4 - d3), [none, one, none]);
-    take(d1.max(d2), [one, none, none]);
-    squared([one, -weights[0], -weights[1], -weights[2]], [p, a, b, c])
+    own = choose(vc.max(-d1).max(d3), own, [one - v, v, none]);
+    own = choose((-d3).max(d4 - d3), own, [none, one, none]);
+    own = choose(d1.max(d2), own, [one, none, none]);
+    squared([one, -own[0], -own[1], -own[2]], [p, a, b, c])
+}
+
+/// `yes` where `positive` is above 0, else `no`.
+#[inline(always)]
+fn choose<L: Wide>(positive: L, yes: [L; 3], no: [L; 3]) -> [L; 3] {
+    [
+        positive.if_positive(yes[0], no[0]),
+        positive.if_positive(yes[1], no[1]),
+        positive.if_positive(yes[2], no[2]),
+    ]
 }
 
 /// Eight of the pairs; the last are filled up with the first.
@@ -97,16 +104,31 @@ fn eight(pairs: &[[u32; 2]]) -> [[u32; 2]; WIDTH] {
 }
 
 #[inline(always)]
-fn place(places: &Field, nodes: &[[u32; 4]; WIDTH], corner: usize) -> Vectors {
+fn place<L: Wide>(places: &Field, nodes: &[[u32; 4]; WIDTH], corner: usize) -> Vectors<L> {
     let mut at = [0; WIDTH];
     for lane in 0..WIDTH {
         at[lane] = nodes[lane][corner];
     }
-    gather_vectors([&places.x, &places.y, &places.z], &at)
+    vectors_at([&places.x, &places.y, &places.z], &at)
 }
 
 #[inline(always)]
-fn edge_kernel(topology: &Topology, places: &Field, pairs: &[[u32; 2]], gaps: &mut Vec<f64>) {
+fn four<L: Wide>(places: &Field, nodes: &[[u32; 4]; WIDTH]) -> [Vectors<L>; 4] {
+    [
+        place(places, nodes, 0),
+        place(places, nodes, 1),
+        place(places, nodes, 2),
+        place(places, nodes, 3),
+    ]
+}
+
+#[inline(always)]
+fn edge_kernel<L: Wide>(
+    topology: &Topology,
+    places: &Field,
+    pairs: &[[u32; 2]],
+    gaps: &mut Vec<f64>,
+) {
     for chunk in pairs.chunks(WIDTH) {
         let own = eight(chunk);
         let mut nodes = [[0; 4]; WIDTH];
@@ -115,14 +137,18 @@ fn edge_kernel(topology: &Topology, places: &Field, pairs: &[[u32; 2]], gaps: &m
             let [c, d] = topology.edges[own[lane][1] as usize];
             nodes[lane] = [a, b, c, d];
         }
-        let x = [0, 1, 2, 3].map(|corner| place(places, &nodes, corner));
-        let found = segments(x).sqrt();
+        let found = segments::<L>(four(places, &nodes)).sqrt().lanes();
         gaps.extend_from_slice(&found.0[..chunk.len()]);
     }
 }
 
 #[inline(always)]
-fn element_kernel(topology: &Topology, places: &Field, pairs: &[[u32; 2]], gaps: &mut Vec<f64>) {
+fn element_kernel<L: Wide>(
+    topology: &Topology,
+    places: &Field,
+    pairs: &[[u32; 2]],
+    gaps: &mut Vec<f64>,
+) {
     for chunk in pairs.chunks(WIDTH) {
         let own = eight(chunk);
         let mut nodes = [[0; 4]; WIDTH];
@@ -130,13 +156,12 @@ fn element_kernel(topology: &Topology, places: &Field, pairs: &[[u32; 2]], gaps:
             let [a, b, c] = topology.triangles[own[lane][1] as usize];
             nodes[lane] = [own[lane][0], a, b, c];
         }
-        let x = [0, 1, 2, 3].map(|corner| place(places, &nodes, corner));
-        let found = triangles(x).sqrt();
+        let found = triangles::<L>(four(places, &nodes)).sqrt().lanes();
         gaps.extend_from_slice(&found.0[..chunk.len()]);
     }
 }
 
-dispatch! {
+dispatch_wide! {
     /// Adds the distances (m) of edges and edges at these places (m) to `gaps`.
     pub fn edge_gaps / edge_kernel(
         topology: &Topology,
@@ -146,7 +171,7 @@ dispatch! {
     )
 }
 
-dispatch! {
+dispatch_wide! {
     fn element_gaps_of_sound / element_kernel(
         topology: &Topology,
         places: &Field,

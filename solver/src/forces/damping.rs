@@ -14,11 +14,11 @@
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
 use crate::material::{Material, PlaneLanes};
-use crate::simd::Lanes;
+use crate::simd::Wide;
 
 /// `S_v` of eight elements, Pa, at their strain rates (1/s); `time` is `2ζ/ω_e`, s.
 #[inline(always)]
-pub fn viscous_stress(material: &Material, time: Lanes, rate: PlaneLanes) -> PlaneLanes {
+pub fn viscous_stress<L: Wide>(material: &Material, time: L, rate: PlaneLanes<L>) -> PlaneLanes<L> {
     material.full_stress(rate).scale(time)
 }
 

@@ -14,31 +14,21 @@
 use nalgebra::Vector3;
 
 use super::damping::viscous_stress;
-use crate::material::{PlaneLanes, PlaneTensor};
+use crate::material::{Circle, PlaneLanes, PlaneTensor};
 use crate::model::FilmModel;
-use crate::simd::{Lanes, Vectors, WIDTH, dispatch};
+use crate::simd::{Lanes, NodeSum, Path, Vectors, WIDTH, Wide, dispatch, dispatch_wide};
 use crate::state::Field;
 
-/// What one element pass leaves for the node pass.
+/// What a pass remembers of elements for the next: `S_v`, Pa.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ElementForces {
-    /// Elastic and viscous force on the elements' first, second and third corners, N.
-    pub film: [Field; 3],
-    /// Viscous force on them, N.
-    pub viscous: [Field; 3],
-    /// Each element's share of ∂V/∂x at each of its corners, m².
-    pub area: Field,
+pub struct Drag {
+    pub(crate) stress: [Vec<f64>; 3],
 }
 
-impl ElementForces {
-    /// Room for a model's elements.
+impl Drag {
+    /// None yet, for a model's elements.
     pub fn new(model: &FilmModel) -> Self {
-        let zeros = || Field::zeros(model.padded());
-        Self {
-            film: core::array::from_fn(|_| zeros()),
-            viscous: core::array::from_fn(|_| zeros()),
-            area: zeros(),
-        }
+        Self { stress: core::array::from_fn(|_| vec![0.0; model.padded()]) }
     }
 }
 
@@ -47,7 +37,8 @@ impl ElementForces {
 pub struct Sums {
     /// Six times the volume enclosed by film (and closing faces), m³.
     pub six_volumes: f64,
-    /// Power taken by viscosity, W.
+    /// Power taken by viscosity, W: of the stress here and, along the way here, of that of the pass
+    /// before, both with the velocities given. Half the step times it is the work of the way.
     pub viscous_power: f64,
     /// Largest principal second Piola-Kirchhoff stress, Pa, without its viscous part.
     pub largest_stress: f64,
@@ -55,30 +46,36 @@ pub struct Sums {
 
 /// F by columns.
 #[inline(always)]
-fn gradient([a, b, c, d]: [Lanes; 4], [p, q]: [Vectors; 2]) -> [Vectors; 2] {
+fn gradient<L: Wide>([a, b, c, d]: [L; 4], [p, q]: [Vectors<L>; 2]) -> [Vectors<L>; 2] {
     [p.scale(a) + q.scale(c), p.scale(b) + q.scale(d)]
 }
 
 #[inline(always)]
-fn edges([a, b, c]: [Vectors; 3]) -> [Vectors; 2] {
+fn edges<L: Wide>([a, b, c]: [Vectors<L>; 3]) -> [Vectors<L>; 2] {
     [b - a, c - a]
 }
 
 #[inline(always)]
-fn green([f, g]: [Vectors; 2]) -> PlaneLanes {
-    let one = Lanes::splat(1.0);
+fn green<L: Wide>([f, g]: [Vectors<L>; 2]) -> PlaneLanes<L> {
+    let one = L::splat(1.0);
     PlaneLanes { xx: (f.dot(f) - one) * 0.5, yy: (g.dot(g) - one) * 0.5, xy: f.dot(g) * 0.5 }
 }
 
 /// Sum of two rates of the same entry: Ė of F and Ḟ.
 #[inline(always)]
-fn green_rate([f, g]: [Vectors; 2], [fr, gr]: [Vectors; 2]) -> PlaneLanes {
+fn green_rate<L: Wide>([f, g]: [Vectors<L>; 2], [fr, gr]: [Vectors<L>; 2]) -> PlaneLanes<L> {
     PlaneLanes { xx: f.dot(fr), yy: g.dot(gr), xy: (f.dot(gr) + g.dot(fr)) * 0.5 }
+}
+
+/// `ḞᵀḞ` by its columns.
+#[inline(always)]
+fn gram<L: Wide>([f, g]: [Vectors<L>; 2]) -> PlaneLanes<L> {
+    PlaneLanes { xx: f.dot(f), yy: g.dot(g), xy: f.dot(g) }
 }
 
 /// A field at the corners of a block of eight elements.
 #[inline(always)]
-fn corners_of(model: &FilmModel, field: &Field, block: usize) -> [Vectors; 3] {
+fn corners_of<L: Wide>(model: &FilmModel, field: &Field, block: usize) -> [Vectors<L>; 3] {
     let columns = [&field.x[..], &field.y[..], &field.z[..]];
     let corners = &model.blocks;
     [
@@ -90,12 +87,12 @@ fn corners_of(model: &FilmModel, field: &Field, block: usize) -> [Vectors; 3] {
 
 /// −A t F S Dm⁻ᵀ, and what balances it.
 #[inline(always)]
-fn corner_forces(
-    [a, b, c, d]: [Lanes; 4],
-    volume: Lanes,
-    [f, g]: [Vectors; 2],
-    s: PlaneLanes,
-) -> [Vectors; 3] {
+fn corner_forces<L: Wide>(
+    [a, b, c, d]: [L; 4],
+    volume: L,
+    [f, g]: [Vectors<L>; 2],
+    s: PlaneLanes<L>,
+) -> [Vectors<L>; 3] {
     let (p, q) = (f.scale(s.xx) + g.scale(s.xy), f.scale(s.xy) + g.scale(s.yy));
     let loss = -volume;
     let first = (p.scale(a) + q.scale(b)).scale(loss);
@@ -104,76 +101,116 @@ fn corner_forces(
 }
 
 #[inline(always)]
-fn store(out: &mut Field, at: usize, vectors: Vectors) {
-    vectors.x.store(&mut out.x, at);
-    vectors.y.store(&mut out.y, at);
-    vectors.z.store(&mut out.z, at);
-}
-
-#[inline(always)]
-fn element_kernel(
+fn element_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
     velocities: &Field,
-    out: &mut ElementForces,
+    way: f64,
+    drag: &mut Drag,
+    nodes: &mut [NodeSum],
 ) -> Sums {
     let material = model.material;
-    let (mut volumes, mut power, mut largest) =
-        (Lanes::default(), Lanes::default(), Lanes::splat(0.0));
+    let (mut volumes, mut power, mut largest) = (L::splat(0.0), L::splat(0.0), L::splat(0.0));
+    let [s11, s22, s12] = &mut drag.stress;
     for block in 0..model.blocks.blocks() {
         let at = block * WIDTH;
         let [d11, d12, d21, d22] = &model.inverse_shape;
-        let shape = [
-            Lanes::load(d11, at),
-            Lanes::load(d12, at),
-            Lanes::load(d21, at),
-            Lanes::load(d22, at),
-        ];
-        let volume = Lanes::load(&model.volume, at);
-        let corners = corners_of(model, positions, block);
+        let shape = [L::load(d11, at), L::load(d12, at), L::load(d21, at), L::load(d22, at)];
+        let volume = L::load(&model.volume, at);
+        let corners = corners_of::<L>(model, positions, block);
         let edge = edges(corners);
         let slope = gradient(shape, edge);
-        let (stress, most) = material.stresses(green(slope));
-        let rate = green_rate(slope, gradient(shape, edges(corners_of(model, velocities, block))));
-        let viscous = viscous_stress(&material, Lanes::load(&model.viscous_time, at), rate);
+        // The root is long in coming: all that does not wait for it stands between.
+        let strain = green(slope);
+        let circle = Circle::of(strain);
 
-        let elastic = corner_forces(shape, volume, slope, stress);
-        let drag = corner_forces(shape, volume, slope, viscous);
-        for corner in 0..3 {
-            store(&mut out.film[corner], at, elastic[corner] + drag[corner]);
-            store(&mut out.viscous[corner], at, drag[corner]);
-        }
-        store(&mut out.area, at, edge[0].cross(edge[1]).scale(Lanes::splat(1.0 / 6.0)));
+        let turn = gradient(shape, edges(corners_of(model, velocities, block)));
+        let rate = green_rate(slope, turn);
+        let viscous = viscous_stress(&material, L::load(&model.viscous_time, at), rate);
+        let before =
+            PlaneLanes { xx: L::load(s11, at), yy: L::load(s22, at), xy: L::load(s12, at) };
+        viscous.xx.store(s11, at);
+        viscous.yy.store(s22, at);
+        viscous.xy.store(s12, at);
+        // A way ago F was F - way Ḟ.
+        let taken = (before + viscous).contract(rate) - before.contract(gram(turn)) * way;
+        power = power + taken * volume;
+        volumes = volumes + corners[0].dot(corners[1].cross(corners[2]));
+        let area = edge[0].cross(edge[1]).scale(L::splat(1.0 / 6.0));
+        let slowing = corner_forces(shape, volume, slope, viscous);
 
-        volumes += corners[0].dot(corners[1].cross(corners[2]));
-        power += viscous.contract(rate) * volume;
+        let (stress, most) = material.stresses_in(strain, circle);
         largest = largest.max(most);
+        let elastic = corner_forces(shape, volume, slope, stress);
+        let film = [elastic[0] + slowing[0], elastic[1] + slowing[1], elastic[2] + slowing[2]];
+        model.blocks.scatter(block, &film, &area, nodes);
     }
     Sums {
-        six_volumes: volumes.sum(),
-        viscous_power: power.sum(),
-        largest_stress: largest.largest(),
+        six_volumes: volumes.lanes().sum(),
+        viscous_power: power.lanes().sum(),
+        largest_stress: largest.lanes().largest(),
+    }
+}
+
+dispatch_wide! {
+    /// Adds forces and areas of all elements to their nodes.
+    fn element_pass / element_kernel(
+        model: &FilmModel,
+        positions: &Field,
+        velocities: &Field,
+        way: f64,
+        drag: &mut Drag,
+        nodes: &mut [NodeSum],
+    ) -> Sums
+}
+
+/// Forces and areas of the film on its nodes at these positions (m) and the velocities (m/s) viscosity
+/// takes; `way` (s) times these led here from where the pass before was.
+pub fn film_pass(
+    path: Path,
+    model: &FilmModel,
+    positions: &Field,
+    velocities: &Field,
+    way: f64,
+    drag: &mut Drag,
+    out: &mut NodeForces,
+) -> Sums {
+    let sums = element_pass(path, model, positions, velocities, way, drag, &mut out.sums);
+    land(path, &mut out.sums, &mut out.film, &mut out.area);
+    sums
+}
+
+#[inline(always)]
+fn land_kernel(sums: &mut [NodeSum], film: &mut Field, area: &mut Field) {
+    let [fx, fy, fz] = [&mut film.x[..], &mut film.y[..], &mut film.z[..]];
+    let [ax, ay, az] = [&mut area.x[..], &mut area.y[..], &mut area.z[..]];
+    let firsts = fx.iter_mut().zip(fy).zip(fz);
+    let seconds = ax.iter_mut().zip(ay).zip(az);
+    for (sum, (((fx, fy), fz), ((ax, ay), az))) in sums.iter_mut().zip(firsts.zip(seconds)) {
+        [*fx, *fy, *fz, _] = sum.film;
+        [*ax, *ay, *az, _] = sum.area;
+        *sum = NodeSum::default();
     }
 }
 
 dispatch! {
-    /// The element pass, at positions (m) and the velocities (m/s) viscosity takes.
-    pub fn element_pass / element_kernel(
-        model: &FilmModel,
-        positions: &Field,
-        velocities: &Field,
-        out: &mut ElementForces,
-    ) -> Sums
+    /// Writes the sums of nodes to their fields and begins them anew.
+    fn land / land_kernel(sums: &mut [NodeSum], film: &mut Field, area: &mut Field)
 }
 
 /// Green strain of an element at these positions (m).
 pub fn strain(model: &FilmModel, positions: &Field, element: usize) -> PlaneTensor {
-    let [a, b, c] = model.triangles[element].map(|node| {
-        let place = positions.get(node as usize);
-        Vectors { x: Lanes::splat(place.x), y: Lanes::splat(place.y), z: Lanes::splat(place.z) }
-    });
+    let corners = corners_of_one(&model.triangles[element], positions);
     let shape = model.inverse_shape.each_ref().map(|column| Lanes::splat(column[element]));
-    green(gradient(shape, edges([a, b, c]))).first()
+    green(gradient(shape, edges(corners))).first()
+}
+
+/// A field at the corners of one element.
+fn corners_of_one(triangle: &[u32; 3], field: &Field) -> [Vectors; 3] {
+    triangle.map(|node| {
+        let own = field.get(node as usize);
+        Vectors { x: Lanes::splat(own.x), y: Lanes::splat(own.y), z: Lanes::splat(own.z) }
+    })
 }
 
 /// Strain energy at these positions (m), J.
@@ -191,36 +228,37 @@ pub fn strain_energy(model: &FilmModel, positions: &Field) -> f64 {
 pub struct NodeForces {
     /// Elastic and viscous, N.
     pub film: Field,
-    /// Viscous, N.
-    pub viscous: Field,
     /// ∂V/∂x, m².
     pub area: Field,
     /// Of contact, N.
     pub contact: Field,
+    /// Both of the film while they are being summed; nought between passes.
+    pub(crate) sums: Vec<NodeSum>,
 }
 
 impl NodeForces {
     /// Room for a model's nodes.
     pub fn new(model: &FilmModel) -> Self {
         let zeros = || Field::zeros(model.nodes());
-        Self { film: zeros(), viscous: zeros(), area: zeros(), contact: zeros() }
+        let sums = vec![NodeSum::default(); model.nodes()];
+        Self { film: zeros(), area: zeros(), contact: zeros(), sums }
     }
 }
 
-/// The node pass: sums the corners of each node in the order of elements, then the closing faces.
-pub fn node_pass(model: &FilmModel, elements: &ElementForces, out: &mut NodeForces) {
-    for node in 0..model.nodes() {
-        let own = model.first_corner[node] as usize..model.first_corner[node + 1] as usize;
-        let (mut film, mut viscous, mut area) =
-            (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
-        for corner in &model.corners[own] {
-            let (element, corner) = (*corner as usize / 4, *corner as usize % 4);
-            film += elements.film[corner].get(element);
-            viscous += elements.viscous[corner].get(element);
-            area += elements.area.get(element);
+/// Forces of viscosity alone on nodes, N: the part of [`film_pass`]'s that has `S_v`, once more.
+pub fn viscous_forces(model: &FilmModel, positions: &Field, velocities: &Field) -> Field {
+    let mut sum = Field::zeros(model.nodes());
+    for (element, triangle) in model.triangles.iter().enumerate() {
+        let shape = model.inverse_shape.each_ref().map(|column| Lanes::splat(column[element]));
+        let [volume, time] =
+            [&model.volume, &model.viscous_time].map(|column| Lanes::splat(column[element]));
+        let slope = gradient(shape, edges(corners_of_one(triangle, positions)));
+        let rate = green_rate(slope, gradient(shape, edges(corners_of_one(triangle, velocities))));
+        let viscous = viscous_stress(&model.material, time, rate);
+        for (node, force) in triangle.iter().zip(corner_forces(shape, volume, slope, viscous)) {
+            let force = Vector3::new(force.x.0[0], force.y.0[0], force.z.0[0]);
+            sum.set(*node as usize, sum.get(*node as usize) + force);
         }
-        out.film.set(node, film);
-        out.viscous.set(node, viscous);
-        out.area.set(node, area);
     }
+    sum
 }

@@ -8,7 +8,7 @@
 //! Divergence theorem over the closed surface. The gradient is written by oriented areas, which do
 //! not depend on the origin; round the closed fan of a node they add up to the derivative of V.
 //! Whatever the gas does through V and the film through f is thus the same p dV. The areas of film
-//! come from [`super::membrane::element_pass`]; those of closing faces are added here.
+//! come from [`super::membrane::film_pass`]; those of closing faces are added here.
 
 use nalgebra::Vector3;
 

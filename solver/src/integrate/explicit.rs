@@ -19,92 +19,31 @@
 
 use nalgebra::Vector3;
 
-use crate::audit::passages::{Watch, Watchfulness};
-use crate::contact::Law;
+use crate::audit::passages::Watch;
 use crate::contact::search::Search;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
-use crate::forces::membrane::{ElementForces, NodeForces, Sums, element_pass, node_pass};
+use crate::forces::membrane::{Drag, NodeForces, Sums, film_pass, viscous_forces};
 use crate::forces::pressure::{add_closure, gas_frequency_squared};
-use crate::gas::{Gas, GasState, Inflow};
+use crate::gas::{GasState, Inflow};
 use crate::model::FilmModel;
-use crate::mutation::{Mutation, Term};
-use crate::simd::Path;
+use crate::mutation::Term;
 use crate::stages::{Stage, Stopwatch, Untimed};
 use crate::state::Field;
-use crate::supports::Supports;
+
+use update::{drift_nodes, sparse_power};
 
 mod books;
 mod kick;
 mod meet;
+pub mod plain;
+mod setting;
 mod state;
+pub mod update;
 
+pub use setting::{DEFAULT_CFL, Interior, Setting};
 pub use state::{State, Stretch, Works};
-
-/// CFL number to use where nobody asks for another: over the deployment of the paper's capsule
-/// without contact it keeps the energy ledger well inside its bound.
-pub const DEFAULT_CFL: f64 = 0.45;
-
-/// What presses on the film from inside.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Interior {
-    /// Gas in the closed volume.
-    Gas(Gas),
-    /// This overpressure, Pa, whatever the volume; film may be open.
-    Overpressure(f64),
-}
-
-/// What is constant during a run, beside the film itself.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setting {
-    /// What presses from inside.
-    pub interior: Interior,
-    /// What is held.
-    pub supports: Supports,
-    /// Acceleration of gravity, m/s².
-    pub gravity: Vector3<f64>,
-    /// ζ of the film's viscosity, for the stable step.
-    pub viscosity: f64,
-    /// c, 1/s: nought but in statics and where a scene asks for it.
-    pub mass_damping: f64,
-    /// Share of the stable step.
-    pub cfl: f64,
-    /// Accepted steps after which a run stops.
-    pub step_limit: u64,
-    /// Instruction set; the bits are the same on each.
-    pub path: Path,
-    /// Film against film; none lets film pass through film.
-    pub contact: Option<Law>,
-    /// How closely passages are watched for; `None`: not at all.
-    pub watch: Option<Watchfulness>,
-    /// A deliberate fault: tests only.
-    pub mutation: Option<Mutation>,
-}
-
-impl Setting {
-    /// Film without supports, gravity, viscosity or mass damping, at the default step.
-    pub fn free(interior: Interior, nodes: usize) -> Self {
-        Self {
-            interior,
-            supports: Supports::none(nodes),
-            gravity: Vector3::zeros(),
-            viscosity: 0.0,
-            mass_damping: 0.0,
-            cfl: DEFAULT_CFL,
-            step_limit: u64::MAX,
-            path: Path::best(),
-            contact: None,
-            watch: None,
-            mutation: None,
-        }
-    }
-
-    /// The factor of a term: 1 but in tests.
-    fn fault(&self, term: Term) -> f64 {
-        self.mutation.filter(|mutation| mutation.term == term).map_or(1.0, |m| m.factor)
-    }
-}
 
 /// Film in motion: constants and state.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,7 +60,7 @@ pub struct Explicit {
     pub watch: Option<Watch>,
     /// What is near: a function of the state, made when first asked for.
     search: Option<Search>,
-    elements: ElementForces,
+    drag: Drag,
     next: Field,
 }
 
@@ -138,7 +77,7 @@ impl Explicit {
         let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
         film.bind_to_planes();
         film.meet_first();
-        let sums = film.pass_at(0.0, &mut Untimed);
+        let sums = film.pass_at(0.0, 0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
             Interior::Gas(gas) => {
@@ -154,17 +93,17 @@ impl Explicit {
     /// Goes on from a state of the same film under the same setting, bit for bit.
     pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
         let mut film = Self::with(model, setting, state);
-        let _ = film.pass_at(film.state.time, &mut Untimed);
+        let _ = film.pass_at(film.state.time, 0.0, &mut Untimed);
         film
     }
 
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
-        let (elements, forces) = (ElementForces::new(&model), NodeForces::new(&model));
+        let (drag, forces) = (Drag::new(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
         let watch = setting.watch.zip(setting.contact.as_ref());
         let watch =
             watch.map(|(how, law)| Watch::new(how, &law.topology, &state.places, state.steps));
-        Self { model, setting, state, forces, watch, search: None, elements, next }
+        Self { model, setting, state, forces, watch, search: None, drag, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -271,9 +210,11 @@ impl Explicit {
         self.keep_apart(0.5 * (self.state.last_step + length), length, stopwatch)?;
         stopwatch.begins(Stage::Update);
         self.share_work(length);
-        let fastest = self.drift(length);
+        let way = length * self.setting.fault(Term::Drift);
+        let state = &mut self.state;
+        let fastest = drift_nodes(self.setting.path, &state.velocities, way, &mut state.places);
         self.plate_work(until);
-        let sums = self.pass_at(until, stopwatch);
+        let sums = self.pass_at(until, way, stopwatch);
         stopwatch.begins(Stage::Gas);
         self.plate_work(until);
         let volume = sums.six_volumes / 6.0;
@@ -300,7 +241,10 @@ impl Explicit {
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
-        self.contact_work(half);
+        if self.setting.contact.is_some() {
+            let (contact, velocities) = (&self.forces.contact, &self.state.velocities);
+            self.state.works.contact += half * sparse_power(self.setting.path, contact, velocities);
+        }
         self.state.works.support -= half * self.support_power();
         if let Interior::Overpressure(pressure) = self.setting.interior {
             let sweep: f64 = (0..self.model.nodes())
@@ -350,31 +294,15 @@ impl Explicit {
             + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
 
-    /// Moves the nodes; gives the largest squared speed.
-    fn drift(&mut self, length: f64) -> f64 {
-        let (mut fastest, mut taken) = (0.0_f64, 0.0);
-        let way = length * self.setting.fault(Term::Drift);
-        let state = &mut self.state;
-        for node in 0..self.model.nodes() {
-            let velocity = state.velocities.get(node);
-            state.places.set(node, state.places.get(node) + velocity * way);
-            taken -= self.forces.viscous.get(node).dot(&velocity);
-            let squared = velocity.norm_squared();
-            // `max` would let a NaN pass.
-            fastest = if squared <= fastest { fastest } else { squared };
-        }
-        state.works.viscous += 0.5 * length * taken * self.setting.fault(Term::ViscousPower);
-        fastest
-    }
-
-    /// Element and node passes at the places now, which are those of `time` (s).
-    fn pass_at(&mut self, time: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
+    /// Forces at the places now, which are those of `time` (s), `way` (s) times the velocities from where
+    /// they were last asked for.
+    fn pass_at(&mut self, time: f64, way: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
         stopwatch.begins(Stage::Membrane);
         let (model, state) = (&self.model, &self.state);
         let path = self.setting.path;
+        let (places, velocities) = (&state.places, &state.velocities);
         let mut sums =
-            element_pass(path, model, &state.places, &state.velocities, &mut self.elements);
-        node_pass(model, &self.elements, &mut self.forces);
+            film_pass(path, model, places, velocities, way, &mut self.drag, &mut self.forces);
         sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
@@ -388,8 +316,8 @@ impl Explicit {
     fn suffer(&mut self, sums: &mut Sums) {
         let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
             .map(|term| self.setting.fault(term));
-        for node in 0..self.model.nodes() {
-            let drag = self.forces.viscous.get(node);
+        let drags = viscous_forces(&self.model, &self.state.places, &self.state.velocities);
+        for (node, drag) in drags.iter().enumerate() {
             let rest = self.forces.film.get(node) - drag;
             self.forces.film.set(node, rest * elastic + drag * viscous);
             self.forces.area.set(node, self.forces.area.get(node) * area);

@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 use super::factor::{Elimination, Factor};
 use super::tangent::{self, Stiffness};
 use super::unknowns::Unknowns;
-use crate::forces::membrane::{ElementForces, NodeForces, element_pass, node_pass};
+use crate::forces::membrane::{Drag, NodeForces, film_pass};
 use crate::forces::pressure::add_closure;
 use crate::model::FilmModel;
 use crate::resultants::thickness;
@@ -159,10 +159,10 @@ struct Search<'a> {
     loaded: &'a Loaded<'a>,
     unknowns: Unknowns,
     places: Field,
-    /// Room: trial places, velocities of nought, element and node forces.
+    /// Room: trial places, velocities of nought, what a pass remembers, node forces.
     trial: Field,
     still: Field,
-    elements: ElementForces,
+    drag: Drag,
     nodes: NodeForces,
     /// Forces on nodes and along the unknowns at the last places looked at.
     forces: Field,
@@ -179,7 +179,7 @@ impl<'a> Search<'a> {
             trial: places.clone(),
             places,
             still: Field::zeros(model.nodes()),
-            elements: ElementForces::new(model),
+            drag: Drag::new(model),
             nodes: NodeForces::new(model),
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
@@ -194,8 +194,8 @@ impl<'a> Search<'a> {
             self.unknowns.shift(&mut self.trial, by, share);
         }
         let Loaded { model, overpressure, gravity, path, .. } = *self.loaded;
-        let _ = element_pass(path, model, &self.trial, &self.still, &mut self.elements);
-        node_pass(model, &self.elements, &mut self.nodes);
+        let (places, still) = (&self.trial, &self.still);
+        let _ = film_pass(path, model, places, still, 0.0, &mut self.drag, &mut self.nodes);
         let _ = add_closure(model, &self.trial, &mut self.nodes.area);
         for node in 0..model.nodes() {
             let force = self.nodes.film.get(node)

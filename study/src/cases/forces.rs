@@ -7,7 +7,7 @@
 //! ```
 
 use billow_solver::film_scene::FilmScene;
-use billow_solver::forces::membrane::{strain, strain_energy};
+use billow_solver::forces::membrane::{strain, strain_energy, viscous_forces};
 use billow_solver::forces::pressure;
 use billow_solver::integrate::explicit::Explicit;
 use billow_solver::material::Regime;
@@ -175,7 +175,8 @@ pub fn dissipation(rig: &Rig) -> Outcome {
             film.forces.film.iter().zip(bare.forces.film.iter()).map(|(f, g)| f - g).collect()
         };
         let told = film_at(rig, &shell, viscous, places.clone(), velocities.clone())?;
-        let power: f64 = told.forces.viscous.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
+        let drag = viscous_forces(&told.model, &told.state.places, &told.state.velocities);
+        let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let taken: f64 = drags.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let size: f64 = drags.iter().map(Vector3::norm).sum();
         let net: Vector3<f64> = drags.iter().sum();

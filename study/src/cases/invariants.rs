@@ -9,7 +9,7 @@
 
 use billow_solver::course::Phase;
 use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::forces::membrane::strain;
+use billow_solver::forces::membrane::{strain, viscous_forces};
 use billow_solver::integrate::explicit::Explicit;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::{Rotation3, Vector3};
@@ -60,7 +60,8 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let scale = film.youngs_modulus * film.thickness * 0.1;
     let film = rig.start(&FilmScene { velocities: velocities.clone(), ..scene(shell, film) })?;
     let force = film.forces.film.iter().map(|force| force.norm()).fold(0.0, worse);
-    let power: f64 = film.forces.viscous.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
+    let drag = viscous_forces(&film.model, &film.state.places, &film.state.velocities);
+    let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
     let band = number("patch/band");
     Ok(vec![
         Row::at_most("force, of E t h", force / scale, band),

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::Explicit;
+use super::update::{Push, kick_nodes};
 use crate::forces::damping::kick_factors;
 use crate::mutation::Term;
 use crate::state::Field;
@@ -39,10 +40,15 @@ impl Explicit {
             let push = self.force(node) * (gain * self.model.inverse_mass[node]);
             velocity * (keep - 1.0) + push
         };
-        for node in 0..self.model.nodes() {
-            let free = change(node).component_mul(&supports.free.get(node));
-            next.set(node, self.state.velocities.get(node) + free);
-        }
+        let push = Push {
+            overpressure: self.overpressure(),
+            gravity: self.setting.gravity,
+            weight: self.setting.fault(Term::Gravity),
+            keep,
+            gain,
+        };
+        let (path, velocities) = (self.setting.path, &self.state.velocities);
+        kick_nodes(path, &self.model, &self.forces, &push, &supports.free, velocities, next);
         for (node, projector) in &supports.oblique {
             let node = *node as usize;
             next.set(node, self.state.velocities.get(node) + projector * change(node));

@@ -46,16 +46,6 @@ impl Explicit {
         }
     }
 
-    /// Work of contact over `half` a step (s), by its forces and the velocities now.
-    pub(super) fn contact_work(&mut self, half: f64) {
-        if self.setting.contact.is_some() {
-            let along: f64 = (0..self.model.nodes())
-                .map(|node| self.forces.contact.get(node).dot(&self.state.velocities.get(node)))
-                .sum();
-            self.state.works.contact += half * along;
-        }
-    }
-
     /// Looks for pairs the drift to come could bring together, and keeps them apart, and off the plates:
     /// in turn, until neither changes anything and no node is faster than the pairs were looked for.
     pub(super) fn keep_apart(

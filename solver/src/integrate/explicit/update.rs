@@ -1,0 +1,179 @@
+//! The update of all nodes at once: kick, drift, and works along the velocities.
+//!
+//! ```text
+//! f = f_film + f_contact + (p − p_ambient) ∂V/∂x + m g
+//! v⁺ = v + P ((keep − 1) v + gain/m f)              x⁺ = x + way v⁺
+//! ```
+//!
+//! Eight nodes at a time; what is left over goes one by one with the same operations. Symbols: P 1
+//! where a component is free, else 0; keep and gain of [`crate::forces::damping::kick_factors`].
+
+#![allow(clippy::inline_always, reason = "inside the node loop")]
+
+use nalgebra::Vector3;
+
+use crate::forces::membrane::NodeForces;
+use crate::model::FilmModel;
+use crate::simd::{Lanes, WIDTH, dispatch};
+use crate::state::Field;
+
+/// What pushes nodes in a kick, beside the forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// p − `p_ambient`, Pa.
+    pub overpressure: f64,
+    /// Acceleration of gravity, m/s².
+    pub gravity: Vector3<f64>,
+    /// What mass counts for in weight: 1 but in tests.
+    pub weight: f64,
+    /// What is left of a velocity.
+    pub keep: f64,
+    /// Velocity an acceleration gives, s.
+    pub gain: f64,
+}
+
+/// A component of a field by its number.
+#[inline(always)]
+fn column(field: &Field, axis: usize) -> &[f64] {
+    [&field.x[..], &field.y[..], &field.z[..]][axis]
+}
+
+#[inline(always)]
+fn column_mut(field: &mut Field, axis: usize) -> &mut [f64] {
+    match axis {
+        0 => &mut field.x,
+        1 => &mut field.y,
+        _ => &mut field.z,
+    }
+}
+
+/// One component of the kick, of a number or of eight.
+macro_rules! kicked {
+    ($velocity:expr, $film:expr, $contact:expr, $area:expr, $mass:expr, $gain:expr, $free:expr,
+     $push:expr, $gravity:expr) => {{
+        let force =
+            $film + $contact + $area * $push.overpressure + $gravity * ($mass * $push.weight);
+        $velocity + ($velocity * ($push.keep - 1.0) + force * ($gain * $push.gain)) * $free
+    }};
+}
+
+#[inline(always)]
+fn kick_kernel(
+    model: &FilmModel,
+    forces: &NodeForces,
+    push: &Push,
+    free: &Field,
+    velocities: &Field,
+    next: &mut Field,
+) {
+    let nodes = model.nodes();
+    let (mass, inverse) = (&model.mass[..nodes], &model.inverse_mass[..nodes]);
+    let whole = nodes - nodes % WIDTH;
+    for axis in 0..3 {
+        let film = &column(&forces.film, axis)[..nodes];
+        let contact = &column(&forces.contact, axis)[..nodes];
+        let area = &column(&forces.area, axis)[..nodes];
+        let free = &column(free, axis)[..nodes];
+        let velocity = &column(velocities, axis)[..nodes];
+        let next = &mut column_mut(next, axis)[..nodes];
+        let gravity = push.gravity[axis];
+        for at in (0..whole).step_by(WIDTH) {
+            let load = |column| Lanes::load(column, at);
+            kicked!(
+                load(velocity),
+                load(film),
+                load(contact),
+                load(area),
+                load(mass),
+                load(inverse),
+                load(free),
+                push,
+                Lanes::splat(gravity)
+            )
+            .store(next, at);
+        }
+        for at in whole..nodes {
+            next[at] = kicked!(
+                velocity[at],
+                film[at],
+                contact[at],
+                area[at],
+                mass[at],
+                inverse[at],
+                free[at],
+                push,
+                gravity
+            );
+        }
+    }
+}
+
+dispatch! {
+    /// Velocities of all nodes after a kick, m/s, held along axes alone; `free` is 1 where a component
+    /// is not held, 0 where it is.
+    pub fn kick_nodes / kick_kernel(
+        model: &FilmModel,
+        forces: &NodeForces,
+        push: &Push,
+        free: &Field,
+        velocities: &Field,
+        next: &mut Field,
+    )
+}
+
+#[inline(always)]
+fn drift_kernel(velocities: &Field, way: f64, places: &mut Field) -> f64 {
+    let nodes = places.len();
+    let [vx, vy, vz] = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
+    let [x, y, z] = [&mut places.x[..nodes], &mut places.y[..nodes], &mut places.z[..nodes]];
+    let whole = nodes - nodes % WIDTH;
+    let mut lanes = Lanes::default();
+    for at in (0..whole).step_by(WIDTH) {
+        let [u, v, w] = [Lanes::load(vx, at), Lanes::load(vy, at), Lanes::load(vz, at)];
+        (Lanes::load(x, at) + u * way).store(x, at);
+        (Lanes::load(y, at) + v * way).store(y, at);
+        (Lanes::load(z, at) + w * way).store(z, at);
+        // What is no number is taken, and shows in the volume too.
+        let squared = u * u + v * v + w * w;
+        lanes = squared.max(lanes);
+    }
+    let mut fastest = lanes.largest();
+    for at in whole..nodes {
+        let [u, v, w] = [vx[at], vy[at], vz[at]];
+        x[at] += u * way;
+        y[at] += v * way;
+        z[at] += w * way;
+        fastest = fastest.max(u * u + v * v + w * w);
+    }
+    fastest
+}
+
+dispatch! {
+    /// Moves all nodes `way` (s) along their velocities (m/s); gives the largest squared speed, m²/s²,
+    /// of those that are numbers: what is none makes the volume none.
+    pub fn drift_nodes / drift_kernel(velocities: &Field, way: f64, places: &mut Field) -> f64
+}
+
+#[inline(always)]
+fn power_kernel(forces: &Field, velocities: &Field) -> f64 {
+    let nodes = velocities.len();
+    let [fx, fy, fz] = [&forces.x[..nodes], &forces.y[..nodes], &forces.z[..nodes]];
+    let mut power = 0.0;
+    for first in (0..nodes).step_by(WIDTH) {
+        let own = first..(first + WIDTH).min(nodes);
+        // Whether any bit but a sign is set: a number that is none counts as a force.
+        let bits =
+            |column: &[f64]| column.iter().fold(0, |bits, value| bits | (value.to_bits() << 1));
+        if bits(&fx[own.clone()]) | bits(&fy[own.clone()]) | bits(&fz[own.clone()]) != 0 {
+            for node in own {
+                power += forces.get(node).dot(&velocities.get(node));
+            }
+        }
+    }
+    power
+}
+
+dispatch! {
+    /// Σ f·v in the order of nodes, W, quick where most forces are nought.
+    pub fn sparse_power / power_kernel(forces: &Field, velocities: &Field) -> f64
+}
