@@ -14,50 +14,77 @@ use crate::simd::{Lanes, Path, WIDTH, dispatch};
 /// Chains of eight numbers at once: all that AVX-512, AVX2 and the baseline hold in registers.
 const CHAINS: [usize; 3] = [12, 6, 3];
 
+/// Three chains.
+type Chains = [Lanes; 3];
+
+/// Chains that start at different numbers.
 #[inline(always)]
-fn chains<const COUNT: usize>(rounds: u64) -> f64 {
-    // m < 1 and c keep every number near c/(1 − m): neither large nor denormal.
-    let (m, c) = (Lanes::splat(0.999), Lanes::splat(1e-3));
-    let mut a = [Lanes::default(); COUNT];
-    for (k, lanes) in a.iter_mut().enumerate() {
-        *lanes = Lanes::splat(1.0 + k as f64);
-    }
+fn started(first: f64) -> Chains {
+    [Lanes::splat(first), Lanes::splat(first + 1.0), Lanes::splat(first + 2.0)]
+}
+
+/// A round. No loop over chains: the compiler would rather gather across them.
+#[inline(always)]
+fn round([a, b, c]: Chains) -> Chains {
+    // The factor below 1 and the term keep every number near 1: neither large nor denormal.
+    let (factor, term) = (Lanes::splat(0.999), Lanes::splat(1e-3));
+    [a * factor + term, b * factor + term, c * factor + term]
+}
+
+/// Where they end. Summed here instead, they would be kept apart by lane and not by chain.
+#[inline(always)]
+fn store([a, b, c]: Chains, ends: &mut [f64], at: usize) {
+    a.store(ends, at);
+    b.store(ends, at + WIDTH);
+    c.store(ends, at + 2 * WIDTH);
+}
+
+#[inline(always)]
+fn many_kernel(rounds: u64, ends: &mut [f64]) {
+    let (mut a, mut b, mut c, mut d) = (started(1.0), started(4.0), started(7.0), started(10.0));
     for _ in 0..rounds {
-        for lanes in &mut a {
-            *lanes = *lanes * m + c;
-        }
+        (a, b, c, d) = (round(a), round(b), round(c), round(d));
     }
-    a.iter().map(|lanes| lanes.sum()).sum()
+    store(a, ends, 0);
+    store(b, ends, 3 * WIDTH);
+    store(c, ends, 6 * WIDTH);
+    store(d, ends, 9 * WIDTH);
 }
 
 #[inline(always)]
-fn many_kernel(rounds: u64) -> f64 {
-    chains::<{ CHAINS[0] }>(rounds)
+fn some_kernel(rounds: u64, ends: &mut [f64]) {
+    let (mut a, mut b) = (started(1.0), started(4.0));
+    for _ in 0..rounds {
+        (a, b) = (round(a), round(b));
+    }
+    store(a, ends, 0);
+    store(b, ends, 3 * WIDTH);
 }
 
 #[inline(always)]
-fn some_kernel(rounds: u64) -> f64 {
-    chains::<{ CHAINS[1] }>(rounds)
+fn few_kernel(rounds: u64, ends: &mut [f64]) {
+    let mut a = started(1.0);
+    for _ in 0..rounds {
+        a = round(a);
+    }
+    store(a, ends, 0);
 }
 
-#[inline(always)]
-fn few_kernel(rounds: u64) -> f64 {
-    chains::<{ CHAINS[2] }>(rounds)
-}
-
-dispatch! { fn many / many_kernel(rounds: u64) -> f64 }
-dispatch! { fn some / some_kernel(rounds: u64) -> f64 }
-dispatch! { fn few / few_kernel(rounds: u64) -> f64 }
+dispatch! { fn many / many_kernel(rounds: u64, ends: &mut [f64]) }
+dispatch! { fn some / some_kernel(rounds: u64, ends: &mut [f64]) }
+dispatch! { fn few / few_kernel(rounds: u64, ends: &mut [f64]) }
 
 /// Does so many rounds of multiplications and additions on a path; gives how many pairs of them, and
-/// a number that depends on each, so that none is left out.
+/// the sum of where the chains end, so that none is left out.
 pub fn multiply_add(path: Path, rounds: u64) -> (u64, f64) {
-    let pairs = |chains: usize| rounds * (chains * WIDTH) as u64;
-    match path {
-        Path::Avx512 => (pairs(CHAINS[0]), many(path, rounds)),
-        Path::Avx2 => (pairs(CHAINS[1]), some(path, rounds)),
-        Path::Scalar => (pairs(CHAINS[2]), few(path, rounds)),
-    }
+    let (chains, kernel): (usize, fn(Path, u64, &mut [f64])) = match path {
+        Path::Avx512 => (CHAINS[0], many),
+        Path::Avx2 => (CHAINS[1], some),
+        Path::Scalar => (CHAINS[2], few),
+    };
+    let mut ends = vec![0.0; chains * WIDTH];
+    kernel(path, rounds, &mut ends);
+    (rounds * ends.len() as u64, ends.iter().sum())
 }
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ const MESHES: [u32; 4] = [5, 8, 16, 32];
 /// The same where it is to be quick.
 const QUICK_MESHES: [u32; 1] = [5];
 /// Largest mesh whose kernels are timed and which is run beyond its stowed state: n.
-const LARGEST_RUN: u32 = 16;
+pub const LARGEST_RUN: u32 = 16;
 
 /// What is told of a bench that a signal ends.
 const INTERRUPTED: &str = "no figure is kept";

@@ -101,6 +101,8 @@ pub struct Case {
     pub steps: u64,
     /// Wall time, samples included, s.
     pub wall_seconds: f64,
+    /// Time on a core, s: without whoever else uses it. `None` where the system does not say.
+    pub core_seconds: Option<f64>,
     /// Residual of the energy ledger: what the speed is worth.
     pub ledger_residual: f64,
     /// Film through film.
@@ -126,6 +128,7 @@ impl Case {
             ("elements", count(self.elements as u64)),
             ("steps", count(self.steps)),
             ("wall_seconds", Value::Number(self.wall_seconds)),
+            ("core_seconds", self.core_seconds.map_or(Value::Null, Value::Number)),
             ("wall_per_second", Value::Number(self.wall_seconds / self.end_time)),
             ("ns_per_element_step", Value::Number(self.nanoseconds())),
             ("ledger_residual", Value::Number(self.ledger_residual)),
@@ -154,14 +157,16 @@ impl Observer for Until<'_> {
 pub fn travel(capsule: &Capsule, marks: &[Mark], stop: &Stop) -> Result<(Vec<State>, Vec<Case>)> {
     let (mut model, mut run) = (capsule.stowed()?, Run::default());
     let (mut states, mut cases) = (Vec::new(), Vec::new());
-    let mut wall_seconds = 0.0;
+    let (mut wall_seconds, mut core_seconds) = (0.0, Some(0.0));
     for mark in marks {
         if mark.time > 0.0 {
             // Samples are whole multiples of the interval; half of one takes rounding out.
             let time = mark.time - 0.5 * capsule.course.sample_interval;
-            let start = Instant::now();
+            let (start, core) = (Instant::now(), machine::core_seconds());
             let end = run.advance(&mut model, &capsule.course, u64::MAX, &mut Until { time, stop });
             wall_seconds += start.elapsed().as_secs_f64();
+            let on_core = machine::core_seconds().zip(core).map(|(now, then)| now - then);
+            core_seconds = core_seconds.zip(on_core).map(|(so_far, more)| so_far + more);
             interrupted(stop)?;
             if let Some(End::Failed(failure)) = end {
                 return Err(Error::JobsFailed(format!(
@@ -185,6 +190,7 @@ pub fn travel(capsule: &Capsule, marks: &[Mark], stop: &Stop) -> Result<(Vec<Sta
                 elements: model.elements(),
                 steps: model.steps(),
                 wall_seconds,
+                core_seconds,
                 ledger_residual: audit.ledger_residual,
                 passages: audit.passages,
                 peak_memory: machine::peak_memory(),

@@ -21,7 +21,7 @@ use crate::value::Value;
 /// The study.
 const STUDY: &str = include_str!("study.json");
 /// What makes it a short one.
-const QUICK: [&str; 2] = ["design.subdivisions=2", "solver.end_time=\"2 ms\""];
+const QUICK: [&str; 2] = ["design.subdivisions=2", "solver.end_time=\"12 ms\""];
 /// Threads it is run on.
 pub const THREADS: [u32; 2] = [1, 2];
 

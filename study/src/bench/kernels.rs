@@ -46,8 +46,8 @@ impl KernelRow {
     }
 }
 
-/// Times the kernels on a mesh: the step on every instruction set up to `path`, the passes on `path`,
-/// the reference.
+/// Times the kernels on a mesh: the step and its element pass on every instruction set up to `path`,
+/// the node pass, the reference.
 ///
 /// # Errors
 /// A run that stops short; a signal.
@@ -71,18 +71,22 @@ pub fn measure(
     };
     let mut rows = Vec::new();
     let widths = Path::ALL.into_iter().take_while(|narrow| *narrow != path).chain([path]);
-    for width in widths.filter(|width| width.available()) {
+    let widths: Vec<Path> = widths.filter(|width| width.available()).collect();
+    for width in widths.iter().copied() {
         let seconds = least(effort, stop, &mut || stepped(film, width, &capsule.course, steps))?;
         rows.push(row(STEP, width, seconds));
     }
     let mut own = ElementForces::new(&film.model);
     let (places, velocities) = (&film.state.places, &film.state.velocities);
-    let seconds = least(effort, stop, &mut || {
-        Ok(timed(steps, &mut || {
-            std::hint::black_box(element_pass(path, &film.model, places, velocities, &mut own));
-        }))
-    })?;
-    rows.push(row("element_pass", path, seconds));
+    for width in widths {
+        let seconds = least(effort, stop, &mut || {
+            Ok(timed(steps, &mut || {
+                let sums = element_pass(width, &film.model, places, velocities, &mut own);
+                std::hint::black_box(sums);
+            }))
+        })?;
+        rows.push(row("element_pass", width, seconds));
+    }
     let mut nodes = NodeForces::new(&film.model);
     let seconds = least(effort, stop, &mut || {
         Ok(timed(steps, &mut || node_pass(&film.model, &own, std::hint::black_box(&mut nodes))))

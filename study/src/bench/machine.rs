@@ -130,6 +130,15 @@ fn cpu() -> Option<String> {
     said("/proc/cpuinfo", "model name")
 }
 
+/// Time this thread has run on a core so far, s; `None` where the system does not say. Unlike wall time
+/// it leaves out who else uses the core.
+pub fn core_seconds() -> Option<f64> {
+    let bytes = Disk.read(FilePath::new("/proc/thread-self/schedstat")).ok()?;
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let nanoseconds: u64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds as f64)
+}
+
 /// Most memory this process has held, bytes; `None` where the system does not say.
 pub fn peak_memory() -> Option<u64> {
     let said = said("/proc/self/status", "VmHWM")?;

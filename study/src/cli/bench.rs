@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::print::print_rows;
 use super::{Format, Global, output_error};
-use crate::bench::{self, Effort, Line, Part, Plan, Report};
-use crate::error::Result;
+use crate::bench::{self, Effort, LARGEST_RUN, Line, Part, Plan, Report};
+use crate::error::{Error, InputError, Result};
 use crate::files::disk_error;
 use crate::stop::Stop;
 use crate::value::{Value, brief_number, json_value};
@@ -33,8 +33,10 @@ pub struct Args {
 /// # Errors
 /// A run that stops short, a disk that fails, a signal.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let parts = if args.only.is_empty() { Part::ALL.to_vec() } else { args.only.clone() };
+    refuse_unmeasured(args, &parts)?;
     let plan = Plan {
-        parts: if args.only.is_empty() { Part::ALL.to_vec() } else { args.only.clone() },
+        parts,
         subdivisions: args.subdivisions.clone(),
         effort: match (args.quick, args.full) {
             (true, _) => Effort::Quick,
@@ -50,6 +52,20 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         }
     })?;
     print(&report, global.format(), out)
+}
+
+/// A mesh of which nothing would be measured is a mistake.
+fn refuse_unmeasured(args: &Args, parts: &[Part]) -> Result<()> {
+    let large = args.subdivisions.iter().find(|n| **n > LARGEST_RUN);
+    let Some(n) = large.filter(|_| !parts.contains(&Part::Stages)) else { return Ok(()) };
+    Err(Error::Input(InputError {
+        file: "--subdivisions".to_owned(),
+        key: String::new(),
+        value: n.to_string(),
+        problem: format!("nothing of n {n} would be measured"),
+        allowed: format!("up to {LARGEST_RUN} for kernels and cases"),
+        hint: "add stages to --only: of larger meshes the stowed state is timed".to_owned(),
+    }))
 }
 
 /// A report's tables, by name.
