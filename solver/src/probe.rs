@@ -77,14 +77,22 @@ dispatch! { fn few / few_kernel(rounds: u64, ends: &mut [f64]) }
 /// Does so many rounds of multiplications and additions on a path; gives how many pairs of them, and
 /// the sum of where the chains end, so that none is left out.
 pub fn multiply_add(path: Path, rounds: u64) -> (u64, f64) {
-    let (chains, kernel): (usize, fn(Path, u64, &mut [f64])) = match path {
-        Path::Avx512 => (CHAINS[0], many),
-        Path::Avx2 => (CHAINS[1], some),
-        Path::Scalar => (CHAINS[2], few),
+    let mut ends = [0.0; CHAINS[0] * WIDTH];
+    let chains = match path {
+        Path::Avx512 => {
+            many(path, rounds, &mut ends);
+            CHAINS[0]
+        }
+        Path::Avx2 => {
+            some(path, rounds, &mut ends);
+            CHAINS[1]
+        }
+        Path::Scalar => {
+            few(path, rounds, &mut ends);
+            CHAINS[2]
+        }
     };
-    let mut ends = vec![0.0; chains * WIDTH];
-    kernel(path, rounds, &mut ends);
-    (rounds * ends.len() as u64, ends.iter().sum())
+    (rounds * (chains * WIDTH) as u64, ends.iter().sum())
 }
 
 #[cfg(test)]

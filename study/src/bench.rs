@@ -227,7 +227,7 @@ pub fn run(plan: &Plan, stop: &Stop, tell: &mut dyn FnMut(&str)) -> Result<Repor
     }
     if has(Part::Jobs) {
         for threads in jobs::THREADS {
-            tell(&format!("64 jobs on {threads} threads"));
+            tell(&format!("64 jobs, threads {threads}"));
             report.jobs.push(jobs::measure(threads, plan.effort, stop)?);
         }
     }
