@@ -195,6 +195,12 @@ impl Report {
         self.targets().iter().all(|target| target.met() == Some(true))
     }
 
+    /// Least share of its wall time that a run was on a core; `None` where nothing says.
+    pub fn least_core_share(&self) -> Option<f64> {
+        let stages = self.stages.iter().filter_map(|row| row.core_share);
+        stages.chain(self.cases.iter().filter_map(Case::core_share)).reduce(f64::min)
+    }
+
     /// Names of the targets nothing was measured of.
     pub fn not_measured(&self) -> Vec<&'static str> {
         let open = |target: &Target| target.measured.is_none().then_some(target.name);

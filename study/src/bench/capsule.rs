@@ -117,6 +117,11 @@ impl Case {
         1e9 * self.wall_seconds / (self.steps as f64 * self.elements as f64)
     }
 
+    /// Share of the wall time it was on a core.
+    pub fn core_share(&self) -> Option<f64> {
+        self.core_seconds.map(|core| core / self.wall_seconds)
+    }
+
     /// As a row.
     pub fn line(&self) -> Line {
         let count = |number: u64| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));

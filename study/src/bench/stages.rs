@@ -13,13 +13,13 @@ use billow_solver::stages::{Stage, Stopwatch, Untimed};
 
 use super::capsule::{Capsule, State};
 use super::clock::Clock;
-use super::{Effort, Line, interrupted};
+use super::{Effort, Line, interrupted, machine};
 use crate::error::{Error, Result};
 use crate::stop::Stop;
 use crate::value::Value;
 
 /// Threads one run is timed on. One job takes one thread; where it can take more, they are told here
-/// and to [`on_threads`].
+/// and to `on_threads`.
 pub const THREADS: [u32; 1] = [1];
 
 /// Steps between two looks of the audit: what is timed is a whole number of them.
@@ -46,6 +46,8 @@ pub struct StageRow {
     pub output: f64,
     /// A step without a clock in it, and the output, ns.
     pub whole: f64,
+    /// Share of the wall time of those steps this thread was on a core: below 1 where somebody else was.
+    pub core_share: Option<f64>,
 }
 
 impl StageRow {
@@ -66,6 +68,7 @@ impl StageRow {
         line.push(("steps_per_second", Value::Number(rate)));
         let wall = 1e-9 * self.whole * self.elements as f64 * rate;
         line.push(("wall_per_second", Value::Number(wall)));
+        line.push(("core_share", self.core_share.map_or(Value::Null, Value::Number)));
         line
     }
 }
@@ -85,12 +88,16 @@ pub fn measure(
     let (steps, repeats) = (steps(effort, elements), effort.repeats());
     let share = 1e9 / (steps as f64 * elements as f64);
     let mut least = [f64::INFINITY; Stage::ALL.len()];
-    let (mut whole, mut step) = (f64::INFINITY, f64::NAN);
+    let (mut whole, mut core_share, mut step) = (f64::INFINITY, None, f64::NAN);
     for _ in 0..repeats {
         let mut film = on_threads(&state.run.film, threads);
-        let start = Instant::now();
+        let (start, core) = (Instant::now(), machine::core_seconds());
         take(&mut film, &capsule.course, steps, &mut Untimed)?;
-        whole = whole.min(share * start.elapsed().as_secs_f64());
+        let wall = start.elapsed().as_secs_f64();
+        if share * wall < whole {
+            whole = share * wall;
+            core_share = machine::core_seconds().zip(core).map(|(now, then)| (now - then) / wall);
+        }
         step = (film.state.time - state.run.film.state.time) / steps as f64;
         interrupted(stop)?;
 
@@ -114,6 +121,7 @@ pub fn measure(
         stages: least,
         output,
         whole: whole + output,
+        core_share,
     })
 }
 

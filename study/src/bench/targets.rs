@@ -170,6 +170,7 @@ mod tests {
             stages: [1.0; 6],
             output: 0.0,
             whole,
+            core_share: None,
         }
     }
 

@@ -11,6 +11,9 @@ use crate::files::disk_error;
 use crate::stop::Stop;
 use crate::value::{Value, brief_number, json_value};
 
+/// Least share of its wall time a run has a core on a machine that does nothing else.
+const QUIET: f64 = 0.95;
+
 /// Arguments of `billow bench`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -51,6 +54,15 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             eprintln!("billow: {next}");
         }
     })?;
+    if let (Some(share), false) = (report.least_core_share(), global.quiet)
+        && share < QUIET
+    {
+        eprintln!(
+            "billow: something else used this machine: a run had a core for {:.0} % of its wall time \
+             (core_share), so figures are too high",
+            100.0 * share
+        );
+    }
     print(&report, global.format(), out)
 }
 
