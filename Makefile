@@ -2,6 +2,7 @@
 # make test     the quick tier of the tests and of the reference cases (what CI runs)
 # make test-all the quick tier, the long ones, every reference case, and the Python readers
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
+# make bench    what billow costs on this machine, a few minutes
 # make check    formatting, lints, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
 
@@ -16,7 +17,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study test test-all test-long contact-matrix readers build check deps reader-deps fresh-check
+.PHONY: study test test-all test-long contact-matrix readers build bench check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -49,6 +50,9 @@ readers: build reader-deps
 
 build: deps
 	$(CARGO) build $(FLAGS)
+
+bench: build
+	$(BILLOW) bench
 
 check: deps
 	$(CARGO) fmt --check

@@ -40,6 +40,7 @@ pub mod mesh;
 pub mod mesh_io;
 pub mod model;
 pub mod mutation;
+pub mod probe;
 pub mod proximity;
 pub mod resultants;
 pub mod scene;

@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::error::{Error, Result};
 
 mod answer;
+pub mod bench;
 mod chart;
 mod compare;
 mod completions;
@@ -120,6 +121,8 @@ pub enum Command {
     Schema(schema::Args),
     /// Run the reference cases and judge them; exit code 1 if one is out of band.
     Validate(validate::Args),
+    /// Measure what billow costs on this machine, stage by stage, and what is asked of it.
+    Bench(bench::Args),
     /// Print the completions of a shell.
     Completions(completions::Args),
 }
@@ -165,6 +168,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Chart(args) => chart::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),
         Command::Validate(args) => validate::run(args, &cli.global, out),
+        Command::Bench(args) => bench::run(args, &cli.global, out),
         Command::Completions(args) => completions::run(args, out),
     }
 }

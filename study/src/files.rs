@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::error::Error;
 
 pub mod failing;
+pub mod scratch;
 
 /// What the program asks of a disk.
 pub trait Files: Send + Sync {

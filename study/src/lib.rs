@@ -10,6 +10,7 @@
 //! (which jobs), `runner` (running them), `history_file` and `table` (what is left).
 
 pub mod answer;
+pub mod bench;
 pub mod cases;
 pub mod chart;
 pub mod cli;

@@ -98,7 +98,16 @@ impl SceneFile {
     pub fn load(path: &Path, sets: &[String], simd: simd::Path) -> Result<Self> {
         let bytes = study_file::read(path, "scene file", "scenes/sphere.json")?;
         let file = path.display().to_string();
-        let mut tree = study_file::parse(study_file::text_of(&bytes, &file)?, &file)?;
+        Self::from_text(study_file::text_of(&bytes, &file)?, path, sets, simd)
+    }
+
+    /// Reads a scene from its text, as if it lay at `path`.
+    ///
+    /// # Errors
+    /// As [`Self::load`], but for the file of the scene itself.
+    pub fn from_text(text: &str, path: &Path, sets: &[String], simd: simd::Path) -> Result<Self> {
+        let file = path.display().to_string();
+        let mut tree = study_file::parse(text, &file)?;
         let mut source = Source::new(&file);
         if !matches!(tree, Json::Object(_)) {
             let problem = format!("is {}, not an object", tree.kind());

@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
 
+mod bench;
 mod broken_studies;
 mod charts;
 mod comparing;

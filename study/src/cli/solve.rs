@@ -94,7 +94,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 }
 
 /// The instruction set: that of `BILLOW_SIMD`, or the widest this machine has.
-fn instruction_set() -> Result<simd::Path> {
+pub(super) fn instruction_set() -> Result<simd::Path> {
     let Some(word) = std::env::var_os("BILLOW_SIMD").filter(|word| !word.is_empty()) else {
         return Ok(simd::Path::best());
     };

@@ -1,0 +1,105 @@
+//! Jobs per hour: a study of 64 film jobs through the runner of `billow run`, histories, journal and
+//! table on the disk, static states of its two designs looked for once.
+
+use std::num::NonZero;
+use std::time::Instant;
+
+use super::{Effort, INTERRUPTED, Line};
+use crate::error::{Error, Result};
+use crate::event::Silent;
+use crate::executor::Solver;
+use crate::files::scratch::Scratch;
+use crate::files::{Disk, disk_error};
+use crate::plan;
+use crate::results::Results;
+use crate::row::DONE;
+use crate::runner::{self, Run};
+use crate::stop::Stop;
+use crate::study::{Limits, Study};
+use crate::value::Value;
+
+/// The study.
+const STUDY: &str = include_str!("study.json");
+/// What makes it a short one.
+const QUICK: [&str; 2] = ["design.subdivisions=2", "solver.end_time=\"12 ms\""];
+/// Threads it is run on.
+pub const THREADS: [u32; 2] = [1, 2];
+
+/// What the study took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JobsRow {
+    /// Threads over jobs.
+    pub threads: u32,
+    /// Jobs run.
+    pub jobs: usize,
+    /// Those that came to their end.
+    pub done: usize,
+    /// n.
+    pub subdivisions: u32,
+    /// Simulated time of a job, s.
+    pub end_time: f64,
+    /// Wall time, s.
+    pub wall_seconds: f64,
+}
+
+impl JobsRow {
+    /// Jobs an hour.
+    pub fn per_hour(&self) -> f64 {
+        3600.0 * self.jobs as f64 / self.wall_seconds
+    }
+
+    /// As a row.
+    pub fn line(&self) -> Line {
+        let count = |count: usize| Value::Integer(i64::try_from(count).unwrap_or(i64::MAX));
+        vec![
+            ("threads", Value::Integer(self.threads.into())),
+            ("jobs", count(self.jobs)),
+            ("done", count(self.done)),
+            ("subdivisions", Value::Integer(self.subdivisions.into())),
+            ("end_time", Value::Number(self.end_time)),
+            ("wall_seconds", Value::Number(self.wall_seconds)),
+            ("jobs_per_hour", Value::Number(self.per_hour())),
+        ]
+    }
+}
+
+/// Runs the study on so many threads, in a folder of its own that is removed again.
+///
+/// # Errors
+/// A disk that fails; a signal.
+pub fn measure(threads: u32, effort: Effort, stop: &Stop) -> Result<JobsRow> {
+    let sets = QUICK.iter().filter(|_| effort == Effort::Quick).map(ToString::to_string);
+    let sets: Vec<String> = sets.collect();
+    let study =
+        Study::from_text(STUDY, "study/src/bench/study.json", "bench", &sets, Limits::default())?;
+    let folder =
+        Scratch::new("bench").map_err(|error| disk_error(&std::env::temp_dir(), &error))?;
+    let start = Instant::now();
+    let summary = runner::run(
+        &Run {
+            name: &study.name,
+            study: &study.resolved(),
+            planner: &|finished| plan::next_jobs(&study, finished),
+            unit: &|name| study.unit(name).to_owned(),
+            executor: &Solver::default(),
+            results: Results::new(&Disk, &folder.path().join("results")),
+            threads: NonZero::new(threads as usize),
+            stop: stop.clone(),
+            again: None,
+        },
+        &mut Silent,
+    )?;
+    let wall_seconds = start.elapsed().as_secs_f64();
+    if let Some(signal) = summary.signal {
+        return Err(Error::Interrupted { signal, next: INTERRUPTED.to_owned() });
+    }
+    let scene = study.points().first().map(|point| &point.scene);
+    Ok(JobsRow {
+        threads,
+        jobs: summary.ran,
+        done: summary.counts.of(DONE),
+        subdivisions: scene.map_or(0, |scene| scene.design.subdivisions),
+        end_time: scene.map_or(0.0, |scene| scene.solver.end_time),
+        wall_seconds,
+    })
+}

@@ -1,0 +1,201 @@
+//! What a step takes, stage by stage, from a state on.
+//!
+//! The same steps are taken again and again from one state, with the samples of its course on the
+//! way, once with a clock in every stage and once without: a stage is the least over the repeats, the
+//! whole the least without a clock. Whoever else uses the machine only adds.
+
+use std::time::Instant;
+
+use billow_solver::course::Course;
+use billow_solver::deployment::Model;
+use billow_solver::integrate::explicit::Explicit;
+use billow_solver::stages::{Stage, Stopwatch, Untimed};
+
+use super::capsule::{Capsule, State};
+use super::clock::Clock;
+use super::{Effort, Line, interrupted, machine};
+use crate::error::{Error, Result};
+use crate::stop::Stop;
+use crate::value::Value;
+
+/// Threads one run is timed on. One job takes one thread; where it can take more, they are told here
+/// and to `on_threads`.
+pub const THREADS: [u32; 1] = [1];
+
+/// Steps between two looks of the audit: what is timed is a whole number of them.
+const BLOCK: u64 = 50;
+
+/// Costs from one state on, ns per element and step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageRow {
+    /// n.
+    pub subdivisions: u32,
+    /// Name of the state.
+    pub state: &'static str,
+    /// Its time, s.
+    pub time: f64,
+    /// Elements.
+    pub elements: usize,
+    /// Threads of the run.
+    pub threads: u32,
+    /// Length of a step, s.
+    pub step: f64,
+    /// Each stage, in the order of [`Stage::ALL`], ns.
+    pub stages: [f64; Stage::ALL.len()],
+    /// A sample and a frame every sample interval, shared among the steps between, ns.
+    pub output: f64,
+    /// A step without a clock in it, and the output, ns.
+    pub whole: f64,
+    /// Share of the wall time of those steps this thread was on a core: below 1 where somebody else was.
+    pub core_share: Option<f64>,
+}
+
+impl StageRow {
+    /// As a row.
+    pub fn line(&self) -> Line {
+        let rate = 1.0 / self.step;
+        let mut line = vec![
+            ("subdivisions", Value::Integer(self.subdivisions.into())),
+            ("state", Value::Text(self.state.to_owned())),
+            ("time", Value::Number(self.time)),
+            ("elements", Value::Integer(i64::try_from(self.elements).unwrap_or(i64::MAX))),
+            ("threads", Value::Integer(self.threads.into())),
+        ];
+        let stages = Stage::ALL.into_iter().zip(self.stages);
+        line.extend(stages.map(|(stage, cost)| (stage.name(), Value::Number(cost))));
+        line.push(("output", Value::Number(self.output)));
+        line.push(("whole", Value::Number(self.whole)));
+        line.push(("steps_per_second", Value::Number(rate)));
+        let wall = 1e-9 * self.whole * self.elements as f64 * rate;
+        line.push(("wall_per_second", Value::Number(wall)));
+        line.push(("core_share", self.core_share.map_or(Value::Null, Value::Number)));
+        line
+    }
+}
+
+/// Times the stages from a state on.
+///
+/// # Errors
+/// A run that stops short; a signal.
+pub fn measure(
+    capsule: &Capsule,
+    state: &State,
+    threads: u32,
+    effort: Effort,
+    stop: &Stop,
+) -> Result<StageRow> {
+    let elements = state.run.elements();
+    let (steps, repeats) = (steps(effort, elements), effort.repeats());
+    let share = 1e9 / (steps as f64 * elements as f64);
+    let mut least = [f64::INFINITY; Stage::ALL.len()];
+    let (mut whole, mut core_share, mut step) = (f64::INFINITY, None, f64::NAN);
+    for _ in 0..repeats {
+        let mut film = on_threads(&state.run.film, threads);
+        let (start, core) = (Instant::now(), machine::core_seconds());
+        take(&mut film, &capsule.course, steps, &mut Untimed)?;
+        let wall = start.elapsed().as_secs_f64();
+        if share * wall < whole {
+            whole = share * wall;
+            core_share = machine::core_seconds().zip(core).map(|(now, then)| (now - then) / wall);
+        }
+        step = (film.state.time - state.run.film.state.time) / steps as f64;
+        interrupted(stop)?;
+
+        let (mut film, mut clock) = (on_threads(&state.run.film, threads), Clock::default());
+        take(&mut film, &capsule.course, steps, &mut clock)?;
+        clock.stop();
+        for (least, stage) in least.iter_mut().zip(Stage::ALL) {
+            *least = least.min(share * clock.seconds(stage));
+        }
+        interrupted(stop)?;
+    }
+    let output = output(capsule, state, repeats) * step / capsule.course.sample_interval;
+    let output = 1e9 * output / elements as f64;
+    Ok(StageRow {
+        subdivisions: capsule.subdivisions,
+        state: state.name,
+        time: state.time,
+        elements,
+        threads,
+        step,
+        stages: least,
+        output,
+        whole: whole + output,
+        core_share,
+    })
+}
+
+/// Steps to time: whole blocks of the audit, fewer of a large mesh.
+fn steps(effort: Effort, elements: usize) -> u64 {
+    let blocks = match effort {
+        Effort::Quick => 2,
+        Effort::Usual | Effort::Full if elements > 20_000 => 4,
+        Effort::Usual | Effort::Full => 10,
+    };
+    blocks * BLOCK
+}
+
+/// The film in its state, to be run on so many threads.
+///
+/// # Panics
+/// Above one thread: a job takes one.
+fn on_threads(film: &Explicit, threads: u32) -> Explicit {
+    assert_eq!(threads, 1, "one job takes one thread");
+    film.clone()
+}
+
+/// Takes so many steps along a course, landing where a run lands.
+///
+/// # Errors
+/// A run that stops short.
+pub fn take(
+    film: &mut Explicit,
+    course: &Course,
+    mut steps: u64,
+    stopwatch: &mut dyn Stopwatch,
+) -> Result<()> {
+    let breaks = course.breaks();
+    let mut time = film.state.time;
+    loop {
+        let to = landing(course, &breaks, time);
+        let phase = course.phase(time, to);
+        let arrived = film.advance_timed(to, &phase, &mut steps, stopwatch).map_err(|failure| {
+            Error::JobsFailed(format!(
+                "{} at {} s: {}",
+                failure.kind.name(),
+                failure.time,
+                failure.place
+            ))
+        })?;
+        if !arrived {
+            return Ok(());
+        }
+        time = to;
+    }
+}
+
+/// The first break or sample after a time, s.
+fn landing(course: &Course, breaks: &[f64], time: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+    let passed = libm::floor(time / course.sample_interval + 1e-6) as u64;
+    let sample = course.sample_time(passed + 1);
+    breaks.iter().copied().find(|at| *at > time).map_or(sample, |at| at.min(sample))
+}
+
+/// Least time of a sample and a frame, s.
+fn output(capsule: &Capsule, state: &State, repeats: usize) -> f64 {
+    let time = state.run.film.state.time;
+    let phase = capsule.course.phase(time, time + capsule.course.sample_interval);
+    let mut followed = Vec::new();
+    let times = (0..repeats.max(3)).map(|_| {
+        let start = Instant::now();
+        let sample = state.run.sample(&phase);
+        followed.clear();
+        state.run.follow(&mut followed);
+        let frame = state.run.frame();
+        let seconds = start.elapsed().as_secs_f64();
+        std::hint::black_box((sample, &followed, frame));
+        seconds
+    });
+    times.fold(f64::INFINITY, f64::min)
+}

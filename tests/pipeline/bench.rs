@@ -1,0 +1,217 @@
+//! `billow bench`: every figure is there and none is judged; speed is asserted nowhere.
+
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use billow_solver::simd::Path;
+use billow_solver::stages::Stage;
+use serde_json::Value;
+
+use crate::resume::signal;
+
+const TARGETS: [&str; 9] = [
+    "membrane_update_n16",
+    "membrane_over_reference_n16",
+    "whole_first_tenth_n8",
+    "whole_first_tenth_n16",
+    "whole_case_n8",
+    "whole_case_n8_seconds",
+    "whole_case_n16_03",
+    "jobs",
+    "linear",
+];
+
+fn command(flags: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
+    command.arg("bench").args(flags);
+    command
+}
+
+fn billow(flags: &[&str]) -> Output {
+    command(flags).output().expect("the binary runs")
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn report(flags: &[&str]) -> Value {
+    let output = billow(flags);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+fn rows<'a>(report: &'a Value, name: &str) -> &'a [Value] {
+    report[name].as_array().unwrap_or_else(|| panic!("{name}: rows"))
+}
+
+fn positive(row: &Value, key: &str) -> f64 {
+    let value = row[key].as_f64().unwrap_or_else(|| panic!("{key}: a number in {row}"));
+    assert!(value > 0.0 && value.is_finite(), "{key} in {row}");
+    value
+}
+
+/// The row's path of instructions is one this machine has.
+fn on_a_path(row: &Value) {
+    let here = |path: &Path| path.available() && row["path"] == path.name();
+    assert!(Path::ALL.iter().any(here), "{row}");
+}
+
+#[test]
+fn every_part_has_its_figures() {
+    let report = report(&["--quick", "--subdivisions", "1,2", "--json", "-q"]);
+    assert_eq!(report["effort"], "quick");
+    on_a_path(&report["machine"]);
+    for key in [
+        "cores",
+        "multiply_adds_per_second",
+        "copy_bytes_per_second",
+        "cached_copy_bytes_per_second",
+    ] {
+        positive(&report["machine"], key);
+    }
+
+    let stages = rows(&report, "stages");
+    let at = |row: &Value| (row["subdivisions"].as_u64(), row["state"].as_str().map(str::to_owned));
+    let found: Vec<_> = stages.iter().map(at).collect();
+    let expected = [1, 2]
+        .into_iter()
+        .flat_map(|n| ["stowed", "rising", "end"].map(|state| (Some(n), Some(state.to_owned()))));
+    assert_eq!(found, expected.collect::<Vec<_>>());
+    for row in stages {
+        let n = row["subdivisions"].as_u64().expect("a count");
+        assert_eq!(row["elements"].as_u64(), Some(48 * n * n));
+        assert_eq!(row["threads"], 1);
+        // Null on a system that does not say.
+        assert!(row.get("core_share").is_some(), "{row}");
+        // A search or an audit may have nothing to do in a short while; it has its figure all the same.
+        for stage in Stage::ALL {
+            assert!(row[stage.name()].as_f64() >= Some(0.0), "{}: {row}", stage.name());
+        }
+        for key in ["membrane", "update", "output", "whole", "steps_per_second", "wall_per_second"]
+        {
+            positive(row, key);
+        }
+        let wall = 1e-9
+            * positive(row, "whole")
+            * positive(row, "elements")
+            * positive(row, "steps_per_second");
+        assert!((wall / positive(row, "wall_per_second") - 1.0).abs() < 1e-9, "{row}");
+    }
+
+    for row in rows(&report, "kernels") {
+        on_a_path(row);
+        positive(row, "ns_per_element_step");
+    }
+    let kernel =
+        |name: &str| rows(&report, "kernels").iter().filter(|row| row["kernel"] == name).count();
+    let paths = Path::ALL.iter().filter(|path| path.available()).count();
+    assert_eq!((kernel("reference"), kernel("node_pass")), (2, 2));
+    assert_eq!((kernel("step"), kernel("element_pass")), (2 * paths, 2 * paths));
+
+    for row in rows(&report, "cases") {
+        let steps = positive(row, "steps") * positive(row, "elements");
+        let cost = 1e9 * positive(row, "wall_seconds") / steps;
+        assert!((cost / positive(row, "ns_per_element_step") - 1.0).abs() < 1e-9, "{row}");
+        assert_eq!((&row["passages"], &row["end_time"]), (&0.into(), &0.05.into()));
+        assert!(row["ledger_residual"].as_f64() < Some(1e-2), "{row}");
+    }
+    assert_eq!(rows(&report, "cases").len(), 2);
+
+    let jobs = rows(&report, "jobs");
+    assert_eq!(jobs.len(), 2);
+    for (row, threads) in jobs.iter().zip([1, 2]) {
+        assert_eq!(
+            (&row["threads"], &row["jobs"], &row["done"]),
+            (&threads.into(), &64.into(), &64.into())
+        );
+        positive(row, "jobs_per_hour");
+    }
+
+    // Nothing a quick bench of small meshes measures is what a target asks for.
+    let targets = rows(&report, "targets");
+    let names: Vec<&str> = targets.iter().filter_map(|row| row["target"].as_str()).collect();
+    assert_eq!(names, TARGETS);
+    for row in targets {
+        assert!(row["measured"].is_null() && row["met"].is_null(), "{row}");
+        positive(row, "bound");
+    }
+    let open: Vec<&str> = rows(&report, "not_measured").iter().filter_map(Value::as_str).collect();
+    assert_eq!((open, &report["targets_met"]), (TARGETS.to_vec(), &Value::Bool(false)));
+}
+
+#[test]
+fn parts_are_asked_for_by_name() {
+    let flags = ["--quick", "--subdivisions", "1", "--only", "cases", "--json"];
+    let output = billow(&flags);
+    let report: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(rows(&report, "cases").len(), 1);
+    for other in ["kernels", "stages", "jobs"] {
+        assert!(rows(&report, other).is_empty(), "{other}");
+    }
+    assert!(report["machine"]["multiply_adds_per_second"].is_null());
+    assert!(said(&output).contains("run, n 1, 0.05 s"), "{}", said(&output));
+
+    let flags = ["--quick", "--subdivisions", "1", "--only", "cases,kernels", "-q"];
+    let table = billow(&flags);
+    assert!(table.status.success() && table.stderr.is_empty(), "{}", said(&table));
+    let text = String::from_utf8_lossy(&table.stdout).into_owned();
+    for title in
+        ["machine\n", "kernels\n", "cases\n", "targets\n", "targets met: no (not measured: "]
+    {
+        assert!(text.contains(title), "{title}: {text}");
+    }
+    assert!(!text.contains("stages\n"), "{text}");
+
+    let csv = billow(&[&flags[..], &["--format", "csv"]].concat());
+    let text = String::from_utf8_lossy(&csv.stdout).into_owned();
+    assert!(text.starts_with("part,row,name,value\nmachine,0,cpu,"), "{text}");
+    assert!(text.contains("\ncases,0,ns_per_element_step,"), "{text}");
+    assert!(text.ends_with("\ntargets,,targets_met,false\n"), "{text}");
+}
+
+#[test]
+fn what_cannot_be_measured_is_bad_input() {
+    for (flags, words) in [
+        (&["--only", "membrane"][..], "membrane"),
+        (&["--subdivisions", "0"], "--subdivisions"),
+        (&["--subdivisions", "five"], "five"),
+        (&["--quick", "--full"], "cannot be used with"),
+        (&["--quick", "--subdivisions", "32", "--only", "kernels"], "n 32"),
+    ] {
+        let output = billow(flags);
+        assert_eq!(output.status.code(), Some(2), "{flags:?}: {}", said(&output));
+        assert!(output.stdout.is_empty());
+        assert!(said(&output).contains(words), "{flags:?}: {}", said(&output));
+    }
+    let output =
+        command(&["--quick"]).env("BILLOW_SIMD", "neon").output().expect("the binary runs");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("BILLOW_SIMD = neon: is no instruction set"),
+        "{}",
+        said(&output)
+    );
+}
+
+#[test]
+fn a_signal_ends_it() {
+    // Far more than it is given time for.
+    let flags = ["--full", "--subdivisions", "8", "--only", "cases"];
+    let child = command(&flags).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut child = child.expect("the binary runs");
+    let mut stderr = BufReader::new(child.stderr.take().expect("piped"));
+    let mut told = String::new();
+    stderr.read_line(&mut told).expect("a line");
+    assert_eq!(told, "billow: run, n 8, 1.5 s\n");
+    let start = Instant::now();
+    signal(&child, "-INT");
+    stderr.read_to_string(&mut told).expect("its last words");
+    let output = child.wait_with_output().expect("a child");
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(output.stdout.is_empty());
+    assert!(told.contains("stopped by signal 2; no figure is kept"), "{told}");
+    // No matter how slow the machine: it does not run to its end first.
+    assert!(start.elapsed() < Duration::from_secs(30));
+}
