@@ -5,6 +5,8 @@
 pub struct Bins {
     /// Width of a bin, m.
     pub(super) width: f64,
+    /// Bins of a metre.
+    per_length: f64,
     /// First bin not taken yet, counted from 0.
     reached: u64,
     /// A ring of bins; what is due beyond its end waits in the last.
@@ -14,10 +16,15 @@ pub struct Bins {
 }
 
 impl Bins {
-    /// `count` bins of this width (m) from a length (m) on.
+    /// `count` bins, a power of two, of this width (m) from a length (m) on.
+    ///
+    /// # Panics
+    /// For another count.
     pub fn new(width: f64, count: usize, from: f64) -> Self {
+        assert!(count.is_power_of_two(), "so that a place in the ring is a mask");
         let ring = vec![Vec::new(); count];
-        let mut bins = Self { width, reached: 0, ring, overdue: Vec::new() };
+        let per_length = 1.0 / width;
+        let mut bins = Self { width, per_length, reached: 0, ring, overdue: Vec::new() };
         bins.reached = bins.number(from);
         bins
     }
@@ -31,16 +38,20 @@ impl Bins {
 
     /// The bin of a length (m); the first where it is below 0, or no number.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    #[inline]
     fn number(&self, length: f64) -> u64 {
-        (length / self.width) as u64
+        (length * self.per_length) as u64
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "below the length of the ring")]
+    #[inline]
     fn place(&self, bin: u64) -> usize {
-        (bin % self.ring.len() as u64) as usize
+        // The length is a power of two.
+        bin as usize & (self.ring.len() - 1)
     }
 
     /// Has a pair wait until the length is `due` (m).
+    #[inline]
     pub fn put(&mut self, due: f64, pair: [u32; 2]) {
         let bin = self.number(due).min(self.reached + (self.ring.len() as u64 - 1));
         if bin < self.reached {

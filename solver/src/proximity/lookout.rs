@@ -10,6 +10,7 @@
 
 use super::bins::Bins;
 use super::boxes::Boxes;
+use super::patches::{NONE, Patches};
 use super::zones::Zones;
 use crate::contact::topology::Topology;
 use crate::simd::Path;
@@ -290,7 +291,7 @@ impl Lookout {
                         }
                     }
                     if a as usize >= first_leaf {
-                        primitives(*sought, topology, a as usize, b as usize, due);
+                        primitives(*sought, &topology.patches, a as usize, b as usize, due);
                         leaves.push((pair, reach, [due[0].len(), due[1].len()]));
                     } else if a == b {
                         next.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
@@ -307,38 +308,43 @@ impl Lookout {
 }
 
 /// Adds the pairs of primitives of two leaves that share no node.
-fn primitives(sought: Sought, topology: &Topology, one: usize, two: usize, pairs: &mut Pairs) {
-    let patches = &topology.patches;
-    let apart = |edge: u32, element: u32| {
-        let corners = topology.triangles[element as usize];
-        !topology.edges[edge as usize].iter().any(|node| corners.contains(node))
-    };
+fn primitives(sought: Sought, patches: &Patches, one: usize, two: usize, pairs: &mut Pairs) {
+    // The three nodes and edges of one element share nodes.
+    if one == two {
+        return;
+    }
+    let (one, two) = (patches.leaf(one), patches.leaf(two));
     let [first, second] = pairs;
-    let both = [(one, two), (two, one)];
-    for (a, b) in both.into_iter().take(if one == two { 1 } else { 2 }) {
-        for element in patches.elements(b) {
-            match sought {
-                Sought::Meetings => {
-                    let corners = topology.triangles[*element as usize];
-                    let nodes = patches.nodes(a).iter().filter(|node| !corners.contains(node));
-                    first.extend(nodes.map(|node| [*node, *element]));
+    for (a, b) in [(one, two), (two, one)] {
+        let has = |node: u32| b.corners[0] == node || b.corners[1] == node || b.corners[2] == node;
+        match sought {
+            Sought::Meetings => {
+                for node in a.nodes {
+                    if node != NONE && !has(node) {
+                        first.push([node, b.element]);
+                    }
                 }
-                Sought::Piercings => {
-                    let edges = patches.edges(a).iter().filter(|edge| apart(**edge, *element));
-                    first.extend(edges.map(|edge| [*edge, *element]));
+            }
+            Sought::Piercings => {
+                for (at, edge) in a.edges.into_iter().enumerate() {
+                    let [p, q] = a.ends(at);
+                    if edge != NONE && !has(p) && !has(q) {
+                        first.push([edge, b.element]);
+                    }
                 }
             }
         }
     }
     if sought == Sought::Meetings {
-        for (at, edge) in patches.edges(one).iter().enumerate() {
-            let [p, q] = topology.edges[*edge as usize];
-            let others =
-                if one == two { &patches.edges(two)[at + 1..] } else { patches.edges(two) };
-            for other in others {
-                let [r, s] = topology.edges[*other as usize];
-                if p != r && p != s && q != r && q != s {
-                    second.push([(*edge).min(*other), (*edge).max(*other)]);
+        for (at, edge) in one.edges.into_iter().enumerate() {
+            if edge == NONE {
+                continue;
+            }
+            let [p, q] = one.ends(at);
+            for (at, other) in two.edges.into_iter().enumerate() {
+                let [r, s] = two.ends(at);
+                if other != NONE && p != r && p != s && q != r && q != s {
+                    second.push([edge.min(other), edge.max(other)]);
                 }
             }
         }
@@ -361,7 +367,7 @@ pub fn nearer(
             continue;
         }
         if one >= leaves {
-            primitives(sought, topology, one, two, &mut pairs);
+            primitives(sought, &topology.patches, one, two, &mut pairs);
             for (couple, pairs) in sought.couples().into_iter().zip(&mut pairs) {
                 let Some(couple) = couple else { continue };
                 for pair in pairs.drain(..) {

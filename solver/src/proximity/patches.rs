@@ -1,118 +1,97 @@
-//! The film in patches of a few neighbouring elements, and a tree over them.
+//! The film in patches: a tree over its elements.
 //!
 //! ```text
 //!             1                 node k holds what 2k and 2k + 1 hold
 //!        2         3
-//!      4   5     6   7          the last row: patches
+//!      4   5     6   7          the last row: leaves, one element each
 //! ```
 //!
-//! Neighbours on the film stay neighbours however it folds, so patches and tree are constant. Every
-//! node and every edge belongs to the first patch that has it; a patch's box holds them all.
+//! Neighbours on the film stay neighbours however it folds, so the tree is constant. Every node and
+//! every edge belongs to the first leaf that has it; a leaf's box holds them all.
 
 use super::order;
 
-/// Elements of a patch, a power of two.
-pub const PATCH: usize = 1;
+/// A number that is none: the place of a node or an edge that belongs to another leaf.
+pub const NONE: u32 = u32::MAX;
 
-/// Lists of numbers, one a patch.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Lists {
-    first: Vec<u32>,
-    all: Vec<u32>,
+/// One element, and what of it belongs to this leaf.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Leaf {
+    /// Element; [`NONE`] of a place in the last row that is left over.
+    pub element: u32,
+    /// Its nodes.
+    pub corners: [u32; 3],
+    /// Those that belong to this leaf, or [`NONE`].
+    pub nodes: [u32; 3],
+    /// Edges that belong to this leaf, or [`NONE`]: between its corners 0-1, 1-2, 2-0.
+    pub edges: [u32; 3],
 }
 
-impl Lists {
-    fn of(lists: impl Iterator<Item = Vec<u32>>) -> Self {
-        let mut own = Self { first: vec![0], all: Vec::new() };
-        for list in lists {
-            own.all.extend(list);
-            own.first.push(u32::try_from(own.all.len()).expect("under 2^32"));
-        }
-        own
-    }
+impl Leaf {
+    /// A place left over.
+    const EMPTY: Self =
+        Self { element: NONE, corners: [NONE; 3], nodes: [NONE; 3], edges: [NONE; 3] };
 
-    /// Those of one patch; none past the last.
+    /// The nodes of one of its edges.
     #[inline]
-    fn get(&self, patch: usize) -> &[u32] {
-        match self.first.get(patch..patch + 2) {
-            Some(ends) => &self.all[ends[0] as usize..ends[1] as usize],
-            None => &[],
-        }
+    pub fn ends(&self, edge: usize) -> [u32; 2] {
+        [self.corners[edge], self.corners[(edge + 1) % 3]]
     }
 }
 
 /// Film in patches: constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Patches {
-    /// Number of places for patches in the last row of the tree, a power of two.
-    leaves: usize,
-    elements: Lists,
-    nodes: Lists,
-    edges: Lists,
-    /// Every node of a patch's elements.
-    corners: Lists,
+    /// The last row of the tree; as many as a power of two.
+    leaves: Vec<Leaf>,
 }
 
 impl Patches {
-    /// The patches of these elements; `sides`: their edges, of which there are `edges`.
+    /// The patches of these elements over so many nodes; `sides`: their edges, of which there are `edges`.
     pub fn new(nodes: usize, triangles: &[[u32; 3]], sides: &[[u32; 3]], edges: usize) -> Self {
-        let order = order::of_elements(sides, edges, PATCH);
-        let leaves = order.len().div_ceil(PATCH).next_power_of_two();
-        let patches = || order.chunks(PATCH);
-        let owned = |parts: &[[u32; 3]], count: usize| {
-            let mut taken = vec![false; count];
-            Lists::of(patches().map(|patch| {
-                let all = patch.iter().flat_map(|element| parts[*element as usize]);
-                all.filter(|part| !core::mem::replace(&mut taken[*part as usize], true)).collect()
-            }))
+        let order = order::of_elements(sides, edges, 1);
+        let (mut taken_nodes, mut taken_edges) = (vec![false; nodes], vec![false; edges]);
+        let own = |taken: &mut Vec<bool>, number: u32| {
+            let other = core::mem::replace(&mut taken[number as usize], true);
+            if other { NONE } else { number }
         };
-        let corners = Lists::of(patches().map(|patch| {
-            let all = patch.iter().flat_map(|element| triangles[*element as usize]);
-            let mut corners: Vec<u32> = all.collect();
-            corners.sort_unstable();
-            corners.dedup();
-            corners
-        }));
-        Self {
-            leaves,
-            elements: Lists::of(patches().map(<[u32]>::to_vec)),
-            nodes: owned(triangles, nodes),
-            edges: owned(sides, edges),
-            corners,
-        }
+        let mut leaves: Vec<Leaf> = order
+            .iter()
+            .map(|element| {
+                let corners = triangles[*element as usize];
+                let edges = sides[*element as usize];
+                Leaf {
+                    element: *element,
+                    corners,
+                    nodes: corners.map(|node| own(&mut taken_nodes, node)),
+                    edges: edges.map(|edge| own(&mut taken_edges, edge)),
+                }
+            })
+            .collect();
+        leaves.resize(leaves.len().next_power_of_two(), Leaf::EMPTY);
+        Self { leaves }
     }
 
     /// Number of nodes of the tree and one, its root being 1.
     pub fn tree(&self) -> usize {
-        2 * self.leaves
+        2 * self.leaves.len()
     }
 
     /// First node of the tree's last row.
     pub fn leaves(&self) -> usize {
-        self.leaves
+        self.leaves.len()
     }
 
-    /// Nodes of the film in the elements of a leaf.
+    /// One leaf, by its node of the tree.
     #[inline]
-    pub fn corners(&self, leaf: usize) -> &[u32] {
-        self.corners.get(leaf - self.leaves)
+    pub fn leaf(&self, node: usize) -> &Leaf {
+        &self.leaves[node - self.leaves.len()]
     }
 
-    /// Elements of a leaf.
+    /// Nodes of the film in a leaf.
     #[inline]
-    pub fn elements(&self, leaf: usize) -> &[u32] {
-        self.elements.get(leaf - self.leaves)
-    }
-
-    /// Nodes that belong to a leaf.
-    #[inline]
-    pub fn nodes(&self, leaf: usize) -> &[u32] {
-        self.nodes.get(leaf - self.leaves)
-    }
-
-    /// Edges that belong to a leaf.
-    #[inline]
-    pub fn edges(&self, leaf: usize) -> &[u32] {
-        self.edges.get(leaf - self.leaves)
+    pub fn corners(&self, node: usize) -> &[u32] {
+        let leaf = self.leaf(node);
+        if leaf.element == NONE { &[] } else { &leaf.corners }
     }
 }
