@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::simd::{WIDTH, dispatch};
+
 /// One vector a node (or corner), a `Vec` a component.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -79,4 +81,25 @@ impl Field {
     pub fn iter(&self) -> impl Iterator<Item = Vector3<f64>> + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "inside an instruction set")]
+fn largest_squared_kernel(field: &Field) -> f64 {
+    let (x, y, z) = (field.x.chunks_exact(WIDTH), field.y.chunks_exact(WIDTH), &field.z);
+    let rest = field.len() - field.len() % WIDTH;
+    let mut largest = [0.0_f64; WIDTH];
+    for ((x, y), z) in x.zip(y).zip(z.chunks_exact(WIDTH)) {
+        for lane in 0..WIDTH {
+            let squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
+            largest[lane] = if squared > largest[lane] { squared } else { largest[lane] };
+        }
+    }
+    let rest = (rest..field.len()).map(|at| field.get(at).norm_squared());
+    largest.into_iter().chain(rest).fold(0.0, f64::max)
+}
+
+dispatch! {
+    /// The largest squared length of a vector; what is no number does not count.
+    pub fn largest_squared / largest_squared_kernel(field: &Field) -> f64
 }

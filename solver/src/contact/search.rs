@@ -44,6 +44,8 @@ pub struct Search {
     pub near: Vec<Near>,
     /// Smallest distance of any near pair now, m; infinite where none is near.
     pub smallest_gap: f64,
+    /// Whether contact or a plate pushed when forces were last asked for, or may have.
+    pub pushed: bool,
     // Room for pairs, their distances, and what a node has found.
     due: Vec<[u32; 2]>,
     pub(super) gaps: Vec<f64>,
@@ -74,15 +76,17 @@ impl Search {
             singles: [bins(), bins()],
             near: Vec::new(),
             smallest_gap: f64::INFINITY,
+            pushed: true,
             due: Vec::new(),
             gaps: Vec::new(),
             found: Vec::new(),
         }
     }
 
-    /// Forgets all but the smallest gap.
+    /// Forgets what is near.
     fn forget(&mut self, law: &Law, places: &Field, path: f64) {
-        *self = Self { smallest_gap: self.smallest_gap, ..Self::new(law, places, path) };
+        let (smallest_gap, pushed) = (self.smallest_gap, self.pushed);
+        *self = Self { smallest_gap, pushed, ..Self::new(law, places, path) };
     }
 }
 

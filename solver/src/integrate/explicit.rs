@@ -241,7 +241,7 @@ impl Explicit {
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
-        if self.setting.contact.is_some() {
+        if self.pushed() {
             let (contact, velocities) = (&self.forces.contact, &self.state.velocities);
             self.state.works.contact += half * sparse_power(self.setting.path, contact, velocities);
         }

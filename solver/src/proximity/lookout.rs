@@ -54,7 +54,7 @@ type Pairs = [Vec<[u32; 2]>; 2];
 type Leaves = ([u32; 2], f64, [usize; 2]);
 
 /// Bins of a pair of zones.
-const RING: usize = 64;
+const RING: usize = 32;
 /// Bins after which all is looked for anew: what came near once and went far away need not be
 /// followed leaf by leaf for ever.
 const RENEWAL: f64 = 128.0;
@@ -268,11 +268,10 @@ impl Lookout {
         self.due.iter_mut().for_each(Vec::clear);
         self.boxes.fit(&topology.patches, places);
         let path = Path::best();
-        let Self { sought, zones, ways, waiting, boxes, due, later, next, apart, leaves, .. } =
-            self;
+        let Self { sought, ways, waiting, boxes, due, later, next, apart, leaves, .. } = self;
         let first_leaf = topology.patches.leaves();
-        for zones in zones.all() {
-            let (way, reach, bins) = (ways[zones], reach[zones], &mut waiting[zones]);
+        for ((way, reach), bins) in ways.iter().zip(reach).zip(waiting) {
+            let (way, reach) = (*way, *reach);
             bins.take(way + reach, later);
             // Row by row down the tree.
             while !later.is_empty() {

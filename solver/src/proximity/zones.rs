@@ -43,15 +43,16 @@ impl Zones {
         Self { count, nodes: nodes.collect() }
     }
 
-    /// Number of pairs of zones, each with itself counted.
+    /// Number of pairs of zones, those of a zone with itself counted.
     pub fn pairs(&self) -> usize {
-        self.count * self.count
+        self.count * (self.count + 1) / 2
     }
 
-    /// All pairs of zones.
-    pub fn all(&self) -> impl Iterator<Item = usize> + use<> {
-        let count = self.count;
-        (0..count).flat_map(move |one| (one..count).map(move |two| one * count + two))
+    /// The number of a pair of zones, the lower first.
+    #[inline]
+    fn number(&self, one: usize, two: usize) -> usize {
+        // So many come before the first of `one`.
+        one * (2 * self.count - one + 1) / 2 + two - one
     }
 
     /// First node of the tree that is a zone.
@@ -64,7 +65,7 @@ impl Zones {
     pub fn pair(&self, a: usize, b: usize) -> usize {
         let zone = |node: usize| (node >> (node.ilog2() - self.count.ilog2())) - self.count;
         let (a, b) = (zone(a), zone(b));
-        a.min(b) * self.count + a.max(b)
+        self.number(a.min(b), a.max(b))
     }
 
     /// Adds to `ways`, a number for each pair of zones, how far the two have come towards each other at
@@ -84,7 +85,7 @@ impl Zones {
         for (one, (mean, apart)) in own.iter().enumerate() {
             for (two, (other, far)) in own.iter().enumerate().skip(one) {
                 let way = (mean - other).norm() + apart + far;
-                ways[one * self.count + two] += way * ROUNDING;
+                ways[self.number(one, two)] += way * ROUNDING;
             }
         }
         largest

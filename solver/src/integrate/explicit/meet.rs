@@ -5,7 +5,7 @@ use crate::contact::guard::{Stopped, taken};
 use crate::contact::{Kind, Pair};
 use crate::deployment::{Failure, FailureKind};
 use crate::stages::{Stage, Stopwatch};
-use crate::state::Field;
+use crate::state::{Field, largest_squared};
 
 /// How often pairs and plates take turns in a step, at most.
 const MOST_TURNS: u32 = 50;
@@ -32,14 +32,16 @@ impl Explicit {
     /// Forces of contact at the places now, which are those of `time` (s).
     pub(super) fn press(&mut self, time: f64) {
         let Some(law) = &self.setting.contact else { return };
-        for column in
-            [&mut self.forces.contact.x, &mut self.forces.contact.y, &mut self.forces.contact.z]
-        {
-            column.fill(0.0);
-        }
         let (places, meeting) = (&self.state.places, &mut self.state.meeting);
         let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
+        if search.pushed {
+            let Field { x, y, z } = &mut self.forces.contact;
+            for column in [x, y, z] {
+                column.fill(0.0);
+            }
+        }
         law.meet(places, &self.model.mass, &mut self.forces.contact, meeting, search);
+        search.pushed = !meeting.contacts.is_empty() || !law.plates.is_empty();
         let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
         for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
             plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
@@ -57,9 +59,8 @@ impl Explicit {
         let Some(law) = &self.setting.contact else { return Ok(()) };
         let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
         let State { places, velocities, meeting, .. } = &mut self.state;
-        let fastest = |velocities: &Field| {
-            velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
-        };
+        let path = self.setting.path;
+        let fastest = |velocities: &Field| largest_squared(path, velocities).sqrt();
         let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
         let speed = fastest(velocities);
         if speed >= model.wave_speed() {
@@ -121,6 +122,12 @@ impl Explicit {
     /// Intersections of the mesh now, or when it last came to a target.
     pub fn intersections(&self) -> u64 {
         self.watch.as_ref().map_or(0, |watch| watch.piercings.count)
+    }
+
+    /// Whether contact or a plate pushes, or may.
+    pub(super) fn pushed(&self) -> bool {
+        let none = self.setting.contact.is_none();
+        !none && self.search.as_ref().is_none_or(|search| search.pushed)
     }
 
     /// Half a step's work of the plates, by their force now, on the way to `until` (s).
