@@ -1,6 +1,7 @@
 //! What a result is worth: energy, gas, intersections.
 
 pub mod passages;
+pub mod watch;
 
 use crate::history::History;
 

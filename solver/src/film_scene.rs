@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::audit::passages::Watchfulness;
+use crate::audit::watch::Watchfulness;
 use crate::contact::plates::Plate;
 use crate::scene::{Contact, Film, GasSupply};
 use crate::shell::Shell;

@@ -221,3 +221,54 @@ impl Law {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::contact::topology::Topology;
+
+    proptest! {
+        /// Whatever the film does, no pair comes within the contact distance unseen.
+        #[test]
+        fn what_may_touch_is_near(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18),
+            ways in prop::collection::vec(
+                prop::collection::vec(prop::array::uniform3(-0.1..0.1_f64), 18),
+                1..40,
+            ),
+        ) {
+            let triangles =
+                [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12], [13, 14, 15], [13, 16, 17]];
+            let law = Law::new(Topology::new(18, &triangles), 0.05, 1.0, 0.7);
+            let mut x: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
+            let mut meeting = Meeting { searches: 1, ..Meeting::default() };
+            let mut search = law.look(&Field::of(&x), 0.0);
+            for way in ways {
+                let from = Field::of(&x);
+                let longest = way.iter().map(|w| Vector3::from(*w).norm()).fold(0.0, f64::max);
+                law.prepare(&from, &mut meeting, &mut search, longest);
+                for (x, way) in x.iter_mut().zip(way) {
+                    *x += Vector3::from(way);
+                }
+                let to = Field::of(&x);
+                let mut unseen = Vec::new();
+                law.pairs_within(&to, law.distance, |pair, gap| {
+                    if gap < law.distance_of(pair.kind)
+                        && search.near.binary_search_by_key(&pair, |own| own.pair).is_err()
+                    {
+                        unseen.push(pair);
+                    }
+                });
+                prop_assert!(unseen.is_empty(), "{unseen:?}");
+                law.measure(&to, &mut search);
+                for (own, gap) in search.near.iter_mut().zip(&search.gaps) {
+                    own.gap = *gap;
+                }
+                law.let_go(meeting.path, &mut search);
+            }
+        }
+    }
+}

@@ -19,7 +19,7 @@
 
 use nalgebra::Vector3;
 
-use crate::audit::passages::Watch;
+use crate::audit::watch::Watch;
 use crate::contact::search::Search;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};

@@ -6,7 +6,7 @@
 //!
 //! Through the very run a study makes: packed pattern, gas, contact, audit.
 
-use billow_solver::audit::passages::Watchfulness;
+use billow_solver::audit::watch::Watchfulness;
 use billow_solver::course::Course;
 use billow_solver::deployment::{self, Deployment, Stop, Unobserved};
 use billow_solver::film_scene::FilmContact;

@@ -5,7 +5,7 @@
 //!                / largest kinetic energy
 //! ```
 
-use billow_solver::audit::passages::Watchfulness;
+use billow_solver::audit::watch::Watchfulness;
 use billow_solver::contact::intersections::intersections;
 use billow_solver::contact::plates::Plate;
 use billow_solver::course::Phase;

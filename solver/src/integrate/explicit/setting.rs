@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::audit::passages::Watchfulness;
+use crate::audit::watch::Watchfulness;
 use crate::contact::Law;
 use crate::gas::Gas;
 use crate::mutation::{Mutation, Term};

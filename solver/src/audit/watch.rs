@@ -1,0 +1,253 @@
+//! Watches a run for passages, step by step or from frame to frame.
+//!
+//! Frames of the audit lie a block of steps apart. On the straight way from one to the next only pairs
+//! of film that could have come together are looked at ([`crate::proximity::lookout`]); a pair that
+//! seems to pass is then looked at at each of its steps. Now and then, and always where every step is
+//! asked for, a block is looked at step by step and from nothing but its places: so nothing that waits
+//! is trusted for long.
+
+use nalgebra::Vector3;
+
+use super::passages::{Passage, passage, passages};
+use crate::contact::gaps::{edge_gaps, element_gaps};
+use crate::contact::intersections::Piercings;
+use crate::contact::topology::Topology;
+use crate::proximity::boxes::Boxes;
+use crate::proximity::lookout::{Couple, Lookout, Sought, nearer};
+use crate::simd::Path;
+use crate::state::Field;
+
+/// How a run is watched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Watchfulness {
+    /// Steps between two audit frames, at least 1.
+    pub block: u32,
+    /// One block in so many is looked at step by step, chosen by the seed; 1 for all.
+    pub every_step_of_one_in: u64,
+    /// Seed of the choice.
+    pub seed: u64,
+}
+
+impl Watchfulness {
+    /// Every step: for small scenes.
+    pub const EVERY_STEP: Self = Self { block: 1, every_step_of_one_in: 1, seed: 0 };
+    /// Frames 50 steps apart, every step of one block in a hundred.
+    pub const FRAMES: Self = Self { block: 50, every_step_of_one_in: 100, seed: 0 };
+
+    /// Whether each step of the block after so many steps is looked at (`SplitMix64` of seed
+    /// and number).
+    fn closely(&self, steps: u64) -> bool {
+        let mut z =
+            self.seed.wrapping_add(steps.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)).is_multiple_of(self.every_step_of_one_in)
+    }
+}
+
+/// Path of a bin of the lookout, as a share of the film's size.
+const BIN: f64 = 2e-3;
+
+/// Watches a run step by step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Watch {
+    how: Watchfulness,
+    /// Steps of the run before the audit frame.
+    start: u64,
+    /// Places at the audit frame and after each step since.
+    frames: Vec<Field>,
+    used: usize,
+    /// Patches of film waiting to come near each other.
+    lookout: Lookout,
+    /// Intersections of the mesh.
+    pub piercings: Piercings,
+    /// Passages so far.
+    pub passages: u64,
+    /// The first, and where its first node was (m).
+    pub first: Option<(Passage, Vector3<f64>)>,
+}
+
+impl Watch {
+    /// Starts at these places (m), after so many steps of the run.
+    pub fn new(how: Watchfulness, topology: &Topology, places: &Field, steps: u64) -> Self {
+        let frames = vec![places.clone(); how.block as usize + 1];
+        let lookout = Lookout::new(Sought::Meetings, topology, BIN * places.size());
+        Self {
+            how,
+            start: steps,
+            frames,
+            used: 1,
+            lookout,
+            piercings: Piercings::new(topology, places),
+            passages: 0,
+            first: None,
+        }
+    }
+
+    /// Takes note of the places (m) after a step; looks at a block when it is full.
+    pub fn step(&mut self, topology: &Topology, places: &Field) {
+        self.frames[self.used].copy_from(places);
+        self.used += 1;
+        if self.used == self.frames.len() {
+            self.look(topology);
+        }
+    }
+
+    /// Looks at what has not been looked at yet.
+    pub fn look(&mut self, topology: &Topology) {
+        let steps = self.used - 1;
+        if steps == 0 {
+            return;
+        }
+        let found = if self.how.closely(self.start) {
+            self.lookout.travel(&self.frames[0], &self.frames[steps]);
+            passages_step_by_step(topology, &self.frames[..=steps])
+        } else {
+            self.passages_of_block(topology, steps)
+        };
+        if self.first.is_none() {
+            self.first = found.first().map(|passage| {
+                let [node, ..] = passage.nodes(topology);
+                (*passage, self.frames[steps].get(node as usize))
+            });
+        }
+        self.passages += found.len() as u64;
+        self.start += steps as u64;
+        self.frames.swap(0, steps);
+        self.used = 1;
+    }
+
+    /// Looks at the straight way from the first to the last place of a block, and at each step where a
+    /// pair seems to pass on it.
+    fn passages_of_block(&mut self, topology: &Topology, steps: usize) -> Vec<Passage> {
+        let (frames, mut found) = (&self.frames, Vec::new());
+        let (from, to) = (&frames[0], &frames[steps]);
+        let gaps = |couple: Couple, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| match couple {
+            Couple::EdgeEdge => edge_gaps(Path::best(), topology, from, pairs, gaps),
+            _ => element_gaps(Path::best(), topology, from, pairs, gaps),
+        };
+        self.lookout.pass(topology, [from, to], gaps, |couple, pair| {
+            let own = passage(couple, pair);
+            let between = own.closest(topology, from).between;
+            if !own.stays_apart(topology, to, &between) && own.happens(topology, from, to) {
+                let happens =
+                    |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
+                found.extend((0..steps).filter(happens).map(|_| own));
+            }
+        });
+        found.sort_unstable();
+        found
+    }
+}
+
+/// Every passage of some steps, told from nothing but their places.
+fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> {
+    if let [from, to] = frames {
+        return passages(topology, from, to);
+    }
+    let (first, mut way) = (&frames[0], 0.0_f64);
+    let mut boxes = Boxes::new(&topology.patches, first);
+    for frame in &frames[1..] {
+        boxes.hold(&topology.patches, frame);
+        way = way.max(first.largest_way(frame));
+    }
+    let mut found = Vec::new();
+    nearer(Sought::Meetings, topology, &boxes, 0.0, |couple, pair| {
+        let own = passage(couple, pair);
+        // Farther apart than both can have come towards each other.
+        if own.closest(topology, first).squared > 4.0 * way * way {
+            return;
+        }
+        for (step, pair) in frames.windows(2).enumerate() {
+            if own.happens(topology, &pair[0], &pair[1]) {
+                found.push((step, own));
+            }
+        }
+    });
+    found.sort_unstable();
+    found.into_iter().map(|(_, own)| own).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::intersections::intersections;
+    use proptest::prelude::*;
+
+    fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {
+        Vector3::new(x, y, z)
+    }
+
+    /// A triangle at rest, and a node or an edge that flies.
+    fn scene(flier: &[Vector3<f64>], way: Vector3<f64>) -> (Topology, Field, Field) {
+        let mut places = vec![v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)];
+        let still = places.len();
+        places.extend(flier);
+        let topology = Topology::new(places.len(), &[[0, 1, 2], [3, 4, 5]]);
+        let after: Vec<_> =
+            places.iter().enumerate().map(|(k, x)| if k < still { *x } else { x + way }).collect();
+        (topology, Field::of(&places), Field::of(&after))
+    }
+
+    #[test]
+    fn a_way_there_and_back_is_found_step_by_step_only() {
+        let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
+        let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
+        let count = |how: Watchfulness| {
+            let mut watch = Watch::new(how, &topology, &from, 0);
+            watch.step(&topology, &to);
+            watch.step(&topology, &from);
+            watch.look(&topology);
+            watch.passages
+        };
+        assert_eq!(count(Watchfulness::EVERY_STEP), 2);
+        assert_eq!(count(Watchfulness { every_step_of_one_in: 1, ..Watchfulness::FRAMES }), 2);
+        let mut watch = Watch::new(Watchfulness::FRAMES, &topology, &from, 0);
+        assert!(!Watchfulness::FRAMES.closely(0));
+        watch.step(&topology, &to);
+        watch.look(&topology);
+        assert_eq!(watch.passages, 1);
+        assert!(watch.first.is_some());
+    }
+
+    #[test]
+    fn about_one_block_in_a_hundred_is_looked_at_closely() {
+        let close = (0..100_000).filter(|block| Watchfulness::FRAMES.closely(*block)).count();
+        assert!((900..1100).contains(&close), "{close}");
+    }
+
+    proptest! {
+        /// Pairs that wait are counted when they pass, whatever the film does, and so are intersections.
+        #[test]
+        fn waiting_misses_nothing(
+            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18),
+            ways in prop::collection::vec(
+                prop::collection::vec(prop::array::uniform3(-0.2..0.2_f64), 18),
+                1..12,
+            ),
+        ) {
+            let triangles = [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12], [13, 14, 15]];
+            let mut triangles = triangles.to_vec();
+            triangles.push([13, 16, 17]);
+            let topology = Topology::new(18, &triangles);
+            let mut x: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
+            // No block is ever looked at step by step.
+            let how = Watchfulness { block: 1, every_step_of_one_in: u64::MAX, seed: 1 };
+            let mut watch = Watch::new(how, &topology, &Field::of(&x), 0);
+            let mut counted = 0;
+            for way in ways {
+                let from = Field::of(&x);
+                for (x, way) in x.iter_mut().zip(way) {
+                    *x += Vector3::from(way);
+                }
+                let to = Field::of(&x);
+                counted += passages(&topology, &from, &to).len() as u64;
+                watch.step(&topology, &to);
+                prop_assert_eq!(watch.passages, counted);
+                watch.piercings.look(&topology, &to);
+                let all = intersections(&topology, &to).len() as u64;
+                prop_assert_eq!(watch.piercings.count, all);
+            }
+        }
+    }
+}
