@@ -1,4 +1,4 @@
-//! Whether film went through film: an audit that shares nothing with contact.
+//! Whether film went through film: told by an audit that shares no list, bound or decision with contact.
 //!
 //! ```text
 //! node and element:  (b − a) × (c − a)·(p − a) = 0 at a t where p lies inside the element
