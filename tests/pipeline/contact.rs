@@ -51,7 +51,7 @@ fn a_folded_capsule_meets_itself_and_says_so() {
     assert_eq!((number(&summary, "/passages"), number(&summary, "/intersections")), (0.0, 0.0));
     let contact = |key: &str| number(&summary, &format!("/contact/{key}"));
     assert!(contact("distance") > 1e-4 && contact("smallest_gap") > 0.0);
-    assert!(contact("searches") > 1.0 && contact("pairs") > 0.0);
+    assert!(contact("searches") >= 1.0 && contact("pairs") > 0.0);
     assert!(contact("interlayer_pressure") > 0.0 && contact("contact_area_fraction") > 0.01);
     let peak = number(&summary, "/measures/peak_kinetic_energy");
     assert!(

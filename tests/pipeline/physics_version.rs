@@ -88,7 +88,7 @@ fn capsule() -> String {
     let mut run = stowed(&paper_capsule(2, 0.02), contact).expect("a capsule");
     let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
     run.advance(0.02, &Phase { packed: false, inflow }).expect("it runs");
-    assert!(run.film.state.meeting.searches > 10 && run.film.state.works.contact != 0.0);
+    assert!(run.film.state.meeting.path > 0.1 && run.film.state.works.contact != 0.0);
     end_state(&run.film)
 }
 

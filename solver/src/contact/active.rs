@@ -96,7 +96,9 @@ impl Law {
             }
             from = to;
         }
-        *smallest_gap = near.iter().map(|own| own.gap).fold(f64::INFINITY, f64::min);
+        // Of pairs farther apart only some are near, by when they were looked at.
+        let pressed = near.iter().filter(|own| own.gap < self.distance_of(own.pair.kind));
+        *smallest_gap = pressed.map(|own| own.gap).fold(f64::INFINITY, f64::min);
         self.let_go(meeting.path, search);
         old.clear();
         meeting.spare = old;

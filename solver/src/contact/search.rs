@@ -42,7 +42,7 @@ pub struct Search {
     singles: [Bins; 2],
     /// Pairs looked at every step, in order.
     pub near: Vec<Near>,
-    /// Smallest distance of any near pair now, m; infinite where none is near.
+    /// Smallest distance of any pair nearer than it is held apart, m; infinite where there is none.
     pub smallest_gap: f64,
     /// Whether contact or a plate pushed when forces were last asked for, or may have.
     pub pushed: bool,

@@ -114,7 +114,7 @@ impl Explicit {
             .failure(FailureKind::Interpenetrated, "film between plates could not be kept apart"))
     }
 
-    /// Smallest distance of film from film, m; infinite where none is near.
+    /// Smallest distance of film that is held apart, m; infinite where none is.
     pub fn smallest_gap(&self) -> f64 {
         self.search.as_ref().map_or(f64::INFINITY, |search| search.smallest_gap)
     }

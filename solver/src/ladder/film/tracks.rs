@@ -14,7 +14,7 @@ const CONTACT: [(&str, &str, &str); 7] = [
     (
         "smallest_gap",
         "m",
-        "smallest distance of film from film; the contact distance where none is nearer",
+        "smallest distance of film held apart; the contact distance where none is",
     ),
     ("contact_pairs", "1", "pairs of film pressed together"),
     ("contact_searches", "1", "searches for near pairs from nothing since time 0"),
