@@ -24,7 +24,7 @@ const SOON: f64 = 0.25;
 /// A pair that cannot be in contact before this path is near no longer.
 const LEAVE: f64 = 0.75;
 /// Path between two looks at patches of film, as a share of the mean edge length.
-const AHEAD: f64 = 1.0 / 16.0;
+const AHEAD: f64 = 1.0 / 20.0;
 /// Path after which all is looked for anew, in mean edge lengths: what came near once and went far
 /// away need not be followed pair by pair for ever.
 const RENEW: f64 = 4.0;
