@@ -40,6 +40,17 @@ impl Field {
         self.x.is_empty()
     }
 
+    /// Its columns from `middle` on apart from those before.
+    ///
+    /// # Panics
+    /// When there are fewer vectors.
+    pub fn split_at_mut(&mut self, middle: usize) -> [[&mut [f64]; 3]; 2] {
+        let (x, x_later) = self.x.split_at_mut(middle);
+        let (y, y_later) = self.y.split_at_mut(middle);
+        let (z, z_later) = self.z.split_at_mut(middle);
+        [[x, y, z], [x_later, y_later, z_later]]
+    }
+
     /// Vector `index`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "inside the element loop")]

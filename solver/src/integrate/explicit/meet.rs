@@ -1,5 +1,6 @@
 //! The step's part that keeps film off film and off plates, and lets the audit see it.
 
+use super::update::largest_squared_speed;
 use super::{Explicit, State};
 use crate::contact::guard::{Stopped, taken};
 use crate::contact::{Kind, Pair};
@@ -57,9 +58,8 @@ impl Explicit {
         let Some(law) = &self.setting.contact else { return Ok(()) };
         let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
         let State { places, velocities, meeting, .. } = &mut self.state;
-        let fastest = |velocities: &Field| {
-            velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
-        };
+        let path = self.setting.path;
+        let fastest = |velocities: &Field| largest_squared_speed(path, velocities).sqrt();
         let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
         let speed = fastest(velocities);
         if speed >= model.wave_speed() {
