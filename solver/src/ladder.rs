@@ -8,6 +8,7 @@ use crate::deployment::{Deployment, Observer};
 use crate::fold::FoldError;
 use crate::measures::Reference;
 use crate::scene::{ModelKind, Scene};
+use crate::workers::Workers;
 
 pub mod film;
 pub mod piston;
@@ -92,8 +93,21 @@ pub fn solve(
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
+    solve_with(Workers::alone(), scene, reference, observer)
+}
+
+/// The same by these workers, where the model has use for them: the same bits.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_with(
+    workers: Workers,
+    scene: &Scene,
+    reference: Option<Reference>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, SceneError> {
     match scene.solver.model {
         ModelKind::Piston => piston::solve(scene, observer),
-        ModelKind::Film => film::solve_scene(scene, reference, observer),
+        ModelKind::Film => film::solve_scene(workers, scene, reference, observer),
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A [`Scene`](scene::Scene) holds everything one run needs; [`solve`](ladder::solve) turns it
 //! into a [`Deployment`](deployment::Deployment) of history, measures and audit. Nothing here
-//! knows of studies, files, clocks, terminals or threads.
+//! knows of studies, files, clocks or terminals; [`workers`] alone knows of threads.
 //!
 //! **Units.** SI throughout, `f64`, angles in radians.
 //!
@@ -50,6 +50,7 @@ pub mod stages;
 pub mod state;
 pub mod statics;
 pub mod supports;
+pub mod workers;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

@@ -212,7 +212,8 @@ impl<L: Wide> Circle<L> {
 #[inline(always)]
 fn relaxed<L: Wide>(taut: L, e1: L, wrinkled: L, full: L, compression: f64) -> L {
     let relaxed = e1.if_positive(wrinkled, L::splat(0.0));
-    let blend = relaxed + (full - relaxed) * compression;
+    // A share of nought is nothing, whatever its sign.
+    let blend = if compression > 0.0 { relaxed + (full - relaxed) * compression } else { relaxed };
     taut.if_positive(full, blend)
 }
 

@@ -3,8 +3,6 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::simd::{WIDTH, dispatch};
-
 /// One vector a node (or corner), a `Vec` a component.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -40,6 +38,17 @@ impl Field {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
+    }
+
+    /// Its columns from `middle` on apart from those before.
+    ///
+    /// # Panics
+    /// When there are fewer vectors.
+    pub fn split_at_mut(&mut self, middle: usize) -> [[&mut [f64]; 3]; 2] {
+        let (x, x_later) = self.x.split_at_mut(middle);
+        let (y, y_later) = self.y.split_at_mut(middle);
+        let (z, z_later) = self.z.split_at_mut(middle);
+        [[x, y, z], [x_later, y_later, z_later]]
     }
 
     /// Vector `index`.
@@ -81,25 +90,4 @@ impl Field {
     pub fn iter(&self) -> impl Iterator<Item = Vector3<f64>> + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
-}
-
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "inside an instruction set")]
-fn largest_squared_kernel(field: &Field) -> f64 {
-    let (x, y, z) = (field.x.chunks_exact(WIDTH), field.y.chunks_exact(WIDTH), &field.z);
-    let rest = field.len() - field.len() % WIDTH;
-    let mut largest = [0.0_f64; WIDTH];
-    for ((x, y), z) in x.zip(y).zip(z.chunks_exact(WIDTH)) {
-        for lane in 0..WIDTH {
-            let squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
-            largest[lane] = if squared > largest[lane] { squared } else { largest[lane] };
-        }
-    }
-    let rest = (rest..field.len()).map(|at| field.get(at).norm_squared());
-    largest.into_iter().chain(rest).fold(0.0, f64::max)
-}
-
-dispatch! {
-    /// The largest squared length of a vector; what is no number does not count.
-    pub fn largest_squared / largest_squared_kernel(field: &Field) -> f64
 }

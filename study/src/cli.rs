@@ -50,7 +50,8 @@ pub struct Global {
     /// Folder of the results [default: `results/STUDY` under the current folder].
     #[arg(long, global = true, value_name = "DIR")]
     pub results: Option<PathBuf>,
-    /// Threads [default: one a core].
+    /// Threads [default: one a core]. Jobs run at once, one a thread; one alone takes two. No result
+    /// depends on them.
     #[arg(long, global = true, value_name = "N")]
     pub threads: Option<usize>,
     /// Override a key of the study or scene, as in --set film.thickness="30 um".

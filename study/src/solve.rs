@@ -11,6 +11,7 @@ use billow_solver::deployment::{
 };
 use billow_solver::ladder::film::FilmRun;
 use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolution};
+use billow_solver::workers::Workers;
 
 use crate::error::{Error, InputError, Result};
 use crate::files::{Files, disk_error, write_atomic};
@@ -56,13 +57,15 @@ pub enum Ended {
 /// Steps after which a run looks whether it is to stop.
 const LOOK: u64 = 2_000;
 
-/// Solves a scene. A signal ends it, after a checkpoint where one is asked for.
+/// Solves a scene on so many threads, which change no bit. A signal ends it, after a checkpoint where
+/// one is asked for.
 ///
 /// # Errors
 /// A checkpoint that cannot be read or written, or is of another scene; a signal.
 pub fn solve(
     scene: &SceneFile,
     pauses: &Pauses,
+    threads: usize,
     files: &dyn Files,
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
@@ -71,7 +74,7 @@ pub fn solve(
     let (status, end) = if scene.film.solver.statics {
         rest(scene, stop)?
     } else {
-        motion(scene, pauses, files, stop, report)?
+        motion(scene, pauses, threads, files, stop, report)?
     };
     Ok(Solved { status, end, wall_seconds: start.elapsed().as_secs_f64() })
 }
@@ -122,12 +125,14 @@ impl Observer for Reporting<'_> {
 fn motion(
     scene: &SceneFile,
     pauses: &Pauses,
+    threads: usize,
     files: &dyn Files,
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
 ) -> Result<(&'static str, Ended)> {
     let course = Course::of_film(&scene.film);
     let (mut model, mut run) = begin(scene, pauses, files)?;
+    model.film.share_with(Workers::of(threads));
     let first = model.steps();
     let mut observer = Reporting(report);
     let mut stored = first;

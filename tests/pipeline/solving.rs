@@ -77,6 +77,26 @@ pub(crate) fn capsule() -> Value {
 }
 
 #[test]
+fn one_job_on_two_threads_leaves_the_bytes_of_one() {
+    let mut scene = capsule();
+    scene["design"]["subdivisions"] = json!(11);
+    scene["solver"]["end_time"] = json!("8 ms");
+    let desk = desk(&scene, &[]);
+    let left = ["1", "2"].map(|threads| {
+        let out = format!("{threads}.h5");
+        let shape = format!("{threads}.obj");
+        let arguments =
+            ["scene.json", "--threads", threads, "--out", &out, "--shape", &shape, "--quiet"];
+        let summary = done(desk.path(), &arguments, "");
+        let read = |name: &str| fs::read(desk.path().join(name)).unwrap();
+        (summary, read(&out), read(&shape))
+    });
+    assert!(left[0] == left[1]);
+    let steps = number(&left[0].0, "/steps");
+    assert!(steps > 500.0, "{steps}");
+}
+
+#[test]
 fn every_scene_that_ships_is_sound_by_the_schema_and_listed() {
     let schema = scene_schema();
     jsonschema::meta::validate(&schema).unwrap();

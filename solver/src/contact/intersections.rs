@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::distance::{point_triangle, segment_segment};
+use super::gaps::{edge_gaps, element_gaps};
 use super::topology::Topology;
 use crate::proximity::boxes::Boxes;
 use crate::proximity::lookout::{Lookout, Sought, nearer};
+use crate::simd::Path;
 use crate::state::Field;
 
 /// Every edge and element at these places (m) that pierce each other and share no node, in order.
@@ -27,8 +28,9 @@ pub struct Piercings {
     lookout: Lookout,
     /// Where the film was at the last look, m.
     last: Field,
-    /// Distance from the plane of an element with which an edge beside it may wait, m.
-    clear: f64,
+    // Room for pairs.
+    ends: Vec<[u32; 2]>,
+    sides: Vec<[u32; 2]>,
     /// Intersections at the last look.
     pub count: u64,
 }
@@ -37,7 +39,8 @@ impl Piercings {
     /// Looks for the first time, at these places (m).
     pub fn new(topology: &Topology, places: &Field) -> Self {
         let lookout = Lookout::new(Sought::Piercings, topology, BIN * places.size());
-        let mut own = Self { lookout, last: places.clone(), clear: BIN * places.size(), count: 0 };
+        let mut own =
+            Self { lookout, last: places.clone(), ends: Vec::new(), sides: Vec::new(), count: 0 };
         own.look(topology, places);
         own
     }
@@ -46,19 +49,14 @@ impl Piercings {
     pub fn look(&mut self, topology: &Topology, places: &Field) {
         self.lookout.travel(&self.last, places);
         self.last.copy_from(places);
-        let (mut count, clear) = (0, self.clear);
+        let (mut count, ends, sides) = (0, &mut self.ends, &mut self.sides);
         let gaps = |_, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| {
-            let gap = |[edge, element]: &[u32; 2]| {
-                let beside = beside(topology, places, *edge, *element);
-                if beside > clear {
-                    beside
-                } else if pierces(topology, places, *edge, *element) {
-                    0.0
-                } else {
-                    distance(topology, places, *edge, *element)
+            distances(topology, places, pairs, [ends, sides], gaps);
+            for ([edge, element], gap) in pairs.iter().zip(gaps) {
+                if pierces(topology, places, *edge, *element) {
+                    *gap = 0.0;
                 }
-            };
-            gaps.extend(pairs.iter().map(gap));
+            }
         };
         self.lookout.now(topology, places, gaps, |_, [edge, element]| {
             // Film that touches is not through.
@@ -71,27 +69,28 @@ impl Piercings {
 /// Path of a bin, as a share of the film's size.
 const BIN: f64 = 2e-3;
 
-/// Distance of an edge and an element that do not pierce each other, m.
-fn distance(topology: &Topology, places: &Field, edge: u32, element: u32) -> f64 {
-    let place = |node: u32| places.get(node as usize);
-    let [p, q] = topology.edges[edge as usize].map(place);
-    let [a, b, c] = topology.triangles[element as usize].map(place);
-    let ends = [p, q].map(|end| point_triangle(&[end, a, b, c]).squared);
-    let sides = [[a, b], [b, c], [c, a]].map(|[u, v]| segment_segment(&[p, q, u, v]).squared);
-    let least = ends.into_iter().chain(sides).fold(f64::INFINITY, f64::min);
-    least.sqrt()
-}
-
-/// Least distance of the ends of an edge from the plane of an element, m, where both are on one side
-/// of it: the two are not nearer than that. 0 where they are not, or the element has no area.
-fn beside(topology: &Topology, places: &Field, edge: u32, element: u32) -> f64 {
-    let place = |node: u32| places.get(node as usize);
-    let [p, q] = topology.edges[edge as usize].map(place);
-    let [a, b, c] = topology.triangles[element as usize].map(place);
-    let normal = (b - a).cross(&(c - a));
-    let (start, end) = (normal.dot(&(p - a)), normal.dot(&(q - a)));
-    let size = normal.norm();
-    if start * end > 0.0 && size > 0.0 { start.abs().min(end.abs()) / size } else { 0.0 }
+/// Distances (m) of edges and elements that do not pierce each other: the least of those of the edge's
+/// ends from the element, and of the edge from the element's sides.
+fn distances(
+    topology: &Topology,
+    places: &Field,
+    pairs: &[[u32; 2]],
+    [ends, sides]: [&mut Vec<[u32; 2]>; 2],
+    gaps: &mut Vec<f64>,
+) {
+    ends.clear();
+    sides.clear();
+    for [edge, element] in pairs {
+        ends.extend(topology.edges[*edge as usize].map(|end| [end, *element]));
+        sides.extend(topology.sides[*element as usize].map(|side| [*edge, side]));
+    }
+    let (mut from_ends, mut from_sides) = (Vec::new(), Vec::new());
+    element_gaps(Path::best(), topology, places, ends, &mut from_ends);
+    edge_gaps(Path::best(), topology, places, sides, &mut from_sides);
+    let own = from_ends.chunks_exact(2).zip(from_sides.chunks_exact(3));
+    gaps.extend(own.map(|(ends, sides)| {
+        ends.iter().chain(sides).fold(f64::INFINITY, |least, gap| least.min(*gap))
+    }));
 }
 
 /// Whether an edge passes through an element.

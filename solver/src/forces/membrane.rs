@@ -16,8 +16,12 @@ use nalgebra::Vector3;
 use super::damping::viscous_stress;
 use crate::material::{Circle, PlaneLanes, PlaneTensor};
 use crate::model::FilmModel;
-use crate::simd::{Lanes, NodeSum, Path, Vectors, WIDTH, Wide, dispatch, dispatch_wide};
+use crate::simd::{Corners, Lanes, NodeSum, Path, Vectors, WIDTH, Wide, dispatch, dispatch_wide};
 use crate::state::Field;
+
+mod halves;
+
+pub use halves::Halves;
 
 /// What a pass remembers of elements for the next: `S_v`, Pa.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,23 +104,60 @@ fn corner_forces<L: Wide>(
     [-(first + second), first, second]
 }
 
+/// Blocks that follow each other, and where what they give goes.
+struct Share<'a> {
+    /// The first of them.
+    first: usize,
+    /// For each of them, where its corners add to in `sums`.
+    targets: &'a Corners,
+    /// `S_v` of their elements.
+    drag: [&'a mut [f64]; 3],
+    /// Forces and areas.
+    sums: &'a mut [NodeSum],
+    /// Volumes and powers of each block, where they are kept; else empty.
+    terms: &'a mut [[Lanes; 2]],
+}
+
+/// Sums over the elements of a share, lane by lane.
+#[derive(Debug, Clone, Copy)]
+struct LaneSums {
+    volumes: Lanes,
+    power: Lanes,
+    largest: Lanes,
+}
+
+impl LaneSums {
+    fn sums(self) -> Sums {
+        Sums {
+            six_volumes: self.volumes.sum(),
+            viscous_power: self.power.sum(),
+            largest_stress: self.largest.largest(),
+        }
+    }
+}
+
+#[expect(clippy::needless_range_loop, reason = "`terms` is empty where nothing is kept")]
 #[inline(always)]
-fn element_kernel<L: Wide>(
+fn element_kernel<L: Wide, const KEPT: bool>(
     model: &FilmModel,
     positions: &Field,
     velocities: &Field,
     way: f64,
-    drag: &mut Drag,
-    nodes: &mut [NodeSum],
-) -> Sums {
+    share: Share<'_>,
+) -> LaneSums {
     let material = model.material;
     let (mut volumes, mut power, mut largest) = (L::splat(0.0), L::splat(0.0), L::splat(0.0));
-    let [s11, s22, s12] = &mut drag.stress;
-    for block in 0..model.blocks.blocks() {
-        let at = block * WIDTH;
-        let [d11, d12, d21, d22] = &model.inverse_shape;
+    let Share { first, targets, drag: [s11, s22, s12], sums, terms } = share;
+    let [d11, d12, d21, d22] = &model.inverse_shape;
+    let (begin, end) = (first * WIDTH, (first + targets.blocks()) * WIDTH);
+    let [d11, d12] = [&d11[begin..end], &d12[begin..end]];
+    let [d21, d22] = [&d21[begin..end], &d22[begin..end]];
+    let (element_volume, viscous_time) =
+        (&model.volume[begin..end], &model.viscous_time[begin..end]);
+    for own in 0..targets.blocks() {
+        let (block, at) = (first + own, own * WIDTH);
         let shape = [L::load(d11, at), L::load(d12, at), L::load(d21, at), L::load(d22, at)];
-        let volume = L::load(&model.volume, at);
+        let volume = L::load(element_volume, at);
         let corners = corners_of::<L>(model, positions, block);
         let edge = edges(corners);
         let slope = gradient(shape, edge);
@@ -126,7 +167,7 @@ fn element_kernel<L: Wide>(
 
         let turn = gradient(shape, edges(corners_of(model, velocities, block)));
         let rate = green_rate(slope, turn);
-        let viscous = viscous_stress(&material, L::load(&model.viscous_time, at), rate);
+        let viscous = viscous_stress(&material, L::load(viscous_time, at), rate);
         let before =
             PlaneLanes { xx: L::load(s11, at), yy: L::load(s22, at), xy: L::load(s12, at) };
         viscous.xx.store(s11, at);
@@ -134,8 +175,14 @@ fn element_kernel<L: Wide>(
         viscous.xy.store(s12, at);
         // A way ago F was F - way Ḟ.
         let taken = (before + viscous).contract(rate) - before.contract(gram(turn)) * way;
-        power = power + taken * volume;
-        volumes = volumes + corners[0].dot(corners[1].cross(corners[2]));
+        let taken = taken * volume;
+        let enclosed = corners[0].dot(corners[1].cross(corners[2]));
+        if KEPT {
+            terms[own] = [enclosed.lanes(), taken.lanes()];
+        } else {
+            power = power + taken;
+            volumes = volumes + enclosed;
+        }
         let area = edge[0].cross(edge[1]).scale(L::splat(1.0 / 6.0));
         let slowing = corner_forces(shape, volume, slope, viscous);
 
@@ -143,25 +190,53 @@ fn element_kernel<L: Wide>(
         largest = largest.max(most);
         let elastic = corner_forces(shape, volume, slope, stress);
         let film = [elastic[0] + slowing[0], elastic[1] + slowing[1], elastic[2] + slowing[2]];
-        model.blocks.scatter(block, &film, &area, nodes);
+        targets.scatter(own, &film, &area, sums);
     }
-    Sums {
-        six_volumes: volumes.lanes().sum(),
-        viscous_power: power.lanes().sum(),
-        largest_stress: largest.lanes().largest(),
-    }
+    LaneSums { volumes: volumes.lanes(), power: power.lanes(), largest: largest.lanes() }
+}
+
+#[inline(always)]
+fn summed_kernel<L: Wide>(
+    model: &FilmModel,
+    positions: &Field,
+    velocities: &Field,
+    way: f64,
+    share: Share<'_>,
+) -> LaneSums {
+    element_kernel::<L, false>(model, positions, velocities, way, share)
+}
+
+#[inline(always)]
+fn kept_kernel<L: Wide>(
+    model: &FilmModel,
+    positions: &Field,
+    velocities: &Field,
+    way: f64,
+    share: Share<'_>,
+) -> LaneSums {
+    element_kernel::<L, true>(model, positions, velocities, way, share)
 }
 
 dispatch_wide! {
-    /// Adds forces and areas of all elements to their nodes.
-    fn element_pass / element_kernel(
+    /// Adds forces and areas of the elements of a share to where they go, and gives their sums.
+    fn element_pass / summed_kernel(
         model: &FilmModel,
         positions: &Field,
         velocities: &Field,
         way: f64,
-        drag: &mut Drag,
-        nodes: &mut [NodeSum],
-    ) -> Sums
+        share: Share<'_>,
+    ) -> LaneSums
+}
+
+dispatch_wide! {
+    /// The same; volumes and powers are kept a block in `terms` and are none in the sums.
+    fn element_pass_kept / kept_kernel(
+        model: &FilmModel,
+        positions: &Field,
+        velocities: &Field,
+        way: f64,
+        share: Share<'_>,
+    ) -> LaneSums
 }
 
 /// Forces and areas of the film on its nodes at these positions (m) and the velocities (m/s) viscosity
@@ -175,9 +250,16 @@ pub fn film_pass(
     drag: &mut Drag,
     out: &mut NodeForces,
 ) -> Sums {
-    let sums = element_pass(path, model, positions, velocities, way, drag, &mut out.sums);
+    let whole = Share {
+        first: 0,
+        targets: &model.blocks,
+        drag: drag.stress.each_mut().map(Vec::as_mut_slice),
+        sums: &mut out.sums,
+        terms: &mut [],
+    };
+    let sums = element_pass(path, model, positions, velocities, way, whole);
     land(path, &mut out.sums, &mut out.film, &mut out.area);
-    sums
+    sums.sums()
 }
 
 #[inline(always)]

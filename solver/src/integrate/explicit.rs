@@ -24,17 +24,20 @@ use crate::contact::search::Search;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
-use crate::forces::membrane::{Drag, NodeForces, Sums, film_pass, viscous_forces};
+use crate::forces::membrane::{Drag, NodeForces, Sums, viscous_forces};
 use crate::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::gas::{GasState, Inflow};
 use crate::model::FilmModel;
 use crate::mutation::Term;
 use crate::stages::{Stage, Stopwatch, Untimed};
 use crate::state::Field;
+use crate::workers::Workers;
 
+use crew::Crew;
 use update::{drift_nodes, sparse_power};
 
 mod books;
+mod crew;
 mod kick;
 mod meet;
 pub mod plain;
@@ -62,6 +65,7 @@ pub struct Explicit {
     search: Option<Search>,
     drag: Drag,
     next: Field,
+    crew: Crew,
 }
 
 impl Explicit {
@@ -103,7 +107,14 @@ impl Explicit {
         let watch = setting.watch.zip(setting.contact.as_ref());
         let watch =
             watch.map(|(how, law)| Watch::new(how, &law.topology, &state.places, state.steps));
-        Self { model, setting, state, forces, watch, search: None, drag, next }
+        let crew = Crew::default();
+        Self { model, setting, state, forces, watch, search: None, drag, next, crew }
+    }
+
+    /// Has these workers take the steps from now on; until then, and in a copy, the caller takes them
+    /// alone. No bit depends on it.
+    pub fn share_with(&mut self, workers: Workers) {
+        self.crew = Crew::new(workers, &self.model);
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -212,7 +223,8 @@ impl Explicit {
         self.share_work(length);
         let way = length * self.setting.fault(Term::Drift);
         let state = &mut self.state;
-        let fastest = drift_nodes(self.setting.path, &state.velocities, way, &mut state.places);
+        let path = self.setting.path;
+        let fastest = drift_nodes(path, &state.velocities, way, &mut state.places);
         self.plate_work(until);
         let sums = self.pass_at(until, way, stopwatch);
         stopwatch.begins(Stage::Gas);
@@ -301,8 +313,8 @@ impl Explicit {
         let (model, state) = (&self.model, &self.state);
         let path = self.setting.path;
         let (places, velocities) = (&state.places, &state.velocities);
-        let mut sums =
-            film_pass(path, model, places, velocities, way, &mut self.drag, &mut self.forces);
+        let (drag, forces) = (&mut self.drag, &mut self.forces);
+        let mut sums = self.crew.film_pass(path, model, places, velocities, way, drag, forces);
         sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);

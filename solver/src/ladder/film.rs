@@ -26,6 +26,7 @@ use crate::mesh::{Mesh, Part, Shape};
 use crate::model::FilmModel;
 use crate::scene::{Scene, Stepping};
 use crate::state::Field;
+use crate::workers::Workers;
 
 pub mod capsule;
 mod imperfection;
@@ -54,17 +55,20 @@ pub fn solve(
     Ok(deployment::run(&mut run, &Course::new(scene), observer))
 }
 
-/// Runs a scene with the contact and the share of the stable step it names.
+/// Runs a scene with the contact and the share of the stable step it names, by these workers.
 ///
 /// # Errors
 /// As [`check`], and what shows only with the capsule made.
 pub fn solve_scene(
+    workers: Workers,
     scene: &Scene,
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
     let contact = FilmContact::of(&scene.contact);
-    solve(scene, stable_share(scene)?, Some(contact), reference, observer)
+    let mut run = FilmRun::from_scene(scene, stable_share(scene)?, Some(contact), reference)?;
+    run.film.share_with(workers);
+    Ok(deployment::run(&mut run, &Course::new(scene), observer))
 }
 
 /// Whether a scene is sound for this model, as far as that shows without its pattern.

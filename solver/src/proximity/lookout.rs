@@ -137,9 +137,12 @@ impl Lookout {
     ) {
         self.renew();
         let mut reach = vec![0.0; self.ways.len()];
-        self.zones.travel(from, to, &mut reach);
+        let largest = self.zones.travel(from, to, &mut reach);
         self.look(topology, from, &reach, gaps, meet);
-        self.travel(from, to);
+        self.path += largest;
+        for (way, reach) in self.ways.iter_mut().zip(reach) {
+            *way += reach;
+        }
     }
 
     /// Looks at all pairs that are together now, at these places (m): of those `meet` is told.

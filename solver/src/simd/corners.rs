@@ -88,8 +88,9 @@ pub struct NodeSum {
 }
 
 impl NodeSum {
+    /// Adds another.
     #[inline(always)]
-    fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: &Self) {
         for k in 0..4 {
             self.film[k] += other.film[k];
         }

@@ -1,11 +1,12 @@
 //! The step's part that keeps film off film and off plates, and lets the audit see it.
 
+use super::update::largest_squared_speed;
 use super::{Explicit, State};
 use crate::contact::guard::{Stopped, taken};
 use crate::contact::{Kind, Pair};
 use crate::deployment::{Failure, FailureKind};
 use crate::stages::{Stage, Stopwatch};
-use crate::state::{Field, largest_squared};
+use crate::state::Field;
 
 /// How often pairs and plates take turns in a step, at most.
 const MOST_TURNS: u32 = 50;
@@ -60,7 +61,7 @@ impl Explicit {
         let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
         let State { places, velocities, meeting, .. } = &mut self.state;
         let path = self.setting.path;
-        let fastest = |velocities: &Field| largest_squared(path, velocities).sqrt();
+        let fastest = |velocities: &Field| largest_squared_speed(path, velocities).sqrt();
         let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
         let speed = fastest(velocities);
         if speed >= model.wave_speed() {

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 
 use crate::forces::membrane::NodeForces;
 use crate::model::FilmModel;
-use crate::simd::{Lanes, WIDTH, dispatch};
+use crate::simd::{Lanes, Path, WIDTH, dispatch};
 use crate::state::Field;
 
 /// What pushes nodes in a kick, beside the forces.
@@ -38,15 +38,6 @@ fn column(field: &Field, axis: usize) -> &[f64] {
     [&field.x[..], &field.y[..], &field.z[..]][axis]
 }
 
-#[inline(always)]
-fn column_mut(field: &mut Field, axis: usize) -> &mut [f64] {
-    match axis {
-        0 => &mut field.x,
-        1 => &mut field.y,
-        _ => &mut field.z,
-    }
-}
-
 /// One component of the kick, of a number or of eight.
 macro_rules! kicked {
     ($velocity:expr, $film:expr, $contact:expr, $area:expr, $mass:expr, $gain:expr, $free:expr,
@@ -64,18 +55,19 @@ fn kick_kernel(
     push: &Push,
     free: &Field,
     velocities: &Field,
-    next: &mut Field,
+    next: [&mut [f64]; 3],
 ) {
-    let nodes = model.nodes();
+    let nodes = next[0].len();
     let (mass, inverse) = (&model.mass[..nodes], &model.inverse_mass[..nodes]);
     let whole = nodes - nodes % WIDTH;
-    for axis in 0..3 {
+    let [next_x, next_y, next_z] = next;
+    for (axis, next) in [(0, next_x), (1, next_y), (2, next_z)] {
         let film = &column(&forces.film, axis)[..nodes];
         let contact = &column(&forces.contact, axis)[..nodes];
         let area = &column(&forces.area, axis)[..nodes];
         let free = &column(free, axis)[..nodes];
         let velocity = &column(velocities, axis)[..nodes];
-        let next = &mut column_mut(next, axis)[..nodes];
+        let next = &mut next[..nodes];
         let gravity = push.gravity[axis];
         for at in (0..whole).step_by(WIDTH) {
             let load = |column| Lanes::load(column, at);
@@ -109,23 +101,38 @@ fn kick_kernel(
 }
 
 dispatch! {
-    /// Velocities of all nodes after a kick, m/s, held along axes alone; `free` is 1 where a component
-    /// is not held, 0 where it is.
-    pub fn kick_nodes / kick_kernel(
+    fn kick_columns / kick_kernel(
         model: &FilmModel,
         forces: &NodeForces,
         push: &Push,
         free: &Field,
         velocities: &Field,
-        next: &mut Field,
+        next: [&mut [f64]; 3],
     )
 }
 
+/// Velocities of all nodes after a kick, m/s, held along axes alone; `free` is 1 where a component is
+/// not held, 0 where it is.
+pub fn kick_nodes(
+    path: Path,
+    model: &FilmModel,
+    forces: &NodeForces,
+    push: &Push,
+    free: &Field,
+    velocities: &Field,
+    next: &mut Field,
+) {
+    // Columns apart: the compiler then knows that they do not overlap.
+    let next = [&mut next.x[..], &mut next.y[..], &mut next.z[..]];
+    kick_columns(path, model, forces, push, free, velocities, next);
+}
+
 #[inline(always)]
-fn drift_kernel(velocities: &Field, way: f64, places: &mut Field) -> f64 {
-    let nodes = places.len();
+fn drift_kernel(velocities: &Field, way: f64, places: [&mut [f64]; 3]) -> f64 {
+    let [x, y, z] = places;
+    let nodes = x.len();
     let [vx, vy, vz] = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
-    let [x, y, z] = [&mut places.x[..nodes], &mut places.y[..nodes], &mut places.z[..nodes]];
+    let [x, y, z] = [&mut x[..nodes], &mut y[..nodes], &mut z[..nodes]];
     let whole = nodes - nodes % WIDTH;
     let mut lanes = Lanes::default();
     for at in (0..whole).step_by(WIDTH) {
@@ -149,9 +156,37 @@ fn drift_kernel(velocities: &Field, way: f64, places: &mut Field) -> f64 {
 }
 
 dispatch! {
-    /// Moves all nodes `way` (s) along their velocities (m/s); gives the largest squared speed, m²/s²,
-    /// of those that are numbers: what is none makes the volume none.
-    pub fn drift_nodes / drift_kernel(velocities: &Field, way: f64, places: &mut Field) -> f64
+    fn drift_columns / drift_kernel(velocities: &Field, way: f64, places: [&mut [f64]; 3]) -> f64
+}
+
+/// Moves all nodes `way` (s) along their velocities (m/s); gives the largest squared speed, m²/s², of
+/// those that are numbers: what is none makes the volume none.
+pub fn drift_nodes(path: Path, velocities: &Field, way: f64, places: &mut Field) -> f64 {
+    let places = [&mut places.x[..], &mut places.y[..], &mut places.z[..]];
+    drift_columns(path, velocities, way, places)
+}
+
+#[inline(always)]
+fn speed_kernel(velocities: &Field) -> f64 {
+    let nodes = velocities.len();
+    let [vx, vy, vz] = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
+    let whole = nodes - nodes % WIDTH;
+    let mut lanes = Lanes::default();
+    for at in (0..whole).step_by(WIDTH) {
+        let [u, v, w] = [Lanes::load(vx, at), Lanes::load(vy, at), Lanes::load(vz, at)];
+        let squared = u * u + v * v + w * w;
+        lanes = squared.max(lanes);
+    }
+    let mut fastest = lanes.largest();
+    for at in whole..nodes {
+        fastest = fastest.max(vx[at] * vx[at] + vy[at] * vy[at] + vz[at] * vz[at]);
+    }
+    fastest
+}
+
+dispatch! {
+    /// The largest squared speed, m²/s², of the velocities (m/s) that are numbers.
+    pub fn largest_squared_speed / speed_kernel(velocities: &Field) -> f64
 }
 
 #[inline(always)]

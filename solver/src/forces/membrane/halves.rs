@@ -1,0 +1,293 @@
+//! The pass over the elements in two halves at once, with the bits of one pass.
+//!
+//! ```text
+//! blocks   0 ............ middle ............ end
+//!          into slots of   into slots of the nodes they alone touch,
+//!          their nodes     and one slot a corner of nodes both touch
+//! nodes    slot [+ slots of the later half's corners, one by one]
+//! ```
+//!
+//! One pass adds what elements give to a node in their ascending order. Here a node of both halves gets
+//! the sum of the first half, then the second half's corners in that order: the same additions. Volumes
+//! and powers are sums over all elements lane by lane, block after block: those of the second half are
+//! kept a block, and added to the sums of the first when these are known. A slot begins with +0, so none
+//! is ever −0, and adding what stayed +0 changes no bit.
+
+use core::ops::Range;
+
+use super::{Drag, LaneSums, NodeForces, Share, Sums, element_pass, element_pass_kept};
+use crate::model::FilmModel;
+use crate::simd::{Corners, Lanes, NodeSum, Path, WIDTH};
+use crate::state::Field;
+use crate::workers::Workers;
+
+/// What two halves of a model's blocks add to, and how that becomes sums of nodes.
+#[derive(Debug, Clone)]
+pub struct Halves {
+    /// Where the corners of each half add to, in slots of its own.
+    targets: [Corners; 2],
+    /// Slots of the first half.
+    first_slots: usize,
+    /// Slot of each node, those of the second half after those of the first.
+    slot: Vec<u32>,
+    /// Slots of the corners the second half has at nodes of both, by node.
+    joints: Vec<Joint>,
+    /// The first node of the second half's landing.
+    middle: usize,
+    /// The first of `joints` from there on.
+    middle_joint: usize,
+    sums: Vec<NodeSum>,
+    terms: Vec<[Lanes; 2]>,
+}
+
+/// A node both halves touch, and its corners in the second.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Joint {
+    node: usize,
+    corners: Range<usize>,
+}
+
+impl Halves {
+    /// For the blocks of a model.
+    ///
+    /// # Panics
+    /// Above 2^31 corners.
+    pub fn new(model: &FilmModel) -> Self {
+        let (nodes, blocks) = (model.nodes(), model.blocks.blocks());
+        let early = (blocks / 2 * WIDTH).min(model.elements());
+        let (first, second) = model.triangles.split_at(early);
+        // Nodes of no element are the first half's: somebody has to land them.
+        let mut of_second = vec![false; nodes];
+        second.iter().flatten().for_each(|node| of_second[*node as usize] = true);
+        first.iter().flatten().for_each(|node| of_second[*node as usize] = false);
+
+        let first_slots = of_second.iter().filter(|own| !**own).count();
+        let (mut next, mut next_second) = (0, slot_number(first_slots));
+        let mut slot = Vec::with_capacity(nodes);
+        for own in &of_second {
+            let counter = if *own { &mut next_second } else { &mut next };
+            slot.push(*counter);
+            *counter += 1;
+        }
+
+        let mut corners = Vec::new();
+        for (element, triangle) in second.iter().enumerate() {
+            for (corner, node) in triangle.iter().enumerate() {
+                if !of_second[*node as usize] {
+                    corners.push((*node as usize, element, corner));
+                }
+            }
+        }
+        // By node, then in the order in which elements add.
+        corners.sort_unstable();
+        let mut own: Vec<[u32; 3]> =
+            second.iter().map(|t| t.map(|node| slot[node as usize])).collect();
+        let mut joints: Vec<Joint> = Vec::new();
+        for (index, (node, element, corner)) in corners.iter().enumerate() {
+            own[*element][*corner] = slot_number(nodes + index);
+            match joints.last_mut().filter(|joint| joint.node == *node) {
+                Some(joint) => joint.corners.end += 1,
+                None => {
+                    joints.push(Joint { node: *node, corners: nodes + index..nodes + index + 1 });
+                }
+            }
+        }
+        own.iter_mut().flatten().for_each(|own| *own -= slot_number(first_slots));
+        let first: Vec<[u32; 3]> =
+            first.iter().map(|t| t.map(|node| slot[node as usize])).collect();
+
+        let slots = nodes + corners.len();
+        let targets = [Corners::new(&first, first_slots), Corners::new(&own, slots - first_slots)];
+        let middle = nodes / 2 / WIDTH * WIDTH;
+        Self {
+            first_slots,
+            slot,
+            middle,
+            middle_joint: joints.partition_point(|joint| joint.node < middle),
+            joints,
+            sums: vec![NodeSum::default(); slots],
+            terms: vec![[Lanes::default(); 2]; targets[1].blocks()],
+            targets,
+        }
+    }
+
+    /// [`super::film_pass`], shared: the same bits.
+    #[expect(clippy::too_many_arguments, reason = "those of the pass, and who does it")]
+    pub fn film_pass(
+        &mut self,
+        workers: &mut Workers,
+        path: Path,
+        model: &FilmModel,
+        positions: &Field,
+        velocities: &Field,
+        way: f64,
+        drag: &mut Drag,
+        out: &mut NodeForces,
+    ) -> Sums {
+        let early = self.targets[0].blocks();
+        let [first, second] = {
+            let [s11, s22, s12] =
+                drag.stress.each_mut().map(|column| column.split_at_mut(early * WIDTH));
+            let (sums, later_sums) = self.sums.split_at_mut(self.first_slots);
+            let [targets, later_targets] = &self.targets;
+            let terms = &mut self.terms;
+            [
+                Share { first: 0, targets, drag: [s11.0, s22.0, s12.0], sums, terms: &mut [] },
+                Share {
+                    first: early,
+                    targets: later_targets,
+                    drag: [s11.1, s22.1, s12.1],
+                    sums: later_sums,
+                    terms,
+                },
+            ]
+        };
+        let (early_sums, later_sums) = workers.both(
+            || {
+                first.sums.fill(NodeSum::default());
+                element_pass(path, model, positions, velocities, way, first)
+            },
+            || {
+                second.sums.fill(NodeSum::default());
+                element_pass_kept(path, model, positions, velocities, way, second)
+            },
+        );
+
+        let (film, later_film) = halved(&mut out.film, self.middle);
+        let (area, later_area) = halved(&mut out.area, self.middle);
+        let whole = &*self;
+        let ((), sums) = workers.both(
+            || whole.land(0, &whole.joints[..whole.middle_joint], film, area),
+            || {
+                let later = &whole.joints[whole.middle_joint..];
+                whole.land(whole.middle, later, later_film, later_area);
+                // Here, where the terms were made: they are many and far from the other thread.
+                whole.sum(early_sums, later_sums)
+            },
+        );
+        sums
+    }
+
+    /// Writes the sums of the nodes from `from` on to their fields.
+    fn land(&self, from: usize, joints: &[Joint], film: [&mut [f64]; 3], area: [&mut [f64]; 3]) {
+        let ([fx, fy, fz], [ax, ay, az]) = (film, area);
+        let slots = &self.slot[from..from + fx.len()];
+        let firsts = fx.iter_mut().zip(fy.iter_mut()).zip(fz.iter_mut());
+        let seconds = ax.iter_mut().zip(ay.iter_mut()).zip(az.iter_mut());
+        for (slot, (((fx, fy), fz), ((ax, ay), az))) in slots.iter().zip(firsts.zip(seconds)) {
+            let sum = &self.sums[*slot as usize];
+            [*fx, *fy, *fz, _] = sum.film;
+            [*ax, *ay, *az, _] = sum.area;
+        }
+        for joint in joints {
+            let mut sum = self.sums[self.slot[joint.node] as usize];
+            for corner in &self.sums[joint.corners.clone()] {
+                sum.add(corner);
+            }
+            let own = joint.node - from;
+            [fx[own], fy[own], fz[own], _] = sum.film;
+            [ax[own], ay[own], az[own], _] = sum.area;
+        }
+    }
+
+    /// The sums over all elements.
+    fn sum(&self, early: LaneSums, later: LaneSums) -> Sums {
+        let LaneSums { mut volumes, mut power, largest } = early;
+        for [volume, taken] in &self.terms {
+            volumes += *volume;
+            power += *taken;
+        }
+        // The larger of two does not ask in which order; a stress that is no number ends the run.
+        LaneSums { volumes, power, largest: largest.max(later.largest) }.sums()
+    }
+}
+
+fn halved(field: &mut Field, middle: usize) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
+    let [early, later] = field.split_at_mut(middle);
+    (early, later)
+}
+
+fn slot_number(slot: usize) -> u32 {
+    u32::try_from(slot).expect("at most 2^31 corners")
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Vector2, Vector3};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::forces::membrane::film_pass;
+    use crate::scene::Film;
+
+    const FILM: Film = Film {
+        youngs_modulus: 3.45e9,
+        poisson_ratio: 0.3,
+        density: 1400.0,
+        thickness: 25.4e-6,
+        compression: 0.3,
+        viscosity: 0.1,
+        temperature: 293.0,
+    };
+
+    /// Triangles between any nodes at all, so that most nodes are touched by both halves.
+    fn tangle(triangles: &[[u32; 3]]) -> FilmModel {
+        let corner = |x: f64, y: f64| Vector2::new(x, y);
+        let reference = [corner(0.0, 0.0), corner(0.1, 0.0), corner(0.03, 0.08)];
+        let nodes = 1 + triangles.iter().flatten().max().map_or(0, |last| *last as usize);
+        let all: Vec<[u32; 3]> = triangles.to_vec();
+        FilmModel::new(&FILM, nodes, &all, &vec![reference; all.len()]).expect("a film")
+    }
+
+    fn bits(out: &NodeForces, drag: &Drag, sums: &Sums) -> Vec<u64> {
+        let fields = [&out.film, &out.area].into_iter();
+        let columns = fields.flat_map(|field| [&field.x, &field.y, &field.z]);
+        let all = columns.chain(&drag.stress).flatten().copied();
+        let own = [sums.six_volumes, sums.viscous_power, sums.largest_stress];
+        all.chain(own).map(f64::to_bits).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn two_halves_have_the_bits_of_the_whole(
+            triples in prop::collection::vec(prop::array::uniform3(0_u32..30), 1..90),
+            numbers in prop::collection::vec(prop::array::uniform6(-1.0..1.0_f64), 30),
+        ) {
+            // Every node has an element: the nodes that are named, numbered anew.
+            let mut named: Vec<u32> = triples.iter().flatten().copied().collect();
+            named.sort_unstable();
+            named.dedup();
+            let number = |node: &u32| u32::try_from(named.partition_point(|own| own < node)).unwrap();
+            let triangles: Vec<[u32; 3]> =
+                triples.iter().map(|triple| triple.each_ref().map(number)).collect();
+            let model = tangle(&triangles);
+            let of = |pick: &dyn Fn(&[f64; 6]) -> Vector3<f64>| {
+                Field::of(&numbers[..model.nodes()].iter().map(pick).collect::<Vec<_>>())
+            };
+            let places = of(&|n| Vector3::new(n[0], n[1], n[2]) * 0.1);
+            let velocities = of(&|n| Vector3::new(n[3], n[4], n[5]) * 10.0);
+            let (mut drag, mut out) = (Drag::new(&model), NodeForces::new(&model));
+            let mut told = Vec::new();
+            for way in [0.0, 1e-3, 2e-3] {
+                let (x, v) = (&places, &velocities);
+                let sums = film_pass(Path::Scalar, &model, x, v, way, &mut drag, &mut out);
+                told.push((way, bits(&out, &drag, &sums)));
+            }
+            for path in Path::ALL {
+                for threads in [1, 2] {
+                    let (mut drag, mut out) = (Drag::new(&model), NodeForces::new(&model));
+                    let (mut workers, mut halves) = (Workers::of(threads), Halves::new(&model));
+                    for (way, told) in &told {
+                        let (x, v) = (&places, &velocities);
+                        let sums = halves.film_pass(
+                            &mut workers, path, &model, x, v, *way, &mut drag, &mut out,
+                        );
+                        prop_assert!(bits(&out, &drag, &sums) == *told, "{} {threads}", path.name());
+                    }
+                }
+            }
+        }
+    }
+}
