@@ -201,23 +201,26 @@ pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
     boxes.hold(&topology.patches, to);
     let mut found = Vec::new();
     nearer(Sought::Meetings, topology, &boxes, 0.0, |couple, pair| {
-        found.extend(Some(passage(couple, pair)).filter(|own| own.happens(topology, from, to)));
+        let own = passage(couple, pair);
+        if own.happens(topology, from, to) {
+            found.push(own);
+        }
     });
     found.sort_unstable();
     found
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {
+    pub fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {
         Vector3::new(x, y, z)
     }
 
     /// A triangle at rest, and a node or an edge that flies.
-    fn scene(flier: &[Vector3<f64>], way: Vector3<f64>) -> (Topology, Field, Field) {
+    pub fn scene(flier: &[Vector3<f64>], way: Vector3<f64>) -> (Topology, Field, Field) {
         let mut places = vec![v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)];
         let still = places.len();
         places.extend(flier);
@@ -228,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    pub(super) fn nodes_and_edges_through_film_are_counted() {
+    fn nodes_and_edges_through_film_are_counted() {
         // A corner first, through the middle.
         let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
         let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));

@@ -170,24 +170,10 @@ fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> 
 
 #[cfg(test)]
 mod tests {
+    use super::super::passages::tests::{scene, v};
     use super::*;
     use crate::contact::intersections::intersections;
     use proptest::prelude::*;
-
-    fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {
-        Vector3::new(x, y, z)
-    }
-
-    /// A triangle at rest, and a node or an edge that flies.
-    fn scene(flier: &[Vector3<f64>], way: Vector3<f64>) -> (Topology, Field, Field) {
-        let mut places = vec![v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)];
-        let still = places.len();
-        places.extend(flier);
-        let topology = Topology::new(places.len(), &[[0, 1, 2], [3, 4, 5]]);
-        let after: Vec<_> =
-            places.iter().enumerate().map(|(k, x)| if k < still { *x } else { x + way }).collect();
-        (topology, Field::of(&places), Field::of(&after))
-    }
 
     #[test]
     fn a_way_there_and_back_is_found_step_by_step_only() {

@@ -62,34 +62,21 @@ impl Boxes {
 
     /// Fits the boxes to places (m).
     pub fn fit(&mut self, patches: &Patches, places: &Field) {
-        self.fit_nodes(places);
+        self.extents.clear();
         self.extents.resize(patches.tree(), Extent::NONE);
-        for leaf in patches.leaves()..patches.tree() {
-            let mut all = Extent::NONE;
-            for node in patches.corners(leaf) {
-                all = all.with(&self.nodes[*node as usize]);
-            }
-            self.extents[leaf] = all;
-        }
-        self.fit_tree(patches);
+        self.rounding = 0.0;
+        self.hold(patches, places);
     }
 
     /// Grows the boxes so that they hold these places (m) too.
     pub fn hold(&mut self, patches: &Patches, places: &Field) {
-        let rounding = self.rounding;
         self.fit_nodes(places);
-        self.rounding = self.rounding.max(rounding);
         for leaf in patches.leaves()..patches.tree() {
-            let mut all = self.extents[leaf];
-            for node in patches.corners(leaf) {
-                all = all.with(&self.nodes[*node as usize]);
-            }
+            let corners = patches.corners(leaf).iter();
+            let all =
+                corners.fold(self.extents[leaf], |all, node| all.with(&self.nodes[*node as usize]));
             self.extents[leaf] = all;
         }
-        self.fit_tree(patches);
-    }
-
-    fn fit_tree(&mut self, patches: &Patches) {
         for node in (1..patches.leaves()).rev() {
             self.extents[node] = self.extents[2 * node].with(&self.extents[2 * node + 1]);
         }
@@ -113,7 +100,7 @@ impl Boxes {
             }
         }
         // Each of two numbers is rounded once, and their difference.
-        self.rounding = 4.0 * f32::EPSILON * largest;
+        self.rounding = self.rounding.max(4.0 * f32::EPSILON * largest);
     }
 
     /// How far apart the boxes of two nodes of the tree are at least, m; not above 0 where they may meet.

@@ -49,9 +49,9 @@ impl Sought {
 /// Pairs of primitives, those of one kind apart from those of the other.
 type Pairs = [Vec<[u32; 2]>; 2];
 
-/// Two leaves, how far they may come towards each other before they are looked at again (m), and how
-/// many pairs of primitives of each kind there were with them.
-type Leaves = ([u32; 2], f64, [usize; 2]);
+/// Two leaves, the number of their pair of zones, and how many pairs of primitives of each kind there
+/// were with them.
+type Leaves = ([u32; 2], usize, [usize; 2]);
 
 /// Bins of a pair of zones.
 const RING: usize = 32;
@@ -179,13 +179,13 @@ impl Lookout {
         self.ask(&mut gaps);
         let couples = self.sought.couples();
         let mut from = [0; 2];
-        for (pair, reach, to) in &self.leaves {
+        for (pair, zones, to) in &self.leaves {
             let mut first = f64::INFINITY;
             for kind in 0..2 {
                 for at in from[kind]..to[kind] {
                     let gap = self.gaps[kind][at];
                     first = first.min(gap);
-                    if gap <= *reach
+                    if gap <= reach[*zones]
                         && let Some(couple) = couples[kind]
                     {
                         meet(couple, self.due[kind][at]);
@@ -193,8 +193,7 @@ impl Lookout {
                 }
             }
             if first < f64::INFINITY {
-                let zones = self.zones.pair(pair[0] as usize, pair[1] as usize);
-                self.waiting[zones].put(self.ways[zones] + first, *pair);
+                self.waiting[*zones].put(self.ways[*zones] + first, *pair);
             }
             from = *to;
         }
@@ -219,18 +218,17 @@ impl Lookout {
         self.ask(&mut gaps);
         let couples = self.sought.couples();
         let mut from = [0; 2];
-        for (pair, reach, to) in &self.leaves {
+        for (pair, zones, to) in &self.leaves {
             let of = |kind: usize| &self.gaps[kind][from[kind]..to[kind]];
             let first = of(0).iter().chain(of(1)).copied().fold(f64::INFINITY, f64::min);
             let free = bounds * (first - keep);
-            if free > *reach {
+            if free > reach[*zones] {
                 // Leaves without pairs of primitives wait for nothing.
                 if free == f64::INFINITY {
                     from = *to;
                     continue;
                 }
-                let zones = self.zones.pair(pair[0] as usize, pair[1] as usize);
-                self.waiting[zones].put(self.ways[zones] + free, *pair);
+                self.waiting[*zones].put(self.ways[*zones] + free, *pair);
             } else {
                 for kind in 0..2 {
                     let Some(couple) = couples[kind] else { continue };
@@ -273,8 +271,8 @@ impl Lookout {
         let path = Path::best();
         let Self { sought, ways, waiting, boxes, due, later, next, apart, leaves, .. } = self;
         let first_leaf = topology.patches.leaves();
-        for ((way, reach), bins) in ways.iter().zip(reach).zip(waiting) {
-            let (way, reach) = (*way, *reach);
+        for (zones, bins) in waiting.iter_mut().enumerate() {
+            let (way, reach) = (ways[zones], reach[zones]);
             bins.take(way + reach, later);
             // Row by row down the tree.
             while !later.is_empty() {
@@ -294,7 +292,7 @@ impl Lookout {
                     }
                     if a as usize >= first_leaf {
                         primitives(*sought, &topology.patches, a as usize, b as usize, due);
-                        leaves.push((pair, reach, [due[0].len(), due[1].len()]));
+                        leaves.push((pair, zones, [due[0].len(), due[1].len()]));
                     } else if a == b {
                         next.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
                     } else {
