@@ -15,6 +15,7 @@
 //!
 //! Principal values are m ± r with m = (exx + eyy)/2, r² = ((exx − eyy)/2)² + exy². Where e1 = e2
 //! no direction is needed: the film is then taut or slack, and both stresses are isotropic forms.
+//! Every S is coaxial with e, so two numbers tell it: its mean and how it leans with e's deviator.
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
@@ -135,133 +136,88 @@ impl Material {
     }
 
     /// C:e, Pa: the stress of the film if it bore compression as it bears tension.
-    #[inline(always)]
-    pub fn full_stress<L: Wide>(&self, strain: PlaneLanes<L>) -> PlaneLanes<L> {
+    pub fn full_stress(&self, strain: PlaneTensor) -> PlaneTensor {
         let (k, nu) = (self.plane_modulus, self.poisson_ratio);
-        PlaneLanes {
+        PlaneTensor {
             xx: (strain.xx + strain.yy * nu) * k,
             yy: (strain.yy + strain.xx * nu) * k,
             xy: strain.xy * (k * (1.0 - nu)),
         }
     }
 
-    /// S of eight elements, and its larger principal value, Pa.
+    /// S of eight elements at their strains, told by its own circle.
     #[inline(always)]
-    pub fn stresses<L: Wide>(&self, strain: PlaneLanes<L>) -> (PlaneLanes<L>, L) {
-        self.stresses_in(strain, Circle::of(strain))
-    }
-
-    /// The same where Mohr's circle of the strain is known: its root takes long, and whoever asks for it
-    /// early has other work to do meanwhile.
-    #[inline(always)]
-    pub fn stresses_in<L: Wide>(
-        &self,
-        strain: PlaneLanes<L>,
-        Circle { half, mean, radius }: Circle<L>,
-    ) -> (PlaneLanes<L>, L) {
-        let (e1, e2) = (mean + radius, mean - radius);
-        let full = self.full_stress(strain);
-        let full_largest = (e1 + e2 * self.poisson_ratio) * self.plane_modulus;
+    pub fn response<L: Wide>(&self, strain: Circle<L>) -> Response<L> {
+        let Circle { sum, diameter, .. } = strain;
+        let (k, nu) = (self.plane_modulus, self.poisson_ratio);
         // E e1 n⊗n with n⊗n = (1 + deviator/r)/2; wrinkled film has e2 < e1, so r > 0 where this is
         // taken.
-        let tension = e1 * self.youngs_modulus;
-        let lean = (tension * 0.5).over(radius);
-        let wrinkled = PlaneLanes {
-            xx: tension * 0.5 + lean * half,
-            yy: tension * 0.5 - lean * half,
-            xy: lean * strain.xy,
-        };
-        let taut = e2 + e1 * self.poisson_ratio;
+        let twice = sum + diameter;
+        let tension = twice * (0.25 * self.youngs_modulus);
+        let taut = sum * (1.0 + nu) - diameter * (1.0 - nu);
         let c = self.compression;
         // No closure: one is not inlined into another instruction set.
-        let tensor = PlaneLanes {
-            xx: relaxed(taut, e1, wrinkled.xx, full.xx, c),
-            yy: relaxed(taut, e1, wrinkled.yy, full.yy, c),
-            xy: relaxed(taut, e1, wrinkled.xy, full.xy, c),
-        };
-        (tensor, relaxed(taut, e1, tension, full_largest, c))
+        let mean = relaxed(taut, twice, tension, sum * (0.5 * k * (1.0 + nu)), c);
+        let lean = tension.over(diameter);
+        let lean = relaxed(taut, twice, lean, L::splat(0.5 * k * (1.0 - nu)), c);
+        Response { mean, lean, largest: mean + lean * diameter }
     }
 
-    /// S of one element: one lane of [`Self::stresses`].
+    /// S of one element: one lane of [`Self::response`].
     pub fn stress(&self, strain: PlaneTensor) -> Stress {
-        let (tensor, largest) = self.stresses(PlaneLanes::splat(strain));
-        Stress { tensor: tensor.first(), largest: largest.0[0] }
+        let PlaneTensor { xx, yy, xy } = strain;
+        let circle = Circle::of(Lanes::splat(xx), Lanes::splat(yy), Lanes::splat(2.0 * xy));
+        let Response { mean, lean, largest } = self.response(circle);
+        let (mean, lean) = (mean.0[0], lean.0[0]);
+        let (half, shear) = (lean * (xx - yy), lean * (2.0 * xy));
+        let tensor = PlaneTensor { xx: mean + half, yy: mean - half, xy: shear };
+        Stress { tensor, largest: largest.0[0] }
     }
 }
 
-/// Mohr's circles of eight tensors: half the difference of the diagonal, centre, radius.
+/// Mohr's circles of eight strains, all twice their size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle<L> {
-    half: L,
-    mean: L,
-    radius: L,
+    /// exx + eyy.
+    pub sum: L,
+    /// exx − eyy.
+    pub difference: L,
+    /// 2 exy.
+    pub shear: L,
+    /// e1 − e2.
+    pub diameter: L,
 }
 
 impl<L: Wide> Circle<L> {
-    /// Of these tensors.
+    /// Of exx, eyy and 2 exy.
     #[inline(always)]
-    pub fn of(tensor: PlaneLanes<L>) -> Self {
-        let half = (tensor.xx - tensor.yy) * 0.5;
-        let mean = (tensor.xx + tensor.yy) * 0.5;
-        Self { half, mean, radius: (half * half + tensor.xy * tensor.xy).sqrt() }
+    pub fn of(xx: L, yy: L, shear: L) -> Self {
+        let (sum, difference) = (xx + yy, xx - yy);
+        let diameter = (difference * difference + shear * shear).sqrt();
+        Self { sum, difference, shear, diameter }
     }
 }
 
-/// The stress of taut film where `taut` is above 0, else that of wrinkled film where `e1` is, else
-/// nought; the last two with a share of the first.
+/// Stresses of eight elements, coaxial with their strains: Sxx and Syy are mean ± lean (exx − eyy), Sxy
+/// is lean 2 exy; Pa.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response<L> {
+    /// (Sxx + Syy)/2.
+    pub mean: L,
+    /// (S1 − S2)/2 over e1 − e2.
+    pub lean: L,
+    /// S1.
+    pub largest: L,
+}
+
+/// What taut film has where `taut` is above 0, else what wrinkled film has where `e1` is, else nought;
+/// the last two with a share of the first.
 #[inline(always)]
 fn relaxed<L: Wide>(taut: L, e1: L, wrinkled: L, full: L, compression: f64) -> L {
     let relaxed = e1.if_positive(wrinkled, L::splat(0.0));
     // A share of nought is nothing, whatever its sign.
     let blend = if compression > 0.0 { relaxed + (full - relaxed) * compression } else { relaxed };
     taut.if_positive(full, blend)
-}
-
-/// A symmetric tensor in the developed plane of each of eight elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PlaneLanes<L = Lanes> {
-    /// First diagonal entries.
-    pub xx: L,
-    /// Second diagonal entries.
-    pub yy: L,
-    /// Off-diagonal entries.
-    pub xy: L,
-}
-
-impl PlaneLanes {
-    /// The same tensor eight times.
-    pub fn splat(tensor: PlaneTensor) -> Self {
-        let [xx, yy, xy] = [tensor.xx, tensor.yy, tensor.xy].map(Lanes::splat);
-        Self { xx, yy, xy }
-    }
-
-    /// The first element's.
-    pub fn first(self) -> PlaneTensor {
-        PlaneTensor { xx: self.xx.0[0], yy: self.yy.0[0], xy: self.xy.0[0] }
-    }
-}
-
-impl<L: Wide> PlaneLanes<L> {
-    /// Each times its own number.
-    #[must_use]
-    #[inline(always)]
-    pub fn scale(self, factor: L) -> Self {
-        Self { xx: self.xx * factor, yy: self.yy * factor, xy: self.xy * factor }
-    }
-
-    /// Double contractions.
-    #[inline(always)]
-    pub fn contract(self, other: Self) -> L {
-        self.xx * other.xx + self.yy * other.yy + (self.xy * other.xy) * 2.0
-    }
-}
-
-impl<L: Wide> core::ops::Add for PlaneLanes<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { xx: self.xx + other.xx, yy: self.yy + other.yy, xy: self.xy + other.xy }
-    }
 }
 
 #[cfg(test)]
@@ -349,7 +305,7 @@ mod tests {
         for (e1, e2, _) in STRAINS {
             let strain = turned(e1, e2, 1.0);
             let stress = material.stress(strain);
-            let full = material.full_stress(PlaneLanes::splat(strain)).first();
+            let full = material.full_stress(strain);
             let scale = material.youngs_modulus * 1e-15;
             assert!((stress.tensor.xx - full.xx).abs() < scale);
             assert!((stress.tensor.xy - full.xy).abs() < scale);

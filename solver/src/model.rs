@@ -17,10 +17,13 @@ use crate::material::Material;
 use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
 use crate::shell::Shell;
-use crate::simd::{Corners, WIDTH};
+use crate::simd::Corners;
 
+mod blocks;
 mod frequency;
+mod kites;
 
+pub use blocks::ElementBlock;
 pub use frequency::largest_frequency;
 
 /// Why nodes and triangles are no film.
@@ -63,11 +66,15 @@ pub struct FilmModel {
     pub thickness: f64,
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// The same by corner, eight elements a block; the last is filled up with elements of no volume.
+    /// The corners of elements two by two, in the order in which forces are added up.
+    pub kites: Vec<[u32; 4]>,
+    /// The same by corner, eight kites a block; the last is filled up with kites of no volume.
     pub blocks: Corners,
+    /// What else is constant of those blocks: of first halves and of second.
+    pub constants: Vec<[ElementBlock; 2]>,
     /// Faces that close the volume and are no film.
     pub closure: Vec<[u32; 3]>,
-    /// Dm⁻¹ of each element, row by row, 1/m; this and the next three columns are padded.
+    /// Dm⁻¹ of each element, row by row, 1/m.
     pub inverse_shape: [Vec<f64>; 4],
     /// A t of each element, m³.
     pub volume: Vec<f64>,
@@ -118,6 +125,8 @@ impl FilmModel {
             thickness: film.thickness,
             triangles: triangles.to_vec(),
             blocks: Corners::new(&[], nodes),
+            kites: Vec::new(),
+            constants: Vec::new(),
             closure: closure.to_vec(),
             inverse_shape: core::array::from_fn(|_| Vec::with_capacity(triangles.len())),
             volume: Vec::with_capacity(triangles.len()),
@@ -159,18 +168,11 @@ impl FilmModel {
         }
         let inverse = |mass: &f64| if *mass > 0.0 { 1.0 / mass } else { 0.0 };
         model.inverse_mass = model.mass.iter().map(inverse).collect();
-        model.pad();
+        let kites = kites::kites(triangles);
+        model.kites = kites.iter().map(|kite| kite.corners).collect();
+        model.blocks = Corners::new(&model.kites, nodes);
+        model.constants = ElementBlock::all(&model, &kites);
         Ok(model)
-    }
-
-    /// Groups the elements by eight; fills the last group with elements of no volume.
-    fn pad(&mut self) {
-        self.blocks = Corners::new(&self.triangles, self.mass.len());
-        let padded = self.padded();
-        let columns = self.inverse_shape.iter_mut();
-        for column in columns.chain([&mut self.volume, &mut self.viscous_time]) {
-            column.resize(padded, 0.0);
-        }
     }
 
     /// A fault of the constants: tests only. Step and viscosity stay those of the sound film.
@@ -180,11 +182,6 @@ impl FilmModel {
             self.mass.iter_mut().for_each(|mass| *mass *= fault.factor);
             self.inverse_mass.iter_mut().for_each(|inverse| *inverse /= fault.factor);
         }
-    }
-
-    /// Number of elements with those of no volume.
-    pub fn padded(&self) -> usize {
-        self.blocks.blocks() * WIDTH
     }
 
     /// Number of nodes.

@@ -113,7 +113,7 @@ pub fn icosphere(level: u32, radius: f64) -> Piece {
 /// Film forces on nodes at these places and velocities, with the power viscosity takes.
 pub fn film_forces(model: &FilmModel, places: &Field, velocities: &Field) -> (NodeForces, f64) {
     let mut nodes = NodeForces::new(model);
-    let drag = &mut Drag::new(model);
+    let drag = &mut Drag::none(model);
     let sums = film_pass(Path::best(), model, places, velocities, 0.0, drag, &mut nodes);
     (nodes, sums.viscous_power)
 }

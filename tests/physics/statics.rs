@@ -69,7 +69,7 @@ fn the_tangent_is_the_slope_of_the_forces_in_every_regime() {
             );
             let own = tangent::elastic(&model, &places, 0);
             let still = Field::zeros(3);
-            let slope = differences(&places, 1e-8, |at| film_forces(&model, at, &still).0.film);
+            let slope = differences(&places, 1e-8, |at| film_forces(&model, at, &still).0.films());
             let scale = film.youngs_modulus * film.thickness;
             assert!((own - own.transpose()).norm() < 1e-13 * scale);
             assert!((own - slope).norm() < 1e-6 * scale, "{regime:?} c {compression}");
@@ -87,7 +87,7 @@ fn the_pressure_tangent_is_the_symmetric_slope_of_the_pressure() {
     let still = Field::zeros(3);
     let own = tangent::pressure([0, 1, 2], &places, 1000.0);
     let force = |at: &Field| {
-        let area = film_forces(&model, at, &still).0.area;
+        let area = film_forces(&model, at, &still).0.areas();
         Field::of(&area.iter().map(|share| share * 1000.0).collect::<Vec<_>>())
     };
     let slope = differences(&places, 1e-6, force);
@@ -110,7 +110,11 @@ fn over_a_closed_film_nothing_of_the_pressure_is_left_out() {
             places.iter().zip(&way).map(|(place, way)| place + way * share).collect();
         let moved = Field::of(&moved);
         let own = film_forces(&model, &moved, &Field::zeros(moved.len())).0;
-        own.film.iter().zip(own.area.iter()).map(|(f, a)| f + a * pressure).collect::<Vec<_>>()
+        own.films()
+            .iter()
+            .zip(own.areas().iter())
+            .map(|(f, a)| f + a * pressure)
+            .collect::<Vec<_>>()
     };
     let (ahead, behind) = (force(1e-7), force(-1e-7));
     let mut push = vec![Vector3::zeros(); places.len()];

@@ -11,15 +11,12 @@
 //! neither force nor moment. It resists closing and opening alike, in slack film too: that is what
 //! keeps slack nodes from flying.
 
-#![allow(clippy::inline_always, reason = "inside the element loop")]
+use crate::material::{Material, PlaneTensor};
 
-use crate::material::{Material, PlaneLanes};
-use crate::simd::Wide;
-
-/// `S_v` of eight elements, Pa, at their strain rates (1/s); `time` is `2ζ/ω_e`, s.
-#[inline(always)]
-pub fn viscous_stress<L: Wide>(material: &Material, time: L, rate: PlaneLanes<L>) -> PlaneLanes<L> {
-    material.full_stress(rate).scale(time)
+/// `S_v` of an element, Pa, at its strain rate (1/s); `time` is `2ζ/ω_e`, s.
+pub fn viscous_stress(material: &Material, time: f64, rate: PlaneTensor) -> PlaneTensor {
+    let PlaneTensor { xx, yy, xy } = material.full_stress(rate);
+    PlaneTensor { xx: xx * time, yy: yy * time, xy: xy * time }
 }
 
 /// The factors of velocity and of acceleration in a kick of length h (s) under mass damping c

@@ -12,6 +12,7 @@
 
 use nalgebra::Vector3;
 
+use super::membrane::NodeForces;
 use crate::model::FilmModel;
 use crate::state::Field;
 use crate::supports::Supports;
@@ -30,15 +31,15 @@ pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
     six / 6.0
 }
 
-/// Adds the oriented areas of the closing faces to `area`; gives six times their share of the
-/// volume, m³.
-pub fn add_closure(model: &FilmModel, positions: &Field, area: &mut Field) -> f64 {
+/// Adds the oriented areas of the closing faces to those of the film; gives six times their share of
+/// the volume, m³.
+pub fn add_closure(model: &FilmModel, positions: &Field, forces: &mut NodeForces) -> f64 {
     let mut six = 0.0;
     for face in &model.closure {
         let [a, b, c] = face.map(|node| positions.get(node as usize));
-        let share = (b - a).cross(&(c - a)) * (1.0 / 6.0);
+        let normal = (b - a).cross(&(c - a));
         for node in face {
-            area.set(*node as usize, area.get(*node as usize) + share);
+            forces.add_normal(*node as usize, normal);
         }
         six += a.dot(&b.cross(&c));
     }
@@ -50,23 +51,23 @@ pub fn add_closure(model: &FilmModel, positions: &Field, area: &mut Field) -> f6
 pub fn gas_frequency_squared(
     model: &FilmModel,
     supports: &Supports,
-    area: &Field,
+    forces: &NodeForces,
     stiffness: f64,
     volume: f64,
 ) -> f64 {
     let node = |node: usize, area: Vector3<f64>| area.norm_squared() * model.inverse_mass[node];
     let mut mobility = 0.0;
     for own in 0..model.nodes() {
-        mobility += node(own, area.get(own).component_mul(&supports.free.get(own)));
+        mobility += node(own, forces.area(own).component_mul(&supports.free.get(own)));
     }
     for (own, projector) in &supports.oblique {
         let own = *own as usize;
-        let all = area.get(own).component_mul(&supports.free.get(own));
-        mobility += node(own, projector * area.get(own)) - node(own, all);
+        let all = forces.area(own).component_mul(&supports.free.get(own));
+        mobility += node(own, projector * forces.area(own)) - node(own, all);
     }
     for body in &supports.bodies {
         let push: f64 =
-            body.nodes.iter().map(|own| area.get(*own as usize).dot(&body.plane.normal)).sum();
+            body.nodes.iter().map(|own| forces.area(*own as usize).dot(&body.plane.normal)).sum();
         mobility += push * push / body.mass(model);
     }
     stiffness / volume * mobility

@@ -63,7 +63,7 @@ pub struct Explicit {
     pub watch: Option<Watch>,
     /// What is near: a function of the state, made when first asked for.
     search: Option<Search>,
-    drag: Drag,
+    drag: Vec<Drag>,
     next: Field,
     crew: Crew,
 }
@@ -102,7 +102,7 @@ impl Explicit {
     }
 
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
-        let (drag, forces) = (Drag::new(&model), NodeForces::new(&model));
+        let (drag, forces) = (Drag::none(&model), NodeForces::new(&model));
         let next = Field::zeros(model.nodes());
         let watch = setting.watch.zip(setting.contact.as_ref());
         let watch =
@@ -188,8 +188,8 @@ impl Explicit {
         let gas = match self.setting.interior {
             Interior::Gas(gas) => {
                 let stiffness = gas.gamma() * self.state.pressure;
-                let (supports, area) = (&self.setting.supports, &self.forces.area);
-                gas_frequency_squared(&self.model, supports, area, stiffness, self.state.volume)
+                let (supports, forces) = (&self.setting.supports, &self.forces);
+                gas_frequency_squared(&self.model, supports, forces, stiffness, self.state.volume)
             }
             Interior::Overpressure(_) => 0.0,
         };
@@ -260,7 +260,7 @@ impl Explicit {
         self.state.works.support -= half * self.support_power();
         if let Interior::Overpressure(pressure) = self.setting.interior {
             let sweep: f64 = (0..self.model.nodes())
-                .map(|node| self.forces.area.get(node).dot(&self.state.velocities.get(node)))
+                .map(|node| self.forces.area(node).dot(&self.state.velocities.get(node)))
                 .sum();
             self.state.works.gas += half * pressure * sweep;
         }
@@ -300,9 +300,9 @@ impl Explicit {
     /// Force on a node now, N.
     #[inline]
     pub fn force(&self, node: usize) -> Vector3<f64> {
-        self.forces.film.get(node)
+        self.forces.film(node)
             + self.forces.contact.get(node)
-            + self.forces.area.get(node) * self.overpressure()
+            + self.forces.area(node) * self.overpressure()
             + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
 
@@ -315,7 +315,7 @@ impl Explicit {
         let (places, velocities) = (&state.places, &state.velocities);
         let (drag, forces) = (&mut self.drag, &mut self.forces);
         let mut sums = self.crew.film_pass(path, model, places, velocities, way, drag, forces);
-        sums.six_volumes += add_closure(model, &state.places, &mut self.forces.area);
+        sums.six_volumes += add_closure(model, &state.places, &mut self.forces);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
         }
@@ -330,9 +330,9 @@ impl Explicit {
             .map(|term| self.setting.fault(term));
         let drags = viscous_forces(&self.model, &self.state.places, &self.state.velocities);
         for (node, drag) in drags.iter().enumerate() {
-            let rest = self.forces.film.get(node) - drag;
-            self.forces.film.set(node, rest * elastic + drag * viscous);
-            self.forces.area.set(node, self.forces.area.get(node) * area);
+            let rest = self.forces.film(node) - drag;
+            self.forces.set_film(node, rest * elastic + drag * viscous);
+            self.forces.scale_area(node, area);
         }
         sums.six_volumes *= self.setting.fault(Term::Volume);
     }

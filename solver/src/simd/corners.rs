@@ -4,57 +4,71 @@
 
 use super::{Vectors, WIDTH, Wide};
 
-/// The corners of elements, eight elements a block, checked once to lie within a number of nodes so
-/// that a kernel need not check them again.
+/// The four corners of kites, eight kites a block, checked once to lie within a number of nodes so that
+/// a kernel need not check them again.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Corners {
     nodes: usize,
-    blocks: Vec<[[u32; WIDTH]; 3]>,
+    blocks: Vec<[[u32; WIDTH]; 4]>,
 }
 
 impl Corners {
-    /// The corners of these triangles over `nodes` nodes; the last block is filled up with triangles of
-    /// one node thrice.
+    /// The corners of these kites over `nodes` nodes; the last block is filled up with kites of one node
+    /// alone.
     ///
     /// # Panics
-    /// When a triangle names a node that is not there.
-    pub fn new(triangles: &[[u32; 3]], nodes: usize) -> Self {
-        assert!(triangles.iter().flatten().all(|node| (*node as usize) < nodes), "nodes there are");
+    /// When a kite names a node that is not there.
+    pub fn new(kites: &[[u32; 4]], nodes: usize) -> Self {
+        assert!(kites.iter().flatten().all(|node| (*node as usize) < nodes), "nodes there are");
         assert!(nodes <= 1 << 31, "at most 2^31 nodes");
-        let block = |chunk: &[[u32; 3]]| {
+        let block = |chunk: &[[u32; 4]]| {
             let node =
                 |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
-            [0, 1, 2].map(|corner| core::array::from_fn(|lane| node(corner, lane)))
+            [0, 1, 2, 3].map(|corner| core::array::from_fn(|lane| node(corner, lane)))
         };
-        Self { nodes, blocks: triangles.chunks(WIDTH).map(block).collect() }
+        Self { nodes, blocks: kites.chunks(WIDTH).map(block).collect() }
     }
 
     /// Number of blocks.
     pub fn blocks(&self) -> usize {
         self.blocks.len()
     }
+}
 
-    /// The nodes of one corner of a block's elements.
-    pub fn nodes(&self, block: usize, corner: usize) -> &[u32; WIDTH] {
-        &self.blocks[block][corner]
-    }
+/// Three columns over the nodes, checked once to reach as far as the corners do.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns<'a> {
+    corners: &'a Corners,
+    columns: [&'a [f64]; 3],
+}
 
-    /// Three columns over the nodes, at one corner of a block's elements.
+impl<'a> Columns<'a> {
+    /// These columns, at these corners.
     ///
     /// # Panics
     /// When a column is shorter than there are nodes.
     #[inline(always)]
-    #[expect(unsafe_code, reason = "places are checked when `Corners` is made, columns here")]
-    pub fn gather<L: Wide>(
-        &self,
-        block: usize,
-        corner: usize,
-        [x, y, z]: [&[f64]; 3],
-    ) -> Vectors<L> {
-        let whole = x.len() >= self.nodes && y.len() >= self.nodes && z.len() >= self.nodes;
+    pub fn new(corners: &'a Corners, columns: [&'a [f64]; 3]) -> Self {
+        let [x, y, z] = columns;
+        let nodes = corners.nodes;
+        let whole = x.len() >= nodes && y.len() >= nodes && z.len() >= nodes;
         assert!(whole, "one value a node");
-        let at = &self.blocks[block][corner];
-        // SAFETY: every node is below `self.nodes`, which is at most 2^31, and so are the columns long.
+        Self { corners, columns }
+    }
+
+    /// The vectors at the four corners of a block's kites.
+    #[inline(always)]
+    pub fn corners<L: Wide>(&self, block: usize) -> [Vectors<L>; 4] {
+        let [a, b, c, d] = &self.corners.blocks[block];
+        [self.gather(a), self.gather(b), self.gather(c), self.gather(d)]
+    }
+
+    #[inline(always)]
+    #[expect(unsafe_code, reason = "places are checked when `Corners` is made, columns in `new`")]
+    fn gather<L: Wide>(&self, at: &[u32; WIDTH]) -> Vectors<L> {
+        let [x, y, z] = self.columns;
+        // SAFETY: every node is below the number of nodes, which is at most 2^31, and so are the columns
+        // long.
         unsafe { Vectors { x: L::gather(x, at), y: L::gather(y, at), z: L::gather(z, at) } }
     }
 }
@@ -83,8 +97,8 @@ pub fn vectors_at<L: Wide>([x, y, z]: [&[f64]; 3], at: &[u32; WIDTH]) -> Vectors
 pub struct NodeSum {
     /// Force of the film, N.
     pub film: [f64; 4],
-    /// ∂V/∂x, m².
-    pub area: [f64; 4],
+    /// Six times ∂V/∂x, m².
+    pub normal: [f64; 4],
 }
 
 impl NodeSum {
@@ -95,14 +109,14 @@ impl NodeSum {
             self.film[k] += other.film[k];
         }
         for k in 0..4 {
-            self.area[k] += other.area[k];
+            self.normal[k] += other.normal[k];
         }
     }
 }
 
 impl Corners {
-    /// Adds what each element of a block gives to its corners, element by element and for each corner
-    /// by corner: the force on that corner, and one area for all three.
+    /// Adds what each kite of a block gives to its corners s, a, t, b, kite by kite and for each corner
+    /// by corner: the force on that corner; the normal of both halves to s and t, of its own to a and b.
     ///
     /// # Panics
     /// When there are fewer sums than nodes.
@@ -111,15 +125,20 @@ impl Corners {
     pub fn scatter<L: Wide>(
         &self,
         block: usize,
-        film: &[Vectors<L>; 3],
-        area: &Vectors<L>,
+        film: &[Vectors<L>; 4],
+        [whole, first, second]: &[Vectors<L>; 3],
         sums: &mut [NodeSum],
     ) {
         assert!(sums.len() >= self.nodes, "one sum a node");
-        let rows = [L::rows(&film[0], area), L::rows(&film[1], area), L::rows(&film[2], area)];
+        let rows = [
+            L::rows(&film[0], whole),
+            L::rows(&film[1], first),
+            L::rows(&film[2], whole),
+            L::rows(&film[3], second),
+        ];
         let nodes = &self.blocks[block];
         for lane in 0..WIDTH {
-            for corner in 0..3 {
+            for corner in 0..4 {
                 // SAFETY: every node is below `self.nodes`, and there are as many sums.
                 let sum = unsafe { sums.get_unchecked_mut(nodes[corner][lane] as usize) };
                 sum.add(&rows[corner][lane]);

@@ -15,6 +15,10 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use super::{Lanes, NodeSum, Vectors, WIDTH, Wide};
 
+mod turned;
+
+use turned::{couple, four, fours, unfour};
+
 /// Eight numbers in two registers.
 #[derive(Debug, Clone, Copy)]
 pub struct Avx2(__m256d, __m256d);
@@ -148,32 +152,28 @@ impl Wide for Avx2 {
         unsafe {
             let film =
                 [four(first.x.0, first.y.0, first.z.0), four(first.x.1, first.y.1, first.z.1)];
-            let area = [
+            let normal = [
                 four(second.x.0, second.y.0, second.z.0),
                 four(second.x.1, second.y.1, second.z.1),
             ];
             for lane in 0..WIDTH {
                 _mm256_storeu_pd(rows[lane].film.as_mut_ptr(), film[lane / 4][lane % 4]);
-                _mm256_storeu_pd(rows[lane].area.as_mut_ptr(), area[lane / 4][lane % 4]);
+                _mm256_storeu_pd(rows[lane].normal.as_mut_ptr(), normal[lane / 4][lane % 4]);
             }
         }
         rows
     }
-}
 
-/// Four vectors one by one.
-#[inline(always)]
-unsafe fn four(x: __m256d, y: __m256d, z: __m256d) -> [__m256d; 4] {
-    unsafe {
-        let zero = _mm256_setzero_pd();
-        let (even, odd) = (_mm256_unpacklo_pd(x, y), _mm256_unpackhi_pd(x, y));
-        let (last_even, last_odd) = (_mm256_unpacklo_pd(z, zero), _mm256_unpackhi_pd(z, zero));
-        [
-            _mm256_permute2f128_pd::<0x20>(even, last_even),
-            _mm256_permute2f128_pd::<0x20>(odd, last_odd),
-            _mm256_permute2f128_pd::<0x31>(even, last_even),
-            _mm256_permute2f128_pd::<0x31>(odd, last_odd),
-        ]
+    #[inline(always)]
+    fn columns([a, b, c, d, e, f, g, h]: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2] {
+        unsafe {
+            let [x, y, z] = unfour(&a.film, &b.film, &c.film, &d.film);
+            let [u, v, w] = unfour(&e.film, &f.film, &g.film, &h.film);
+            let film = Vectors { x: Self(x, u), y: Self(y, v), z: Self(z, w) };
+            let [x, y, z] = unfour(&a.normal, &b.normal, &c.normal, &d.normal);
+            let [u, v, w] = unfour(&e.normal, &f.normal, &g.normal, &h.normal);
+            [film, Vectors { x: Self(x, u), y: Self(y, v), z: Self(z, w) }]
+        }
     }
 }
 
@@ -235,7 +235,8 @@ impl Wide for Avx512 {
     fn rows(first: &Vectors<Self>, second: &Vectors<Self>) -> [NodeSum; WIDTH] {
         let mut rows = [NodeSum::default(); WIDTH];
         unsafe {
-            let [f, g] = [fours(first), fours(second)];
+            let f = fours([first.x.0, first.y.0, first.z.0]);
+            let g = fours([second.x.0, second.y.0, second.z.0]);
             for at in 0..WIDTH {
                 let [f, g] = [f[at % 2][at / 4], g[at % 2][at / 4]];
                 let row = if at % 4 < 2 {
@@ -248,26 +249,32 @@ impl Wide for Avx512 {
         }
         rows
     }
-}
 
-/// Eight vectors, x and y beside z and nought: of the even lanes 0 2 and 4 6, of the odd 1 3 and 5 7.
-#[inline(always)]
-unsafe fn fours(v: &Vectors<Avx512>) -> [[__m512d; 2]; 2] {
-    unsafe {
-        let zero = _mm512_setzero_pd();
-        let (even, odd) = (_mm512_unpacklo_pd(v.x.0, v.y.0), _mm512_unpackhi_pd(v.x.0, v.y.0));
-        let (last_even, last_odd) =
-            (_mm512_unpacklo_pd(v.z.0, zero), _mm512_unpackhi_pd(v.z.0, zero));
-        [
+    #[inline(always)]
+    fn columns(rows: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2] {
+        unsafe {
+            // x z, x z of the normal; y and a rest likewise: two lanes of each.
+            let [even, odd] = [couple(&rows[0], &rows[1]), couple(&rows[2], &rows[3])];
+            let [even_later, odd_later] = [couple(&rows[4], &rows[5]), couple(&rows[6], &rows[7])];
+            let x = _mm512_shuffle_f64x2::<0x88>(even[0], odd[0]);
+            let y = _mm512_shuffle_f64x2::<0x88>(even[1], odd[1]);
+            let z = _mm512_shuffle_f64x2::<0xDD>(even[0], odd[0]);
+            let x_later = _mm512_shuffle_f64x2::<0x88>(even_later[0], odd_later[0]);
+            let y_later = _mm512_shuffle_f64x2::<0x88>(even_later[1], odd_later[1]);
+            let z_later = _mm512_shuffle_f64x2::<0xDD>(even_later[0], odd_later[0]);
             [
-                _mm512_shuffle_f64x2::<0x44>(even, last_even),
-                _mm512_shuffle_f64x2::<0xEE>(even, last_even),
-            ],
-            [
-                _mm512_shuffle_f64x2::<0x44>(odd, last_odd),
-                _mm512_shuffle_f64x2::<0xEE>(odd, last_odd),
-            ],
-        ]
+                Vectors {
+                    x: Self(_mm512_shuffle_f64x2::<0x88>(x, x_later)),
+                    y: Self(_mm512_shuffle_f64x2::<0x88>(y, y_later)),
+                    z: Self(_mm512_shuffle_f64x2::<0x88>(z, z_later)),
+                },
+                Vectors {
+                    x: Self(_mm512_shuffle_f64x2::<0xDD>(x, x_later)),
+                    y: Self(_mm512_shuffle_f64x2::<0xDD>(y, y_later)),
+                    z: Self(_mm512_shuffle_f64x2::<0xDD>(z, z_later)),
+                },
+            ]
+        }
     }
 }
 
@@ -302,8 +309,14 @@ mod tests {
         }
         let one = Vectors { x: a.max(L::splat(0.0)), y: gathered, z: L::splat(3.0) };
         let other = Vectors { x: gathered, y: L::splat(5.0), z: a.max(L::splat(0.0)) };
-        for row in L::rows(&one, &other) {
-            for number in row.film.into_iter().chain(row.area) {
+        let rows = L::rows(&one, &other);
+        for row in &rows {
+            for number in row.film.into_iter().chain(row.normal) {
+                out.push(if number.is_nan() { 1 } else { number.to_bits() });
+            }
+        }
+        for Vectors { x, y, z } in L::columns(&rows) {
+            for number in [x, y, z].into_iter().flat_map(|column| column.lanes().0) {
                 out.push(if number.is_nan() { 1 } else { number.to_bits() });
             }
         }
@@ -319,7 +332,7 @@ mod tests {
             let at = [3, 15, 0, 9, 9, 1, 12, 6];
             let mut plain = Vec::new();
             kernel::<Lanes>(&values, &at, &mut plain);
-            assert_eq!(plain.len(), 19 * WIDTH);
+            assert_eq!(plain.len(), 25 * WIDTH);
             for path in Path::ALL {
                 let mut own = Vec::new();
                 run(path, &values, &at, &mut own);

@@ -162,7 +162,7 @@ struct Search<'a> {
     /// Room: trial places, velocities of nought, what a pass remembers, node forces.
     trial: Field,
     still: Field,
-    drag: Drag,
+    drag: Vec<Drag>,
     nodes: NodeForces,
     /// Forces on nodes and along the unknowns at the last places looked at.
     forces: Field,
@@ -179,7 +179,7 @@ impl<'a> Search<'a> {
             trial: places.clone(),
             places,
             still: Field::zeros(model.nodes()),
-            drag: Drag::new(model),
+            drag: Drag::none(model),
             nodes: NodeForces::new(model),
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
@@ -196,10 +196,10 @@ impl<'a> Search<'a> {
         let Loaded { model, overpressure, gravity, path, .. } = *self.loaded;
         let (places, still) = (&self.trial, &self.still);
         let _ = film_pass(path, model, places, still, 0.0, &mut self.drag, &mut self.nodes);
-        let _ = add_closure(model, &self.trial, &mut self.nodes.area);
+        let _ = add_closure(model, &self.trial, &mut self.nodes);
         for node in 0..model.nodes() {
-            let force = self.nodes.film.get(node)
-                + self.nodes.area.get(node) * overpressure
+            let force = self.nodes.film(node)
+                + self.nodes.area(node) * overpressure
                 + gravity * model.mass[node];
             self.forces.set(node, force);
         }
@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
         let Loaded { model, overpressure, gravity, supports, .. } = *self.loaded;
         let mut sum: f64 = self.unknowns.force.iter().map(|force| force * force).sum();
         for node in 0..model.nodes() {
-            let push = self.nodes.area.get(node) * overpressure;
+            let push = self.nodes.area(node) * overpressure;
             let force = self.forces.get(node);
             let borne = force - supports.projector(node) * force;
             sum += push.norm_squared() + borne.norm_squared();

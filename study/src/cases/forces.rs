@@ -88,7 +88,8 @@ pub fn force_energy(rig: &Rig) -> Outcome {
                 return Err(format!("film that should be {name} is not"));
             }
             let scale = film.youngs_modulus * film.thickness * cell;
-            let off = defect(&moved.forces.film, places, 1e-7, |x| strain_energy(model, x)) / scale;
+            let off =
+                defect(&moved.forces.films(), places, 1e-7, |x| strain_energy(model, x)) / scale;
             let quantity = format!("film force, {name}, c {compression}, of E t h");
             judged.push(Row::at_most(&quantity, off, band));
         }
@@ -99,9 +100,9 @@ pub fn force_energy(rig: &Rig) -> Outcome {
     let places: Vec<_> =
         shell.positions.iter().zip(pattern(shell.positions.len(), 9)).map(off).collect();
     let moved = film_at(rig, &shell, film(), places, Vec::new())?;
-    let (areas, places) = (&moved.forces.area, &moved.state.places);
+    let (areas, places) = (moved.forces.areas(), &moved.state.places);
     let volume = |x: &Field| -pressure::volume(&moved.model, x);
-    let off = defect(areas, places, 1e-6, volume) / (0.25 * 0.25);
+    let off = defect(&areas, places, 1e-6, volume) / (0.25 * 0.25);
     judged.push(Row::at_most("force of pressure over p h^2", off, band));
     let net: Vector3<f64> = areas.iter().sum();
     let moment: Vector3<f64> = places.iter().zip(areas.iter()).map(|(x, f)| x.cross(&f)).sum();
@@ -137,7 +138,7 @@ pub fn path_energy(rig: &Rig) -> Outcome {
     for k in 1..=steps {
         let next = film_at(rig, &shell, film, at(k), Vec::new())?;
         for node in 0..next.model.nodes() {
-            let mean = (moved.forces.film.get(node) + next.forces.film.get(node)) * 0.5;
+            let mean = (moved.forces.film(node) + next.forces.film(node)) * 0.5;
             work -= mean.dot(&(next.state.places.get(node) - moved.state.places.get(node)));
         }
         moved = next;
@@ -172,7 +173,7 @@ pub fn dissipation(rig: &Rig) -> Outcome {
         let drags: Vec<Vector3<f64>> = {
             let film = film_at(rig, &shell, viscous, places.clone(), velocities.clone())?;
             let bare = film_at(rig, &shell, elastic, places.clone(), velocities.clone())?;
-            film.forces.film.iter().zip(bare.forces.film.iter()).map(|(f, g)| f - g).collect()
+            film.forces.films().iter().zip(bare.forces.films().iter()).map(|(f, g)| f - g).collect()
         };
         let told = film_at(rig, &shell, viscous, places.clone(), velocities.clone())?;
         let drag = viscous_forces(&told.model, &told.state.places, &told.state.velocities);

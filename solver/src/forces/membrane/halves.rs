@@ -54,8 +54,8 @@ impl Halves {
     /// Above 2^31 corners.
     pub fn new(model: &FilmModel) -> Self {
         let (nodes, blocks) = (model.nodes(), model.blocks.blocks());
-        let early = (blocks / 2 * WIDTH).min(model.elements());
-        let (first, second) = model.triangles.split_at(early);
+        let early = (blocks / 2 * WIDTH).min(model.kites.len());
+        let (first, second) = model.kites.split_at(early);
         // Nodes of no element are the first half's: somebody has to land them.
         let mut of_second = vec![false; nodes];
         second.iter().flatten().for_each(|node| of_second[*node as usize] = true);
@@ -71,20 +71,20 @@ impl Halves {
         }
 
         let mut corners = Vec::new();
-        for (element, triangle) in second.iter().enumerate() {
-            for (corner, node) in triangle.iter().enumerate() {
+        for (kite, nodes) in second.iter().enumerate() {
+            for (corner, node) in nodes.iter().enumerate() {
                 if !of_second[*node as usize] {
-                    corners.push((*node as usize, element, corner));
+                    corners.push((*node as usize, kite, corner));
                 }
             }
         }
-        // By node, then in the order in which elements add.
+        // By node, then in the order in which kites add.
         corners.sort_unstable();
-        let mut own: Vec<[u32; 3]> =
-            second.iter().map(|t| t.map(|node| slot[node as usize])).collect();
+        let mut own: Vec<[u32; 4]> =
+            second.iter().map(|kite| kite.map(|node| slot[node as usize])).collect();
         let mut joints: Vec<Joint> = Vec::new();
-        for (index, (node, element, corner)) in corners.iter().enumerate() {
-            own[*element][*corner] = slot_number(nodes + index);
+        for (index, (node, kite, corner)) in corners.iter().enumerate() {
+            own[*kite][*corner] = slot_number(nodes + index);
             match joints.last_mut().filter(|joint| joint.node == *node) {
                 Some(joint) => joint.corners.end += 1,
                 None => {
@@ -93,8 +93,8 @@ impl Halves {
             }
         }
         own.iter_mut().flatten().for_each(|own| *own -= slot_number(first_slots));
-        let first: Vec<[u32; 3]> =
-            first.iter().map(|t| t.map(|node| slot[node as usize])).collect();
+        let first: Vec<[u32; 4]> =
+            first.iter().map(|kite| kite.map(|node| slot[node as usize])).collect();
 
         let slots = nodes + corners.len();
         let targets = [Corners::new(&first, first_slots), Corners::new(&own, slots - first_slots)];
@@ -121,46 +121,38 @@ impl Halves {
         positions: &Field,
         velocities: &Field,
         way: f64,
-        drag: &mut Drag,
+        drag: &mut [Drag],
         out: &mut NodeForces,
     ) -> Sums {
         let early = self.targets[0].blocks();
         let [first, second] = {
-            let [s11, s22, s12] =
-                drag.stress.each_mut().map(|column| column.split_at_mut(early * WIDTH));
+            let (drag, later_drag) = drag.split_at_mut(early);
             let (sums, later_sums) = self.sums.split_at_mut(self.first_slots);
             let [targets, later_targets] = &self.targets;
             let terms = &mut self.terms;
             [
-                Share { first: 0, targets, drag: [s11.0, s22.0, s12.0], sums, terms: &mut [] },
+                Share { first: 0, targets, drag, sums, terms: &mut [] },
                 Share {
                     first: early,
                     targets: later_targets,
-                    drag: [s11.1, s22.1, s12.1],
+                    drag: later_drag,
                     sums: later_sums,
                     terms,
                 },
             ]
         };
         let (early_sums, later_sums) = workers.both(
-            || {
-                first.sums.fill(NodeSum::default());
-                element_pass(path, model, positions, velocities, way, first)
-            },
-            || {
-                second.sums.fill(NodeSum::default());
-                element_pass_kept(path, model, positions, velocities, way, second)
-            },
+            || element_pass(path, model, positions, velocities, way, first),
+            || element_pass_kept(path, model, positions, velocities, way, second),
         );
 
-        let (film, later_film) = halved(&mut out.film, self.middle);
-        let (area, later_area) = halved(&mut out.area, self.middle);
+        let (nodes, later_nodes) = out.sums.split_at_mut(self.middle);
         let whole = &*self;
         let ((), sums) = workers.both(
-            || whole.land(0, &whole.joints[..whole.middle_joint], film, area),
+            || whole.land(0, &whole.joints[..whole.middle_joint], nodes),
             || {
                 let later = &whole.joints[whole.middle_joint..];
-                whole.land(whole.middle, later, later_film, later_area);
+                whole.land(whole.middle, later, later_nodes);
                 // Here, where the terms were made: they are many and far from the other thread.
                 whole.sum(early_sums, later_sums)
             },
@@ -168,25 +160,16 @@ impl Halves {
         sums
     }
 
-    /// Writes the sums of the nodes from `from` on to their fields.
-    fn land(&self, from: usize, joints: &[Joint], film: [&mut [f64]; 3], area: [&mut [f64]; 3]) {
-        let ([fx, fy, fz], [ax, ay, az]) = (film, area);
-        let slots = &self.slot[from..from + fx.len()];
-        let firsts = fx.iter_mut().zip(fy.iter_mut()).zip(fz.iter_mut());
-        let seconds = ax.iter_mut().zip(ay.iter_mut()).zip(az.iter_mut());
-        for (slot, (((fx, fy), fz), ((ax, ay), az))) in slots.iter().zip(firsts.zip(seconds)) {
-            let sum = &self.sums[*slot as usize];
-            [*fx, *fy, *fz, _] = sum.film;
-            [*ax, *ay, *az, _] = sum.area;
+    /// Writes the sums of the nodes from `from` on.
+    fn land(&self, from: usize, joints: &[Joint], nodes: &mut [NodeSum]) {
+        let slots = &self.slot[from..from + nodes.len()];
+        for (slot, node) in slots.iter().zip(nodes.iter_mut()) {
+            *node = self.sums[*slot as usize];
         }
         for joint in joints {
-            let mut sum = self.sums[self.slot[joint.node] as usize];
             for corner in &self.sums[joint.corners.clone()] {
-                sum.add(corner);
+                nodes[joint.node - from].add(corner);
             }
-            let own = joint.node - from;
-            [fx[own], fy[own], fz[own], _] = sum.film;
-            [ax[own], ay[own], az[own], _] = sum.area;
         }
     }
 
@@ -200,11 +183,6 @@ impl Halves {
         // The larger of two does not ask in which order; a stress that is no number ends the run.
         LaneSums { volumes, power, largest: largest.max(later.largest) }.sums()
     }
-}
-
-fn halved(field: &mut Field, middle: usize) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
-    let [early, later] = field.split_at_mut(middle);
-    (early, later)
 }
 
 fn slot_number(slot: usize) -> u32 {
@@ -239,12 +217,13 @@ mod tests {
         FilmModel::new(&FILM, nodes, &all, &vec![reference; all.len()]).expect("a film")
     }
 
-    fn bits(out: &NodeForces, drag: &Drag, sums: &Sums) -> Vec<u64> {
-        let fields = [&out.film, &out.area].into_iter();
-        let columns = fields.flat_map(|field| [&field.x, &field.y, &field.z]);
-        let all = columns.chain(&drag.stress).flatten().copied();
+    fn bits(out: &NodeForces, drag: &[Drag], sums: &Sums) -> Vec<u64> {
+        let (films, areas) = (out.films(), out.areas());
+        let nodes = films.iter().chain(areas.iter()).flat_map(|own| [own.x, own.y, own.z]);
+        let drag =
+            drag.iter().flat_map(|own| own.0.into_iter().flatten().flat_map(|lanes| lanes.0));
         let own = [sums.six_volumes, sums.viscous_power, sums.largest_stress];
-        all.chain(own).map(f64::to_bits).collect()
+        nodes.chain(drag).chain(own).map(f64::to_bits).collect()
     }
 
     proptest! {
@@ -268,7 +247,7 @@ mod tests {
             };
             let places = of(&|n| Vector3::new(n[0], n[1], n[2]) * 0.1);
             let velocities = of(&|n| Vector3::new(n[3], n[4], n[5]) * 10.0);
-            let (mut drag, mut out) = (Drag::new(&model), NodeForces::new(&model));
+            let (mut drag, mut out) = (Drag::none(&model), NodeForces::new(&model));
             let mut told = Vec::new();
             for way in [0.0, 1e-3, 2e-3] {
                 let (x, v) = (&places, &velocities);
@@ -277,7 +256,7 @@ mod tests {
             }
             for path in Path::ALL {
                 for threads in [1, 2] {
-                    let (mut drag, mut out) = (Drag::new(&model), NodeForces::new(&model));
+                    let (mut drag, mut out) = (Drag::none(&model), NodeForces::new(&model));
                     let (mut workers, mut halves) = (Workers::of(threads), Halves::new(&model));
                     for (way, told) in &told {
                         let (x, v) = (&places, &velocities);

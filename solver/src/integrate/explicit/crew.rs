@@ -51,7 +51,7 @@ impl Crew {
         positions: &Field,
         velocities: &Field,
         way: f64,
-        drag: &mut Drag,
+        drag: &mut [Drag],
         out: &mut NodeForces,
     ) -> Sums {
         match self.0.as_deref_mut() {

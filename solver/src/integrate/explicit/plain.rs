@@ -4,9 +4,11 @@
 //! The plain one is what the other is measured against, and tested against: same layout, same
 //! operations in the same order, so the same bits; no lanes and no instruction set asked for.
 
+use nalgebra::Vector3;
+
 use super::update::{Push, drift_nodes, kick_nodes};
-use crate::forces::membrane::{Drag, NodeForces, Sums, film_pass};
-use crate::model::FilmModel;
+use crate::forces::membrane::{Drag, NodeForces, SIXTH, Sums, film_pass};
+use crate::model::{ElementBlock, FilmModel};
 use crate::simd::{NodeSum, Path, WIDTH};
 use crate::state::Field;
 
@@ -20,14 +22,14 @@ pub struct Moving {
     /// Forces on them; those of contact stay as they are.
     pub forces: NodeForces,
     /// What the pass before left of elements.
-    pub drag: Drag,
+    pub drag: Vec<Drag>,
     next: Field,
 }
 
 impl Moving {
     /// At places (m) with velocities (m/s); forces are those there.
     pub fn new(path: Path, model: &FilmModel, places: Field, velocities: Field) -> Self {
-        let (mut forces, mut drag) = (NodeForces::new(model), Drag::new(model));
+        let (mut forces, mut drag) = (NodeForces::new(model), Drag::none(model));
         let _ = film_pass(path, model, &places, &velocities, 0.0, &mut drag, &mut forces);
         Self { places, velocities, forces, drag, next: Field::zeros(model.nodes()) }
     }
@@ -61,9 +63,11 @@ pub fn plain_step(
 ) -> (Sums, f64) {
     let Moving { places, velocities, forces, drag, next } = film;
     for node in 0..model.nodes() {
-        let force = forces.film.get(node)
+        let [x, y, z, _] = forces.sums[node].normal;
+        let normal = Vector3::new(x, y, z);
+        let force = forces.film(node)
             + forces.contact.get(node)
-            + forces.area.get(node) * push.overpressure
+            + normal * (push.overpressure * SIXTH)
             + push.gravity * (model.mass[node] * push.weight);
         let velocity = velocities.get(node);
         let change = velocity * (push.keep - 1.0) + force * (model.inverse_mass[node] * push.gain);
@@ -101,116 +105,155 @@ fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// By columns: of edges p and q, F or its rate.
-fn gradient([a, b, c, d]: [f64; 4], [p, q]: [Vector; 2]) -> [Vector; 2] {
-    [plus(times(p, a), times(q, c)), plus(times(p, b), times(q, d))]
-}
-
-/// S, as xx, yy, xy, and its larger principal value, Pa, at a strain.
-fn stress(model: &FilmModel, [xx, yy, xy]: [f64; 3]) -> ([f64; 3], f64) {
+/// Of a strain (xx, yy, 2xy): the mean of the stress, how it leans with the strain, and its larger
+/// principal value, Pa.
+fn response(model: &FilmModel, [xx, yy, shear]: Vector) -> [f64; 3] {
     let material = &model.material;
     let (k, nu) = (material.plane_modulus(), material.poisson_ratio);
-    let (half, mean) = ((xx - yy) * 0.5, (xx + yy) * 0.5);
-    let radius = (half * half + xy * xy).sqrt();
-    let (e1, e2) = (mean + radius, mean - radius);
-    let full = full_stress(model, [xx, yy, xy]);
-    let full_largest = (e1 + e2 * nu) * k;
-    if e2 + e1 * nu > 0.0 {
-        return (full, full_largest);
+    let (sum, difference) = (xx + yy, xx - yy);
+    let diameter = (difference * difference + shear * shear).sqrt();
+    let full = [sum * (0.5 * k * (1.0 + nu)), 0.5 * k * (1.0 - nu)];
+    let [mean, lean] = if sum * (1.0 + nu) - diameter * (1.0 - nu) > 0.0 {
+        full
+    } else {
+        let (twice, c) = (sum + diameter, material.compression);
+        let tension = twice * (0.25 * material.youngs_modulus);
+        let [mean, lean] = if twice > 0.0 { [tension, tension / diameter] } else { [0.0; 2] };
+        [mean + (full[0] - mean) * c, lean + (full[1] - lean) * c]
+    };
+    [mean, lean, mean + lean * diameter]
+}
+
+fn contract(stress: Vector, rate: Vector) -> f64 {
+    stress[0] * rate[0] + stress[1] * rate[1] + stress[2] * rate[2]
+}
+
+/// Of one element, [`crate::model::ElementBlock`].
+struct Constants {
+    xx: f64,
+    yy: [f64; 3],
+    shear: [f64; 2],
+    loss: f64,
+    drag: f64,
+}
+
+impl Constants {
+    fn of(block: &ElementBlock, lane: usize) -> Self {
+        Self {
+            xx: block.xx.0[lane],
+            yy: [block.yy[0].0[lane], block.yy[1].0[lane], block.yy[2].0[lane]],
+            shear: [block.shear[0].0[lane], block.shear[1].0[lane]],
+            loss: block.loss.0[lane],
+            drag: block.drag.0[lane],
+        }
     }
-    let (mut own, mut largest) = ([0.0; 3], 0.0);
-    if e1 > 0.0 {
-        largest = e1 * material.youngs_modulus;
-        let lean = largest * 0.5 / radius;
-        own = [largest * 0.5 + lean * half, largest * 0.5 - lean * half, lean * xy];
-    }
-    let blend = |own: f64, full: f64| own + (full - own) * material.compression;
-    let [a, b, c] = own;
-    ([blend(a, full[0]), blend(b, full[1]), blend(c, full[2])], blend(largest, full_largest))
 }
 
-fn full_stress(model: &FilmModel, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
-    let (k, nu) = (model.material.plane_modulus(), model.material.poisson_ratio);
-    [(xx + yy * nu) * k, (yy + xx * nu) * k, xy * (k * (1.0 - nu))]
+/// What an element tells of itself.
+struct Told {
+    viscous: Vector,
+    pull: Vector,
+    taken: f64,
+    largest: f64,
 }
 
-/// Forces of a stress on the three corners, N.
-fn corner_forces(
-    [a, b, c, d]: [f64; 4],
-    volume: f64,
-    [f, g]: [Vector; 2],
-    [xx, yy, xy]: [f64; 3],
-) -> [Vector; 3] {
-    let (p, q) = (plus(times(f, xx), times(g, xy)), plus(times(f, xy), times(g, yy)));
-    let loss = -volume;
-    let first = times(plus(times(p, a), times(q, b)), loss);
-    let second = times(plus(times(p, c), times(q, d)), loss);
-    [plus(first, second).map(|entry| -entry), first, second]
+fn told(
+    model: &FilmModel,
+    Constants { xx: a, yy: [b0, b1, b2], shear: [c0, c1], loss, drag }: &Constants,
+    [pp, pq, qq]: Vector,
+    rates: Vector,
+    rates_before: Vector,
+    before: Vector,
+) -> Told {
+    let nu = model.material.poisson_ratio;
+    let yy = b0 * pp + b1 * pq + b2 * qq - 0.5;
+    let strain = [a * pp - 0.5, yy, c0 * pp + c1 * pq];
+    let rate_of = |[pp, pq, qq]: Vector| [a * pp, b0 * pp + b1 * pq + b2 * qq, c0 * pp + c1 * pq];
+    let rate = rate_of(rates);
+    let viscous = [
+        drag * (rate[0] + nu * rate[1]),
+        drag * (rate[1] + nu * rate[0]),
+        (drag * (0.5 * (1.0 - nu))) * rate[2],
+    ];
+    let taken = contract(viscous, rate) + contract(before, rate_of(rates_before));
+
+    let [mean, lean, largest] = response(model, strain);
+    let (mean, lean) = (mean * loss, lean * loss);
+    let bent = lean * (strain[0] - strain[1]);
+    let xx = mean + viscous[0] + bent;
+    let yy = mean + viscous[1] - bent;
+    let xy = viscous[2] + lean * strain[2];
+    let pull = [a * xx + b0 * yy + c0 * xy, b1 * yy + c1 * xy, b2 * yy];
+    Told { viscous, pull, taken, largest }
 }
 
-fn contract([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> f64 {
-    a * d + b * e + (c * f) * 2.0
-}
-
-/// [`film_pass`], element by element.
+/// [`film_pass`], kite by kite.
 fn elements(
     model: &FilmModel,
     places: &Field,
     velocities: &Field,
     way: f64,
-    drag: &mut Drag,
+    drag: &mut [Drag],
     out: &mut NodeForces,
 ) -> Sums {
-    let (mut volumes, mut powers, mut largest) = ([0.0; WIDTH], [0.0; WIDTH], 0.0);
-    for (element, triangle) in model.triangles.iter().enumerate() {
-        let shape = model.inverse_shape.each_ref().map(|column| column[element]);
-        let volume = model.volume[element];
-        let [a, b, c] = triangle.map(|node| <Vector>::from(places.get(node as usize)));
-        let [u, v, w] = triangle.map(|node| <Vector>::from(velocities.get(node as usize)));
-        volumes[element % WIDTH] += dot(a, cross(b, c));
-        let edges = [minus(b, a), minus(c, a)];
-        let area = times(cross(edges[0], edges[1]), 1.0 / 6.0);
-        let [f, g] = gradient(shape, edges);
-        let strain = [(dot(f, f) - 1.0) * 0.5, (dot(g, g) - 1.0) * 0.5, dot(f, g) * 0.5];
-        let (stress, most) = stress(model, strain);
-        largest = if largest > most { largest } else { most };
-        let [fr, gr] = gradient(shape, [minus(v, u), minus(w, u)]);
-        let rate = [dot(f, fr), dot(g, gr), (dot(f, gr) + dot(g, fr)) * 0.5];
-        let time = model.viscous_time[element];
-        let viscous = full_stress(model, rate).map(|entry| entry * time);
+    let (mut volumes, mut powers, mut largest) = ([0.0; WIDTH], [0.0; WIDTH], 0.0_f64);
+    out.sums.fill(NodeSum::default());
+    for (index, kite) in model.kites.iter().enumerate() {
+        let (block, lane) = (index / WIDTH, index % WIDTH);
+        let corners = kite.map(|node| <Vector>::from(places.get(node as usize)));
+        let speeds = kite.map(|node| <Vector>::from(velocities.get(node as usize)));
+        let [p, d, q] = [1, 2, 3].map(|other| minus(corners[other], corners[0]));
+        let [u, e, w] = [1, 2, 3].map(|other| minus(speeds[other], speeds[0]));
+        let (first_normal, second_normal) = (cross(p, d), cross(d, q));
+        let normal = plus(first_normal, second_normal);
+        volumes[lane] += dot(corners[0], normal);
 
-        let before = drag.stress.each_ref().map(|column| column[element]);
-        for (column, entry) in drag.stress.iter_mut().zip(viscous) {
-            column[element] = entry;
+        let shared = dot(d, d) * 0.5;
+        let metrics = [[dot(p, p) * 0.5, dot(p, d), shared], [shared, dot(d, q), dot(q, q) * 0.5]];
+        let [pe, dw] = [dot(p, e) + dot(d, u), dot(d, w) + dot(q, e)];
+        let rates = [[dot(p, u), pe, dot(d, e)], [dot(d, e), dw, dot(q, w)]];
+        let less = |rate: f64, square: f64, way: f64| rate - square * way;
+        let shared = less(rates[0][2], dot(e, e), way);
+        let rates_before = [
+            [less(rates[0][0], dot(u, u), way), less(pe, dot(u, e), way + way), shared],
+            [shared, less(dw, dot(e, w), way + way), less(rates[1][2], dot(w, w), way)],
+        ];
+        let (mut pulls, mut takens) = ([[0.0; 3]; 2], [0.0; 2]);
+        for half in 0..2 {
+            let constants = Constants::of(&model.constants[block][half], lane);
+            let remembered = &mut drag[block].0[half];
+            let before = [0, 1, 2].map(|entry| remembered[entry].0[lane]);
+            let told =
+                told(model, &constants, metrics[half], rates[half], rates_before[half], before);
+            for (entry, own) in remembered.iter_mut().zip(told.viscous) {
+                entry.0[lane] = own;
+            }
+            (pulls[half], takens[half]) = (told.pull, told.taken);
+            largest = if largest > told.largest { largest } else { told.largest };
         }
-        let both = plus(before, viscous);
-        let gram = [dot(fr, fr), dot(gr, gr), dot(fr, gr)];
-        powers[element % WIDTH] += (contract(both, rate) - contract(before, gram) * way) * volume;
+        powers[lane] += takens[0] + takens[1];
 
-        let elastic = corner_forces(shape, volume, [f, g], stress);
-        let slowing = corner_forces(shape, volume, [f, g], viscous);
-        for (corner, node) in triangle.iter().enumerate() {
-            let force = plus(elastic[corner], slowing[corner]);
+        let [r, s] = pulls;
+        let at_a = plus(times(p, r[0]), times(d, r[1]));
+        let at_t = plus(plus(times(p, r[1]), times(d, r[2] + s[0])), times(q, s[1]));
+        let at_b = plus(times(d, s[1]), times(q, s[2]));
+        let at_s = plus(plus(at_a, at_t), at_b).map(|entry| -entry);
+        let given = [(at_s, normal), (at_a, first_normal), (at_t, normal), (at_b, second_normal)];
+        for ((force, normal), node) in given.into_iter().zip(kite) {
             let sum = &mut out.sums[*node as usize];
             for axis in 0..3 {
                 sum.film[axis] += force[axis];
-                sum.area[axis] += area[axis];
+                sum.normal[axis] += normal[axis];
             }
         }
     }
-    for (node, sum) in out.sums.iter_mut().enumerate() {
-        let ([fx, fy, fz, _], [ax, ay, az, _]) = (sum.film, sum.area);
-        out.film.set(node, [fx, fy, fz].into());
-        out.area.set(node, [ax, ay, az].into());
-        *sum = NodeSum::default();
-    }
     let tree = |[a, b, c, d, e, f, g, h]: [f64; WIDTH]| ((a + e) + (c + g)) + ((b + f) + (d + h));
-    Sums { six_volumes: tree(volumes), viscous_power: tree(powers), largest_stress: largest }
+    Sums { six_volumes: tree(volumes), viscous_power: -tree(powers), largest_stress: largest }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Vector2, Vector3};
+    use nalgebra::Vector2;
     use proptest::prelude::*;
 
     use super::*;
@@ -246,13 +289,15 @@ mod tests {
 
     fn bits(film: &Moving) -> Vec<u64> {
         let Moving { places, velocities, forces, drag, .. } = film;
-        let fields = [places, velocities, &forces.film, &forces.area];
-        let nodes = fields.into_iter().flat_map(|field| [&field.x, &field.y, &field.z]);
+        let (films, areas) = (forces.films(), forces.areas());
+        let nodes = [places, velocities, &films, &areas].into_iter().flat_map(Field::iter);
         // Not the elements of no volume that fill the last block: the plain loops have none.
         nodes
-            .flatten()
-            .chain(drag.stress.iter().flat_map(|column| &column[..70]))
-            .map(|number| number.to_bits())
+            .flat_map(|own| [own.x, own.y, own.z])
+            .chain((0..35).flat_map(|at| {
+                drag[at / WIDTH].0.into_iter().flatten().map(move |entry| entry.0[at % WIDTH])
+            }))
+            .map(f64::to_bits)
             .collect()
     }
 

@@ -12,9 +12,9 @@
 
 use nalgebra::Vector3;
 
-use crate::forces::membrane::NodeForces;
+use crate::forces::membrane::{NodeForces, SIXTH};
 use crate::model::FilmModel;
-use crate::simd::{Lanes, Path, WIDTH, dispatch};
+use crate::simd::{Lanes, Path, WIDTH, Wide, dispatch, dispatch_wide};
 use crate::state::Field;
 
 /// What pushes nodes in a kick, beside the forces.
@@ -32,82 +32,79 @@ pub struct Push {
     pub gain: f64,
 }
 
-/// A component of a field by its number.
-#[inline(always)]
-fn column(field: &Field, axis: usize) -> &[f64] {
-    [&field.x[..], &field.y[..], &field.z[..]][axis]
-}
-
 /// One component of the kick, of a number or of eight.
 macro_rules! kicked {
-    ($velocity:expr, $film:expr, $contact:expr, $area:expr, $mass:expr, $gain:expr, $free:expr,
+    ($velocity:expr, $film:expr, $contact:expr, $normal:expr, $mass:expr, $gain:expr, $free:expr,
      $push:expr, $gravity:expr) => {{
-        let force =
-            $film + $contact + $area * $push.overpressure + $gravity * ($mass * $push.weight);
+        let force = $film
+            + $contact
+            + $normal * ($push.overpressure * SIXTH)
+            + $gravity * ($mass * $push.weight);
         $velocity + ($velocity * ($push.keep - 1.0) + force * ($gain * $push.gain)) * $free
     }};
 }
 
 #[inline(always)]
-fn kick_kernel(
+fn kick_kernel<L: Wide>(
     model: &FilmModel,
     forces: &NodeForces,
     push: &Push,
     free: &Field,
     velocities: &Field,
-    next: [&mut [f64]; 3],
+    next: &mut [&mut [f64]; 3],
 ) {
     let nodes = next[0].len();
     let (mass, inverse) = (&model.mass[..nodes], &model.inverse_mass[..nodes]);
-    let whole = nodes - nodes % WIDTH;
-    let [next_x, next_y, next_z] = next;
-    for (axis, next) in [(0, next_x), (1, next_y), (2, next_z)] {
-        let film = &column(&forces.film, axis)[..nodes];
-        let contact = &column(&forces.contact, axis)[..nodes];
-        let area = &column(&forces.area, axis)[..nodes];
-        let free = &column(free, axis)[..nodes];
-        let velocity = &column(velocities, axis)[..nodes];
-        let next = &mut next[..nodes];
-        let gravity = push.gravity[axis];
-        for at in (0..whole).step_by(WIDTH) {
-            let load = |column| Lanes::load(column, at);
+    let [contact, free, velocity] =
+        [&forces.contact, free, velocities].map(|f| [&f.x[..nodes], &f.y[..nodes], &f.z[..nodes]]);
+    let sums = &forces.sums[..nodes];
+    let (blocks, _) = sums.as_chunks::<WIDTH>();
+    for (block, sums) in blocks.iter().enumerate() {
+        let at = block * WIDTH;
+        let [film, normal] = L::columns(sums);
+        let ([fx, fy, fz], [nx, ny, nz]) =
+            ([film.x, film.y, film.z], [normal.x, normal.y, normal.z]);
+        let (mass, inverse) = (L::load(mass, at), L::load(inverse, at));
+        for (axis, (film, normal)) in [(fx, nx), (fy, ny), (fz, nz)].into_iter().enumerate() {
             kicked!(
-                load(velocity),
-                load(film),
-                load(contact),
-                load(area),
-                load(mass),
-                load(inverse),
-                load(free),
+                L::load(velocity[axis], at),
+                film,
+                L::load(contact[axis], at),
+                normal,
+                mass,
+                inverse,
+                L::load(free[axis], at),
                 push,
-                Lanes::splat(gravity)
+                L::splat(push.gravity[axis])
             )
-            .store(next, at);
+            .store(next[axis], at);
         }
-        for at in whole..nodes {
-            next[at] = kicked!(
-                velocity[at],
-                film[at],
-                contact[at],
-                area[at],
+    }
+    for at in blocks.len() * WIDTH..nodes {
+        for axis in 0..3 {
+            next[axis][at] = kicked!(
+                velocity[axis][at],
+                sums[at].film[axis],
+                contact[axis][at],
+                sums[at].normal[axis],
                 mass[at],
                 inverse[at],
-                free[at],
+                free[axis][at],
                 push,
-                gravity
+                push.gravity[axis]
             );
         }
     }
 }
 
-dispatch! {
+dispatch_wide! {
     fn kick_columns / kick_kernel(
         model: &FilmModel,
         forces: &NodeForces,
         push: &Push,
         free: &Field,
         velocities: &Field,
-        next: [&mut [f64]; 3],
+        next: &mut [&mut [f64]; 3],
     )
 }
 
@@ -123,8 +120,8 @@ pub fn kick_nodes(
     next: &mut Field,
 ) {
     // Columns apart: the compiler then knows that they do not overlap.
-    let next = [&mut next.x[..], &mut next.y[..], &mut next.z[..]];
-    kick_columns(path, model, forces, push, free, velocities, next);
+    let mut next = [&mut next.x[..], &mut next.y[..], &mut next.z[..]];
+    kick_columns(path, model, forces, push, free, velocities, &mut next);
 }
 
 #[inline(always)]
