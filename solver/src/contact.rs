@@ -30,6 +30,7 @@ use crate::simd::Path;
 use crate::state::Field;
 
 pub mod active;
+pub mod apart;
 pub mod distance;
 pub mod friction;
 pub mod gaps;

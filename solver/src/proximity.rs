@@ -3,11 +3,13 @@
 //! The film is cut into patches of a few neighbouring elements, and they into a tree
 //! ([`patches`]); boxes round them ([`boxes`]) say how far two patches are apart at least; a
 //! [`lookout`] keeps every pair of patches waiting ([`bins`]) until their parts of the film
-//! ([`zones`]) have moved so far that they could have met.
+//! ([`zones`]), or what is round a node of theirs ([`stars`]), have moved so far that they could have met.
 
 pub mod bins;
 pub mod boxes;
 pub mod lookout;
 mod order;
 pub mod patches;
+pub mod sought;
+pub mod stars;
 pub mod zones;

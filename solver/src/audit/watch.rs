@@ -100,7 +100,7 @@ impl Watch {
             return;
         }
         let found = if self.how.closely(self.start) {
-            self.lookout.travel(&self.frames[0], &self.frames[steps]);
+            self.lookout.travel(topology, &self.frames[0], &self.frames[steps]);
             passages_step_by_step(topology, &self.frames[..=steps])
         } else {
             self.passages_of_block(topology, steps)
@@ -154,14 +154,21 @@ fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> 
     let mut found = Vec::new();
     nearer(Sought::Meetings, topology, &boxes, 0.0, |couple, pair| {
         let own = passage(couple, pair);
+        let closest = own.closest(topology, first);
         // Farther apart than both can have come towards each other.
-        if own.closest(topology, first).squared > 4.0 * way * way {
+        if closest.squared > 4.0 * way * way {
             return;
         }
+        // A plane that parts the pair before each step: the last that still does.
+        let mut between = closest.between;
         for (step, pair) in frames.windows(2).enumerate() {
+            if own.stays_apart(topology, &pair[1], &between) {
+                continue;
+            }
             if own.happens(topology, &pair[0], &pair[1]) {
                 found.push((step, own));
             }
+            between = own.closest(topology, &pair[1]).between;
         }
     });
     found.sort_unstable();

@@ -97,14 +97,19 @@ fn choose<L: Wide>(positive: L, yes: [L; 3], no: [L; 3]) -> [L; 3] {
 
 /// Eight of the pairs; the last are filled up with the first.
 #[inline(always)]
-fn eight(pairs: &[[u32; 2]]) -> [[u32; 2]; WIDTH] {
+pub(super) fn eight(pairs: &[[u32; 2]]) -> [[u32; 2]; WIDTH] {
     let mut own = [pairs[0]; WIDTH];
     own[..pairs.len()].copy_from_slice(pairs);
     own
 }
 
+/// Places of one corner of eight primitives.
 #[inline(always)]
-fn place<L: Wide>(places: &Field, nodes: &[[u32; 4]; WIDTH], corner: usize) -> Vectors<L> {
+pub(super) fn place<L: Wide, const N: usize>(
+    places: &Field,
+    nodes: &[[u32; N]; WIDTH],
+    corner: usize,
+) -> Vectors<L> {
     let mut at = [0; WIDTH];
     for lane in 0..WIDTH {
         at[lane] = nodes[lane][corner];

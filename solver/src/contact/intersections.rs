@@ -1,7 +1,15 @@
 //! How often film lies through film: edges that pierce elements, over the whole mesh.
+//!
+//! ```text
+//! normal·(p − a) and normal·(q − a) of unlike sign, and where the edge meets the plane lies in the element
+//! ```
+//!
+//! A plane that parts edge and element tells most pairs apart ([`super::apart`]), and how long they
+//! need not be looked at again; only of the others the distance is asked.
 
 use nalgebra::Vector3;
 
+use super::apart::edges_apart;
 use super::gaps::{edge_gaps, element_gaps};
 use super::topology::Topology;
 use crate::proximity::boxes::Boxes;
@@ -22,15 +30,23 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
     found
 }
 
+/// Room for pairs no plane parts, and for what they are made of.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Room {
+    unparted: Vec<usize>,
+    ends: Vec<[u32; 2]>,
+    sides: Vec<[u32; 2]>,
+    from_ends: Vec<f64>,
+    from_sides: Vec<f64>,
+}
+
 /// Counts intersections again and again while film moves, looking only at what may have met since.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piercings {
     lookout: Lookout,
     /// Where the film was at the last look, m.
     last: Field,
-    // Room for pairs.
-    ends: Vec<[u32; 2]>,
-    sides: Vec<[u32; 2]>,
+    room: Room,
     /// Intersections at the last look.
     pub count: u64,
 }
@@ -39,24 +55,19 @@ impl Piercings {
     /// Looks for the first time, at these places (m).
     pub fn new(topology: &Topology, places: &Field) -> Self {
         let lookout = Lookout::new(Sought::Piercings, topology, BIN * places.size());
-        let mut own =
-            Self { lookout, last: places.clone(), ends: Vec::new(), sides: Vec::new(), count: 0 };
+        let mut own = Self { lookout, last: places.clone(), room: Room::default(), count: 0 };
         own.look(topology, places);
         own
     }
 
     /// Counts the intersections at these places (m).
     pub fn look(&mut self, topology: &Topology, places: &Field) {
-        self.lookout.travel(&self.last, places);
+        self.lookout.travel(topology, &self.last, places);
         self.last.copy_from(places);
-        let (mut count, ends, sides) = (0, &mut self.ends, &mut self.sides);
+        let (mut count, room) = (0, &mut self.room);
         let gaps = |_, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| {
-            distances(topology, places, pairs, [ends, sides], gaps);
-            for ([edge, element], gap) in pairs.iter().zip(gaps) {
-                if pierces(topology, places, *edge, *element) {
-                    *gap = 0.0;
-                }
-            }
+            edges_apart(Path::best(), topology, places, pairs, gaps);
+            room.measure(topology, places, pairs, gaps);
         };
         self.lookout.now(topology, places, gaps, |_, [edge, element]| {
             // Film that touches is not through.
@@ -69,28 +80,41 @@ impl Piercings {
 /// Path of a bin, as a share of the film's size.
 const BIN: f64 = 2e-3;
 
-/// Distances (m) of edges and elements that do not pierce each other: the least of those of the edge's
-/// ends from the element, and of the edge from the element's sides.
-fn distances(
-    topology: &Topology,
-    places: &Field,
-    pairs: &[[u32; 2]],
-    [ends, sides]: [&mut Vec<[u32; 2]>; 2],
-    gaps: &mut Vec<f64>,
-) {
-    ends.clear();
-    sides.clear();
-    for [edge, element] in pairs {
-        ends.extend(topology.edges[*edge as usize].map(|end| [end, *element]));
-        sides.extend(topology.sides[*element as usize].map(|side| [*edge, side]));
+impl Room {
+    /// Puts the distance (m) in place of each gap (m) that is not above 0, or no number: of pairs that do
+    /// not pierce each other the least of those of the edge's ends from the element, and of the edge from
+    /// the element's sides.
+    fn measure(
+        &mut self,
+        topology: &Topology,
+        places: &Field,
+        pairs: &[[u32; 2]],
+        gaps: &mut [f64],
+    ) {
+        let Self { unparted, ends, sides, from_ends, from_sides } = self;
+        unparted.clear();
+        ends.clear();
+        sides.clear();
+        from_ends.clear();
+        from_sides.clear();
+        for (at, ([edge, element], gap)) in pairs.iter().zip(&mut *gaps).enumerate() {
+            if *gap > 0.0 {
+                continue;
+            }
+            *gap = 0.0;
+            if !pierces(topology, places, *edge, *element) {
+                unparted.push(at);
+                ends.extend(topology.edges[*edge as usize].map(|end| [end, *element]));
+                sides.extend(topology.sides[*element as usize].map(|side| [*edge, side]));
+            }
+        }
+        element_gaps(Path::best(), topology, places, ends, from_ends);
+        edge_gaps(Path::best(), topology, places, sides, from_sides);
+        let own = from_ends.chunks_exact(2).zip(from_sides.chunks_exact(3));
+        for (at, (ends, sides)) in unparted.iter().zip(own) {
+            gaps[*at] = ends.iter().chain(sides).fold(f64::INFINITY, |least, gap| least.min(*gap));
+        }
     }
-    let (mut from_ends, mut from_sides) = (Vec::new(), Vec::new());
-    element_gaps(Path::best(), topology, places, ends, &mut from_ends);
-    edge_gaps(Path::best(), topology, places, sides, &mut from_sides);
-    let own = from_ends.chunks_exact(2).zip(from_sides.chunks_exact(3));
-    gaps.extend(own.map(|(ends, sides)| {
-        ends.iter().chain(sides).fold(f64::INFINITY, |least, gap| least.min(*gap))
-    }));
 }
 
 /// Whether an edge passes through an element.

@@ -83,10 +83,13 @@ impl Search {
         }
     }
 
-    /// Forgets what is near.
-    fn forget(&mut self, law: &Law, places: &Field, path: f64) {
-        let (smallest_gap, pushed) = (self.smallest_gap, self.pushed);
-        *self = Self { smallest_gap, pushed, ..Self::new(law, places, path) };
+    /// Forgets what is near; keeps the room it took.
+    fn forget(&mut self, places: &Field, path: f64) {
+        self.lookout.forget();
+        self.seen.copy_from(places);
+        self.enough = f64::NEG_INFINITY;
+        self.singles.iter_mut().for_each(|bins| bins.begin(path));
+        self.near.clear();
     }
 }
 
@@ -138,7 +141,7 @@ impl Law {
         let renewals = 1 + (until / (RENEW * self.edge_length)) as u64;
         if renewals > meeting.searches {
             meeting.searches = renewals;
-            search.forget(self, places, path);
+            search.forget(places, path);
         }
         self.fetch(places, [path, until], search);
     }
@@ -174,7 +177,7 @@ impl Law {
         }
         let ahead = (AHEAD * self.edge_length).max(2.0 * (until - path));
         if until > search.enough {
-            lookout.travel(&search.seen, places);
+            lookout.travel(&self.topology, &search.seen, places);
             search.seen.copy_from(places);
             search.enough = path + ahead;
             lookout.fetch(

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::proximity::patches::Patches;
+use crate::proximity::sought::Sought;
+use crate::proximity::stars::Rings;
 
 /// A feature of the film a node can be nearest to.
 pub type Feature = u32;
@@ -18,6 +20,8 @@ pub struct Topology {
     pub sides: Vec<[u32; 3]>,
     /// The film in patches of neighbours.
     pub patches: Patches,
+    /// Pairs of elements that share a node, by what is sought of them.
+    rings: [Rings; 2],
     /// Elements at each edge.
     at_edge: Vec<u32>,
     /// Elements at each node.
@@ -57,7 +61,17 @@ impl Topology {
             })
             .collect();
         let patches = Patches::new(nodes, triangles, &sides, edges.len());
-        Self { triangles: triangles.to_vec(), edges, sides, patches, at_edge, at_node }
+        let rings =
+            [Sought::Meetings, Sought::Piercings].map(|sought| Rings::new(sought, nodes, &patches));
+        Self { triangles: triangles.to_vec(), edges, sides, patches, rings, at_edge, at_node }
+    }
+
+    /// Pairs of elements that share a node, and what is sought of them.
+    pub fn rings(&self, sought: Sought) -> &Rings {
+        match sought {
+            Sought::Meetings => &self.rings[0],
+            Sought::Piercings => &self.rings[1],
+        }
     }
 
     /// The feature of an element that a closest point with these weights (of its three nodes; nought

@@ -29,11 +29,11 @@ impl Bins {
         bins
     }
 
-    /// Empties all; counts from 0 again.
-    pub(super) fn clear(&mut self) {
+    /// Empties all; counts from a length (m) on.
+    pub fn begin(&mut self, from: f64) {
         self.overdue.clear();
         self.ring.iter_mut().for_each(Vec::clear);
-        self.reached = 0;
+        self.reached = self.number(from);
     }
 
     /// The bin of a length (m); the first where it is below 0, or no number.

@@ -62,20 +62,25 @@ impl Boxes {
 
     /// Fits the boxes to places (m).
     pub fn fit(&mut self, patches: &Patches, places: &Field) {
-        self.extents.clear();
         self.extents.resize(patches.tree(), Extent::NONE);
         self.rounding = 0.0;
-        self.hold(patches, places);
+        self.grow(patches, places, |_| Extent::NONE);
     }
 
     /// Grows the boxes so that they hold these places (m) too.
     pub fn hold(&mut self, patches: &Patches, places: &Field) {
+        self.grow(patches, places, |own| own);
+    }
+
+    /// Fits the boxes to places (m) and what is left of each leaf's own.
+    #[inline]
+    fn grow(&mut self, patches: &Patches, places: &Field, left: impl Fn(Extent) -> Extent) {
         self.fit_nodes(places);
         for leaf in patches.leaves()..patches.tree() {
             let corners = patches.corners(leaf).iter();
-            let all =
-                corners.fold(self.extents[leaf], |all, node| all.with(&self.nodes[*node as usize]));
-            self.extents[leaf] = all;
+            let own = left(self.extents[leaf]);
+            self.extents[leaf] =
+                corners.fold(own, |all, node| all.with(&self.nodes[*node as usize]));
         }
         for node in (1..patches.leaves()).rev() {
             self.extents[node] = self.extents[2 * node].with(&self.extents[2 * node + 1]);

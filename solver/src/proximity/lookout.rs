@@ -6,52 +6,47 @@
 //!
 //! Symbols: way how far two zones of the film have come towards each other so far at most
 //! ([`super::zones`]), m; d distance of two patches of theirs, m, or a lower bound of it. Two patches
-//! wait as one until they are due; then they are looked at closer, or taken apart.
+//! wait as one until they are due; then they are looked at closer, or taken apart. Elements that share
+//! a node are never far apart, and wait by what moves round that node alone ([`super::stars`]).
 
 use super::bins::Bins;
 use super::boxes::Boxes;
-use super::patches::{NONE, Patches};
+pub use super::sought::{Couple, Sought};
+use super::sought::{Pairs, primitives};
+use super::stars::Stars;
 use super::zones::Zones;
 use crate::contact::topology::Topology;
 use crate::simd::Path;
 use crate::state::Field;
 
-/// What a lookout is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sought {
-    /// Nodes and elements, edges and edges, that share no node.
-    Meetings,
-    /// Edges and elements that share no node.
-    Piercings,
+/// Where two elements wait.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Waiter {
+    /// Leaves with their pair of zones.
+    Zones { pair: [u32; 2], zones: usize },
+    /// A pair of a star with the node they share.
+    Star { pair: usize, node: usize },
 }
 
-/// A kind of pairs of primitives that share no node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Couple {
-    /// A node and an element.
-    NodeElement,
-    /// Two edges, the lower number first.
-    EdgeEdge,
-    /// An edge and an element.
-    EdgeElement,
+/// Two elements, and how many pairs of primitives of each kind there were with them.
+type Leaves = (Waiter, [usize; 2]);
+
+/// How far film may come towards each other now, m.
+struct Reach {
+    /// Of each pair of zones.
+    zones: Vec<f64>,
+    /// Round each node.
+    stars: Vec<f64>,
 }
 
-impl Sought {
-    /// The kinds of pairs sought.
-    fn couples(self) -> [Option<Couple>; 2] {
-        match self {
-            Self::Meetings => [Some(Couple::NodeElement), Some(Couple::EdgeEdge)],
-            Self::Piercings => [Some(Couple::EdgeElement), None],
+impl Reach {
+    fn of(&self, waiter: Waiter) -> f64 {
+        match waiter {
+            Waiter::Zones { zones, .. } => self.zones[zones],
+            Waiter::Star { node, .. } => self.stars[node],
         }
     }
 }
-
-/// Pairs of primitives, those of one kind apart from those of the other.
-type Pairs = [Vec<[u32; 2]>; 2];
-
-/// Two leaves, the number of their pair of zones, and how many pairs of primitives of each kind there
-/// were with them.
-type Leaves = ([u32; 2], usize, [usize; 2]);
 
 /// Bins of a pair of zones.
 const RING: usize = 32;
@@ -68,6 +63,8 @@ pub struct Lookout {
     ways: Vec<f64>,
     /// Patches waiting, by their pair of zones.
     waiting: Vec<Bins>,
+    /// Elements that share a node.
+    stars: Stars,
     width: f64,
     /// Sum of the largest displacements since all was looked for anew, m.
     path: f64,
@@ -92,6 +89,7 @@ impl Lookout {
             zones,
             ways: vec![0.0; pairs],
             waiting: vec![Bins::new(width, RING, 0.0); pairs],
+            stars: Stars::new(topology.rings(sought)),
             width,
             path: 0.0,
             boxes: Boxes::default(),
@@ -106,11 +104,17 @@ impl Lookout {
         lookout
     }
 
+    /// Forgets all: every pair waits for nothing.
+    pub fn forget(&mut self) {
+        self.begin();
+        self.stars.begin();
+    }
+
     /// Has every pair of zones wait for nothing.
     fn begin(&mut self) {
         self.path = 0.0;
         self.ways.fill(0.0);
-        self.waiting.iter_mut().for_each(Bins::clear);
+        self.waiting.iter_mut().for_each(|bins| bins.begin(0.0));
         let zones = self.zones.first()..2 * self.zones.first();
         for one in zones.clone() {
             for two in one..zones.end {
@@ -121,8 +125,10 @@ impl Lookout {
     }
 
     /// The film goes from one place of its nodes to another.
-    pub fn travel(&mut self, from: &Field, to: &Field) {
+    pub fn travel(&mut self, topology: &Topology, from: &Field, to: &Field) {
         self.path += self.zones.travel(from, to, &mut self.ways);
+        self.stars.travel(&topology.edges, from, to);
+        self.stars.arrive();
     }
 
     /// Looks at all pairs that could come together on the straight way from one place of all nodes to
@@ -136,12 +142,29 @@ impl Lookout {
         meet: impl FnMut(Couple, [u32; 2]),
     ) {
         self.renew();
-        let mut reach = vec![0.0; self.ways.len()];
-        let largest = self.zones.travel(from, to, &mut reach);
+        let mut reach = self.reach(0.0);
+        let largest = self.zones.travel(from, to, &mut reach.zones);
+        reach.stars.copy_from_slice(self.stars.travel(&topology.edges, from, to));
         self.look(topology, from, &reach, gaps, meet);
         self.path += largest;
-        for (way, reach) in self.ways.iter_mut().zip(reach) {
+        for (way, reach) in self.ways.iter_mut().zip(reach.zones) {
             *way += reach;
+        }
+        self.stars.arrive();
+    }
+
+    /// The same reach (m) everywhere.
+    fn reach(&self, reach: f64) -> Reach {
+        Reach { zones: vec![reach; self.ways.len()], stars: vec![reach; self.stars.nodes()] }
+    }
+
+    /// Has two elements wait for a length (m) more.
+    fn put(&mut self, waiter: Waiter, length: f64) {
+        match waiter {
+            Waiter::Zones { pair, zones } => {
+                self.waiting[zones].put(self.ways[zones] + length, pair);
+            }
+            Waiter::Star { pair, node } => self.stars.put(node, pair, length),
         }
     }
 
@@ -154,7 +177,7 @@ impl Lookout {
         meet: impl FnMut(Couple, [u32; 2]),
     ) {
         self.renew();
-        let reach = vec![0.0; self.ways.len()];
+        let reach = self.reach(0.0);
         self.look(topology, places, &reach, gaps, meet);
     }
 
@@ -165,13 +188,12 @@ impl Lookout {
         }
     }
 
-    /// Tells `meet` of the pairs that come together where zones come towards each other by `reach` (m
-    /// for each pair of zones).
+    /// Tells `meet` of the pairs that come together where film comes towards each other so far.
     fn look(
         &mut self,
         topology: &Topology,
         places: &Field,
-        reach: &[f64],
+        reach: &Reach,
         mut gaps: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
         mut meet: impl FnMut(Couple, [u32; 2]),
     ) {
@@ -179,13 +201,14 @@ impl Lookout {
         self.ask(&mut gaps);
         let couples = self.sought.couples();
         let mut from = [0; 2];
-        for (pair, zones, to) in &self.leaves {
-            let mut first = f64::INFINITY;
+        let leaves = core::mem::take(&mut self.leaves);
+        for (waiter, to) in &leaves {
+            let (mut first, reach) = (f64::INFINITY, reach.of(*waiter));
             for kind in 0..2 {
                 for at in from[kind]..to[kind] {
                     let gap = self.gaps[kind][at];
                     first = first.min(gap);
-                    if gap <= reach[*zones]
+                    if gap <= reach
                         && let Some(couple) = couples[kind]
                     {
                         meet(couple, self.due[kind][at]);
@@ -193,10 +216,11 @@ impl Lookout {
                 }
             }
             if first < f64::INFINITY {
-                self.waiting[*zones].put(self.ways[*zones] + first, *pair);
+                self.put(*waiter, first);
             }
             from = *to;
         }
+        self.leaves = leaves;
     }
 
     /// The pairs of all patches that could come within `keep` (m) of each other while no node moves
@@ -213,22 +237,23 @@ impl Lookout {
         mut gaps: impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>),
         mut take: impl FnMut(Couple, [u32; 2], f64),
     ) {
-        let reach = vec![2.0 * ahead; self.ways.len()];
-        self.take_apart(topology, places, &reach, keep, bounds);
+        let reach = 2.0 * ahead;
+        self.take_apart(topology, places, &self.reach(reach), keep, bounds);
         self.ask(&mut gaps);
         let couples = self.sought.couples();
         let mut from = [0; 2];
-        for (pair, zones, to) in &self.leaves {
+        let leaves = core::mem::take(&mut self.leaves);
+        for (waiter, to) in &leaves {
             let of = |kind: usize| &self.gaps[kind][from[kind]..to[kind]];
             let first = of(0).iter().chain(of(1)).copied().fold(f64::INFINITY, f64::min);
             let free = bounds * (first - keep);
-            if free > reach[*zones] {
+            if free > reach {
                 // Leaves without pairs of primitives wait for nothing.
                 if free == f64::INFINITY {
                     from = *to;
                     continue;
                 }
-                self.waiting[*zones].put(self.ways[*zones] + free, *pair);
+                self.put(*waiter, free);
             } else {
                 for kind in 0..2 {
                     let Some(couple) = couples[kind] else { continue };
@@ -239,6 +264,7 @@ impl Lookout {
             }
             from = *to;
         }
+        self.leaves = leaves;
     }
 
     /// Asks how far what is due is apart.
@@ -261,7 +287,7 @@ impl Lookout {
         &mut self,
         topology: &Topology,
         places: &Field,
-        reach: &[f64],
+        reach: &Reach,
         keep: f64,
         bounds: f64,
     ) {
@@ -269,10 +295,11 @@ impl Lookout {
         self.due.iter_mut().for_each(Vec::clear);
         self.boxes.fit(&topology.patches, places);
         let path = Path::best();
-        let Self { sought, ways, waiting, boxes, due, later, next, apart, leaves, .. } = self;
+        let Self { sought, ways, waiting, stars, boxes, due, later, next, apart, leaves, .. } =
+            self;
         let first_leaf = topology.patches.leaves();
         for (zones, bins) in waiting.iter_mut().enumerate() {
-            let (way, reach) = (ways[zones], reach[zones]);
+            let (way, reach) = (ways[zones], reach.zones[zones]);
             bins.take(way + reach, later);
             // Row by row down the tree.
             while !later.is_empty() {
@@ -291,8 +318,11 @@ impl Lookout {
                         }
                     }
                     if a as usize >= first_leaf {
-                        primitives(*sought, &topology.patches, a as usize, b as usize, due);
-                        leaves.push((pair, zones, [due[0].len(), due[1].len()]));
+                        if !topology.patches.share(a as usize, b as usize) {
+                            primitives(*sought, &topology.patches, a as usize, b as usize, due);
+                            let waiter = Waiter::Zones { pair, zones };
+                            leaves.push((waiter, [due[0].len(), due[1].len()]));
+                        }
                     } else if a == b {
                         next.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
                     } else {
@@ -304,50 +334,12 @@ impl Lookout {
                 core::mem::swap(later, next);
             }
         }
-    }
-}
-
-/// Adds the pairs of primitives of two leaves that share no node.
-fn primitives(sought: Sought, patches: &Patches, one: usize, two: usize, pairs: &mut Pairs) {
-    // The three nodes and edges of one element share nodes.
-    if one == two {
-        return;
-    }
-    let (one, two) = (patches.leaf(one), patches.leaf(two));
-    let [first, second] = pairs;
-    for (a, b) in [(one, two), (two, one)] {
-        let has = |node: u32| b.corners[0] == node || b.corners[1] == node || b.corners[2] == node;
-        match sought {
-            Sought::Meetings => {
-                for node in a.nodes {
-                    if node != NONE && !has(node) {
-                        first.push([node, b.element]);
-                    }
-                }
+        stars.take(topology.rings(*sought), &reach.stars, |node, pair, own| {
+            for (due, own) in due.iter_mut().zip(own) {
+                due.extend_from_slice(own);
             }
-            Sought::Piercings => {
-                for (at, edge) in a.edges.into_iter().enumerate() {
-                    let [p, q] = a.ends(at);
-                    if edge != NONE && !has(p) && !has(q) {
-                        first.push([edge, b.element]);
-                    }
-                }
-            }
-        }
-    }
-    if sought == Sought::Meetings {
-        for (at, edge) in one.edges.into_iter().enumerate() {
-            if edge == NONE {
-                continue;
-            }
-            let [p, q] = one.ends(at);
-            for (at, other) in two.edges.into_iter().enumerate() {
-                let [r, s] = two.ends(at);
-                if other != NONE && p != r && p != s && q != r && q != s {
-                    second.push([edge.min(other), edge.max(other)]);
-                }
-            }
-        }
+            leaves.push((Waiter::Star { pair, node }, [due[0].len(), due[1].len()]));
+        });
     }
 }
 

@@ -88,6 +88,13 @@ impl Patches {
         &self.leaves[node - self.leaves.len()]
     }
 
+    /// Whether two leaves are one, or share a node of the film.
+    #[inline]
+    pub fn share(&self, one: usize, two: usize) -> bool {
+        let (one, two) = (self.corners(one), self.corners(two));
+        one.iter().any(|node| two.contains(node))
+    }
+
     /// Nodes of the film in a leaf.
     #[inline]
     pub fn corners(&self, node: usize) -> &[u32] {
