@@ -71,7 +71,9 @@ impl Watch {
     /// Starts at these places (m), after so many steps of the run.
     pub fn new(how: Watchfulness, topology: &Topology, places: &Field, steps: u64) -> Self {
         let frames = vec![places.clone(); how.block as usize + 1];
-        let lookout = Lookout::new(Sought::Meetings, topology, BIN * places.size());
+        let mut lookout = Lookout::new(Sought::Meetings, topology, BIN * places.size());
+        // Every pair once, here: no block is dearer than others for being the first.
+        lookout.now(topology, places, gaps_at(topology, places), |_, _| {});
         Self {
             how,
             start: steps,
@@ -122,11 +124,7 @@ impl Watch {
     fn passages_of_block(&mut self, topology: &Topology, steps: usize) -> Vec<Passage> {
         let (frames, mut found) = (&self.frames, Vec::new());
         let (from, to) = (&frames[0], &frames[steps]);
-        let gaps = |couple: Couple, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| match couple {
-            Couple::EdgeEdge => edge_gaps(Path::best(), topology, from, pairs, gaps),
-            _ => element_gaps(Path::best(), topology, from, pairs, gaps),
-        };
-        self.lookout.pass(topology, [from, to], gaps, |couple, pair| {
+        self.lookout.pass(topology, [from, to], gaps_at(topology, from), |couple, pair| {
             let own = passage(couple, pair);
             let between = own.closest(topology, from).between;
             if !own.stays_apart(topology, to, &between) && own.happens(topology, from, to) {
@@ -137,6 +135,17 @@ impl Watch {
         });
         found.sort_unstable();
         found
+    }
+}
+
+/// Distances of pairs of one kind at these places (m), m.
+fn gaps_at<'a>(
+    topology: &'a Topology,
+    places: &'a Field,
+) -> impl FnMut(Couple, &[[u32; 2]], &mut Vec<f64>) + 'a {
+    |couple, pairs, gaps| match couple {
+        Couple::EdgeEdge => edge_gaps(Path::best(), topology, places, pairs, gaps),
+        _ => element_gaps(Path::best(), topology, places, pairs, gaps),
     }
 }
 
