@@ -37,13 +37,15 @@ pub type Line = Vec<(&'static str, Value)>;
 pub const STOWED: &str = "stowed";
 /// Time of the state on the way up, s.
 pub const RISING: f64 = 0.03;
+/// Time to which meshes of every size are run, s: the growth of the cost is told of it.
+pub const EARLY: f64 = 0.005;
 /// Times a case is told at, s.
-const CASES: [f64; 3] = [0.1, 0.3, 1.5];
+const CASES: [f64; 4] = [EARLY, 0.1, 0.3, 1.5];
 /// Meshes timed unless others are asked for: n.
 const MESHES: [u32; 4] = [5, 8, 16, 32];
 /// The same where it is to be quick.
 const QUICK_MESHES: [u32; 1] = [5];
-/// Largest mesh whose kernels are timed and which is run beyond its stowed state: n.
+/// Largest mesh whose kernels are timed and which is run beyond [`EARLY`]: n.
 pub const LARGEST_RUN: u32 = 16;
 
 /// What is told of a bench that a signal ends.
@@ -106,8 +108,9 @@ impl Effort {
     /// How far a mesh is run, s: as far as it goes in a bearable time.
     fn reach(self, subdivisions: u32) -> f64 {
         match (self, subdivisions) {
-            (_, n) if n > LARGEST_RUN => 0.0,
+            (Self::Quick, n) if n > LARGEST_RUN => 0.0,
             (Self::Quick, _) => 0.05,
+            (_, n) if n > LARGEST_RUN => EARLY,
             (Self::Usual, 0..=8) | (Self::Full, 9..) => 0.3,
             (Self::Usual, _) => 0.1,
             (Self::Full, _) => 1.5,
@@ -118,12 +121,16 @@ impl Effort {
     fn marks(self, subdivisions: u32) -> Vec<Mark> {
         let reach = self.reach(subdivisions);
         let mut marks = vec![Mark { time: 0.0, state: Some(STOWED), case: false }];
-        if reach > 0.0 {
+        let case = |time| Mark { time, state: None, case: true };
+        let early = CASES.into_iter().filter(|time| *time < reach && self != Self::Quick);
+        marks.extend(early.map(case));
+        if subdivisions <= LARGEST_RUN {
             marks.push(Mark { time: RISING, state: Some("rising"), case: false });
-            let cases = CASES.into_iter().filter(|time| *time < reach);
-            marks.extend(cases.map(|time| Mark { time, state: None, case: true }));
             marks.push(Mark { time: reach, state: Some("end"), case: true });
+        } else if reach > 0.0 {
+            marks.push(case(reach));
         }
+        marks.sort_by(|one, other| one.time.total_cmp(&other.time));
         marks
     }
 }
