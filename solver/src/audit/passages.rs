@@ -1,4 +1,5 @@
-//! Whether film went through film: told by an audit that shares no list, bound or decision with contact.
+//! Whether film went through film: told by an audit that shares with contact what is next to what, but
+//! no bound and no decision.
 //!
 //! ```text
 //! node and element:  (b − a) × (c − a)·(p − a) = 0 at a t where p lies inside the element
@@ -73,6 +74,19 @@ impl Passage {
             Self::Node { .. } => point_triangle(&x),
             Self::Edge { .. } => segment_segment(&x),
         }
+    }
+
+    /// The line between the closest points here, where a plane across it parts the pair: closest points
+    /// are known to rounding only, of edges as good as parallel to less. Else nought, across which
+    /// nothing is parted.
+    pub(super) fn parting(
+        self,
+        topology: &Topology,
+        at: &Field,
+        closest: &Closest,
+    ) -> Vector3<f64> {
+        let between = closest.between;
+        if self.stays_apart(topology, at, &between) { between } else { Vector3::zeros() }
     }
 
     /// Whether a plane across the line between the closest points at the start of a straight way still

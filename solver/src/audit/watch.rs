@@ -126,7 +126,7 @@ impl Watch {
         let (from, to) = (&frames[0], &frames[steps]);
         self.lookout.pass(topology, [from, to], gaps_at(topology, from), |couple, pair| {
             let own = passage(couple, pair);
-            let between = own.closest(topology, from).between;
+            let between = own.parting(topology, from, &own.closest(topology, from));
             if !own.stays_apart(topology, to, &between) && own.happens(topology, from, to) {
                 let happens =
                     |step: &usize| own.happens(topology, &frames[*step], &frames[step + 1]);
@@ -169,7 +169,7 @@ fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> 
             return;
         }
         // A plane that parts the pair before each step: the last that still does.
-        let mut between = closest.between;
+        let mut between = own.parting(topology, first, &closest);
         for (step, pair) in frames.windows(2).enumerate() {
             if own.stays_apart(topology, &pair[1], &between) {
                 continue;
@@ -177,7 +177,7 @@ fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> 
             if own.happens(topology, &pair[0], &pair[1]) {
                 found.push((step, own));
             }
-            between = own.closest(topology, &pair[1]).between;
+            between = own.parting(topology, &pair[1], &own.closest(topology, &pair[1]));
         }
     });
     found.sort_unstable();
@@ -190,6 +190,35 @@ mod tests {
     use super::*;
     use crate::contact::intersections::intersections;
     use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn steps_at_once_tell_what_each_tells(
+            places in prop::collection::vec(
+                prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 6), 2..9),
+            shares in prop::array::uniform2(0.01..1.0_f64),
+            nearly in prop::sample::select(vec![None, Some(0.0), Some(1e-7)]),
+        ) {
+            let topology = Topology::new(6, &[[0, 1, 2], [3, 4, 5]]);
+            // From steps far apart to such as film takes, and edges as good as parallel.
+            let first: Vec<Vector3<f64>> = places[0].iter().map(|x| Vector3::from(*x)).collect();
+            let frame = |own: &Vec<[f64; 3]>| {
+                let to = |(x, y): (&Vector3<f64>, &[f64; 3])| {
+                    let y = Vector3::from(*y);
+                    x + (y - x).component_mul(&Vector3::new(shares[0], shares[0], shares[1]))
+                };
+                let mut x: Vec<Vector3<f64>> = first.iter().zip(own).map(to).collect();
+                if let Some(lean) = nearly {
+                    x[4] = x[3] + (x[1] - x[0]) * 1.1 + Vector3::new(0.0, 0.0, lean);
+                }
+                Field::of(&x)
+            };
+            let frames: Vec<Field> = places.iter().map(frame).collect();
+            let each: Vec<Passage> =
+                frames.windows(2).flat_map(|two| passages(&topology, &two[0], &two[1])).collect();
+            prop_assert_eq!(passages_step_by_step(&topology, &frames), each);
+        }
+    }
 
     #[test]
     fn a_way_there_and_back_is_found_step_by_step_only() {

@@ -15,6 +15,9 @@ use super::topology::Topology;
 use crate::simd::{Vectors, WIDTH, Wide, dispatch_wide};
 use crate::state::Field;
 
+/// Square of the sine of an element's first angle, below which nothing is said of it.
+const SLIVER: f64 = 1e-8;
+
 #[inline(always)]
 fn least<L: Wide>(one: L, other: L) -> L {
     -((-one).max(-other))
@@ -35,7 +38,9 @@ fn apart<L: Wide>(edge: [Vectors<L>; 2], [a, b, c]: [Vectors<L>; 3]) -> L {
     let across = before((b - a).cross(normal), edge, a)
         .max(before((c - b).cross(normal), edge, b))
         .max(before((a - c).cross(normal), edge, c));
-    above.max(across)
+    // Of a sliver rounding turns the normal: nothing is said of it.
+    let flat = normal.dot(normal) - (b - a).dot(b - a) * (c - a).dot(c - a) * SLIVER;
+    flat.if_positive(above.max(across), L::splat(-1.0))
 }
 
 #[inline(always)]
