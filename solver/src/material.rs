@@ -15,7 +15,7 @@
 //!
 //! Principal values are m ± r with m = (exx + eyy)/2, r² = ((exx − eyy)/2)² + exy². Where e1 = e2
 //! no direction is needed: the film is then taut or slack, and both stresses are isotropic forms.
-//! Every S is coaxial with e, so two numbers tell it: its mean and how it leans with e's deviator.
+//! Every S is coaxial with e, so two numbers tell it: its mean and its secant shear modulus.
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
@@ -158,18 +158,18 @@ impl Material {
         let c = self.compression;
         // No closure: one is not inlined into another instruction set.
         let mean = relaxed(taut, twice, tension, sum * (0.5 * k * (1.0 + nu)), c);
-        let lean = tension.over(diameter);
-        let lean = relaxed(taut, twice, lean, L::splat(0.5 * k * (1.0 - nu)), c);
-        Response { mean, lean, largest: mean + lean * diameter }
+        let shear_modulus = tension.over(diameter);
+        let shear_modulus = relaxed(taut, twice, shear_modulus, L::splat(0.5 * k * (1.0 - nu)), c);
+        Response { mean, shear_modulus, largest: mean + shear_modulus * diameter }
     }
 
     /// S of one element: one lane of [`Self::response`].
     pub fn stress(&self, strain: PlaneTensor) -> Stress {
         let PlaneTensor { xx, yy, xy } = strain;
         let circle = Circle::of(Lanes::splat(xx), Lanes::splat(yy), Lanes::splat(2.0 * xy));
-        let Response { mean, lean, largest } = self.response(circle);
-        let (mean, lean) = (mean.0[0], lean.0[0]);
-        let (half, shear) = (lean * (xx - yy), lean * (2.0 * xy));
+        let Response { mean, shear_modulus, largest } = self.response(circle);
+        let (mean, shear_modulus) = (mean.0[0], shear_modulus.0[0]);
+        let (half, shear) = (shear_modulus * (xx - yy), shear_modulus * (2.0 * xy));
         let tensor = PlaneTensor { xx: mean + half, yy: mean - half, xy: shear };
         Stress { tensor, largest: largest.0[0] }
     }
@@ -198,14 +198,14 @@ impl<L: Wide> Circle<L> {
     }
 }
 
-/// Stresses of eight elements, coaxial with their strains: Sxx and Syy are mean ± lean (exx − eyy), Sxy
-/// is lean 2 exy; Pa.
+/// Stresses of eight elements, coaxial with their strains: Sxx and Syy are mean ± G (exx − eyy), Sxy is
+/// G 2 exy; Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response<L> {
     /// (Sxx + Syy)/2.
     pub mean: L,
-    /// (S1 − S2)/2 over e1 − e2.
-    pub lean: L,
+    /// G, secant: (S1 − S2)/2 over e1 − e2.
+    pub shear_modulus: L,
     /// S1.
     pub largest: L,
 }

@@ -7,7 +7,7 @@
 //!
 //! Symbols: X flat reference, x current places of an element's corners, m; F deformation gradient
 //! (3×2); A reference area, m²; m lumped mass, kg. One `Vec` a quantity; element quantities are
-//! indexed by element, node quantities by node.
+//! indexed by element, node quantities by node, those of the pass over elements by kite.
 
 use std::collections::BTreeSet;
 
@@ -175,9 +175,14 @@ impl FilmModel {
         Ok(model)
     }
 
-    /// A fault of the constants: tests only. Step and viscosity stay those of the sound film.
+    /// A fault of the constants: tests only. Step and viscous times stay those of the sound film.
     pub fn suffer(&mut self, fault: Mutation) {
         self.material.suffer(fault);
+        if fault.term == Term::PlaneModulus {
+            for block in self.constants.iter_mut().flatten() {
+                block.drag.0.iter_mut().for_each(|drag| *drag *= fault.factor);
+            }
+        }
         if fault.term == Term::Mass {
             self.mass.iter_mut().for_each(|mass| *mass *= fault.factor);
             self.inverse_mass.iter_mut().for_each(|inverse| *inverse /= fault.factor);

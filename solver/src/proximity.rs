@@ -10,6 +10,6 @@ pub mod boxes;
 pub mod lookout;
 mod order;
 pub mod patches;
-pub mod sought;
+mod sought;
 pub mod stars;
 pub mod zones;

@@ -1,10 +1,11 @@
-//! Eight elements at a time: plain arithmetic on `[f64; 8]`, compiled for several instruction sets.
+//! Eight elements at a time: kernels compiled for several instruction sets.
 //!
-//! A kernel is written once over [`Lanes`] and is `#[inline(always)]`; `dispatch!` instantiates it
-//! under `#[target_feature]` and picks at run time. Every lane does the same additions,
-//! multiplications, divisions and square roots in the same order on every path, nothing is
-//! contracted to a fused multiply-add, and sums over lanes are one fixed tree: the bits are equal,
-//! the build needs no flags.
+//! A kernel is written once over any [`Wide`] and is `#[inline(always)]`; `dispatch_wide!` instantiates
+//! it on the registers of each instruction set, under `#[target_feature]`, and picks at run time. What
+//! the compiler does well by itself is written over [`Lanes`], plain arrays, and goes by `dispatch!`. Every
+//! lane does the same additions, multiplications, divisions and square roots in the same order on every
+//! path, nothing is contracted to a fused multiply-add, and sums over lanes are one fixed tree: the bits
+//! are equal, the build needs no flags.
 
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
 

@@ -298,11 +298,12 @@ mod tests {
                     marks.iter().filter(|mark| mark.case == case).map(|mark| mark.time).collect()
                 };
                 let cases = match (effort, n) {
-                    (_, 17..) => vec![],
+                    (Effort::Quick, 17..) => vec![],
                     (Effort::Quick, _) => vec![0.05],
-                    (Effort::Usual, 16) => vec![0.1],
-                    (Effort::Usual, _) | (Effort::Full, 16) => vec![0.1, 0.3],
-                    (Effort::Full, _) => vec![0.1, 0.3, 1.5],
+                    (_, 17..) => vec![EARLY],
+                    (Effort::Usual, 16) => vec![EARLY, 0.1],
+                    (Effort::Usual, _) | (Effort::Full, 16) => vec![EARLY, 0.1, 0.3],
+                    (Effort::Full, _) => vec![EARLY, 0.1, 0.3, 1.5],
                 };
                 assert_eq!(times(true), cases);
             }

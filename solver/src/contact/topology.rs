@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::proximity::lookout::Sought;
 use crate::proximity::patches::Patches;
-use crate::proximity::sought::Sought;
 use crate::proximity::stars::Rings;
 
 /// A feature of the film a node can be nearest to.

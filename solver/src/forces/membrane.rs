@@ -98,7 +98,7 @@ pub fn strain_energy(model: &FilmModel, positions: &Field) -> f64 {
 }
 
 /// What a node has of an element's normal (x1 − x0) × (x2 − x0) in ∂V/∂x.
-pub const SIXTH: f64 = 1.0 / 6.0;
+pub(crate) const SIXTH: f64 = 1.0 / 6.0;
 
 /// Forces summed to nodes.
 #[derive(Debug, Clone, PartialEq)]

@@ -26,7 +26,7 @@ pub struct ElementBlock {
     /// Those of 2 Exy: 2ab, ad.
     pub shear: [Lanes; 2],
     /// −A t, m³: what a stress pulls back with.
-    pub loss: Lanes,
+    pub minus_volume: Lanes,
     /// `−A t E/(1−ν²) 2ζ/ω_e`, J s: what a strain rate does.
     pub drag: Lanes,
 }
@@ -66,7 +66,7 @@ impl ElementBlock {
         self.shear[0].0[lane] = -2.0 * along / (first * determinant);
         self.shear[1].0[lane] = 1.0 / determinant;
         let volume = model.volume[element];
-        self.loss.0[lane] = -volume;
+        self.minus_volume.0[lane] = -volume;
         let stiffness = volume * model.material.plane_modulus();
         self.drag.0[lane] = -stiffness * model.viscous_time[element];
     }

@@ -93,7 +93,7 @@ pub fn vectors_at<L: Wide>([x, y, z]: [&[f64]; 3], at: &[u32; WIDTH]) -> Vectors
 
 /// A node's sums over its elements, in one line of the cache: x, y, z and a number without meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub struct NodeSum {
     /// Force of the film, N.
     pub film: [f64; 4],

@@ -254,14 +254,14 @@ impl Wide for Avx512 {
     fn columns(rows: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2] {
         unsafe {
             // x z, x z of the normal; y and a rest likewise: two lanes of each.
-            let [even, odd] = [couple(&rows[0], &rows[1]), couple(&rows[2], &rows[3])];
-            let [even_later, odd_later] = [couple(&rows[4], &rows[5]), couple(&rows[6], &rows[7])];
-            let x = _mm512_shuffle_f64x2::<0x88>(even[0], odd[0]);
-            let y = _mm512_shuffle_f64x2::<0x88>(even[1], odd[1]);
-            let z = _mm512_shuffle_f64x2::<0xDD>(even[0], odd[0]);
-            let x_later = _mm512_shuffle_f64x2::<0x88>(even_later[0], odd_later[0]);
-            let y_later = _mm512_shuffle_f64x2::<0x88>(even_later[1], odd_later[1]);
-            let z_later = _mm512_shuffle_f64x2::<0xDD>(even_later[0], odd_later[0]);
+            let (first, second) = (couple(&rows[0], &rows[1]), couple(&rows[2], &rows[3]));
+            let (third, fourth) = (couple(&rows[4], &rows[5]), couple(&rows[6], &rows[7]));
+            let x = _mm512_shuffle_f64x2::<0x88>(first[0], second[0]);
+            let y = _mm512_shuffle_f64x2::<0x88>(first[1], second[1]);
+            let z = _mm512_shuffle_f64x2::<0xDD>(first[0], second[0]);
+            let x_later = _mm512_shuffle_f64x2::<0x88>(third[0], fourth[0]);
+            let y_later = _mm512_shuffle_f64x2::<0x88>(third[1], fourth[1]);
+            let z_later = _mm512_shuffle_f64x2::<0xDD>(third[0], fourth[0]);
             [
                 Vectors {
                     x: Self(_mm512_shuffle_f64x2::<0x88>(x, x_later)),

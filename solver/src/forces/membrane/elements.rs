@@ -93,11 +93,13 @@ fn edges<L: Wide>([s, a, t, b]: [Vectors<L>; 4]) -> [Vectors<L>; 3] {
     [a - s, t - s, b - s]
 }
 
-/// What an element tells of itself: of the pull r of its edges, minus; of the power viscosity takes,
-/// minus; its largest stress.
+/// What eight elements tell of themselves.
 struct Told<L> {
+    /// −r, N/m.
     pull: [L; 3],
+    /// Minus the power viscosity takes, W.
     taken: L,
+    /// Larger principal stresses, Pa.
     largest: L,
 }
 
@@ -122,13 +124,13 @@ fn told<L: Wide>(
     let [xx, yy, xy] = viscous;
     *remembered = [xx.lanes(), yy.lanes(), xy.lanes()];
 
-    let Response { mean, lean, largest } = material.response(circle);
-    let loss = of::<L>(&block.loss);
-    let (mean, lean) = (mean * loss, lean * loss);
-    let bent = lean * circle.difference;
+    let Response { mean, shear_modulus, largest } = material.response(circle);
+    let minus_volume = of::<L>(&block.minus_volume);
+    let (mean, shear_modulus) = (mean * minus_volume, shear_modulus * minus_volume);
+    let bent = shear_modulus * circle.difference;
     let xx = mean + xx + bent;
     let yy = mean + yy - bent;
-    let xy = xy + lean * circle.shear;
+    let xy = xy + shear_modulus * circle.shear;
     let ([b0, b1, b2], [c0, c1]) = (all::<L, 3>(&block.yy), all::<L, 2>(&block.shear));
     let pull = [of::<L>(&block.xx) * xx + b0 * yy + c0 * xy, b1 * yy + c1 * xy, b2 * yy];
     Told { pull, taken, largest }

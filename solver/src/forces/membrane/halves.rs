@@ -7,7 +7,7 @@
 //! nodes    slot [+ slots of the later half's corners, one by one]
 //! ```
 //!
-//! One pass adds what elements give to a node in their ascending order. Here a node of both halves gets
+//! One pass adds what kites give to a node in their order, corner by corner. Here a node of both halves gets
 //! the sum of the first half, then the second half's corners in that order: the same additions. Volumes
 //! and powers are sums over all elements lane by lane, block after block: those of the second half are
 //! kept a block, and added to the sums of the first when these are known. A slot begins with +0, so none

@@ -55,8 +55,10 @@ fn kick_kernel<L: Wide>(
 ) {
     let nodes = next[0].len();
     let (mass, inverse) = (&model.mass[..nodes], &model.inverse_mass[..nodes]);
-    let [contact, free, velocity] =
-        [&forces.contact, free, velocities].map(|f| [&f.x[..nodes], &f.y[..nodes], &f.z[..nodes]]);
+    let contact = &forces.contact;
+    let contact = [&contact.x[..nodes], &contact.y[..nodes], &contact.z[..nodes]];
+    let free = [&free.x[..nodes], &free.y[..nodes], &free.z[..nodes]];
+    let velocity = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
     let sums = &forces.sums[..nodes];
     let (blocks, _) = sums.as_chunks::<WIDTH>();
     for (block, sums) in blocks.iter().enumerate() {

@@ -1,5 +1,8 @@
 //! Columns turned into rows and back, four and eight at a time.
 
+// SAFETY, of every function and block below: called by `super` alone, under the instruction set its
+// registers are named for; `couple` reads `NodeSum` in the order it is laid out in (`repr(C)`), aligned.
+
 use core::arch::x86_64::{
     __m256d, __m512d, _mm256_loadu_pd, _mm256_permute2f128_pd, _mm256_setzero_pd,
     _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm512_load_pd, _mm512_setzero_pd,
