@@ -11,8 +11,8 @@ use crate::plan::Generation;
 use crate::value::short_number;
 
 /// Nanoseconds an element and step of the film model take on one core, about: measured on the paper's
-/// capsule at n 8 over 1.5 s.
-const NS: f64 = 30.0;
+/// capsule at n 4 to 8 over 0.5 s.
+const NS: f64 = 20.0;
 /// Meshes that are made to foretell a cost, at most.
 const MESHES: usize = 100;
 
