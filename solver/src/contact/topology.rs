@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::proximity::lookout::Sought;
 use crate::proximity::patches::Patches;
-use crate::proximity::stars::Rings;
+use crate::proximity::stars::Stars;
 
 /// A feature of the film a node can be nearest to.
 pub type Feature = u32;
@@ -21,7 +21,7 @@ pub struct Topology {
     /// The film in patches of neighbours.
     pub patches: Patches,
     /// Pairs of elements that share a node, by what is sought of them.
-    rings: [Rings; 2],
+    stars: [Stars; 2],
     /// Elements at each edge.
     at_edge: Vec<u32>,
     /// Elements at each node.
@@ -61,16 +61,16 @@ impl Topology {
             })
             .collect();
         let patches = Patches::new(nodes, triangles, &sides, edges.len());
-        let rings =
-            [Sought::Meetings, Sought::Piercings].map(|sought| Rings::new(sought, nodes, &patches));
-        Self { triangles: triangles.to_vec(), edges, sides, patches, rings, at_edge, at_node }
+        let stars =
+            [Sought::Meetings, Sought::Piercings].map(|sought| Stars::new(sought, nodes, &patches));
+        Self { triangles: triangles.to_vec(), edges, sides, patches, stars, at_edge, at_node }
     }
 
     /// Pairs of elements that share a node, and what is sought of them.
-    pub fn rings(&self, sought: Sought) -> &Rings {
+    pub fn stars(&self, sought: Sought) -> &Stars {
         match sought {
-            Sought::Meetings => &self.rings[0],
-            Sought::Piercings => &self.rings[1],
+            Sought::Meetings => &self.stars[0],
+            Sought::Piercings => &self.stars[1],
         }
     }
 

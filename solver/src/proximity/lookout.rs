@@ -13,7 +13,7 @@ use super::bins::Bins;
 use super::boxes::Boxes;
 pub use super::sought::{Couple, Sought};
 use super::sought::{Pairs, primitives};
-use super::stars::Stars;
+use super::stars::WaitingStars;
 use super::zones::Zones;
 use crate::contact::topology::Topology;
 use crate::simd::Path;
@@ -64,7 +64,7 @@ pub struct Lookout {
     /// Patches waiting, by their pair of zones.
     waiting: Vec<Bins>,
     /// Elements that share a node.
-    stars: Stars,
+    stars: WaitingStars,
     width: f64,
     /// Sum of the largest displacements since all was looked for anew, m.
     path: f64,
@@ -89,7 +89,7 @@ impl Lookout {
             zones,
             ways: vec![0.0; pairs],
             waiting: vec![Bins::new(width, RING, 0.0); pairs],
-            stars: Stars::new(topology.rings(sought)),
+            stars: WaitingStars::new(topology.stars(sought)),
             width,
             path: 0.0,
             boxes: Boxes::default(),
@@ -334,7 +334,7 @@ impl Lookout {
                 core::mem::swap(later, next);
             }
         }
-        stars.take(topology.rings(*sought), &reach.stars, |node, pair, own| {
+        stars.take(topology.stars(*sought), &reach.stars, |node, pair, own| {
             for (due, own) in due.iter_mut().zip(own) {
                 due.extend_from_slice(own);
             }

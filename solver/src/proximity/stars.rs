@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Pairs of elements that share a node, each with the lowest node they share: constant.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Rings {
+pub struct Stars {
     /// The first pair of each node, and the end of the last's.
     starts: Vec<usize>,
     /// Where the primitives of each pair end.
@@ -27,7 +27,7 @@ pub struct Rings {
     primitives: Pairs,
 }
 
-impl Rings {
+impl Stars {
     /// What is sought of elements that share one of so many nodes.
     pub fn new(sought: Sought, nodes: usize, patches: &Patches) -> Self {
         let mut at_node = vec![Vec::new(); nodes];
@@ -36,20 +36,20 @@ impl Rings {
                 at_node[*node as usize].push(leaf);
             }
         }
-        let mut rings = Self { starts: vec![0], ..Self::default() };
+        let mut stars = Self { starts: vec![0], ..Self::default() };
         for (node, leaves) in at_node.iter().enumerate() {
             for (at, one) in leaves.iter().enumerate() {
                 for two in &leaves[at + 1..] {
                     let theirs = patches.corners(*two);
                     let shared = patches.corners(*one).iter().filter(|own| theirs.contains(own));
                     if shared.min().is_some_and(|lowest| *lowest as usize == node) {
-                        rings.add(sought, patches, *one, *two);
+                        stars.add(sought, patches, *one, *two);
                     }
                 }
             }
-            rings.starts.push(rings.ends.len());
+            stars.starts.push(stars.ends.len());
         }
-        rings
+        stars
     }
 
     fn add(&mut self, sought: Sought, patches: &Patches, one: usize, two: usize) {
@@ -73,7 +73,7 @@ impl Rings {
 
 /// Pairs of elements that share a node, each waiting for its time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stars {
+pub struct WaitingStars {
     /// How far film round each node has come towards each other so far at most, m.
     ways: Vec<f64>,
     /// How far it comes now, m.
@@ -84,10 +84,10 @@ pub struct Stars {
     first: Vec<f64>,
 }
 
-impl Stars {
+impl WaitingStars {
     /// Stars that have looked at nothing yet.
-    pub fn new(rings: &Rings) -> Self {
-        let (nodes, pairs) = (rings.starts.len() - 1, rings.ends.len());
+    pub fn new(stars: &Stars) -> Self {
+        let (nodes, pairs) = (stars.starts.len() - 1, stars.ends.len());
         let (ways, reach) = (vec![0.0; nodes], vec![0.0; nodes]);
         Self { ways, reach, due: vec![0.0; pairs], first: vec![0.0; nodes] }
     }
@@ -135,7 +135,7 @@ impl Stars {
     /// other: its node, its number, its primitives of each kind.
     pub fn take(
         &mut self,
-        rings: &Rings,
+        stars: &Stars,
         reach: &[f64],
         mut look: impl FnMut(usize, usize, [&[[u32; 2]]; 2]),
     ) {
@@ -145,13 +145,13 @@ impl Stars {
                 continue;
             }
             *first = f64::INFINITY;
-            for pair in rings.starts[node]..rings.starts[node + 1] {
+            for pair in stars.starts[node]..stars.starts[node + 1] {
                 let due = self.due[pair];
                 if due > until {
                     *first = first.min(due);
                 } else {
                     self.due[pair] = f64::INFINITY;
-                    look(node, pair, rings.of(pair));
+                    look(node, pair, stars.of(pair));
                 }
             }
         }
@@ -201,12 +201,12 @@ mod tests {
             // A fan of six, and one that is apart.
             let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5], [0, 5, 1], [1, 2, 6]];
             let topology = Topology::new(7, &triangles);
-            let rings = topology.rings(Sought::Meetings);
-            let mut stars = Stars::new(rings);
+            let stars = topology.stars(Sought::Meetings);
+            let mut waiting = WaitingStars::new(stars);
             let (from, to): (Vec<_>, Vec<_>) =
                 from.into_iter().zip(to).map(|(x, y)| (Vector3::from(x), Vector3::from(y))).unzip();
             let reach =
-                stars.travel(&topology.edges, &Field::of(&from), &Field::of(&to)).to_vec();
+                waiting.travel(&topology.edges, &Field::of(&from), &Field::of(&to)).to_vec();
             for (node, reach) in reach.iter().enumerate() {
                 let own = |corners: &&[u32; 3]| corners.iter().any(|own| *own as usize == node);
                 let nodes: Vec<usize> =
@@ -219,7 +219,7 @@ mod tests {
                 }
             }
             let mut seen: [BTreeSet<[u32; 2]>; 2] = Default::default();
-            stars.take(rings, &reach, |_, _, told| {
+            waiting.take(stars, &reach, |_, _, told| {
                 for (seen, told) in seen.iter_mut().zip(told) {
                     for pair in told {
                         assert!(seen.insert(*pair), "{pair:?} twice");
@@ -228,11 +228,11 @@ mod tests {
             });
             prop_assert_eq!(seen, next_to_each_other(&topology));
             // Of what waits nothing is told before its time.
-            stars.put(0, 0, 1.0);
+            waiting.put(0, 0, 1.0);
             let mut told = 0_u32;
-            stars.take(rings, &[0.5; 7], |_, _, _| told += 1);
+            waiting.take(stars, &[0.5; 7], |_, _, _| told += 1);
             prop_assert_eq!(told, 0);
-            stars.take(rings, &[1.0; 7], |_, _, _| told += 1);
+            waiting.take(stars, &[1.0; 7], |_, _, _| told += 1);
             prop_assert_eq!(told, 1);
         }
     }
