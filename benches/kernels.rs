@@ -13,6 +13,7 @@ use billow_solver::scene::Film;
 use billow_solver::shell::Shell;
 use billow_solver::simd::Path;
 use billow_solver::state::Field;
+use billow_solver::supports::Free;
 use criterion::{Criterion, Throughput};
 use nalgebra::Vector3;
 
@@ -52,7 +53,7 @@ fn steps(criterion: &mut Criterion) {
     for subdivisions in [5, 8, 16] {
         let (model, places) = capsule(subdivisions);
         let nodes = model.nodes();
-        let free = Field::of(&vec![Vector3::repeat(1.0); nodes]);
+        let free = Free::all(nodes);
         let length = 0.4 / model.largest_frequency();
         let push = Push {
             overpressure: 100.0,
@@ -60,6 +61,7 @@ fn steps(criterion: &mut Criterion) {
             weight: 1.0,
             keep: 1.0,
             gain: length,
+            pressed: false,
         };
         let start = Moving::new(Path::best(), &model, places, Field::zeros(nodes));
         let mut group = criterion.benchmark_group(format!("film n {subdivisions}"));

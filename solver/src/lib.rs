@@ -54,4 +54,4 @@ pub mod workers;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.
-pub const PHYSICS_VERSION: u32 = 3;
+pub const PHYSICS_VERSION: u32 = 4;

@@ -192,7 +192,12 @@ impl<L: Wide> Circle<L> {
     /// Of exx, eyy and 2 exy.
     #[inline(always)]
     pub fn of(xx: L, yy: L, shear: L) -> Self {
-        let (sum, difference) = (xx + yy, xx - yy);
+        Self::told(xx + yy, xx - yy, shear)
+    }
+
+    /// Of their sum, their difference and 2 exy.
+    #[inline(always)]
+    pub fn told(sum: L, difference: L, shear: L) -> Self {
         let diameter = (difference * difference + shear * shear).sqrt();
         Self { sum, difference, shear, diameter }
     }

@@ -17,7 +17,7 @@ use crate::material::Material;
 use crate::mutation::{Mutation, Term};
 use crate::scene::Film;
 use crate::shell::Shell;
-use crate::simd::Corners;
+use crate::simd::{Column, Corners};
 
 mod blocks;
 mod frequency;
@@ -85,7 +85,7 @@ pub struct FilmModel {
     /// m of each node, kg; 0 where only closing faces meet.
     pub mass: Vec<f64>,
     /// 1/m of each node, 1/kg; 0 where it has no mass, so that no force moves it.
-    pub inverse_mass: Vec<f64>,
+    pub inverse_mass: Column,
 }
 
 impl FilmModel {
@@ -133,7 +133,7 @@ impl FilmModel {
             frequency: Vec::with_capacity(triangles.len()),
             viscous_time: Vec::with_capacity(triangles.len()),
             mass: vec![0.0; nodes],
-            inverse_mass: Vec::new(),
+            inverse_mass: Column::default(),
         };
         for (element, (triangle, [a, b, c])) in triangles.iter().zip(reference).enumerate() {
             if triangle.iter().any(|node| *node as usize >= nodes) {

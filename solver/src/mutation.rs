@@ -19,8 +19,8 @@ pub enum Term {
     Elastic,
     /// Viscous force of the film.
     Viscous,
-    /// Power the viscosity takes, as the ledger hears of it.
-    ViscousPower,
+    /// Work the viscosity takes, as the ledger hears of it.
+    ViscousWork,
     /// ∂V/∂x: the force of pressure on the film.
     PressureForce,
     /// The enclosed volume.
@@ -66,7 +66,7 @@ impl Term {
     pub const ALL: [Self; 22] = [
         Self::Elastic,
         Self::Viscous,
-        Self::ViscousPower,
+        Self::ViscousWork,
         Self::PressureForce,
         Self::Volume,
         Self::Gravity,

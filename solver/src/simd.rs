@@ -11,6 +11,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
+mod column;
 mod corners;
 mod dispatch;
 mod lanes;
@@ -18,6 +19,7 @@ mod vectors;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod x86;
 
+pub use column::Column;
 pub use corners::{Columns, Corners, NodeSum, vectors_at};
 pub(crate) use dispatch::{dispatch, dispatch_wide};
 pub use lanes::Lanes;

@@ -3,22 +3,30 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// One vector a node (or corner), a `Vec` a component.
+use crate::simd::Column;
+
+/// One vector a node (or corner), a column a component.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Field {
     /// x components.
-    pub x: Vec<f64>,
+    pub x: Column,
     /// y components.
-    pub y: Vec<f64>,
+    pub y: Column,
     /// z components.
-    pub z: Vec<f64>,
+    pub z: Column,
 }
 
 impl Field {
     /// `length` zero vectors.
     pub fn zeros(length: usize) -> Self {
-        Self { x: vec![0.0; length], y: vec![0.0; length], z: vec![0.0; length] }
+        Self::repeat(0.0, length)
+    }
+
+    /// `length` vectors of this component.
+    pub fn repeat(component: f64, length: usize) -> Self {
+        let column = Column::repeat(component, length);
+        Self { x: column.clone(), y: column.clone(), z: column }
     }
 
     /// The field of these vectors.
@@ -38,17 +46,6 @@ impl Field {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
-    }
-
-    /// Its columns from `middle` on apart from those before.
-    ///
-    /// # Panics
-    /// When there are fewer vectors.
-    pub fn split_at_mut(&mut self, middle: usize) -> [[&mut [f64]; 3]; 2] {
-        let (x, x_later) = self.x.split_at_mut(middle);
-        let (y, y_later) = self.y.split_at_mut(middle);
-        let (z, z_later) = self.z.split_at_mut(middle);
-        [[x, y, z], [x_later, y_later, z_later]]
     }
 
     /// Vector `index`.

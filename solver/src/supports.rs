@@ -13,19 +13,60 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::film_scene::{FilmSupport, Hold, Motion, PlaneBody};
 use crate::model::FilmModel;
+use crate::simd::WIDTH;
 use crate::state::Field;
 
 /// Which components of which nodes are held, and by what.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Supports {
-    /// 1 where a component is free, 0 where it is held along its axis.
-    pub free: Field,
+    /// What is free along the axes.
+    pub free: Free,
     /// Nodes held along directions that are no axes, in ascending order, with P.
     pub oblique: Vec<(u32, Matrix3<f64>)>,
     /// What moves as prescribed.
     pub movers: Vec<Mover>,
     /// Rigid planes that move as free bodies.
     pub bodies: Vec<Body>,
+}
+
+/// What is free along the axes: 1 where a component of a node is, 0 where it is held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Free {
+    field: Field,
+    /// Whether any of eight nodes is held, from the first on: most are free, and need not be asked.
+    held: Vec<bool>,
+}
+
+impl Free {
+    /// All of this many nodes.
+    pub fn all(nodes: usize) -> Self {
+        Self { field: Field::repeat(1.0, nodes), held: vec![false; nodes.div_ceil(WIDTH)] }
+    }
+
+    /// Of a node.
+    pub fn get(&self, node: usize) -> Vector3<f64> {
+        self.field.get(node)
+    }
+
+    /// Says what is free of a node: components 1 or 0.
+    pub fn set(&mut self, node: usize, free: Vector3<f64>) {
+        self.field.set(node, free);
+        let first = node / WIDTH * WIDTH;
+        let end = self.field.len().min(first + WIDTH);
+        let whole = Vector3::repeat(1.0);
+        self.held[node / WIDTH] = (first..end).any(|own| self.field.get(own) != whole);
+    }
+
+    /// Of all nodes.
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+
+    /// Whether anything is held of the nodes from `first` to seven after it; `first` a multiple of eight.
+    #[inline]
+    pub fn any_held(&self, first: usize) -> bool {
+        self.held[first / WIDTH]
+    }
 }
 
 /// Nodes that move as prescribed, in what is held of them.
@@ -101,13 +142,7 @@ const PARALLEL: f64 = 1e-9;
 impl Supports {
     /// No supports for this many nodes.
     pub fn none(nodes: usize) -> Self {
-        let ones = || vec![1.0; nodes];
-        Self {
-            free: Field { x: ones(), y: ones(), z: ones() },
-            oblique: Vec::new(),
-            movers: Vec::new(),
-            bodies: Vec::new(),
-        }
+        Self { free: Free::all(nodes), oblique: Vec::new(), movers: Vec::new(), bodies: Vec::new() }
     }
 
     /// These supports on nodes that start at these places (m).
@@ -165,14 +200,16 @@ impl Supports {
     pub fn hold(&mut self, nodes: &[u32], fix: &str) {
         for node in nodes {
             let node = *node as usize;
+            let mut free = self.free.get(node);
             for axis in fix.chars() {
                 match axis {
-                    'x' => self.free.x[node] = 0.0,
-                    'y' => self.free.y[node] = 0.0,
-                    'z' => self.free.z[node] = 0.0,
+                    'x' => free.x = 0.0,
+                    'y' => free.y = 0.0,
+                    'z' => free.z = 0.0,
                     _ => {}
                 }
             }
+            self.free.set(node, free);
         }
     }
 

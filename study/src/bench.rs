@@ -39,6 +39,8 @@ pub const STOWED: &str = "stowed";
 pub const RISING: f64 = 0.03;
 /// Time to which meshes of every size are run, s: the growth of the cost is told of it.
 pub const EARLY: f64 = 0.005;
+/// Wall time of a way that is gone more than once, s: at most this.
+const BRIEF: f64 = 0.5;
 /// Times a case is told at, s.
 const CASES: [f64; 4] = [EARLY, 0.1, 0.3, 1.5];
 /// Meshes timed unless others are asked for: n.
@@ -264,7 +266,9 @@ fn capsule_of(
     let capsule = Capsule::new(subdivisions, plan.path)?;
     let (states, cases) = capsule::travel(&capsule, &marks, stop)?;
     if plan.parts.contains(&Part::Cases) {
-        report.cases.extend(cases);
+        for case in cases {
+            report.cases.push(least(case, &capsule, plan.effort, stop)?);
+        }
     }
     if !plan.parts.contains(&Part::Stages) {
         return Ok(());
@@ -276,6 +280,23 @@ fn capsule_of(
         }
     }
     Ok(())
+}
+
+/// A way so short that a moment of somebody else's shows in it is gone again from the start, and the
+/// least kept.
+fn least(mut case: Case, capsule: &Capsule, effort: Effort, stop: &Stop) -> Result<Case> {
+    let way = [Mark { time: case.end_time, state: None, case: true }];
+    for _ in 1..effort.repeats() {
+        if case.wall_seconds > BRIEF {
+            break;
+        }
+        for again in capsule::travel(capsule, &way, stop)?.1 {
+            if again.wall_seconds < case.wall_seconds {
+                case = again;
+            }
+        }
+    }
+    Ok(case)
 }
 
 /// Whether a signal ends the bench.

@@ -1,7 +1,7 @@
 //! Small films for the tests of the explicit solver.
 
 use billow_solver::course::Phase;
-use billow_solver::forces::membrane::{Drag, NodeForces, film_pass};
+use billow_solver::forces::membrane::{NodeForces, Past, film_pass};
 use billow_solver::gas::{Gas, GasState};
 use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
 use billow_solver::model::FilmModel;
@@ -110,12 +110,12 @@ pub fn icosphere(level: u32, radius: f64) -> Piece {
     Piece::relaxed(nodes, triangles)
 }
 
-/// Film forces on nodes at these places and velocities, with the power viscosity takes.
-pub fn film_forces(model: &FilmModel, places: &Field, velocities: &Field) -> (NodeForces, f64) {
+/// Film forces on nodes at these places, at rest.
+pub fn film_forces(model: &FilmModel, places: &Field) -> NodeForces {
     let mut nodes = NodeForces::new(model);
-    let drag = &mut Drag::none(model);
-    let sums = film_pass(Path::best(), model, places, velocities, 0.0, drag, &mut nodes);
-    (nodes, sums.viscous_power)
+    let past = &mut Past::at_rest(model);
+    let _ = film_pass(Path::best(), model, places, 0.0, past, &mut nodes);
+    nodes
 }
 
 /// Places of a piece under x = F X + t, and the field of them.

@@ -21,7 +21,7 @@ const PANEL: Judge = ("shear_panel", "P12");
 const JUDGES: [(Term, Judge, Judge); 22] = [
     (Term::Elastic, TAUT_FORCE, TAUT_FORCE),
     (Term::Viscous, ("strip_damping", "log decrement"), ("dissipation", "power taken")),
-    (Term::ViscousPower, ("strip_damping", "energy taken"), FILM_LEDGER),
+    (Term::ViscousWork, ("strip_damping", "energy taken"), FILM_LEDGER),
     (Term::PressureForce, FILM_LEDGER, SPHERE_STOPS),
     (Term::Volume, FILM_LEDGER, SPHERE_STOPS),
     (Term::Gravity, ("force_energy", "weight"), FILM_LEDGER),

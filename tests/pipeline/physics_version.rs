@@ -42,7 +42,7 @@ fn piston(scene: &Scene) -> String {
 fn end_state(film: &Explicit) -> String {
     let state = &film.state;
     let fields = [&state.places, &state.velocities].map(|field| [&field.x, &field.y, &field.z]);
-    let nodes = fields.into_iter().flatten().flatten().copied();
+    let nodes = fields.into_iter().flatten().flat_map(|column| column.iter()).copied();
     let works = state.works;
     let scalars = [
         state.time,

@@ -11,38 +11,27 @@
 
 use nalgebra::Vector3;
 
-use super::damping::viscous_stress;
 use crate::material::PlaneTensor;
 use crate::model::FilmModel;
-use crate::simd::{Lanes, NodeSum, Path};
+use crate::simd::{NodeSum, Path};
 use crate::state::Field;
 
 mod elements;
 mod halves;
+mod past;
 
 pub use halves::Halves;
+pub use past::{Past, viscous_forces};
 
 use elements::{LaneSums, Share, element_pass, element_pass_kept};
-
-/// What a pass remembers of the halves of eight kites for the next: −A t `S_v` by xx, yy and xy, J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Drag(pub(crate) [[Lanes; 3]; 2]);
-
-impl Drag {
-    /// None yet, for a model's elements.
-    pub fn none(model: &FilmModel) -> Vec<Self> {
-        vec![Self::default(); model.constants.len()]
-    }
-}
 
 /// Sums over all elements of one pass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sums {
     /// Six times the volume enclosed by film (and closing faces), m³.
     pub six_volumes: f64,
-    /// Power taken by viscosity, W: of the stress here and, along the way here, of that of the pass
-    /// before, both with the velocities given. Half the step times it is the work of the way.
-    pub viscous_power: f64,
+    /// Work taken by viscosity on the way here, J: of the mean of its stress there and here.
+    pub viscous_work: f64,
     /// Largest principal second Piola-Kirchhoff stress, Pa, without its viscous part.
     pub largest_stress: f64,
 }
@@ -51,29 +40,28 @@ impl LaneSums {
     fn sums(self) -> Sums {
         Sums {
             six_volumes: self.volumes.sum(),
-            viscous_power: -self.power.sum(),
+            viscous_work: -0.5 * self.works.sum(),
             largest_stress: self.largest.largest(),
         }
     }
 }
 
-/// Forces and areas of the film on its nodes at these positions (m) and the velocities (m/s) viscosity
-/// takes; `way` (s) times these led here from where the pass before was.
+/// Forces and areas of the film on its nodes at these positions (m), `step` (s) after the pass before;
+/// 0 where none was, or nothing has moved since: then `S_v` is the one remembered.
 pub fn film_pass(
     path: Path,
     model: &FilmModel,
     positions: &Field,
-    velocities: &Field,
-    way: f64,
-    drag: &mut [Drag],
+    step: f64,
+    past: &mut [[Past; 2]],
     out: &mut NodeForces,
 ) -> Sums {
     let whole =
-        Share { first: 0, targets: &model.blocks, drag, sums: &mut out.sums, terms: &mut [] };
-    element_pass(path, model, positions, velocities, way, whole).sums()
+        Share { first: 0, targets: &model.blocks, past, sums: &mut out.sums, terms: &mut [] };
+    element_pass(path, model, positions, step, whole).sums()
 }
 
-/// F of an element by columns, or Ḟ: of a field at its corners.
+/// F of an element by columns.
 fn gradient(model: &FilmModel, field: &Field, element: usize) -> [Vector3<f64>; 2] {
     let [x0, x1, x2] = model.triangles[element].map(|node| field.get(node as usize));
     let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
@@ -155,25 +143,4 @@ impl NodeForces {
     pub(crate) fn scale_area(&mut self, node: usize, factor: f64) {
         self.sums[node].normal.iter_mut().for_each(|entry| *entry *= factor);
     }
-}
-
-/// Forces of viscosity alone on nodes, N: the part of [`film_pass`]'s that has `S_v`, once more, by F.
-pub fn viscous_forces(model: &FilmModel, positions: &Field, velocities: &Field) -> Field {
-    let mut sum = Field::zeros(model.nodes());
-    for (element, triangle) in model.triangles.iter().enumerate() {
-        let [f, g] = gradient(model, positions, element);
-        let [fr, gr] = gradient(model, velocities, element);
-        let rate =
-            PlaneTensor { xx: f.dot(&fr), yy: g.dot(&gr), xy: (f.dot(&gr) + g.dot(&fr)) * 0.5 };
-        let PlaneTensor { xx, yy, xy } =
-            viscous_stress(&model.material, model.viscous_time[element], rate);
-        let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
-        let (p, q) = (f * xx + g * xy, f * xy + g * yy);
-        let loss = -model.volume[element];
-        let (first, second) = ((p * a + q * b) * loss, (p * c + q * d) * loss);
-        for (node, force) in triangle.iter().zip([-(first + second), first, second]) {
-            sum.set(*node as usize, sum.get(*node as usize) + force);
-        }
-    }
-    sum
 }

@@ -24,7 +24,7 @@ use crate::contact::search::Search;
 use crate::course::Phase;
 use crate::deployment::{Failure, FailureKind};
 use crate::forces::damping::stable_share;
-use crate::forces::membrane::{Drag, NodeForces, Sums, viscous_forces};
+use crate::forces::membrane::{NodeForces, Past, Sums, viscous_forces};
 use crate::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::gas::{GasState, Inflow};
 use crate::model::FilmModel;
@@ -63,7 +63,6 @@ pub struct Explicit {
     pub watch: Option<Watch>,
     /// What is near: a function of the state, made when first asked for.
     search: Option<Search>,
-    drag: Vec<Drag>,
     next: Field,
     crew: Crew,
 }
@@ -78,8 +77,10 @@ impl Explicit {
         gas: GasState,
     ) -> Self {
         let planes = setting.supports.bodies.iter().map(|body| body.plane.velocity).collect();
-        let mut film = Self::with(model, setting, State::start(places, velocities, planes, gas));
+        let state = State::start(places, velocities, Vec::new(), planes, gas);
+        let mut film = Self::with(model, setting, state);
         film.bind_to_planes();
+        film.state.past = Past::in_motion(&film.model, &film.state.places, &film.state.velocities);
         film.meet_first();
         let sums = film.pass_at(0.0, 0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
@@ -102,13 +103,13 @@ impl Explicit {
     }
 
     fn with(model: FilmModel, setting: Setting, state: State) -> Self {
-        let (drag, forces) = (Drag::none(&model), NodeForces::new(&model));
+        let forces = NodeForces::new(&model);
         let next = Field::zeros(model.nodes());
         let watch = setting.watch.zip(setting.contact.as_ref());
         let watch =
             watch.map(|(how, law)| Watch::new(how, &law.topology, &state.places, state.steps));
         let crew = Crew::default();
-        Self { model, setting, state, forces, watch, search: None, drag, next, crew }
+        Self { model, setting, state, forces, watch, search: None, next, crew }
     }
 
     /// Has these workers take the steps from now on; until then, and in a copy, the caller takes them
@@ -226,7 +227,7 @@ impl Explicit {
         let path = self.setting.path;
         let fastest = drift_nodes(path, &state.velocities, way, &mut state.places);
         self.plate_work(until);
-        let sums = self.pass_at(until, way, stopwatch);
+        let sums = self.pass_at(until, length, stopwatch);
         stopwatch.begins(Stage::Gas);
         self.plate_work(until);
         let volume = sums.six_volumes / 6.0;
@@ -235,8 +236,7 @@ impl Explicit {
         if !sound || !volume.is_finite() {
             return Err(self.unstable());
         }
-        self.state.works.viscous +=
-            0.5 * length * sums.viscous_power * self.setting.fault(Term::ViscousPower);
+        self.state.works.viscous += sums.viscous_work * self.setting.fault(Term::ViscousWork);
         self.state.film_stress = self.state.film_stress.max(sums.largest_stress);
         if matches!(self.setting.interior, Interior::Gas(_)) && volume <= 0.0 {
             return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
@@ -306,16 +306,13 @@ impl Explicit {
             + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
     }
 
-    /// Forces at the places now, which are those of `time` (s), `way` (s) times the velocities from where
-    /// they were last asked for.
-    fn pass_at(&mut self, time: f64, way: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
+    /// Forces at the places now, which are those of `time` (s), `step` (s) after they were last asked for.
+    fn pass_at(&mut self, time: f64, step: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
         stopwatch.begins(Stage::Membrane);
-        let (model, state) = (&self.model, &self.state);
-        let path = self.setting.path;
-        let (places, velocities) = (&state.places, &state.velocities);
-        let (drag, forces) = (&mut self.drag, &mut self.forces);
-        let mut sums = self.crew.film_pass(path, model, places, velocities, way, drag, forces);
-        sums.six_volumes += add_closure(model, &state.places, &mut self.forces);
+        let (model, path) = (&self.model, self.setting.path);
+        let State { places, past, .. } = &mut self.state;
+        let mut sums = self.crew.film_pass(path, model, places, step, past, &mut self.forces);
+        sums.six_volumes += add_closure(model, places, &mut self.forces);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
         }
@@ -328,7 +325,7 @@ impl Explicit {
     fn suffer(&mut self, sums: &mut Sums) {
         let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
             .map(|term| self.setting.fault(term));
-        let drags = viscous_forces(&self.model, &self.state.places, &self.state.velocities);
+        let drags = viscous_forces(&self.model, &self.state.places, &self.state.past);
         for (node, drag) in drags.iter().enumerate() {
             let rest = self.forces.film(node) - drag;
             self.forces.set_film(node, rest * elastic + drag * viscous);

@@ -182,6 +182,7 @@ impl FilmRun {
         let fits = [&state.places, &state.velocities].iter().all(|field| {
             [&field.x, &field.y, &field.z].iter().all(|column| column.len() == model.nodes())
         });
+        let fits = fits && state.past.len() == model.constants.len();
         if !fits || state.planes.len() != bodies {
             let problem = "the state is that of another film".to_owned();
             return Err(SceneError::Invalid { key: "mesh".to_owned(), problem });
@@ -239,7 +240,7 @@ impl FilmRun {
 
     /// Largest height of any node with mass, m.
     fn largest_height(&self) -> f64 {
-        let masses = self.film.model.mass.iter().zip(&self.film.state.places.z);
+        let masses = self.film.model.mass.iter().zip(self.film.state.places.z.iter());
         masses.filter(|(mass, _)| **mass > 0.0).map(|(_, z)| *z).fold(f64::NEG_INFINITY, f64::max)
     }
 }

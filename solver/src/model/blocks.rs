@@ -10,7 +10,7 @@
 //!
 //! Strain is linear in the metric m of an element's edges p and q, and film is alike in all directions:
 //! each element has axes of its own, the first along its first edge in the reference. With P, Q the
-//! edges there, a² = 1/P², d = |P|/(P × Q), b = −a P·Q/(P × Q).
+//! edges there, a = 1/|P|, d = |P|/(P × Q), b = −a P·Q/(P × Q).
 
 use super::FilmModel;
 use super::kites::Kite;
@@ -19,12 +19,8 @@ use crate::simd::{Lanes, WIDTH};
 /// Constants of eight elements; nought where there is none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ElementBlock {
-    /// G's entry of Exx, 1/m²: a².
-    pub xx: Lanes,
-    /// Those of Eyy: b², bd, d².
-    pub yy: [Lanes; 3],
-    /// Those of 2 Exy: 2ab, ad.
-    pub shear: [Lanes; 2],
+    /// Of Dm⁻¹: a, b and d, 1/m.
+    pub inverse: [Lanes; 3],
     /// −A t, m³: what a stress pulls back with.
     pub minus_volume: Lanes,
     /// `−A t E/(1−ν²) 2ζ/ω_e`, J s: what a strain rate does.
@@ -58,13 +54,10 @@ impl ElementBlock {
         };
         let (p, q) = (to(1), to(2));
         let (first, along) = (p[0] * p[0] + p[1] * p[1], p[0] * q[0] + p[1] * q[1]);
-        let square = determinant * determinant;
-        self.xx.0[lane] = 1.0 / first;
-        self.yy[0].0[lane] = along * along / (first * square);
-        self.yy[1].0[lane] = -along / square;
-        self.yy[2].0[lane] = first / square;
-        self.shear[0].0[lane] = -2.0 * along / (first * determinant);
-        self.shear[1].0[lane] = 1.0 / determinant;
+        let length = first.sqrt();
+        self.inverse[0].0[lane] = 1.0 / length;
+        self.inverse[1].0[lane] = -along / (length * determinant);
+        self.inverse[2].0[lane] = length / determinant;
         let volume = model.volume[element];
         self.minus_volume.0[lane] = -volume;
         let stiffness = volume * model.material.plane_modulus();

@@ -10,6 +10,8 @@ use super::{Vectors, WIDTH, Wide};
 pub struct Corners {
     nodes: usize,
     blocks: Vec<[[u32; WIDTH]; 4]>,
+    /// Nodes up to the farthest of each block and of those before it; of the last, all.
+    reach: Vec<usize>,
 }
 
 impl Corners {
@@ -26,7 +28,31 @@ impl Corners {
                 |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
             [0, 1, 2, 3].map(|corner| core::array::from_fn(|lane| node(corner, lane)))
         };
-        Self { nodes, blocks: kites.chunks(WIDTH).map(block).collect() }
+        let blocks: Vec<[[u32; WIDTH]; 4]> = kites.chunks(WIDTH).map(block).collect();
+        let farthest = |block: &[[u32; WIDTH]; 4]| block.iter().flatten().max().map_or(0, |k| *k);
+        let mut reach: Vec<usize> = blocks
+            .iter()
+            .scan(0, |reach, block| {
+                *reach = (farthest(block) as usize + 1).max(*reach);
+                Some(*reach)
+            })
+            .collect();
+        if let Some(last) = reach.last_mut() {
+            *last = nodes;
+        }
+        Self { nodes, blocks, reach }
+    }
+
+    /// Begins anew the sums a block is the first to add to, `begun` of which are; how many are then.
+    ///
+    /// All at once would be written long before anything is added to them, and leave the cache.
+    #[inline(always)]
+    pub fn begin(&self, block: usize, begun: usize, sums: &mut [NodeSum]) -> usize {
+        let reach = self.reach[block];
+        for sum in &mut sums[begun..reach] {
+            *sum = NodeSum::default();
+        }
+        reach
     }
 
     /// Number of blocks.

@@ -4,11 +4,14 @@
 
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
+use serde::{Deserialize, Serialize};
+
 use super::{NodeSum, Vectors, WIDTH, Wide};
 
 /// One number of each of eight elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[repr(align(64))]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+#[repr(C, align(64))]
 pub struct Lanes(pub [f64; WIDTH]);
 
 impl Lanes {

@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 use super::factor::{Elimination, Factor};
 use super::tangent::{self, Stiffness};
 use super::unknowns::Unknowns;
-use crate::forces::membrane::{Drag, NodeForces, film_pass};
+use crate::forces::membrane::{NodeForces, Past, film_pass};
 use crate::forces::pressure::add_closure;
 use crate::model::FilmModel;
 use crate::resultants::thickness;
@@ -159,10 +159,9 @@ struct Search<'a> {
     loaded: &'a Loaded<'a>,
     unknowns: Unknowns,
     places: Field,
-    /// Room: trial places, velocities of nought, what a pass remembers, node forces.
+    /// Room: trial places, what a pass remembers, node forces.
     trial: Field,
-    still: Field,
-    drag: Vec<Drag>,
+    past: Vec<[Past; 2]>,
     nodes: NodeForces,
     /// Forces on nodes and along the unknowns at the last places looked at.
     forces: Field,
@@ -178,8 +177,7 @@ impl<'a> Search<'a> {
             unknowns,
             trial: places.clone(),
             places,
-            still: Field::zeros(model.nodes()),
-            drag: Drag::none(model),
+            past: Past::at_rest(model),
             nodes: NodeForces::new(model),
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
@@ -194,8 +192,7 @@ impl<'a> Search<'a> {
             self.unknowns.shift(&mut self.trial, by, share);
         }
         let Loaded { model, overpressure, gravity, path, .. } = *self.loaded;
-        let (places, still) = (&self.trial, &self.still);
-        let _ = film_pass(path, model, places, still, 0.0, &mut self.drag, &mut self.nodes);
+        let _ = film_pass(path, model, &self.trial, 0.0, &mut self.past, &mut self.nodes);
         let _ = add_closure(model, &self.trial, &mut self.nodes);
         for node in 0..model.nodes() {
             let force = self.nodes.film(node)

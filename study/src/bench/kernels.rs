@@ -87,6 +87,7 @@ pub fn measure(
         weight: 1.0,
         keep: 1.0,
         gain: film.state.last_step,
+        pressed: false,
     };
     let (free, length) = (&film.setting.supports.free, film.state.last_step);
     let moving = |path| {

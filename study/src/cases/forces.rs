@@ -176,7 +176,7 @@ pub fn dissipation(rig: &Rig) -> Outcome {
             film.forces.films().iter().zip(bare.forces.films().iter()).map(|(f, g)| f - g).collect()
         };
         let told = film_at(rig, &shell, viscous, places.clone(), velocities.clone())?;
-        let drag = viscous_forces(&told.model, &told.state.places, &told.state.velocities);
+        let drag = viscous_forces(&told.model, &told.state.places, &told.state.past);
         let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let taken: f64 = drags.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let size: f64 = drags.iter().map(Vector3::norm).sum();

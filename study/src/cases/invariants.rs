@@ -60,7 +60,7 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let scale = film.youngs_modulus * film.thickness * 0.1;
     let film = rig.start(&FilmScene { velocities: velocities.clone(), ..scene(shell, film) })?;
     let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
-    let drag = viscous_forces(&film.model, &film.state.places, &film.state.velocities);
+    let drag = viscous_forces(&film.model, &film.state.places, &film.state.past);
     let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
     let band = number("patch/band");
     Ok(vec![

@@ -2,18 +2,17 @@
 //!
 //! ```text
 //! p = x1 − x0, q = x2 − x0      m = (p·p/2, p·q, q·q/2)      e = G m − (1/2, 1/2, 0)
-//! u = ẋ1 − ẋ0, w = ẋ2 − ẋ0      ṁ = (p·u, p·w + q·u, q·w)    ė = G ṁ
+//! S_v = 2ζ/ω_e C:(e − e⁻)/Δt    work of S_v on the way here: −½ A t (S_v + S_v⁻)·(e − e⁻)
 //! r = A t Gᵀ (S + S_v)          f1 = −(r1 p + r2 q)  f2 = −(r2 p + r3 q)  f0 = −(f1 + f2)
 //! ```
 //!
 //! with G of [`ElementBlock`], S of [`crate::material`] and `S_v` of [`crate::forces::damping`]: the
-//! forces of [`super`]'s equations without an F. The metric a way h before had the rate
-//! ṁ − h (u·u, 2 u·w, w·w) along the same velocities. The halves of a kite share the edge from s to t,
-//! last in the first and first in the second.
+//! forces of [`super`]'s equations without an F. What was a step Δt ago has a ⁻, and is remembered
+//! ([`Past`]). The halves of a kite share the edge from s to t, last in the first and first in the second.
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
-use super::Drag;
+use super::Past;
 use crate::material::{Circle, Material, Response};
 use crate::model::{ElementBlock, FilmModel};
 use crate::simd::{Columns, Corners, Lanes, NodeSum, Vectors, Wide, dispatch_wide};
@@ -26,10 +25,10 @@ pub(super) struct Share<'a> {
     /// Where their corners add to.
     pub targets: &'a Corners,
     /// What is remembered of them.
-    pub drag: &'a mut [Drag],
+    pub past: &'a mut [[Past; 2]],
     /// Forces and normals, begun anew.
     pub sums: &'a mut [NodeSum],
-    /// Volumes and powers of each block, where they are kept; else empty.
+    /// Volumes and works of each block, where they are kept; else empty.
     pub terms: &'a mut [[Lanes; 2]],
 }
 
@@ -38,32 +37,27 @@ pub(super) struct Share<'a> {
 pub(super) struct LaneSums {
     /// Six times the volumes, m³.
     pub volumes: Lanes,
-    /// Minus the powers viscosity takes, W.
-    pub power: Lanes,
+    /// Minus twice the works viscosity took on the way here, J.
+    pub works: Lanes,
     /// The largest principal stresses, Pa.
     pub largest: Lanes,
 }
 
-/// Of the edges p and q: p·p/2, p·q, q·q/2, or their rates.
+/// Of the edges p and q: p·p/2, p·q, q·q/2.
 #[derive(Clone, Copy)]
 struct Metric<L>([L; 3]);
 
 impl<L: Wide> Metric<L> {
-    /// Exx, Eyy, 2 Exy.
+    /// Exx + Eyy, Exx − Eyy, 2 Exy.
     #[inline(always)]
     fn strain(self, block: &ElementBlock) -> [L; 3] {
         let Self([pp, pq, qq]) = self;
-        let (half, [b0, b1, b2], [c0, c1]) =
-            (L::splat(0.5), all::<L, 3>(&block.yy), all::<L, 2>(&block.shear));
-        [of::<L>(&block.xx) * pp - half, b0 * pp + b1 * pq + b2 * qq - half, c0 * pp + c1 * pq]
-    }
-
-    /// The strain's rate, of the metric's.
-    #[inline(always)]
-    fn strain_rate(self, block: &ElementBlock) -> [L; 3] {
-        let Self([pp, pq, qq]) = self;
-        let ([b0, b1, b2], [c0, c1]) = (all::<L, 3>(&block.yy), all::<L, 2>(&block.shear));
-        [of::<L>(&block.xx) * pp, b0 * pp + b1 * pq + b2 * qq, c0 * pp + c1 * pq]
+        let [a, b, d] = all::<L, 3>(&block.inverse);
+        let (along, across) = (b * pp, d * pq);
+        let lean = along + across;
+        // Both more than the strain by 1/2.
+        let (xx, yy) = ((a * a) * pp, b * lean + (d * d) * qq);
+        [xx + yy - L::splat(1.0), xx - yy, a * (along + lean)]
     }
 }
 
@@ -81,10 +75,10 @@ fn all<L: Wide, const N: usize>(lanes: &[Lanes; N]) -> [L; N] {
     all
 }
 
-/// Double contraction of a stress (xx, yy, xy) and a strain rate (xx, yy, 2xy).
+/// Double contraction of a stress and a strain, told as [`Past`] tells them.
 #[inline(always)]
-fn contract<L: Wide>([xx, yy, xy]: [L; 3], rate: [L; 3]) -> L {
-    xx * rate[0] + yy * rate[1] + xy * rate[2]
+fn contract<L: Wide>([mean, half, xy]: [L; 3], [sum, difference, shear]: [L; 3]) -> L {
+    mean * sum + half * difference + xy * shear
 }
 
 /// Edges from s to a, t and b.
@@ -97,42 +91,61 @@ fn edges<L: Wide>([s, a, t, b]: [Vectors<L>; 4]) -> [Vectors<L>; 3] {
 struct Told<L> {
     /// −r, N/m.
     pull: [L; 3],
-    /// Minus the power viscosity takes, W.
+    /// Minus twice the work viscosity took, J.
     taken: L,
     /// Larger principal stresses, Pa.
     largest: L,
 }
 
-/// Of eight elements at their metric, at its rate here and a way before, and what they had there.
+/// How long the way here took.
+#[derive(Clone, Copy)]
+enum Step<L> {
+    /// Its inverse, 1/s.
+    Inverse(L),
+    /// No time: nothing moved, and `S_v` is what it was.
+    None,
+}
+
+/// Of eight elements at their metric; what they remember becomes what is here.
 #[inline(always)]
 fn told<L: Wide>(
     material: &Material,
     block: &ElementBlock,
     metric: Metric<L>,
-    [rate, rate_before]: [Metric<L>; 2],
-    remembered: &mut [Lanes; 3],
+    step: Step<L>,
+    past: &mut Past,
 ) -> Told<L> {
     // The root is long in coming: what does not wait for it stands between.
-    let [xx, yy, shear] = metric.strain(block);
-    let circle = Circle::of(xx, yy, shear);
-    let [xx, yy, shear] = rate.strain_rate(block);
-    let (nu, drag) = (L::splat(material.poisson_ratio), of::<L>(&block.drag));
-    let half_shear = L::splat(0.5 * (1.0 - material.poisson_ratio));
-    let viscous = [drag * (xx + nu * yy), drag * (yy + nu * xx), (drag * half_shear) * shear];
-    let taken = contract(viscous, [xx, yy, shear]);
-    let taken = taken + contract(all::<L, 3>(remembered), rate_before.strain_rate(block));
-    let [xx, yy, xy] = viscous;
-    *remembered = [xx.lanes(), yy.lanes(), xy.lanes()];
+    let strain = metric.strain(block);
+    let circle = Circle::told(strain[0], strain[1], strain[2]);
+    let (there, before) = (all::<L, 3>(&past.strain), all::<L, 3>(&past.drag));
+    past.strain = [strain[0].lanes(), strain[1].lanes(), strain[2].lanes()];
+    let (viscous, taken) = match step {
+        Step::Inverse(inverse) => {
+            let change = [strain[0] - there[0], strain[1] - there[1], strain[2] - there[2]];
+            let nu = material.poisson_ratio;
+            let drag = of::<L>(&block.drag);
+            let mean = drag * (inverse * (0.5 * (1.0 + nu)));
+            let shear = drag * (inverse * (0.5 * (1.0 - nu)));
+            let viscous = [mean * change[0], shear * change[1], shear * change[2]];
+            let both = [viscous[0] + before[0], viscous[1] + before[1], viscous[2] + before[2]];
+            (viscous, contract(both, change))
+        }
+        Step::None => (before, L::splat(0.0)),
+    };
+    past.drag = [viscous[0].lanes(), viscous[1].lanes(), viscous[2].lanes()];
 
     let Response { mean, shear_modulus, largest } = material.response(circle);
     let minus_volume = of::<L>(&block.minus_volume);
-    let (mean, shear_modulus) = (mean * minus_volume, shear_modulus * minus_volume);
-    let bent = shear_modulus * circle.difference;
-    let xx = mean + xx + bent;
-    let yy = mean + yy - bent;
-    let xy = xy + shear_modulus * circle.shear;
-    let ([b0, b1, b2], [c0, c1]) = (all::<L, 3>(&block.yy), all::<L, 2>(&block.shear));
-    let pull = [of::<L>(&block.xx) * xx + b0 * yy + c0 * xy, b1 * yy + c1 * xy, b2 * yy];
+    let shear_modulus = shear_modulus * minus_volume;
+    let mean = mean * minus_volume + viscous[0];
+    let half = shear_modulus * circle.difference + viscous[1];
+    let (xx, yy) = (mean + half, mean - half);
+    let xy = shear_modulus * circle.shear + viscous[2];
+    let [a, b, d] = all::<L, 3>(&block.inverse);
+    let across = a * xy;
+    let lean = b * yy + across;
+    let pull = [(a * a) * xx + b * (lean + across), d * lean, (d * d) * yy];
     Told { pull, taken, largest }
 }
 
@@ -140,54 +153,40 @@ fn told<L: Wide>(
 fn element_kernel<L: Wide, const KEPT: bool>(
     model: &FilmModel,
     positions: &Field,
-    velocities: &Field,
-    way: f64,
+    step: Step<L>,
     share: Share<'_>,
 ) -> LaneSums {
     let material = model.material;
-    let (half, way, twice) = (L::splat(0.5), L::splat(way), L::splat(way + way));
-    let (mut volumes, mut power, mut largest) = (L::splat(0.0), L::splat(0.0), L::splat(0.0));
-    let Share { first, targets, drag, sums, terms } = share;
-    sums.fill(NodeSum::default());
+    let half = L::splat(0.5);
+    let (mut volumes, mut works, mut largest) = (L::splat(0.0), L::splat(0.0), L::splat(0.0));
+    let Share { first, targets, past, sums, terms } = share;
+    let mut begun = 0;
+    if targets.blocks() == 0 {
+        sums.fill(NodeSum::default());
+    }
     let end = first + targets.blocks();
-    let (constants, drag) = (&model.constants[first..end], &mut drag[..end - first]);
-    let nodes = &model.blocks;
-    let places = Columns::new(nodes, [&positions.x, &positions.y, &positions.z]);
-    let speeds = Columns::new(nodes, [&velocities.x, &velocities.y, &velocities.z]);
+    let (constants, past) = (&model.constants[first..end], &mut past[..end - first]);
+    let places = Columns::new(&model.blocks, [&positions.x, &positions.y, &positions.z]);
     for own in 0..end - first {
-        let ([first_block, second_block], remembered) = (&constants[own], &mut drag[own].0);
+        let ([first_block, second_block], [early, later]) = (&constants[own], &mut past[own]);
         let corners = places.corners::<L>(first + own);
         let [p, d, q] = edges(corners);
         let (first_normal, second_normal) = (p.cross(d), d.cross(q));
         let normal = first_normal + second_normal;
         let enclosed = corners[0].dot(normal);
-        let [u, e, w] = edges(speeds.corners::<L>(first + own));
 
         let shared = d.dot(d) * half;
-        let [pd, dq] = [p.dot(d), d.dot(q)];
-        let metrics =
-            [Metric([p.dot(p) * half, pd, shared]), Metric([shared, dq, q.dot(q) * half])];
-        let [uu, pe, ee] = [p.dot(u), p.dot(e) + d.dot(u), d.dot(e)];
-        let [dw, ww] = [d.dot(w) + q.dot(e), q.dot(w)];
-        let ee_before = ee - e.dot(e) * way;
-        let rates_before = [
-            Metric([uu - u.dot(u) * way, pe - u.dot(e) * twice, ee_before]),
-            Metric([ee_before, dw - e.dot(w) * twice, ww - w.dot(w) * way]),
-        ];
-        let [metric, later_metric] = metrics;
-        let [before, later_before] = rates_before;
-        let [early, later] = remembered;
-        let rates = [Metric([uu, pe, ee]), before];
-        let one = told(&material, first_block, metric, rates, early);
-        let rates = [Metric([ee, dw, ww]), later_before];
-        let other = told(&material, second_block, later_metric, rates, later);
+        let metric = Metric([p.dot(p) * half, p.dot(d), shared]);
+        let one = told(&material, first_block, metric, step, early);
+        let metric = Metric([shared, d.dot(q), q.dot(q) * half]);
+        let other = told(&material, second_block, metric, step, later);
 
         let taken = one.taken + other.taken;
         largest = largest.max(one.largest).max(other.largest);
         if KEPT {
             terms[own] = [enclosed.lanes(), taken.lanes()];
         } else {
-            power = power + taken;
+            works = works + taken;
             volumes = volumes + enclosed;
         }
         let (r, s) = (one.pull, other.pull);
@@ -195,31 +194,46 @@ fn element_kernel<L: Wide, const KEPT: bool>(
         let at_t = p.scale(r[1]) + d.scale(r[2] + s[0]) + q.scale(s[1]);
         let at_b = d.scale(s[1]) + q.scale(s[2]);
         let film = [-(at_a + at_t + at_b), at_a, at_t, at_b];
+        begun = targets.begin(own, begun, sums);
         targets.scatter(own, &film, &[normal, first_normal, second_normal], sums);
     }
-    LaneSums { volumes: volumes.lanes(), power: power.lanes(), largest: largest.lanes() }
+    LaneSums { volumes: volumes.lanes(), works: works.lanes(), largest: largest.lanes() }
+}
+
+/// Which kernel a step of this length (s) asks for is known before the first element.
+#[inline(always)]
+fn any_kernel<L: Wide, const KEPT: bool>(
+    model: &FilmModel,
+    positions: &Field,
+    step: f64,
+    share: Share<'_>,
+) -> LaneSums {
+    if step > 0.0 {
+        let step = Step::Inverse(L::splat(1.0 / step));
+        element_kernel::<L, KEPT>(model, positions, step, share)
+    } else {
+        element_kernel::<L, KEPT>(model, positions, Step::None, share)
+    }
 }
 
 #[inline(always)]
 fn summed_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
-    velocities: &Field,
-    way: f64,
+    step: f64,
     share: Share<'_>,
 ) -> LaneSums {
-    element_kernel::<L, false>(model, positions, velocities, way, share)
+    any_kernel::<L, false>(model, positions, step, share)
 }
 
 #[inline(always)]
 fn kept_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
-    velocities: &Field,
-    way: f64,
+    step: f64,
     share: Share<'_>,
 ) -> LaneSums {
-    element_kernel::<L, true>(model, positions, velocities, way, share)
+    any_kernel::<L, true>(model, positions, step, share)
 }
 
 dispatch_wide! {
@@ -227,19 +241,17 @@ dispatch_wide! {
     pub(super) fn element_pass / summed_kernel(
         model: &FilmModel,
         positions: &Field,
-        velocities: &Field,
-        way: f64,
+        step: f64,
         share: Share<'_>,
     ) -> LaneSums
 }
 
 dispatch_wide! {
-    /// The same; volumes and powers are kept a block in `terms` and are none in the sums.
+    /// The same; volumes and works are kept a block in `terms` and are none in the sums.
     pub(super) fn element_pass_kept / kept_kernel(
         model: &FilmModel,
         positions: &Field,
-        velocities: &Field,
-        way: f64,
+        step: f64,
         share: Share<'_>,
     ) -> LaneSums
 }

@@ -9,13 +9,13 @@
 //!
 //! One pass adds what kites give to a node in their order, corner by corner. Here a node of both halves gets
 //! the sum of the first half, then the second half's corners in that order: the same additions. Volumes
-//! and powers are sums over all elements lane by lane, block after block: those of the second half are
+//! and works are sums over all elements lane by lane, block after block: those of the second half are
 //! kept a block, and added to the sums of the first when these are known. A slot begins with +0, so none
 //! is ever −0, and adding what stayed +0 changes no bit.
 
 use core::ops::Range;
 
-use super::{Drag, LaneSums, NodeForces, Share, Sums, element_pass, element_pass_kept};
+use super::{LaneSums, NodeForces, Past, Share, Sums, element_pass, element_pass_kept};
 use crate::model::FilmModel;
 use crate::simd::{Corners, Lanes, NodeSum, Path, WIDTH};
 use crate::state::Field;
@@ -119,31 +119,30 @@ impl Halves {
         path: Path,
         model: &FilmModel,
         positions: &Field,
-        velocities: &Field,
-        way: f64,
-        drag: &mut [Drag],
+        step: f64,
+        past: &mut [[Past; 2]],
         out: &mut NodeForces,
     ) -> Sums {
         let early = self.targets[0].blocks();
         let [first, second] = {
-            let (drag, later_drag) = drag.split_at_mut(early);
+            let (past, later_past) = past.split_at_mut(early);
             let (sums, later_sums) = self.sums.split_at_mut(self.first_slots);
             let [targets, later_targets] = &self.targets;
             let terms = &mut self.terms;
             [
-                Share { first: 0, targets, drag, sums, terms: &mut [] },
+                Share { first: 0, targets, past, sums, terms: &mut [] },
                 Share {
                     first: early,
                     targets: later_targets,
-                    drag: later_drag,
+                    past: later_past,
                     sums: later_sums,
                     terms,
                 },
             ]
         };
         let (early_sums, later_sums) = workers.both(
-            || element_pass(path, model, positions, velocities, way, first),
-            || element_pass_kept(path, model, positions, velocities, way, second),
+            || element_pass(path, model, positions, step, first),
+            || element_pass_kept(path, model, positions, step, second),
         );
 
         let (nodes, later_nodes) = out.sums.split_at_mut(self.middle);
@@ -175,13 +174,13 @@ impl Halves {
 
     /// The sums over all elements.
     fn sum(&self, early: LaneSums, later: LaneSums) -> Sums {
-        let LaneSums { mut volumes, mut power, largest } = early;
+        let LaneSums { mut volumes, mut works, largest } = early;
         for [volume, taken] in &self.terms {
             volumes += *volume;
-            power += *taken;
+            works += *taken;
         }
         // The larger of two does not ask in which order; a stress that is no number ends the run.
-        LaneSums { volumes, power, largest: largest.max(later.largest) }.sums()
+        LaneSums { volumes, works, largest: largest.max(later.largest) }.sums()
     }
 }
 
@@ -217,13 +216,13 @@ mod tests {
         FilmModel::new(&FILM, nodes, &all, &vec![reference; all.len()]).expect("a film")
     }
 
-    fn bits(out: &NodeForces, drag: &[Drag], sums: &Sums) -> Vec<u64> {
+    fn bits(out: &NodeForces, past: &[[Past; 2]], sums: &Sums) -> Vec<u64> {
         let (films, areas) = (out.films(), out.areas());
         let nodes = films.iter().chain(areas.iter()).flat_map(|own| [own.x, own.y, own.z]);
-        let drag =
-            drag.iter().flat_map(|own| own.0.into_iter().flatten().flat_map(|lanes| lanes.0));
-        let own = [sums.six_volumes, sums.viscous_power, sums.largest_stress];
-        nodes.chain(drag).chain(own).map(f64::to_bits).collect()
+        let past = past.iter().flatten().flat_map(|own| [own.strain, own.drag]).flatten();
+        let past = past.flat_map(|lanes| lanes.0);
+        let own = [sums.six_volumes, sums.viscous_work, sums.largest_stress];
+        nodes.chain(past).chain(own).map(f64::to_bits).collect()
     }
 
     proptest! {
@@ -246,24 +245,22 @@ mod tests {
                 Field::of(&numbers[..model.nodes()].iter().map(pick).collect::<Vec<_>>())
             };
             let places = of(&|n| Vector3::new(n[0], n[1], n[2]) * 0.1);
-            let velocities = of(&|n| Vector3::new(n[3], n[4], n[5]) * 10.0);
-            let (mut drag, mut out) = (Drag::none(&model), NodeForces::new(&model));
+            let later = of(&|n| Vector3::new(n[3], n[4], n[5]) * 0.1);
+            let (mut past, mut out) = (Past::at_rest(&model), NodeForces::new(&model));
             let mut told = Vec::new();
-            for way in [0.0, 1e-3, 2e-3] {
-                let (x, v) = (&places, &velocities);
-                let sums = film_pass(Path::Scalar, &model, x, v, way, &mut drag, &mut out);
-                told.push((way, bits(&out, &drag, &sums)));
+            for (x, step) in [(&places, 0.0), (&later, 1e-3), (&places, 2e-3), (&places, 0.0)] {
+                let sums = film_pass(Path::Scalar, &model, x, step, &mut past, &mut out);
+                told.push((x, step, bits(&out, &past, &sums)));
             }
             for path in Path::ALL {
                 for threads in [1, 2] {
-                    let (mut drag, mut out) = (Drag::none(&model), NodeForces::new(&model));
+                    let (mut past, mut out) = (Past::at_rest(&model), NodeForces::new(&model));
                     let (mut workers, mut halves) = (Workers::of(threads), Halves::new(&model));
-                    for (way, told) in &told {
-                        let (x, v) = (&places, &velocities);
+                    for (x, step, told) in &told {
                         let sums = halves.film_pass(
-                            &mut workers, path, &model, x, v, *way, &mut drag, &mut out,
+                            &mut workers, path, &model, x, *step, &mut past, &mut out,
                         );
-                        prop_assert!(bits(&out, &drag, &sums) == *told, "{} {threads}", path.name());
+                        prop_assert!(bits(&out, &past, &sums) == *told, "{} {threads}", path.name());
                     }
                 }
             }

@@ -3,7 +3,7 @@
 //! No bit depends on it, so it is no part of what a film is: films that differ in it alone are equal,
 //! and a copy has one thread until it is given more.
 
-use crate::forces::membrane::{Drag, Halves, NodeForces, Sums, film_pass};
+use crate::forces::membrane::{Halves, NodeForces, Past, Sums, film_pass};
 use crate::model::FilmModel;
 use crate::simd::Path;
 use crate::state::Field;
@@ -43,22 +43,20 @@ impl Crew {
     }
 
     /// [`film_pass`].
-    #[expect(clippy::too_many_arguments, reason = "those of the pass")]
     pub(super) fn film_pass(
         &mut self,
         path: Path,
         model: &FilmModel,
         positions: &Field,
-        velocities: &Field,
-        way: f64,
-        drag: &mut [Drag],
+        step: f64,
+        past: &mut [[Past; 2]],
         out: &mut NodeForces,
     ) -> Sums {
         match self.0.as_deref_mut() {
             Some(Two { workers, halves }) => {
-                halves.film_pass(workers, path, model, positions, velocities, way, drag, out)
+                halves.film_pass(workers, path, model, positions, step, past, out)
             }
-            None => film_pass(path, model, positions, velocities, way, drag, out),
+            None => film_pass(path, model, positions, step, past, out),
         }
     }
 }

@@ -46,6 +46,7 @@ impl Explicit {
             weight: self.setting.fault(Term::Gravity),
             keep,
             gain,
+            pressed: self.pushed(),
         };
         let (path, velocities) = (self.setting.path, &self.state.velocities);
         kick_nodes(path, &self.model, &self.forces, &push, &supports.free, velocities, next);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Meeting;
+use crate::forces::membrane::Past;
 use crate::gas::GasState;
 use crate::ledger::GasBooks;
 use crate::state::Field;
@@ -17,6 +18,8 @@ pub struct State {
     pub places: Field,
     /// Node velocities half a step ago, m/s; those of the start before the first step.
     pub velocities: Field,
+    /// What the film's elements remember of the last step, as its passes want it.
+    pub past: Vec<[Past; 2]>,
     /// Velocities of the rigid planes along their normals, as those of the nodes, m/s.
     pub planes: Vec<f64>,
     /// Length of the last step, s; 0 before the first.
@@ -106,11 +109,18 @@ impl Stretch {
 
 impl State {
     /// The start at time 0.
-    pub(super) fn start(places: Field, velocities: Field, planes: Vec<f64>, gas: GasState) -> Self {
+    pub(super) fn start(
+        places: Field,
+        velocities: Field,
+        past: Vec<[Past; 2]>,
+        planes: Vec<f64>,
+        gas: GasState,
+    ) -> Self {
         Self {
             time: 0.0,
             places,
             velocities,
+            past,
             planes,
             last_step: 0.0,
             volume: 0.0,

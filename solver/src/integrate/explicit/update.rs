@@ -7,6 +7,8 @@
 //!
 //! Eight nodes at a time; what is left over goes one by one with the same operations. Symbols: P 1
 //! where a component is free, else 0; keep and gain of [`crate::forces::damping::kick_factors`].
+//! What is nought everywhere, weight in orbit or contact while nothing touches, and P where it is 1
+//! are not read: no force is −0, so adding +0, as multiplying by 1, changes no bit.
 
 #![allow(clippy::inline_always, reason = "inside the node loop")]
 
@@ -16,6 +18,7 @@ use crate::forces::membrane::{NodeForces, SIXTH};
 use crate::model::FilmModel;
 use crate::simd::{Lanes, Path, WIDTH, Wide, dispatch, dispatch_wide};
 use crate::state::Field;
+use crate::supports::Free;
 
 /// What pushes nodes in a kick, beside the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,26 +33,38 @@ pub struct Push {
     pub keep: f64,
     /// Velocity an acceleration gives, s.
     pub gain: f64,
+    /// Whether contact pushes; else its forces are all nought.
+    pub pressed: bool,
 }
 
-/// One component of the kick, of a number or of eight.
+/// One component of the kick, of a number or of eight; what is not there is not read.
 macro_rules! kicked {
-    ($velocity:expr, $film:expr, $contact:expr, $normal:expr, $mass:expr, $gain:expr, $free:expr,
-     $push:expr, $gravity:expr) => {{
-        let force = $film
-            + $contact
-            + $normal * ($push.overpressure * SIXTH)
-            + $gravity * ($mass * $push.weight);
-        $velocity + ($velocity * ($push.keep - 1.0) + force * ($gain * $push.gain)) * $free
+    ($push:expr, $velocity:expr, $film:expr, $normal:expr, $inverse:expr,
+     $contact:expr, $weight:expr, $free:expr) => {{
+        let force = match $contact {
+            Some(contact) => $film + contact,
+            None => $film,
+        };
+        let force = force + $normal * ($push.overpressure * SIXTH);
+        let force = match $weight {
+            Some(weight) => force + weight,
+            None => force,
+        };
+        let change = $velocity * ($push.keep - 1.0) + force * ($inverse * $push.gain);
+        let change = match $free {
+            Some(free) => change * free,
+            None => change,
+        };
+        $velocity + change
     }};
 }
 
 #[inline(always)]
-fn kick_kernel<L: Wide>(
+fn kick_kernel<L: Wide, const PRESSED: bool, const HEAVY: bool>(
     model: &FilmModel,
     forces: &NodeForces,
     push: &Push,
-    free: &Field,
+    free: &Free,
     velocities: &Field,
     next: &mut [&mut [f64]; 3],
 ) {
@@ -57,7 +72,8 @@ fn kick_kernel<L: Wide>(
     let (mass, inverse) = (&model.mass[..nodes], &model.inverse_mass[..nodes]);
     let contact = &forces.contact;
     let contact = [&contact.x[..nodes], &contact.y[..nodes], &contact.z[..nodes]];
-    let free = [&free.x[..nodes], &free.y[..nodes], &free.z[..nodes]];
+    let all = free.field();
+    let part = [&all.x[..nodes], &all.y[..nodes], &all.z[..nodes]];
     let velocity = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
     let sums = &forces.sums[..nodes];
     let (blocks, _) = sums.as_chunks::<WIDTH>();
@@ -66,18 +82,22 @@ fn kick_kernel<L: Wide>(
         let [film, normal] = L::columns(sums);
         let ([fx, fy, fz], [nx, ny, nz]) =
             ([film.x, film.y, film.z], [normal.x, normal.y, normal.z]);
-        let (mass, inverse) = (L::load(mass, at), L::load(inverse, at));
+        let (inverse, held) = (L::load(inverse, at), free.any_held(at));
         for (axis, (film, normal)) in [(fx, nx), (fy, ny), (fz, nz)].into_iter().enumerate() {
+            let weight = push.gravity[axis];
             kicked!(
+                push,
                 L::load(velocity[axis], at),
                 film,
-                L::load(contact[axis], at),
                 normal,
-                mass,
                 inverse,
-                L::load(free[axis], at),
-                push,
-                L::splat(push.gravity[axis])
+                if PRESSED { Some(L::load(contact[axis], at)) } else { None },
+                if HEAVY {
+                    Some(L::splat(weight) * (L::load(mass, at) * push.weight))
+                } else {
+                    None
+                },
+                if held { Some(L::load(part[axis], at)) } else { None }
             )
             .store(next[axis], at);
         }
@@ -85,39 +105,57 @@ fn kick_kernel<L: Wide>(
     for at in blocks.len() * WIDTH..nodes {
         for axis in 0..3 {
             next[axis][at] = kicked!(
+                push,
                 velocity[axis][at],
                 sums[at].film[axis],
-                contact[axis][at],
                 sums[at].normal[axis],
-                mass[at],
                 inverse[at],
-                free[axis][at],
-                push,
-                push.gravity[axis]
+                if PRESSED { Some(contact[axis][at]) } else { None },
+                if HEAVY { Some(push.gravity[axis] * (mass[at] * push.weight)) } else { None },
+                Some(part[axis][at])
             );
         }
     }
 }
 
+#[inline(always)]
+fn any_kick_kernel<L: Wide>(
+    model: &FilmModel,
+    forces: &NodeForces,
+    push: &Push,
+    free: &Free,
+    velocities: &Field,
+    next: &mut [&mut [f64]; 3],
+) {
+    let heavy = push.gravity != Vector3::zeros();
+    match (push.pressed, heavy) {
+        (false, false) => {
+            kick_kernel::<L, false, false>(model, forces, push, free, velocities, next);
+        }
+        (false, true) => kick_kernel::<L, false, true>(model, forces, push, free, velocities, next),
+        (true, false) => kick_kernel::<L, true, false>(model, forces, push, free, velocities, next),
+        (true, true) => kick_kernel::<L, true, true>(model, forces, push, free, velocities, next),
+    }
+}
+
 dispatch_wide! {
-    fn kick_columns / kick_kernel(
+    fn kick_columns / any_kick_kernel(
         model: &FilmModel,
         forces: &NodeForces,
         push: &Push,
-        free: &Field,
+        free: &Free,
         velocities: &Field,
         next: &mut [&mut [f64]; 3],
     )
 }
 
-/// Velocities of all nodes after a kick, m/s, held along axes alone; `free` is 1 where a component is
-/// not held, 0 where it is.
+/// Velocities of all nodes after a kick, m/s, held along axes alone.
 pub fn kick_nodes(
     path: Path,
     model: &FilmModel,
     forces: &NodeForces,
     push: &Push,
-    free: &Field,
+    free: &Free,
     velocities: &Field,
     next: &mut Field,
 ) {
