@@ -6,7 +6,7 @@
 //!
 //! JSON, every number in the shortest digits that read back as it. A run goes on from any step, also
 //! within an inflow window, packed, or on the way of a moving support: what is constant comes from the
-//! scene again, and `scene` says which one that must be.
+//! scene again, and `scene` says which one that must be. What a state holds belongs to the physics version.
 
 use serde::{Deserialize, Serialize};
 

@@ -46,7 +46,7 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
 pub struct Cost {
     /// Elements of the mesh; 0 for a model without one.
     pub elements: u64,
-    /// Steps; 0 where the model chooses them on its way.
+    /// Steps, about, of film that never gets calm and takes longer ones; 0 where the model chooses them on its way.
     pub steps: u64,
 }
 

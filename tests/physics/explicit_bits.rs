@@ -1,6 +1,7 @@
 //! The same bits whatever the instruction set, and from any step on.
 
 use billow_solver::course::Phase;
+use billow_solver::forces::membrane::viscous_forces;
 use billow_solver::gas::Inflow;
 use billow_solver::integrate::explicit::{Explicit, State};
 use billow_solver::ladder::film::capsule;
@@ -61,5 +62,21 @@ fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
             }
         }
         assert!(bits(&film.state) == whole, "paused after {pause} steps");
+    }
+}
+
+/// Targets that differ by rounding: over a step of next to no time the rounding of a strain is no rate.
+#[test]
+fn a_sliver_of_a_step_leaves_viscosity_as_it_is() {
+    let mut film = film(Path::best());
+    film.advance(2e-3, &INFLOW).unwrap();
+    let drags = |film: &Explicit| viscous_forces(&film.model, &film.state.places, &film.state.past);
+    let (before, steps) = (drags(&film), film.state.steps);
+    film.advance(2e-3_f64.next_up(), &INFLOW).unwrap();
+    assert_eq!(film.state.steps, steps + 1);
+    let size = before.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    assert!(size > 0.0);
+    for (now, before) in drags(&film).iter().zip(before.iter()) {
+        assert!((now - before).norm() < 1e-9 * size, "{now} {before}");
     }
 }

@@ -10,6 +10,7 @@
 )]
 
 mod allocation;
+mod calm;
 mod capsule;
 mod conservation;
 mod contact_bits;

@@ -1,20 +1,22 @@
 //! Central differences for film and its gas.
 //!
 //! ```text
-//! f = f_film(x, v⁻) + (p − p_ambient) ∂V/∂x + m g         at time n
+//! f = f_film(xⁿ, xⁿ⁻¹) + (p − p_ambient) ∂V/∂x + m g      at time n
 //! v⁺ = v⁻ + h a,  h = (Δt⁻ + Δt)/2                        half-step velocities
 //! x ← x + Δt v⁺;  the gas steps from V to V'              time n + 1
 //!
-//! Δt ≤ CFL (√(1+ζ²) − ζ) 2/√(ω_film² + ω_gas²)
+//! Δt ≤ CFL (√(1+ζ²) − ζ) 2/√(ω_film² + ω_gas²)             film in motion; calm film: `calm`
 //! kinetic energy at n: ½ Σ m v⁻·v⁺
 //! ```
 //!
-//! Every work is the trapezoid of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx: with
+//! Every work is the trapezoid of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx (viscosity's
+//! but for a part of the third order in Δt: [`crate::forces::damping`]): with
 //! the kinetic energy above their sum is kept exactly at an even step, so whatever the ledger
 //! misses is a force that is no derivative of its energy, or a step too long for its bends. The
 //! gas gives ½ (pⁿ + pⁿ⁺¹) ΔV and the same number is the film's entry.
 //!
-//! Between two targets all steps are equal, so a target is hit exactly and no sliver is left. What
+//! Between two targets all steps are equal, so a target is hit exactly and no sliver is left, but where
+//! calm film (`calm`) is pressed on the way: from there they are shorter. What
 //! changes is one [`State`]: a run put back on it goes on bit for bit, at any step.
 
 use nalgebra::Vector3;
@@ -37,6 +39,7 @@ use crew::Crew;
 use update::{drift_nodes, sparse_power};
 
 mod books;
+mod calm;
 mod crew;
 mod kick;
 mod meet;
@@ -45,8 +48,12 @@ mod setting;
 mod state;
 pub mod update;
 
+pub use calm::Calm;
 pub use setting::{DEFAULT_CFL, Interior, Setting};
 pub use state::{State, Stretch, Works};
+
+/// Steps shorter than this over the film's largest frequency are slivers, between targets that differ by rounding.
+const SLIVER: f64 = 1e-6;
 
 /// Film in motion: constants and state.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,6 +103,9 @@ impl Explicit {
     }
 
     /// Goes on from a state of the same film under the same setting, bit for bit.
+    ///
+    /// # Panics
+    /// On the state of another film.
     pub fn resume(model: FilmModel, setting: Setting, state: State) -> Self {
         let mut film = Self::with(model, setting, state);
         let _ = film.pass_at(film.state.time, 0.0, &mut Untimed);
@@ -153,9 +163,7 @@ impl Explicit {
     ) -> Result<bool, Failure> {
         let mut stretch = match self.state.stretch.take() {
             Some(stretch) => stretch,
-            None => Stretch::new(self.state.time, target, self.stable_step()).ok_or_else(|| {
-                self.failure(FailureKind::StepLimit, "step too small to advance time")
-            })?,
+            None => self.way_to(target, phase).ok_or_else(|| self.too_small())?,
         };
         while let Some(until) = stretch.next_end() {
             if *steps == 0 {
@@ -177,14 +185,27 @@ impl Explicit {
             }
             self.state.time = until;
             self.state.steps += 1;
+            if self.stirred(&stretch) {
+                let target = stretch.target;
+                stretch = self.way_on_to(target).ok_or_else(|| self.too_small())?;
+            }
         }
         stopwatch.begins(Stage::Audit);
         self.look()?;
         Ok(true)
     }
 
-    /// The longest step allowed now, s.
+    fn too_small(&self) -> Failure {
+        self.failure(FailureKind::StepLimit, "step too small to advance time")
+    }
+
+    /// The longest step allowed to film in motion now, s.
     pub fn stable_step(&self) -> f64 {
+        self.longest_step(self.setting.cfl, true)
+    }
+
+    /// The longest step of this share of the stable one, s, and stable where contact presses or does not.
+    fn longest_step(&self, cfl: f64, pressed: bool) -> f64 {
         let film = self.model.largest_frequency();
         let gas = match self.setting.interior {
             Interior::Gas(gas) => {
@@ -195,8 +216,8 @@ impl Explicit {
             Interior::Overpressure(_) => 0.0,
         };
         let share = stable_share(self.setting.viscosity) * 2.0;
-        let alone = self.setting.cfl * share / (film * film + gas).sqrt();
-        match &self.setting.contact {
+        let alone = cfl * share / (film * film + gas).sqrt();
+        match self.setting.contact.as_ref().filter(|_| pressed) {
             // Contact counts for stability only: what is well below its limit resolves it too.
             Some(law) => alone.min(share / (film * film + gas + law.frequency_squared()).sqrt()),
             None => alone,
@@ -227,7 +248,9 @@ impl Explicit {
         let path = self.setting.path;
         let fastest = drift_nodes(path, &state.velocities, way, &mut state.places);
         self.plate_work(until);
-        let sums = self.pass_at(until, length, stopwatch);
+        // Rounding of a strain over next to no time would be a rate: such a step leaves viscosity as it is.
+        let sliver = length * self.model.largest_frequency() < SLIVER;
+        let sums = self.pass_at(until, if sliver { 0.0 } else { length }, stopwatch);
         stopwatch.begins(Stage::Gas);
         self.plate_work(until);
         let volume = sums.six_volumes / 6.0;

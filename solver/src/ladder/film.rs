@@ -80,7 +80,8 @@ pub fn check(scene: &Scene) -> Result<(), SceneError> {
     stable_share(scene).map(|_| ())
 }
 
-/// Elements and steps of a run: the stable step of the film alone, to which gas adds little.
+/// Elements and steps of a run whose film never gets calm: the stable step of the film alone, to which
+/// gas adds little.
 ///
 /// # Errors
 /// As [`solve_scene`].

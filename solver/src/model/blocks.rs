@@ -1,7 +1,7 @@
 //! What is constant of elements, eight kites at a time, as the pass over them wants it.
 //!
 //! ```text
-//! e = (Exx, Eyy, 2 Exy) = G m − (1/2, 1/2, 0)        m = (p·p/2, p·q, q·q/2)
+//! (Exx, Eyy, 2 Exy) = G m − (1/2, 1/2, 0)           m = (p·p/2, p·q, q·q/2)
 //!
 //!     | a²    0    0  |
 //! G = | b²    bd   d² |        Dm⁻¹ = [[a, b], [0, d]]

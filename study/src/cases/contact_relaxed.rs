@@ -51,7 +51,7 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), 
             return Err(format!("not at rest at {LATEST} s"));
         }
         advance(&mut film, target, &Phase::default())?;
-        let settled = film.kinetic_energy() < share * pressure * film.state.volume;
+        let settled = film.kinetic_energy().abs() < share * pressure * film.state.volume;
         calm = if settled && target > EARLIEST { calm + 1 } else { 0 };
     }
     Ok((film, mesh))

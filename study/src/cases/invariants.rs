@@ -9,9 +9,10 @@
 
 use billow_solver::course::Phase;
 use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::forces::membrane::{strain, viscous_forces};
+use billow_solver::forces::membrane::{NodeForces, film_pass, strain, viscous_forces};
 use billow_solver::integrate::explicit::Explicit;
 use billow_solver::scene::{Film, GasSupply};
+use billow_solver::state::Field;
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
@@ -62,9 +63,23 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
     let drag = viscous_forces(&film.model, &film.state.places, &film.state.past);
     let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
+    // On the way, by steps of any size: a turn of the whole in one.
+    let mut past = film.state.past.clone();
+    let mut out = NodeForces::new(&film.model);
+    let spun = film.state.places.iter().map(|x| turn * x).collect::<Vec<_>>();
+    let (spun, path) = (Field::of(&spun), film.setting.path);
+    let stepped = film_pass(path, &film.model, &spun, 1e-5, &mut past, &mut out);
+    let dragged = viscous_forces(&film.model, &spun, &past);
+    let dragged = dragged.iter().map(|force| force.norm()).fold(0.0, worse);
     let band = number("patch/band");
     Ok(vec![
         Row::at_most("force, of E t h", force / scale, band),
+        Row::at_most("viscous force after a turn in one step, of E t h", dragged / scale, band),
+        Row::at_most(
+            "viscous work of it, of E t h^2",
+            stepped.viscous_work.abs() / (scale * 0.1),
+            band,
+        ),
         Row::at_most("strain energy, of E t h^2", film.strain_energy() / (scale * 0.1), band),
         Row::at_most("viscous power, of E t h m/s", power.abs() / scale, band),
     ])

@@ -1,8 +1,8 @@
 //! The pass over the elements, eight kites at a time: what each does to its nodes, told by its metric.
 //!
 //! ```text
-//! p = x1 − x0, q = x2 − x0      m = (p·p/2, p·q, q·q/2)      e = G m − (1/2, 1/2, 0)
-//! S_v = 2ζ/ω_e C:(e − e⁻)/Δt    work of S_v on the way here: −½ A t (S_v + S_v⁻)·(e − e⁻)
+//! p = x1 − x0, q = x2 − x0      m = (p·p/2, p·q, q·q/2)      E = G m − (1/2, 1/2, 0)
+//! S_v = 2ζ/ω_e C:(E − E⁻)/Δt    work S_v takes on the way here: ½ A t (S_v + S_v⁻):(E − E⁻)
 //! r = A t Gᵀ (S + S_v)          f1 = −(r1 p + r2 q)  f2 = −(r2 p + r3 q)  f0 = −(f1 + f2)
 //! ```
 //!

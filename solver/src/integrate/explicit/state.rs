@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Calm;
 use crate::contact::Meeting;
 use crate::forces::membrane::Past;
 use crate::gas::GasState;
@@ -42,6 +43,8 @@ pub struct State {
     pub start_moment: [f64; 3],
     /// Contact of film with film.
     pub meeting: Meeting,
+    /// Whether film is calm.
+    pub calm: Calm,
     /// The way to the target being headed for, where a run was paused on it.
     pub stretch: Option<Stretch>,
 }
@@ -64,7 +67,7 @@ pub struct Works {
     pub damping: f64,
 }
 
-/// The way from one target to the next, in equal steps.
+/// The way to the next target, in equal steps; what stirs calm film begins another.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stretch {
@@ -78,20 +81,22 @@ pub struct Stretch {
     pub count: f64,
     /// Steps taken.
     pub index: f64,
+    /// Whether they are those of calm film.
+    pub calm: bool,
 }
 
 impl Stretch {
     /// Equal steps from `start` to `target` (s), none longer than `longest`; `None` where a step
     /// would not advance time.
-    pub(super) fn new(start: f64, target: f64, longest: f64) -> Option<Self> {
+    pub(super) fn new(start: f64, target: f64, longest: f64, calm: bool) -> Option<Self> {
         if target <= start {
-            return Some(Self { start, target, length: 0.0, count: 0.0, index: 0.0 });
+            return Some(Self { start, target, length: 0.0, count: 0.0, index: 0.0, calm });
         }
         let count = ((target - start) / longest * (1.0 - 1e-12)).ceil().max(1.0);
         let length = (target - start) / count;
         // Written so that what is no number is refused too.
         let advances = start + length > start;
-        advances.then_some(Self { start, target, length, count, index: 0.0 })
+        advances.then_some(Self { start, target, length, count, index: 0.0, calm })
     }
 
     /// When the next step ends, s; `None` after the last.
@@ -132,6 +137,7 @@ impl State {
             books: GasBooks::default(),
             start_moment: [0.0; 3],
             meeting: Meeting::default(),
+            calm: Calm::default(),
             stretch: None,
         }
     }
