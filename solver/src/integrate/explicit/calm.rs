@@ -111,3 +111,121 @@ impl Explicit {
         time - self.state.calm.lively >= AWHILE && !self.in_contact()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Vector2, Vector3};
+
+    use super::*;
+    use crate::contact::active::Contact;
+    use crate::contact::plates::Plate;
+    use crate::contact::topology::Topology;
+    use crate::contact::{Kind, Law, Pair};
+    use crate::gas::{GasState, Inflow};
+    use crate::integrate::explicit::{Interior, Setting};
+    use crate::model::FilmModel;
+    use crate::scene::Film;
+    use crate::state::Field;
+
+    /// Two triangles far apart, at rest for 50 ms after they moved.
+    fn calm() -> Explicit {
+        let film = Film {
+            youngs_modulus: 3.45e9,
+            poisson_ratio: 0.3,
+            density: 1400.0,
+            thickness: 25.4e-6,
+            compression: 0.0,
+            viscosity: 0.1,
+            temperature: 293.0,
+        };
+        let flat = [Vector2::new(0.0, 0.0), Vector2::new(0.1, 0.0), Vector2::new(0.0, 0.1)];
+        let triangles = [[0, 1, 2], [3, 4, 5]];
+        let model = FilmModel::new(&film, 6, &triangles, &[flat, flat]).expect("a film");
+        let place = |height: f64| flat.map(|x| Vector3::new(x.x, x.y, height));
+        let places = Field::of(&[place(0.0), place(0.1)].concat());
+        let omega = model.largest_frequency();
+        let law = Law::new(Topology::new(6, &triangles), 1e-3, omega, 0.1);
+        let setting = Setting {
+            contact: Some(law),
+            viscosity: 0.1,
+            ..Setting::free(Interior::Overpressure(0.0), 6)
+        };
+        let still = Field::zeros(6);
+        let mut film = Explicit::new(model, setting, places, still, GasState::default());
+        film.state.calm.largest_kinetic_energy = 1.0;
+        film.state.time = 0.05;
+        film
+    }
+
+    fn is_calm(mut film: Explicit, phase: &Phase) -> bool {
+        let careful = film.stable_step();
+        let way = film.way_to(0.06, phase).expect("a way");
+        let longer = way.length > 1.5 * careful;
+        assert!(longer || way.length <= careful);
+        assert_eq!(longer, way.calm);
+        way.calm
+    }
+
+    fn plate(until: f64) -> Plate {
+        let normal = Vector3::new(0.0, 0.0, 1.0);
+        Plate { name: "base".to_owned(), point: -normal, normal, motion: None, until }
+    }
+
+    fn contact() -> Contact {
+        let pair = Pair { kind: Kind::NodeTriangle, first: 0, second: 1 };
+        Contact {
+            pair,
+            feature: 0,
+            offset: 1e-3,
+            stiffness: 1.0,
+            gap: 1e-3,
+            adhesion: 0.0,
+            energy: 0.0,
+        }
+    }
+
+    #[test]
+    fn film_is_calm_that_is_slow_for_a_while_and_alone() {
+        let still = Phase::default();
+        assert!(is_calm(calm(), &still));
+        let with = |change: &dyn Fn(&mut Explicit)| {
+            let mut film = calm();
+            change(&mut film);
+            is_calm(film, &still)
+        };
+        assert!(!with(&|film| film.state.calm.lively = 0.035));
+        assert!(with(&|film| film.state.calm.lively = 0.025));
+        assert!(!with(&|film| film.state.calm.largest_kinetic_energy = 0.0));
+        assert!(!with(&|film| film.state.velocities.x[2] = f64::NAN));
+        assert!(!with(&|film| film.state.meeting.contacts.push(contact())));
+        let plates = |film: &mut Explicit, until: f64| {
+            film.setting.contact.iter_mut().for_each(|law| law.plates.push(plate(until)));
+        };
+        assert!(!with(&|film| plates(film, 0.2)));
+        assert!(with(&|film| plates(film, 0.04)));
+        assert!(!with(&|film| film.setting.contact = None));
+        let inflow = Inflow { mass: 1e-3, mass_temperature: 0.3 };
+        assert!(!is_calm(calm(), &Phase { packed: false, inflow }));
+        assert!(!is_calm(calm(), &Phase { packed: true, ..still }));
+    }
+
+    #[test]
+    fn contact_stirs_calm_film_at_once_and_motion_at_the_next_look() {
+        let mut film = calm();
+        let mut way = film.way_to(0.06, &Phase::default()).expect("a way");
+        way.index = 3.0;
+        assert!(!film.stirred(&way));
+        film.state.velocities.x[0] = 100.0;
+        assert!(!film.stirred(&way));
+        way.index = 250.0;
+        assert!(film.stirred(&way));
+        assert!(film.way_on_to(0.06).is_some_and(|way| !way.calm));
+
+        let mut film = calm();
+        way.index = 3.0;
+        film.state.meeting.contacts.push(contact());
+        assert!(film.stirred(&way));
+        assert_eq!(film.state.calm.lively.to_bits(), film.state.time.to_bits());
+        assert!(film.way_on_to(0.06).is_some_and(|way| !way.calm));
+    }
+}
