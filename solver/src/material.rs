@@ -231,15 +231,7 @@ mod tests {
     use super::*;
 
     fn material(compression: f64) -> Material {
-        Material::new(&Film {
-            youngs_modulus: 3.45e9,
-            poisson_ratio: 0.3,
-            density: 1400.0,
-            thickness: 25.4e-6,
-            compression,
-            viscosity: 0.0,
-            temperature: 293.0,
-        })
+        Material::new(&Film { compression, viscosity: 0.0, ..Film::PAPER })
     }
 
     fn turned(e1: f64, e2: f64, angle: f64) -> PlaneTensor {

@@ -73,15 +73,7 @@ mod tests {
     use super::*;
     use crate::scene::Film;
 
-    const FILM: Film = Film {
-        youngs_modulus: 3.45e9,
-        poisson_ratio: 0.3,
-        density: 1400.0,
-        thickness: 25.4e-6,
-        compression: 0.0,
-        viscosity: 0.0,
-        temperature: 293.0,
-    };
+    const FILM: Film = Film { viscosity: 0.0, ..Film::PAPER };
 
     /// An element under this gradient, turned in space.
     fn element(gradient: Matrix2<f64>) -> (FilmModel, Field) {

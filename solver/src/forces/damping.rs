@@ -12,14 +12,6 @@
 //! neither force nor moment. It resists closing and opening alike, in slack film too: that is what
 //! keeps slack nodes from flying.
 
-use crate::material::{Material, PlaneTensor};
-
-/// `S_v` of an element, Pa, at its strain rate (1/s); `time` is `2ζ/ω_e`, s.
-pub fn viscous_stress(material: &Material, time: f64, rate: PlaneTensor) -> PlaneTensor {
-    let PlaneTensor { xx, yy, xy } = material.full_stress(rate);
-    PlaneTensor { xx: xx * time, yy: yy * time, xy: xy * time }
-}
-
 /// The factors of velocity and of acceleration in a kick of length h (s) under mass damping c
 /// (1/s).
 pub fn kick_factors(damping: f64, length: f64) -> (f64, f64) {

@@ -70,15 +70,7 @@ mod tests {
     use crate::scene::Film;
 
     fn film() -> Film {
-        Film {
-            youngs_modulus: 3.45e9,
-            poisson_ratio: 0.3,
-            density: 1400.0,
-            thickness: 25.4e-6,
-            compression: 0.0,
-            viscosity: 0.0,
-            temperature: 293.0,
-        }
+        Film { viscosity: 0.0, ..Film::PAPER }
     }
 
     #[test]

@@ -197,15 +197,7 @@ mod tests {
     use crate::forces::membrane::film_pass;
     use crate::scene::Film;
 
-    const FILM: Film = Film {
-        youngs_modulus: 3.45e9,
-        poisson_ratio: 0.3,
-        density: 1400.0,
-        thickness: 25.4e-6,
-        compression: 0.3,
-        viscosity: 0.1,
-        temperature: 293.0,
-    };
+    const FILM: Film = Film { compression: 0.3, ..Film::PAPER };
 
     /// Triangles between any nodes at all, so that most nodes are touched by both halves.
     fn tangle(triangles: &[[u32; 3]]) -> FilmModel {

@@ -92,7 +92,6 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::*;
-    use crate::forces::damping::viscous_stress;
     use crate::forces::membrane::{NodeForces, Sums, film_pass, strain};
     use crate::material::PlaneTensor;
     use crate::scene::Film;
@@ -108,15 +107,7 @@ mod tests {
 
     impl Shaken {
         fn new(length: f64) -> Self {
-            let film = Film {
-                youngs_modulus: 3.45e9,
-                poisson_ratio: 0.3,
-                density: 1400.0,
-                thickness: 25.4e-6,
-                compression: 0.0,
-                viscosity: 0.1,
-                temperature: 293.0,
-            };
+            let film = Film::PAPER;
             let flat: Vec<_> = (0..11_u32)
                 .map(|k| Vector2::new(0.1 * f64::from(k % 4), 0.08 * f64::from(k / 4)))
                 .map(|p| Vector2::new(p.x + 0.3 * p.y, p.y - 0.1 * p.x))
@@ -164,10 +155,9 @@ mod tests {
             let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
             let (p, q) = (x1 - x0, x2 - x0);
             let (f, g) = (p * a + q * c, p * b + q * d);
-            let time = model.viscous_time[element];
-            let PlaneTensor { xx, yy, xy } = viscous_stress(&model.material, time, rate(element));
+            let PlaneTensor { xx, yy, xy } = model.material.full_stress(rate(element));
             let (p, q) = (f * xx + g * xy, f * xy + g * yy);
-            let loss = -model.volume[element];
+            let loss = -model.volume[element] * model.viscous_time[element];
             let (first, second) = ((p * a + q * b) * loss, (p * c + q * d) * loss);
             for (node, force) in triangle.iter().zip([-(first + second), first, second]) {
                 sum.set(*node as usize, sum.get(*node as usize) + force);

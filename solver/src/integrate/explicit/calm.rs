@@ -129,15 +129,7 @@ mod tests {
 
     /// Two triangles far apart, at rest for 50 ms after they moved.
     fn calm() -> Explicit {
-        let film = Film {
-            youngs_modulus: 3.45e9,
-            poisson_ratio: 0.3,
-            density: 1400.0,
-            thickness: 25.4e-6,
-            compression: 0.0,
-            viscosity: 0.1,
-            temperature: 293.0,
-        };
+        let film = Film::PAPER;
         let flat = [Vector2::new(0.0, 0.0), Vector2::new(0.1, 0.0), Vector2::new(0.0, 0.1)];
         let triangles = [[0, 1, 2], [3, 4, 5]];
         let model = FilmModel::new(&film, 6, &triangles, &[flat, flat]).expect("a film");

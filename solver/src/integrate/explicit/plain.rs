@@ -256,15 +256,7 @@ mod tests {
 
     /// 7 x 5 cells less half a one: 69 elements, one alone in its kite, the last block not full; 48 nodes.
     fn sheet(compression: f64) -> (FilmModel, Vec<Vector3<f64>>) {
-        let film = Film {
-            youngs_modulus: 3.45e9,
-            poisson_ratio: 0.3,
-            density: 1400.0,
-            thickness: 25.4e-6,
-            compression,
-            viscosity: 0.1,
-            temperature: 293.0,
-        };
+        let film = Film { compression, ..Film::PAPER };
         let place = |i: u32, j: u32| Vector2::new(0.1 * f64::from(i), 0.08 * f64::from(j));
         let flat: Vec<_> = (0..6).flat_map(|j| (0..8).map(move |i| place(i, j))).collect();
         let mut triangles = Vec::new();
