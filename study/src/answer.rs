@@ -2,6 +2,7 @@
 //! which hits hardest, what the results are worth, and what each parameter does, all else equal.
 
 use crate::compare::{self, Sets};
+use crate::point::Point;
 use crate::row::{self, Counts};
 use crate::statistics::Spread;
 use crate::stored::Stored;
@@ -41,6 +42,8 @@ pub struct Extreme {
     pub parameters: Vec<(String, Value)>,
     /// The measure, SI.
     pub value: f64,
+    /// How many other jobs have the same, but for rounding.
+    pub others: usize,
 }
 
 /// The audit over all done jobs.
@@ -58,6 +61,8 @@ pub struct Trust {
     pub intersections: Option<i64>,
     /// Jobs that counted passages.
     pub counted: usize,
+    /// Largest film stress over Young's modulus: what the linear law of the film is asked to bear.
+    pub stretch: f64,
 }
 
 /// Medians by the values of one parameter, each over the same sets of jobs equal in all else.
@@ -81,6 +86,9 @@ impl Answer {
         let table = stored.table();
         let mut answer = Self::of_jobs(&table);
         answer.question.clone_from(&stored.study.question);
+        if let Some(trust) = &mut answer.trust {
+            trust.stretch = stretch(stored);
+        }
         answer.effects = effects(&stored.table_of_all_points(), &|parameter| {
             stored.study.zipped_with(parameter)
         });
@@ -122,12 +130,29 @@ fn extreme(table: &Table, measure: &str, better: fn(f64, f64) -> bool) -> Option
         }
     }
     let (row, value) = best?;
+    let same = |other: f64| (other - value).abs() <= compare::TIE * value.abs();
+    let measured = (0..table.rows()).filter_map(|row| compare::measured(table, column, row));
+    let others = measured.filter(|other| same(*other)).count() - 1;
     let parameters = table.parameters();
     Some(Extreme {
         job: cell(table, "job", row)?.to_string(),
         parameters: parameters.map(|own| (own.name.clone(), own.cells[row].clone())).collect(),
         value,
+        others,
     })
+}
+
+/// Largest film stress over Young's modulus of the done jobs.
+fn stretch(stored: &Stored<'_>) -> f64 {
+    let of = |point: &Point| {
+        let cells = stored.cells(point);
+        let modulus = point.job.scene.film.youngs_modulus;
+        match cells.get("film_stress") {
+            Value::Number(stress) if cells.status() == row::DONE => stress / modulus,
+            _ => 0.0,
+        }
+    };
+    stored.points.iter().map(of).fold(0.0, f64::max)
 }
 
 fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
@@ -156,6 +181,7 @@ fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
         passages: total(&passages),
         intersections: total(&counts("intersections")),
         counted: passages.len(),
+        stretch: 0.0,
     })
 }
 

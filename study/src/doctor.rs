@@ -309,7 +309,14 @@ fn table(stored: &Stored<'_>, health: &mut Health) {
     let again = "`billow run` of its study writes it again";
     let there = match stored.results.read_table() {
         Ok(there) => there,
-        Err(_) if health.running && !path.exists() => return,
+        Err(_) if !path.exists() => {
+            if !health.running {
+                let next =
+                    "nothing, `billow table` reads the journal instead; `billow run` writes it";
+                health.note(&path, "no table yet", next);
+            }
+            return;
+        }
         Err(Error::Disk { path, problem }) => {
             let problem = problem.split('\n').next().unwrap_or_default();
             let newer = problem.contains("this program reads up to");

@@ -270,7 +270,11 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
             "\n  next: free some space and run the same command again; what is finished is kept"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-            "\n  next: make the folder writable, or choose another with --results DIR"
+            "\n  next: make it writable, or choose another place (--results DIR, or --out where a \
+             command has it)"
+        }
+        io::ErrorKind::AlreadyExists => {
+            "\n  next: it is a file; choose a folder with --results DIR"
         }
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
             "\n  next: name a file in a folder that is there"

@@ -113,6 +113,12 @@ impl SceneFile {
             let problem = format!("is {}, not an object", tree.kind());
             return Err(source.error("", "", problem, "one JSON object: {\"mesh\": …}").into());
         }
+        let written = tree.get("format") == Some(&Json::Text("billow-study".to_owned()));
+        if written || tree.get("grid").is_some() {
+            let key = if written { "format" } else { "grid" };
+            let error = source.error(key, "", "is of a study, not of a scene", "");
+            return Err(InputError { hint: format!("billow run {file}"), ..error }.into());
+        }
         apply_overrides(&mut tree, sets, &SCENE, &mut source)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let mut reader = Reader { source, folder, hashes: BTreeMap::new() };

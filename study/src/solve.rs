@@ -191,7 +191,10 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         return Ok((model, Run::default()));
     };
     let refuse = |problem: String| Error::Disk { path: path.clone(), problem };
-    let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
+    let bytes = files.read(path).map_err(|error| {
+        let next = "name the file --checkpoint wrote, or start anew without --resume";
+        refuse(format!("cannot read the checkpoint: {error}\n  next: {next}"))
+    })?;
     let text =
         String::from_utf8(bytes).map_err(|_| refuse("no checkpoint: not UTF-8".to_owned()))?;
     let checkpoint = Checkpoint::from_text(&text, &scene.fingerprint).map_err(|error| {

@@ -114,6 +114,10 @@ impl Study {
             let problem = format!("is {}, not an object", tree.kind());
             return Err(source.error("", "", problem, "one JSON object: {\"design\": …}"));
         }
+        if tree.get("format") == Some(&Json::Text("billow-scene".to_owned())) {
+            let error = source.error("format", "\"billow-scene\"", "is a scene, not a study", "");
+            return Err(InputError { hint: format!("billow solve {file}"), ..error });
+        }
         overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let base = Base::read(&tree, &source)?;
         let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
@@ -182,22 +186,26 @@ impl Study {
         json
     }
 
-    /// What never flows: inflow windows that begin after every run has ended, in words.
+    /// What never flows: inflow windows, or parts of them, after every run has ended, in words.
     pub(crate) fn late_windows(&self) -> Vec<String> {
         let ends = self.points.iter().map(|point| point.scene.solver.end_time);
         let end = ends.fold(0.0, f64::max);
-        let late = |from: &f64| *from >= end;
+        let late = |time: Option<f64>| time.filter(|time| *time >= end);
         let of = |(name, strategy): (&String, &strategy::Strategy)| -> Vec<String> {
-            let starts = strategy.starts().into_iter().enumerate();
-            starts
-                .filter_map(|(at, from)| Some((at, from.filter(late)?)))
-                .map(|(at, from)| {
-                    format!(
-                        "strategies.{name}.inflow[{at}] begins at {from} s, when the run has ended \
-                         ({end} s): it lets nothing in"
-                    )
-                })
-                .collect()
+            let said = |(at, [from, to]): (usize, [Option<f64>; 2])| {
+                let window = format!("strategies.{name}.inflow[{at}]");
+                if let Some(from) = late(from) {
+                    return Some(format!(
+                        "{window} begins at {from} s, when the run has ended ({end} s): it lets \
+                         nothing in"
+                    ));
+                }
+                let to = late(to).filter(|to| *to > end)?;
+                Some(format!(
+                    "{window} goes on to {to} s, the run to {end} s: the rest never flows"
+                ))
+            };
+            strategy.windows().into_iter().enumerate().filter_map(said).collect()
         };
         self.base.strategies.iter().flat_map(of).collect()
     }

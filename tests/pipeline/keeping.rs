@@ -49,8 +49,8 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
     (
         "missing table",
         |desk, _| fs::remove_file(desk.results().join("summary.parquet")).unwrap(),
-        true,
-        "no table here",
+        false,
+        "no table yet",
     ),
     (
         "foreign table",

@@ -258,3 +258,18 @@ fn a_folder_without_results_is_one_clear_error_for_every_command() {
         "nothing is left there"
     );
 }
+
+#[test]
+fn a_run_that_ends_on_its_way_is_told_from_one_that_stands() {
+    let axes = json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]});
+    let mut study = grid(&axes);
+    study["solver"]["end_time"] = json!("20 ms");
+    let desk = Desk::new(&study);
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let said = desk.stdout(&["why", &ids(&desk, "done")[0]]);
+    for words in
+        ["done, stalled", "motion    in the last tenth", "next      a longer solver.end_time"]
+    {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+}

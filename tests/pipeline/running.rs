@@ -1,10 +1,11 @@
 //! `billow run` and `billow table` as a user meets them.
 
+use std::fs;
 use std::io::{BufRead, BufReader};
 
 use serde_json::json;
 
-use crate::support::{Desk, small_grid, stderr};
+use crate::support::{Desk, ran, small_grid, stderr};
 
 #[test]
 fn a_study_runs_and_says_what_came_of_it() {
@@ -172,4 +173,46 @@ fn a_table_of_another_study_than_the_file_says_so() {
     let other = desk.run(&["table", "grid.json", "--set", "film.viscosity=0.05"]);
     assert_eq!(other.status.code(), Some(0));
     assert!(stderr(&other).contains("another study"), "{}", stderr(&other));
+}
+
+#[test]
+fn where_no_table_is_written_the_journal_is_read() {
+    let desk = ran();
+    let all = ["table", "--columns", "all", "--format", "csv", "-q"];
+    let table = desk.stdout(&all);
+    fs::remove_file(desk.results().join("summary.parquet")).unwrap();
+    assert_eq!(desk.stdout(&all), table);
+    assert!(desk.stdout(&["status"]).contains("broken   nothing; 1 thing to know"));
+    desk.stdout(&["run", "grid.json", "-q"]);
+    assert!(desk.results().join("summary.parquet").is_file());
+    assert_eq!(desk.stdout(&all), table);
+}
+
+#[test]
+fn a_plan_tells_what_is_there_and_forecasts_the_rest() {
+    let desk = Desk::new(&small_grid());
+    let before = stderr(&desk.run(&["plan", "grid.json"]));
+    assert!(before.contains("forecast: 16 jobs without film"), "{before}");
+    assert!(!before.contains("there already"), "{before}");
+    desk.stdout(&["run", "grid.json", "-q"]);
+    let after = stderr(&desk.run(&["plan", "grid.json"]));
+    assert!(after.contains("results/grid: 16 of 16 jobs there already"), "{after}");
+    assert!(!after.contains("forecast"), "{after}");
+    let other = ["plan", "grid.json", "--set", "solver.end_time=0.5 s"];
+    let other = stderr(&desk.run(&other));
+    assert!(other.contains("forecast: 16 jobs") && !other.contains("there already"), "{other}");
+}
+
+#[test]
+fn a_study_and_a_scene_are_told_apart() {
+    let desk = Desk::new(&small_grid());
+    let study = stderr(&desk.run(&["solve", "grid.json"]));
+    assert!(
+        study.contains("grid: is of a study") && study.contains("next: billow run grid.json"),
+        "{study}"
+    );
+    fs::write(desk.path().join("scene.json"), r#"{"format": "billow-scene"}"#).unwrap();
+    let scene = desk.run(&["run", "scene.json"]);
+    assert_eq!(scene.status.code(), Some(2));
+    assert!(stderr(&scene).contains("next: billow solve scene.json"), "{}", stderr(&scene));
 }

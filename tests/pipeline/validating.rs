@@ -1,11 +1,14 @@
 //! `billow validate`: rows, names, tiers, exit codes; the quick tier itself.
 
-use std::process::{Command, Output};
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Output, Stdio};
 
 use billow_solver::mutation::{Mutation, Term};
 use billow_study::cases::{self, CASES, Rig, Tier};
 use billow_study::cli::{Format, validate};
 use serde_json::Value;
+
+use crate::resume::signal;
 
 const KEYS: [&str; 10] =
     ["case", "quantity", "value", "reference", "error", "order", "band", "pass", "seconds", "note"];
@@ -125,4 +128,25 @@ fn rows_are_the_same_with_one_thread_and_two() {
         judged.into_iter().map(|case| (case.name, case.rows)).collect::<Vec<_>>()
     };
     assert_eq!(told(1), told(2));
+}
+
+#[test]
+fn a_signal_leaves_what_is_judged() {
+    // The second takes many times as long as the first.
+    let flags =
+        ["validate", "--case", "patch", "--case", "deployed_equals_inflated_fine", "--json"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
+    let child = command.args(flags).args(["--threads", "1"]);
+    let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut child = child.expect("the binary runs");
+    let mut stderr = BufReader::new(child.stderr.take().expect("piped"));
+    let mut told = String::new();
+    stderr.read_line(&mut told).expect("a line");
+    assert!(told.starts_with("billow: 1/2 patch: in band"), "{told}");
+    signal(&child, "-INT");
+    stderr.read_to_string(&mut told).expect("its last words");
+    let output = child.wait_with_output().expect("a child");
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(told.contains("stopped by signal 2; 1 of 2 cases were judged"), "{told}");
+    assert!(rows(&output).iter().all(|row| row["case"] == "patch"));
 }

@@ -117,9 +117,9 @@ impl Case {
         1e9 * self.wall_seconds / (self.steps as f64 * self.elements as f64)
     }
 
-    /// Share of the wall time it was on a core.
+    /// Share of the wall time it was on a core; `None` where nothing says, or the way was too short.
     pub fn core_share(&self) -> Option<f64> {
-        self.core_seconds.map(|core| core / self.wall_seconds)
+        machine::core_share(self.core_seconds, self.wall_seconds)
     }
 
     /// As a row.

@@ -139,6 +139,16 @@ pub fn core_seconds() -> Option<f64> {
     Some(1e-9 * nanoseconds as f64)
 }
 
+/// Wall time below which the share on a core is not told, s: the system books a thread's time a tick of
+/// some milliseconds after it is spent.
+const TELLING: f64 = 0.1;
+
+/// Share of a wall time (s) a thread was on a core for so long (s); `None` where that is not known, or
+/// the wall time too short to tell.
+pub fn core_share(core: Option<f64>, wall: f64) -> Option<f64> {
+    core.filter(|_| wall >= TELLING).map(|core| core / wall)
+}
+
 /// Most memory this process has held, bytes; `None` where the system does not say.
 pub fn peak_memory() -> Option<u64> {
     let said = said("/proc/self/status", "VmHWM")?;

@@ -96,7 +96,8 @@ pub fn measure(
         let wall = start.elapsed().as_secs_f64();
         if share * wall < whole {
             whole = share * wall;
-            core_share = machine::core_seconds().zip(core).map(|(now, then)| (now - then) / wall);
+            let on_core = machine::core_seconds().zip(core).map(|(now, then)| now - then);
+            core_share = machine::core_share(on_core, wall);
         }
         step = (film.state.time - state.run.film.state.time) / steps as f64;
         interrupted(stop)?;

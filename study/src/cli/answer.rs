@@ -15,6 +15,10 @@ use crate::value::{Value, brief_number, json_value, short_number};
 /// Characters a line of medians may have.
 const WIDTH: usize = 120;
 
+/// Film stress over Young's modulus above which no film bears it linearly; where film that opens at speed
+/// is pulled taut, it reaches half of that for a moment.
+const STRETCHED: f64 = 0.1;
+
 /// Prints the answer: about a line each for what deployed, the fastest job, the hardest, the trust,
 /// and every parameter of a few values.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
@@ -41,6 +45,14 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     }
     if let Some(trust) = &answer.trust {
         writeln!(out, "  trust    {}", trusted(trust))?;
+        if trust.stretch > STRETCHED {
+            writeln!(
+                out,
+                "  stretch  film_stress is up to {} % of Young's modulus, where the linear law of the \
+                 film holds for a few: is there a unit missing?",
+                brief_number(100.0 * trust.stretch)
+            )?;
+        }
     }
     if !answer.effects.is_empty() {
         writeln!(
@@ -118,7 +130,11 @@ fn of_job(extreme: &Extreme) -> String {
             other => format!("{name}={other}"),
         })
         .collect();
-    format!("job {} {}", &extreme.job[..8.min(extreme.job.len())], parameters.join(" "))
+    let others = match extreme.others {
+        0 => String::new(),
+        others => format!(" (and {} with it)", count(others, "job")),
+    };
+    format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(" "))
 }
 
 fn trusted(trust: &Trust) -> String {
@@ -195,6 +211,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             keys.insert("job".to_owned(), own.job.as_str().into());
             keys.insert("parameters".to_owned(), parameters(own).into());
             keys.insert(measure.to_owned(), own.value.into());
+            keys.insert("others".to_owned(), own.others.into());
             keys
         })
     };
@@ -223,6 +240,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             "passages": trust.passages,
             "intersections": trust.intersections,
             "counted": trust.counted,
+            "film_stress_over_modulus": trust.stretch,
         })
     });
     json!({

@@ -74,7 +74,8 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             "--where",
             condition,
             "holds of no row",
-            "billow table --where shows which",
+            "a condition that holds of a row; numbers are SI unless they carry a unit, as in \
+             mass_flow_rate == '5 g/s'",
         ));
     }
     let choice = match (&args.condition, args.jobs.len()) {

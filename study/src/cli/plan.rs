@@ -1,19 +1,23 @@
 //! `billow plan`.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 mod forecast;
 
 use forecast::forecast;
 
-use super::print::print_rows;
+use super::print::{self, print_rows};
+use super::run::results_folder;
 use super::{Format, Global, notes};
 use crate::error::Result;
-use crate::job::Parameters;
+use crate::files::Disk;
+use crate::job::{JobId, Parameters};
 use crate::plan::{Generation, next_jobs};
 use crate::point::Point;
+use crate::results::Results;
 use crate::study::Study;
 use crate::value::{Value, short_number};
 
@@ -42,12 +46,32 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             eprintln!("units: {}", units(&study));
         }
         eprintln!("{}: {}", study.name, summary(&generation));
-        if let Some(text) = forecast(&generation) {
+        let root = results_folder(global, &study);
+        let stored = stored(&root, &study, &generation)?;
+        let jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
+        let missing: Vec<&Point> = jobs.filter(|own| !stored.contains(&own.job.id)).collect();
+        if !stored.is_empty() {
+            let jobs = print::count(stored.len() + missing.len(), "job");
+            eprintln!("{}: {} of {jobs} there already", root.display(), stored.len());
+        }
+        if let Some(text) = forecast(&missing) {
             eprintln!("{text}");
         }
         notes::print(&study);
     }
     Ok(())
+}
+
+/// The planned jobs that are finished in a results folder, where it is this study's.
+fn stored(root: &Path, study: &Study, generation: &Generation) -> Result<BTreeSet<JobId>> {
+    let results = Results::new(&Disk, root);
+    if results.owner()?.as_deref() != Some(study.name.as_str()) {
+        return Ok(BTreeSet::new());
+    }
+    let journal = results.journal()?;
+    let planned = generation.points.iter().filter(|point| point.infeasible.is_none());
+    let there = planned.filter(|point| journal.records.contains_key(&point.job.id));
+    Ok(there.map(|point| point.job.id.clone()).collect())
 }
 
 /// What the fold solves; a parameter of the same name is what was asked for, so it keeps its column

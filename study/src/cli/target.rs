@@ -11,6 +11,7 @@ use crate::job;
 use crate::keys;
 use crate::results::Results;
 use crate::row::Kind;
+use crate::stored::Stored;
 use crate::study::Study;
 use crate::table::{Column, Table};
 use crate::units::Dimension;
@@ -24,14 +25,19 @@ pub struct Target {
     pub table: Table,
 }
 
-/// Opens the results meant, as [`folder`] finds them. Says on stderr where a study file given is not the
+/// Opens the results meant, as [`folder`] finds them; rows of jobs that have not run yet are pending. Says on stderr where a study file given is not the
 /// one they were run for.
 ///
 /// # Errors
 /// Where there are none, or their table cannot be read.
 pub fn open(given: Option<&Path>, global: &Global) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, global)?);
-    let table = results.read_table()?;
+    // A run that has not written its table yet, or was killed before, has plan and journal.
+    let table = if !results.table_path().exists() && results.owner()?.is_some() {
+        Stored::read(results.clone())?.table()
+    } else {
+        results.read_table()?
+    };
     if let Some(path) = given.filter(|path| path.is_file()) {
         let study = Study::load(path, &global.set)?;
         if !results.holds(&study.name, &study.resolved())? {

@@ -1,16 +1,24 @@
 //! `billow validate`: the reference cases, judged.
 
 use std::io::Write;
-use std::sync::Mutex;
-use std::sync::PoisonError;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use rayon::ThreadPool;
 
 use super::print::print_rows;
 use super::{Format, Global};
 use crate::cases::{self, CASES, Case, Judged, Rig, Tier};
 use crate::error::{Error, InputError, Result};
+use crate::files::disk_error;
 use crate::keys;
+use crate::stop::Stop;
 use crate::value::Value;
+
+/// How long a signal may go unseen.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// Arguments of `billow validate`.
 #[derive(Debug, clap::Args)]
@@ -29,7 +37,7 @@ pub struct Args {
 /// Runs `billow validate`.
 ///
 /// # Errors
-/// When a case is not known, or one is out of band.
+/// When a case is not known, or one is out of band; a signal, after the rows of what has ended.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen(&args.cases)?;
     if args.list {
@@ -47,24 +55,59 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             hint: String::new(),
         }));
     }
-    let pool = super::run::pool(global)?;
-    let (total, ended) = (cases.len(), AtomicUsize::new(0));
-    let telling = Mutex::new(());
-    let judged = cases::run_all(&pool, &cases, &Rig::default(), &|judged| {
-        let _turn = telling.lock().unwrap_or_else(PoisonError::into_inner);
-        let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
+    let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
+    let total = cases.len();
+    let mut judged = judge(super::run::pool(global)?, cases.clone(), &stop, &|number, judged| {
         if !global.quiet {
             let verdict = if judged.pass() { "in band" } else { "OUT OF BAND" };
             let Judged { name, seconds, .. } = judged;
             eprintln!("billow: {number}/{total} {name}: {verdict}, {seconds:.1} s");
         }
     });
+    let place = |judged: &Judged| cases.iter().position(|case| case.name == judged.name);
+    judged.sort_by_key(place);
     if !skipped.is_empty() && !global.quiet {
         let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
         eprintln!("billow: skipped by --quick: {}", names.join(", "));
     }
     print(&judged, global.format(), out)?;
-    verdict(&judged)
+    match stop.requested().filter(|_| judged.len() < total) {
+        Some(signal) => {
+            let next = format!(
+                "{} of {total} cases were judged, above; --case NAME runs one alone",
+                judged.len()
+            );
+            Err(Error::Interrupted { signal, next })
+        }
+        None => verdict(&judged),
+    }
+}
+
+/// Runs cases, each told with its number as it ends; those that have ended when a signal asks to stop.
+/// A case cannot be stopped in its midst: it is left, and ends with the program.
+fn judge(
+    pool: ThreadPool,
+    cases: Vec<&'static Case>,
+    stop: &Stop,
+    tell: &dyn Fn(usize, &Judged),
+) -> Vec<Judged> {
+    let (told, ended) = mpsc::channel();
+    let _running = thread::spawn(move || {
+        // Nobody listens once a signal has come.
+        cases::run_all(&pool, &cases, &Rig::default(), &|judged| drop(told.send(judged.clone())))
+    });
+    let mut judged = Vec::new();
+    while stop.requested().is_none() {
+        match ended.recv_timeout(LOOK) {
+            Ok(case) => {
+                tell(judged.len() + 1, &case);
+                judged.push(case);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    judged
 }
 
 /// What the program ends with.

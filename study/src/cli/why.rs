@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use billow_solver::audit::RESIDUAL_BOUND;
+use billow_solver::measures::REFERENCE_PRESSURES;
 use serde_json::{Map, json};
 
 use super::print::print_rows;
@@ -12,6 +13,7 @@ use super::target::folder;
 use super::{Format, Global, output_error};
 use crate::error::Result;
 use crate::files::Disk;
+use crate::history_file;
 use crate::job::JobId;
 use crate::results::Results;
 use crate::row::{self, Cells};
@@ -83,7 +85,11 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
     let next = match cells.status() {
         row::DONE => {
             lines.extend(verdict(cells));
-            format!("billow show {short} {root} --history")
+            let motion = motion(stored, id).filter(|_| cells.text("verdict") != "deployed");
+            let longer = "a longer solver.end_time: the run ended while the film was on its way";
+            let next = motion.as_ref().map(|_| longer.to_owned());
+            lines.extend(motion.map(|said| ("motion", said)));
+            next.unwrap_or_else(|| format!("billow show {short} {root} --history"))
         }
         row::PENDING => {
             let withdrawn = stored.journal.withdrawn.contains_key(id);
@@ -127,6 +133,32 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
     }
     lines.push(("next", next));
     Ok(lines)
+}
+
+/// Share of its last volume by which the volume of film on its way changes in a tenth of its run.
+const GROWING: f64 = 0.02;
+/// Share of its largest kinetic energy that film on its way has, over a tenth of its run.
+const MOVING: f64 = 0.05;
+
+/// How a job still moved in the last tenth of its run, in words; `None` where it did not, or its history
+/// cannot say.
+fn motion(stored: &Stored<'_>, id: &JobId) -> Option<String> {
+    let history = history_file::read(&stored.history_path(id).ok()?).ok()?.history;
+    let of = |name: &str| history.column(name);
+    let (time, volume, energy) = (of("time"), of("volume"), of("kinetic_energy"));
+    let end = time.last()?;
+    let from = time.partition_point(|own| *own < 0.9 * end);
+    let growth = 1.0 - volume.get(from)? / volume.last()?;
+    let largest = energy.iter().copied().fold(0.0, f64::max);
+    let tenth = &energy[from..];
+    let moving = tenth.iter().sum::<f64>() / (tenth.len() as f64 * largest);
+    (growth.abs() > GROWING || moving > MOVING).then(|| {
+        let (growth, moving) = (100.0 * growth, share(moving));
+        format!(
+            "in the last tenth its volume still changed by {} %, at {moving} of its largest kinetic energy",
+            brief_number(growth)
+        )
+    })
 }
 
 fn number(cells: &Cells, name: &str) -> Option<f64> {
@@ -177,6 +209,14 @@ fn verdict(cells: &Cells) -> Vec<Line> {
         let ratio = format!("height_ratio {value} (least of the last tenth)");
         let text = format!("{ratio} {sign} {wanted} it takes to be deployed; {margin} {word}");
         lines.push(("height", text));
+    }
+    let largest = REFERENCE_PRESSURES[REFERENCE_PRESSURES.len() - 1];
+    if let Some(pressure) = number(cells, "final_pressure").filter(|own| *own > largest) {
+        let text = format!(
+            "static states are known up to {largest} Pa and taken as constant above; the gas ends at {} Pa",
+            brief_number(pressure)
+        );
+        lines.push(("reference", text));
     }
     if verdict.is_empty() {
         let text = "none: the design has no static states to hold it against";

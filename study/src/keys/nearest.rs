@@ -1,5 +1,8 @@
 //! What a mistyped name was meant to be.
 
+/// Letters of a name by which one that begins so is meant, at least.
+const BEGINNING: usize = 4;
+
 /// The known name nearest to a mistyped one, if any is near.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     if name.len() > 64 {
@@ -8,7 +11,12 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&
     let name = name.to_lowercase();
     let furthest = 1 + name.chars().count() / 4;
     known
-        .map(|known| (distance(&name, &known.to_lowercase()), known))
+        .map(|known| {
+            let own = known.to_lowercase();
+            // Who stops early means what begins so.
+            let begun = name.len() >= BEGINNING && own.starts_with(&name);
+            (if begun { furthest } else { usize::MAX }.min(distance(&name, &own)), known)
+        })
         .filter(|(distance, _)| *distance <= furthest)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, known)| known)

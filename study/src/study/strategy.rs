@@ -27,14 +27,15 @@ impl Strategy {
         }
     }
 
-    /// When each inflow window begins, s; `None` at the release.
-    pub fn starts(&self) -> Vec<Option<f64>> {
-        let at = WINDOW_KEYS.iter().position(|key| key.path == "from");
-        let start = |window: &Vec<Value>| match at.map(|at| &window[at]) {
-            Some(Value::Number(from)) => Some(*from),
+    /// When each inflow window begins and ends, s; `None` at the release, and at the end.
+    pub fn windows(&self) -> Vec<[Option<f64>; 2]> {
+        let at = |name: &str| WINDOW_KEYS.iter().position(|key| key.path == name);
+        let (from, to) = (at("from"), at("to"));
+        let time = |window: &Vec<Value>, at: Option<usize>| match at.map(|at| &window[at]) {
+            Some(Value::Number(time)) => Some(*time),
             _ => None,
         };
-        self.inflow.iter().map(start).collect()
+        self.inflow.iter().map(|window| [time(window, from), time(window, to)]).collect()
     }
 
     /// The strategy spelled out, without what is absent.

@@ -7,7 +7,7 @@ use billow_solver::scene::ModelKind;
 
 use crate::cli::print::{count, duration};
 use crate::job::canonical_json;
-use crate::plan::Generation;
+use crate::point::Point;
 use crate::value::short_number;
 
 /// Nanoseconds an element takes on one core for each step of film that never gets calm, about: measured
@@ -16,11 +16,11 @@ const NS: f64 = 17.0;
 /// Meshes that are made to foretell a cost, at most.
 const MESHES: usize = 100;
 
-/// What the jobs will cost, about; nothing for models that cost next to nothing.
-pub(super) fn forecast(generation: &Generation) -> Option<String> {
+/// What jobs will cost, about; nothing where there are none.
+pub(super) fn forecast(points: &[&Point]) -> Option<String> {
     let mut known: BTreeMap<String, Cost> = BTreeMap::new();
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
-    for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
+    for point in points {
         let scene = &point.job.scene;
         if scene.solver.model == ModelKind::Piston {
             continue;
@@ -39,7 +39,16 @@ pub(super) fn forecast(generation: &Generation) -> Option<String> {
         jobs += 1;
         element_steps += cost.elements as f64 * cost.steps as f64;
     }
-    (jobs > 0).then(|| {
+    if jobs == 0 {
+        let pistons = || {
+            format!(
+                "forecast: {} without film, well under a second each",
+                count(points.len(), "job")
+            )
+        };
+        return (!points.is_empty()).then(pistons);
+    }
+    Some({
         format!(
             "forecast: {} of film, about {} million element-steps, about {} of one core",
             count(jobs, "job"),

@@ -33,7 +33,7 @@ pub enum Sample {
 }
 
 /// Width of a sample and the gap behind it, mm.
-const SAMPLE: f64 = 11.0;
+const SAMPLE: f64 = 17.0;
 /// Width of a sample that is no line, mm.
 const NARROW: f64 = 5.5;
 /// From one row to the next, mm.
