@@ -17,6 +17,7 @@ mod completions;
 mod doctor;
 mod fold;
 mod frames;
+mod memory;
 mod notes;
 mod picture;
 mod plan;

@@ -140,6 +140,12 @@ impl<W: Write> Lines<W> {
 /// A running job as a line; nothing while it has told nothing.
 fn standing((name, progress): &(String, Option<Progress>)) -> Option<String> {
     let own = (*progress)?;
+    // Before its first step: the static states of a fine mesh take a while.
+    if own.time <= 0.0 {
+        return Some(format!(
+            "  {name}  gets ready: its mesh, the static states it is judged against"
+        ));
+    }
     Some(format!(
         "  {name}  t {:.4} of {} s  z_centre {:.3} m  p {:.4} Pa",
         own.time,

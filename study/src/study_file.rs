@@ -281,7 +281,9 @@ pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
     let disk = |problem: String| Error::Disk { path: path.to_owned(), problem };
     let unreadable = |error: std::io::Error| {
         let next = match error.kind() {
-            std::io::ErrorKind::NotFound => format!("; give the path of a {what}, as {example}"),
+            std::io::ErrorKind::NotFound | std::io::ErrorKind::IsADirectory => {
+                format!("\n  next: give the path of a {what}, as {example}")
+            }
             _ => String::new(),
         };
         disk(format!("cannot read the {what}: {error}{next}"))

@@ -273,3 +273,14 @@ fn a_run_that_ends_on_its_way_is_told_from_one_that_stands() {
         assert!(said.contains(words), "{words}: {said}");
     }
 }
+
+#[test]
+fn results_in_place_of_a_job_are_told() {
+    let desk = ran();
+    for command in ["why", "show", "frames"] {
+        let output = desk.run(&[command, "results/grid"]);
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        let said = stderr(&output);
+        assert!(said.contains("names results, and no job of theirs"), "{command}: {said}");
+    }
+}

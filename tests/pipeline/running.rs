@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 
+use billow_study::bench::machine;
 use serde_json::json;
 
 use crate::support::{Desk, ran, small_grid, stderr};
@@ -215,4 +216,26 @@ fn a_study_and_a_scene_are_told_apart() {
     let scene = desk.run(&["run", "scene.json"]);
     assert_eq!(scene.status.code(), Some(2));
     assert!(stderr(&scene).contains("next: billow solve scene.json"), "{}", stderr(&scene));
+}
+
+#[test]
+fn a_mesh_this_machine_cannot_hold_is_refused_before_anything_is_written() {
+    if machine::memory().is_none_or(|memory| memory as f64 > 264e9) {
+        return;
+    }
+    let mut study = small_grid();
+    study["solver"]["model"] = json!("film");
+    let desk = Desk::new(&study);
+    // 1000 is the most the key allows: 36 to 48 million elements of 5.5 kB.
+    let flags = ["--set", "design.subdivisions=1000"];
+    let output = desk.run(&[&["run", "grid.json"], &flags[..]].concat());
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("design.subdivisions: a mesh of 48 million elements takes 264 GB"),
+        "{said}"
+    );
+    assert!(!desk.results().exists());
+    let planned = desk.run(&[&["plan", "grid.json"], &flags[..]].concat());
+    assert!(planned.status.success() && stderr(&planned).contains("a mesh of 48 million"));
 }

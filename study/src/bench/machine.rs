@@ -149,9 +149,18 @@ pub fn core_share(core: Option<f64>, wall: f64) -> Option<f64> {
     core.filter(|_| wall >= TELLING).map(|core| core / wall)
 }
 
+/// Memory of this machine, bytes; `None` where the system does not say.
+pub fn memory() -> Option<u64> {
+    kibibytes("/proc/meminfo", "MemTotal")
+}
+
 /// Most memory this process has held, bytes; `None` where the system does not say.
 pub fn peak_memory() -> Option<u64> {
-    let said = said("/proc/self/status", "VmHWM")?;
-    let kibibytes: u64 = said.strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes("/proc/self/status", "VmHWM")
+}
+
+/// A line `name : value kB` of a file the system writes, bytes.
+fn kibibytes(file: &str, name: &str) -> Option<u64> {
+    let kibibytes: u64 = said(file, name)?.strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes << 10)
 }

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use super::Global;
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
-use super::target::folder;
+use super::target::folder_of_job;
 use crate::error::{Error, Result};
 use crate::files::{Disk, Files, disk_error};
 use crate::history_file::{self, StoredFrames};
@@ -159,7 +159,7 @@ fn source(args: &Args, global: &Global) -> Result<Source> {
         let out = path.with_file_name(format!("{stem}_frames"));
         return Ok(Source { path: path.to_owned(), title: stem.into_owned(), out });
     }
-    let root = folder(args.study.as_deref(), global)?;
+    let root = folder_of_job(&args.job, args.study.as_deref(), global)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     let id = stored.job(&args.job)?;
     Ok(Source {

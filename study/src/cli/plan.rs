@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 mod forecast;
 
@@ -11,7 +11,7 @@ use forecast::forecast;
 
 use super::print::{self, print_rows};
 use super::run::results_folder;
-use super::{Format, Global, notes};
+use super::{Format, Global, memory, notes};
 use crate::error::Result;
 use crate::files::Disk;
 use crate::job::{JobId, Parameters};
@@ -47,15 +47,22 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         }
         eprintln!("{}: {}", study.name, summary(&generation));
         let root = results_folder(global, &study);
-        let stored = stored(&root, &study, &generation)?;
+        let results = Results::new(&Disk, &root);
+        let stored = stored(&results, &study, &generation)?;
         let jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
         let missing: Vec<&Point> = jobs.filter(|own| !stored.contains(&own.job.id)).collect();
         if !stored.is_empty() {
             let jobs = print::count(stored.len() + missing.len(), "job");
             eprintln!("{}: {} of {jobs} there already", root.display(), stored.len());
         }
-        if let Some(text) = forecast(&missing) {
-            eprintln!("{text}");
+        let references = results.references().into_iter().map(|(id, _)| id).collect();
+        match memory::check_study(&args.study.display().to_string(), &study) {
+            Err(error) => eprintln!("{error}"),
+            Ok(()) => {
+                if let Some(text) = forecast(&missing, references) {
+                    eprintln!("{text}");
+                }
+            }
         }
         notes::print(&study);
     }
@@ -63,8 +70,11 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 }
 
 /// The planned jobs that are finished in a results folder, where it is this study's.
-fn stored(root: &Path, study: &Study, generation: &Generation) -> Result<BTreeSet<JobId>> {
-    let results = Results::new(&Disk, root);
+fn stored(
+    results: &Results<'_>,
+    study: &Study,
+    generation: &Generation,
+) -> Result<BTreeSet<JobId>> {
     if results.owner()?.as_deref() != Some(study.name.as_str()) {
         return Ok(BTreeSet::new());
     }

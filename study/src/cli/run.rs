@@ -6,7 +6,7 @@ use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use super::print::count;
-use super::{Format, Global, notes, output_error};
+use super::{Format, Global, memory, notes, output_error};
 use crate::answer::Answer;
 use crate::error::{Error, InputError, Result};
 use crate::executor::Solver;
@@ -36,6 +36,7 @@ pub struct Args {
 /// A study that is not sound, a disk that fails, jobs that failed, a signal.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &global.set)?;
+    memory::check_study(&args.study.display().to_string(), &study)?;
     let root = results_folder(global, &study);
     run_study(&study, &root, None, global, out)
 }

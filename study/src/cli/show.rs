@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use billow_solver::history::COLUMNS;
 
 use super::print::print_rows;
-use super::target::folder;
+use super::target::folder_of_job;
 use super::{Format, Global, output_error};
 use crate::error::{Error, InputError, Result};
 use crate::files::Disk;
@@ -64,7 +64,7 @@ pub struct Args {
 /// # Errors
 /// A job that is not there; a history or results that cannot be read.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let root = folder(args.study.as_deref(), global)?;
+    let root = folder_of_job(&args.job, args.study.as_deref(), global)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     let id = stored.job(&args.job)?;
     if args.scene {

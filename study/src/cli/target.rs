@@ -77,6 +77,27 @@ pub fn folder(study: Option<&Path>, global: &Global) -> Result<PathBuf> {
     }
 }
 
+/// The results folder a job is in, for commands that take a job first.
+///
+/// # Errors
+/// As [`folder`]; and where results are given in place of the job.
+pub fn folder_of_job(job: &str, study: Option<&Path>, global: &Global) -> Result<PathBuf> {
+    let path = Path::new(job);
+    let is_results = path.is_dir() || Path::new("results").join(path).is_dir();
+    if study.is_none() && (is_results || path.is_file()) && !job.is_empty() {
+        return Err(InputError {
+            file: "job".to_owned(),
+            key: String::new(),
+            value: job.to_owned(),
+            problem: "names results, and no job of theirs".to_owned(),
+            allowed: "the first digits of a job's id, then the results".to_owned(),
+            hint: format!("billow table {job} --columns job,status lists the ids"),
+        }
+        .into());
+    }
+    folder(study, global)
+}
+
 fn only_folder() -> Result<PathBuf> {
     let results = Path::new("results");
     let mut folders = Disk.list(results).unwrap_or_default();

@@ -9,7 +9,7 @@ use billow_solver::measures::REFERENCE_PRESSURES;
 use serde_json::{Map, json};
 
 use super::print::print_rows;
-use super::target::folder;
+use super::target::folder_of_job;
 use super::{Format, Global, output_error};
 use crate::error::Result;
 use crate::files::Disk;
@@ -38,7 +38,7 @@ type Line = (&'static str, String);
 /// # Errors
 /// A job that is not there; results that cannot be read.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let root = folder(args.study.as_deref(), global)?;
+    let root = folder_of_job(&args.job, args.study.as_deref(), global)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     let id = stored.job(&args.job)?;
     let cells = match (stored.point(&id), stored.record(&id)) {

@@ -68,8 +68,11 @@ pub(super) fn read(tree: &Json, settings: &Settings, reader: &mut Reader) -> Res
         (Some(_), None) => Ok(capsule(settings, &reader.source)?),
         (None, Some(json)) => mesh::read(json, reader),
         (given, _) => {
-            let problem = if given.is_some() { "gives both" } else { "gives neither" };
-            let problem = format!("{problem} design and mesh");
+            let problem = if given.is_some() {
+                "gives both design and mesh"
+            } else {
+                "gives neither design nor mesh"
+            };
             let allowed = "one of design (a capsule) and mesh (OBJ files)";
             Err(reader.source.error("", "", problem, allowed).into())
         }

@@ -1,24 +1,30 @@
 //! What the jobs of a plan will cost.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::ladder::{self, Cost};
 use billow_solver::scene::ModelKind;
 
 use crate::cli::print::{count, duration};
-use crate::job::canonical_json;
+use crate::job::{JobId, canonical_json};
 use crate::point::Point;
 use crate::value::short_number;
 
 /// Nanoseconds an element takes on one core for each step of film that never gets calm, about: measured
 /// on the paper's capsule, which does, at n 4 to 8 over 0.5 s.
 const NS: f64 = 17.0;
+/// Seconds the static states of a design take on one core, c eᵏ of its elements: 0.6, 6 and 78 s were
+/// measured at n 8, 16 and 32 (the factors of sparse matrices grow faster than they do).
+const STATES: f64 = 4.3e-7;
+const STATES_POWER: f64 = 1.75;
 /// Meshes that are made to foretell a cost, at most.
 const MESHES: usize = 100;
 
-/// What jobs will cost, about; nothing where there are none.
-pub(super) fn forecast(points: &[&Point]) -> Option<String> {
+/// What jobs will cost, about, their static states included but for those `known_states`; nothing where
+/// there are none.
+pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> Option<String> {
     let mut known: BTreeMap<String, Cost> = BTreeMap::new();
+    let mut states = 0.0;
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
     for point in points {
         let scene = &point.job.scene;
@@ -36,6 +42,11 @@ pub(super) fn forecast(points: &[&Point]) -> Option<String> {
             known.insert(key.clone(), ladder::cost(scene).ok()?);
         }
         let cost = known[&key];
+        if let Some(of) = ladder::reference_scene(scene)
+            && known_states.insert(JobId::of(&of))
+        {
+            states += STATES * libm::pow(cost.elements as f64, STATES_POWER);
+        }
         jobs += 1;
         element_steps += cost.elements as f64 * cost.steps as f64;
     }
@@ -53,7 +64,7 @@ pub(super) fn forecast(points: &[&Point]) -> Option<String> {
             "forecast: {} of film, about {} million element-steps, about {} of one core",
             count(jobs, "job"),
             short_number(libm::round(element_steps / 1e6)),
-            duration(libm::ceil(element_steps * NS * 1e-9))
+            duration(libm::ceil(element_steps * NS * 1e-9 + states))
         )
     })
 }
