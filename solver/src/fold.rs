@@ -102,6 +102,14 @@ pub struct FoldDesign {
     pub caps: Caps,
 }
 
+impl FoldDesign {
+    /// Elements of its mesh, 2 N (M + 1) n².
+    pub fn elements(&self) -> u64 {
+        let [panels, storeys, n] = [self.panels, self.storeys, self.subdivisions].map(u64::from);
+        2 * panels * (storeys + 1) * n * n
+    }
+}
+
 /// A single change that makes an infeasible design feasible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {

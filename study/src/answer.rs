@@ -29,6 +29,9 @@ pub struct Answer {
     pub most_energy: Option<Extreme>,
     /// What the done jobs are worth.
     pub trust: Option<Trust>,
+    /// Largest film stress of a done job over Young's modulus: what the linear law of the film is asked to
+    /// bear.
+    pub stretch: f64,
     /// What each parameter of two to six values does.
     pub effects: Vec<Effect>,
 }
@@ -61,8 +64,6 @@ pub struct Trust {
     pub intersections: Option<i64>,
     /// Jobs that counted passages.
     pub counted: usize,
-    /// Largest film stress over Young's modulus: what the linear law of the film is asked to bear.
-    pub stretch: f64,
 }
 
 /// Medians by the values of one parameter, each over the same sets of jobs equal in all else.
@@ -86,16 +87,14 @@ impl Answer {
         let table = stored.table();
         let mut answer = Self::of_jobs(&table);
         answer.question.clone_from(&stored.study.question);
-        if let Some(trust) = &mut answer.trust {
-            trust.stretch = stretch(stored);
-        }
+        answer.stretch = stretch(stored);
         answer.effects = effects(&stored.table_of_all_points(), &|parameter| {
             stored.study.zipped_with(parameter)
         });
         answer
     }
 
-    /// All but the question and the effects.
+    /// All but the question, the stretch and the effects.
     fn of_jobs(table: &Table) -> Self {
         let mut answer = Self::default();
         let rows: Vec<usize> = (0..table.rows()).collect();
@@ -132,7 +131,7 @@ fn extreme(table: &Table, measure: &str, better: fn(f64, f64) -> bool) -> Option
     let (row, value) = best?;
     let same = |other: f64| (other - value).abs() <= compare::TIE * value.abs();
     let measured = (0..table.rows()).filter_map(|row| compare::measured(table, column, row));
-    let others = measured.filter(|other| same(*other)).count() - 1;
+    let others = measured.filter(|other| same(*other)).count().saturating_sub(1);
     let parameters = table.parameters();
     Some(Extreme {
         job: cell(table, "job", row)?.to_string(),
@@ -181,7 +180,6 @@ fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
         passages: total(&passages),
         intersections: total(&counts("intersections")),
         counted: passages.len(),
-        stretch: 0.0,
     })
 }
 

@@ -274,7 +274,7 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
              command has it)"
         }
         io::ErrorKind::AlreadyExists => {
-            "\n  next: it is a file; choose a folder with --results DIR"
+            "\n  next: a file is in the way of a folder; choose another with --results DIR or --out"
         }
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
             "\n  next: name a file in a folder that is there"

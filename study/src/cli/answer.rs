@@ -45,14 +45,14 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     }
     if let Some(trust) = &answer.trust {
         writeln!(out, "  trust    {}", trusted(trust))?;
-        if trust.stretch > STRETCHED {
-            writeln!(
-                out,
-                "  stretch  film_stress is up to {} % of Young's modulus, where the linear law of the \
-                 film holds for a few: is there a unit missing?",
-                brief_number(100.0 * trust.stretch)
-            )?;
-        }
+    }
+    if answer.stretch > STRETCHED {
+        writeln!(
+            out,
+            "  stretch  film_stress is up to {} % of Young's modulus, where the linear law of the film \
+             holds for a few: is there a unit missing?",
+            brief_number(100.0 * answer.stretch)
+        )?;
     }
     if !answer.effects.is_empty() {
         writeln!(
@@ -240,7 +240,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             "passages": trust.passages,
             "intersections": trust.intersections,
             "counted": trust.counted,
-            "film_stress_over_modulus": trust.stretch,
+            "film_stress_over_modulus": answer.stretch,
         })
     });
     json!({

@@ -242,8 +242,7 @@ fn print_json(answer: &Json, out: &mut dyn Write) -> Result<()> {
 const MOST_ELEMENTS: u64 = 4_000_000;
 
 fn check_size(design: &FoldDesign) -> Result<()> {
-    let [panels, storeys, n] = [design.panels, design.storeys, design.subdivisions].map(u64::from);
-    let elements = 2 * panels * (storeys + 1) * n * n;
+    let (n, elements) = (design.subdivisions, design.elements());
     if elements <= MOST_ELEMENTS {
         return Ok(());
     }

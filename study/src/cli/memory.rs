@@ -2,13 +2,13 @@
 //! ends whoever takes the last of it.
 //!
 //! ```text
-//! bytes ≥ 5.5e3 e        e = 2 N (M + 1) n² for a capsule
+//! bytes ≥ 5.5e3 e        e elements of the mesh
 //! ```
 //!
 //! Measured on the stowed capsule with contact (282 MB at 49,152 elements); film that lies on film takes
 //! up to four times as much.
 
-use billow_solver::scene::{ModelKind, Scene};
+use billow_solver::scene::ModelKind;
 
 use crate::bench::machine;
 use crate::error::{Error, InputError, Result};
@@ -18,57 +18,42 @@ use crate::value::brief_number;
 /// Bytes an element takes at least.
 const LEAST: f64 = 5.5e3;
 
-/// Elements of a capsule's mesh; 0 where its model has none.
-fn elements(scene: &Scene) -> f64 {
-    let design = &scene.design;
-    let n = f64::from(design.subdivisions);
-    match scene.solver.model {
-        ModelKind::Film => 2.0 * f64::from(design.panels) * f64::from(design.storeys + 1) * n * n,
-        ModelKind::Piston => 0.0,
+/// Refuses a study, in this file, of which a mesh has more elements than this machine has memory for.
+///
+/// # Errors
+/// [`Error::Input`].
+pub fn check(file: &str, study: &Study) -> Result<()> {
+    let runs = study.points().iter().filter(|point| point.infeasible.is_none());
+    let scenes = runs.map(|point| &point.scene);
+    let film = scenes.filter(|scene| scene.solver.model == ModelKind::Film);
+    let elements = film.map(|scene| scene.design.elements()).max().unwrap_or(0);
+    match machine::memory().and_then(|memory| too_many(elements, memory)) {
+        None => Ok(()),
+        Some([problem, allowed]) => Err(Error::Input(InputError {
+            file: file.to_owned(),
+            key: "design.subdivisions".to_owned(),
+            value: String::new(),
+            problem,
+            allowed,
+            hint: "a coarser mesh: n 5 to 16 answers what a study asks (README, Models)".to_owned(),
+        })),
     }
 }
 
-/// Why so many elements do not fit, in words; `None` where they may, or nobody knows.
-fn too_many(elements: f64, memory: Option<u64>) -> Option<String> {
-    let memory = memory? as f64;
-    (elements * LEAST > memory).then(|| {
+/// Why so much memory (bytes) does not hold so many elements, and how many it does, in words; `None`
+/// where it may.
+fn too_many(elements: u64, memory: u64) -> Option<[String; 2]> {
+    let (elements, memory) = (elements as f64, memory as f64);
+    let problem = || {
         format!(
             "a mesh of {} million elements takes {} GB of memory or more, this machine has {}",
             brief_number(1e-6 * elements),
             brief_number(1e-9 * elements * LEAST),
             brief_number(1e-9 * memory)
         )
-    })
-}
-
-/// Refuses a mesh this machine has no memory for. `file` and `key` are what decides it.
-///
-/// # Errors
-/// [`Error::Input`].
-pub fn check(file: &str, key: &str, elements: f64) -> Result<()> {
-    let Some(problem) = too_many(elements, machine::memory()) else { return Ok(()) };
-    Err(Error::Input(InputError {
-        file: file.to_owned(),
-        key: key.to_owned(),
-        value: String::new(),
-        problem,
-        allowed: format!("up to {} million elements here", brief_number(most(machine::memory()))),
-        hint: "a coarser mesh: n 5 to 16 answers what a study asks (README, Models)".to_owned(),
-    }))
-}
-
-/// Millions of elements so much memory holds at most.
-fn most(memory: Option<u64>) -> f64 {
-    memory.map_or(f64::INFINITY, |memory| 1e-6 * memory as f64 / LEAST)
-}
-
-/// The same for every job of a study.
-///
-/// # Errors
-/// [`Error::Input`].
-pub fn check_study(file: &str, study: &Study) -> Result<()> {
-    let largest = study.points().iter().map(|point| elements(&point.scene)).fold(0.0, f64::max);
-    check(file, "design.subdivisions", largest)
+    };
+    let allowed = || format!("up to {} million elements here", brief_number(1e-6 * memory / LEAST));
+    (elements * LEAST > memory).then(|| [problem(), allowed()])
 }
 
 #[cfg(test)]
@@ -77,11 +62,10 @@ mod tests {
 
     #[test]
     fn only_what_cannot_fit_is_refused() {
-        let memory = Some(24 << 30);
-        assert_eq!(too_many(49_152.0, memory), None);
-        assert_eq!(too_many(4.0e6, memory), None);
-        let told = too_many(12.0e6, memory).expect("too many");
+        let memory = 24 << 30;
+        assert_eq!(too_many(49_152, memory), None);
+        assert_eq!(too_many(4_000_000, memory), None);
+        let [told, _] = too_many(12_000_000, memory).expect("too many");
         assert!(told.starts_with("a mesh of 12 million elements takes 66 GB"), "{told}");
-        assert_eq!(too_many(12.0e6, None), None, "nobody knows");
     }
 }

@@ -1,9 +1,9 @@
 //! `billow plan`.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 mod forecast;
 
@@ -14,7 +14,7 @@ use super::run::results_folder;
 use super::{Format, Global, memory, notes};
 use crate::error::Result;
 use crate::files::Disk;
-use crate::job::{JobId, Parameters};
+use crate::job::Parameters;
 use crate::plan::{Generation, next_jobs};
 use crate::point::Point;
 use crate::results::Results;
@@ -46,42 +46,40 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             eprintln!("units: {}", units(&study));
         }
         eprintln!("{}: {}", study.name, summary(&generation));
-        let root = results_folder(global, &study);
-        let results = Results::new(&Disk, &root);
-        let stored = stored(&results, &study, &generation)?;
-        let jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
-        let missing: Vec<&Point> = jobs.filter(|own| !stored.contains(&own.job.id)).collect();
-        if !stored.is_empty() {
-            let jobs = print::count(stored.len() + missing.len(), "job");
-            eprintln!("{}: {} of {jobs} there already", root.display(), stored.len());
-        }
-        let references = results.references().into_iter().map(|(id, _)| id).collect();
-        match memory::check_study(&args.study.display().to_string(), &study) {
-            Err(error) => eprintln!("{error}"),
-            Ok(()) => {
-                if let Some(text) = forecast(&missing, references) {
-                    eprintln!("{text}");
-                }
-            }
-        }
+        tell_the_rest(&args.study, &study, &generation, global)?;
         notes::print(&study);
     }
     Ok(())
 }
 
-/// The planned jobs that are finished in a results folder, where it is this study's.
-fn stored(
-    results: &Results<'_>,
+/// Says how many of the jobs are finished in the results folder, where it is this study's, and what the
+/// others will cost.
+fn tell_the_rest(
+    file: &Path,
     study: &Study,
     generation: &Generation,
-) -> Result<BTreeSet<JobId>> {
-    if results.owner()?.as_deref() != Some(study.name.as_str()) {
-        return Ok(BTreeSet::new());
+    global: &Global,
+) -> Result<()> {
+    let root = results_folder(global, study);
+    let results = Results::new(&Disk, &root);
+    let ours = results.owner()?.as_deref() == Some(study.name.as_str());
+    let records = if ours { results.journal()?.records } else { BTreeMap::new() };
+    let jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
+    let (there, missing): (Vec<&Point>, Vec<&Point>) =
+        jobs.partition(|point| records.contains_key(&point.job.id));
+    if !there.is_empty() {
+        let jobs = print::count(there.len() + missing.len(), "job");
+        eprintln!("{}: {} of {jobs} there already", root.display(), there.len());
     }
-    let journal = results.journal()?;
-    let planned = generation.points.iter().filter(|point| point.infeasible.is_none());
-    let there = planned.filter(|point| journal.records.contains_key(&point.job.id));
-    Ok(there.map(|point| point.job.id.clone()).collect())
+    if let Err(error) = memory::check(&file.display().to_string(), study) {
+        eprintln!("{error}");
+        return Ok(());
+    }
+    let references = results.references().into_iter().map(|(id, _)| id).collect();
+    if let Some(text) = forecast(&missing, references) {
+        eprintln!("{text}");
+    }
+    Ok(())
 }
 
 /// What the fold solves; a parameter of the same name is what was asked for, so it keeps its column

@@ -36,7 +36,7 @@ pub struct Args {
 /// A study that is not sound, a disk that fails, jobs that failed, a signal.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &global.set)?;
-    memory::check_study(&args.study.display().to_string(), &study)?;
+    memory::check(&args.study.display().to_string(), &study)?;
     let root = results_folder(global, &study);
     run_study(&study, &root, None, global, out)
 }

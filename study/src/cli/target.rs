@@ -25,8 +25,8 @@ pub struct Target {
     pub table: Table,
 }
 
-/// Opens the results meant, as [`folder`] finds them; rows of jobs that have not run yet are pending. Says on stderr where a study file given is not the
-/// one they were run for.
+/// Opens the results meant, as [`folder`] finds them; rows of jobs that have not run yet are pending.
+/// Says on stderr where a study file given is not the one they were run for.
 ///
 /// # Errors
 /// Where there are none, or their table cannot be read.

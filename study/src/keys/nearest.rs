@@ -15,7 +15,8 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&
             let own = known.to_lowercase();
             // Who stops early means what begins so.
             let begun = name.len() >= BEGINNING && own.starts_with(&name);
-            (if begun { furthest } else { usize::MAX }.min(distance(&name, &own)), known)
+            let edits = distance(&name, &own);
+            (if begun { edits.min(furthest) } else { edits }, known)
         })
         .filter(|(distance, _)| *distance <= furthest)
         .min_by_key(|(distance, _)| *distance)

@@ -87,8 +87,7 @@ fn capsule(settings: &Settings, source: &Source) -> std::result::Result<Shape, I
     let statics = settings.flag("solver.static");
     let word = settings.maybe_text("design.shape");
     let erected = word.map_or(statics, |word| word == "erected");
-    let n = u64::from(design.subdivisions);
-    let elements = 2 * u64::from(design.panels) * (u64::from(design.storeys) + 1) * n * n;
+    let (n, elements) = (design.subdivisions, design.elements());
     if elements > MOST_ELEMENTS {
         let problem = format!("makes a capsule of {elements} elements");
         let allowed = format!("fewer: 2 N (M + 1) n² up to {MOST_ELEMENTS}");

@@ -50,21 +50,15 @@ pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> 
         jobs += 1;
         element_steps += cost.elements as f64 * cost.steps as f64;
     }
-    if jobs == 0 {
-        let pistons = || {
-            format!(
-                "forecast: {} without film, well under a second each",
-                count(points.len(), "job")
-            )
-        };
-        return (!points.is_empty()).then(pistons);
-    }
-    Some({
+    let text = if jobs > 0 {
         format!(
-            "forecast: {} of film, about {} million element-steps, about {} of one core",
+            "{} of film, about {} million element-steps, about {} of one core",
             count(jobs, "job"),
             short_number(libm::round(element_steps / 1e6)),
             duration(libm::ceil(element_steps * NS * 1e-9 + states))
         )
-    })
+    } else {
+        format!("{} without film, well under a second each", count(points.len(), "job"))
+    };
+    (!points.is_empty()).then(|| format!("forecast: {text}"))
 }
