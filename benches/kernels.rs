@@ -4,16 +4,16 @@
 
 use std::hint::black_box;
 
-use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
-use billow_solver::integrate::explicit::plain::{Moving, fast_step, plain_step};
-use billow_solver::integrate::explicit::update::Push;
-use billow_solver::mesh::{Mesh, Shape};
-use billow_solver::model::FilmModel;
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::integrators::explicit::reference_step::{Moving, fast_step, plain_step};
+use billow_solver::integrators::explicit::update::Push;
+use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::scene::Film;
-use billow_solver::shell::Shell;
-use billow_solver::simd::Path;
-use billow_solver::state::Field;
-use billow_solver::supports::Free;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::geometry::field::Field;
+use billow_solver::mechanics::supports::Free;
 use criterion::{Criterion, Throughput};
 use nalgebra::Vector3;
 
@@ -63,14 +63,14 @@ fn steps(criterion: &mut Criterion) {
             gain: length,
             pressed: false,
         };
-        let start = Moving::new(Path::best(), &model, places, Field::zeros(nodes));
+        let start = Moving::new(InstructionSet::detect(), &model, places, Field::zeros(nodes));
         let mut group = criterion.benchmark_group(format!("film n {subdivisions}"));
         group.throughput(Throughput::Elements(model.elements() as u64));
         let mut film = start.clone();
         group.bench_function("plain loops", |bencher| {
             bencher.iter(|| black_box(plain_step(&model, &push, &free, length, &mut film)));
         });
-        for path in Path::ALL.into_iter().filter(|path| path.available()) {
+        for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
             let mut film = start.clone();
             group.bench_function(path.name(), |bencher| {
                 bencher

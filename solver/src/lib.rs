@@ -1,6 +1,6 @@
 //! Fold patterns of inflatable capsules and their deployment: pure computation.
 //!
-//! A [`Scene`](scene::Scene) holds everything one run needs; [`solve`](ladder::solve) turns it
+//! A [`Scene`](scene::Scene) holds everything one run needs; [`solve`](models::solve) turns it
 //! into a [`Deployment`](deployment::Deployment) of history, measures and audit. Nothing here
 //! knows of studies, files, clocks or terminals; [`workers`] alone knows of threads.
 //!
@@ -20,37 +20,15 @@
 //! The equation numbers are those of "Research on the Folding Patterns and Deployment Dynamics of
 //! Inflatable Capsule Structures" unless a comment says otherwise.
 
-pub mod audit;
-pub mod checkpoint;
-pub mod contact;
-pub mod course;
-pub mod deployment;
-pub mod film_scene;
-pub mod fold;
-pub mod forces;
-pub mod frames;
-pub mod gas;
-pub mod history;
-pub mod integrate;
-pub mod ladder;
-pub mod ledger;
-pub mod material;
-pub mod measures;
-pub mod mesh;
-pub mod mesh_io;
-pub mod model;
-pub mod mutation;
-pub mod probe;
-pub mod proximity;
-pub mod resultants;
+pub mod collision;
+pub mod geometry;
+pub mod integrators;
+pub mod mechanics;
+pub mod models;
+pub mod output;
+pub mod platform;
 pub mod scene;
-pub mod shell;
-pub mod simd;
-pub mod stages;
-pub mod state;
 pub mod statics;
-pub mod supports;
-pub mod workers;
 
 /// Number of the physics: part of every job id, raised whenever a change of the solver changes
 /// any result.

@@ -3,12 +3,12 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use billow_solver::course::Phase;
-use billow_solver::deployment::Model;
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::explicit::DEFAULT_CFL;
-use billow_solver::ladder::film::FilmRun;
-use billow_solver::measures::Reference;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::models::film::FilmRun;
+use billow_solver::models::run::Model;
+use billow_solver::output::measures::Reference;
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 
 use crate::rig::paper_scene;
 

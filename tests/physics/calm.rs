@@ -1,11 +1,11 @@
 //! Calm film takes longer steps: as exact as before, until something stirs it.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::FilmContact;
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::explicit::{DEFAULT_CFL, Explicit, State};
-use billow_solver::ladder::film::capsule;
-use billow_solver::mesh::Shape;
+use billow_solver::geometry::mesh::Shape;
+use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit, State};
+use billow_solver::models::film::capsule;
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use crate::geometry::paper_design;

@@ -2,10 +2,12 @@
 
 use std::time::Instant;
 
-use billow_solver::deployment::{FailureKind, Observer, Progress, Stop};
-use billow_solver::fold::{FoldDesign, FoldPattern};
-use billow_solver::ladder::{self, SceneError, piston::PistonRun};
-use billow_solver::measures::Verdict;
+use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
+use billow_solver::models::run::{Observer, Progress};
+use billow_solver::models::{self, piston::PistonRun};
+use billow_solver::output::measures::Verdict;
+use billow_solver::output::outcome::{FailureKind, Stop};
+use billow_solver::scene::error::SceneError;
 use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportPlace};
 
 use crate::geometry::{paper_height, solved};
@@ -158,7 +160,7 @@ fn stops_are_typed() {
     coarse.solver.stepping = Stepping::Fixed(5e-4);
     coarse.film.youngs_modulus *= 300.0;
     let failure = kind(&coarse);
-    let unsound = [FailureKind::Unstable, FailureKind::Drifted, FailureKind::InvertedVolume];
+    let unsound = [FailureKind::Unstable, FailureKind::EnergyDrift, FailureKind::InvertedVolume];
     assert!(unsound.contains(&failure.kind), "{failure:?}");
 }
 
@@ -170,7 +172,7 @@ fn an_observer_can_stop_a_run() {
             progress.time < self.0
         }
     }
-    let deployment = ladder::solve(&injected(), None, &mut Until(0.02)).unwrap();
+    let deployment = models::solve(&injected(), None, &mut Until(0.02)).unwrap();
     assert_eq!(deployment.stop, Stop::Cancelled);
     assert_eq!(*deployment.history.column("time").last().unwrap(), 0.02);
     assert_eq!(deployment.measures.verdict, None);
@@ -181,7 +183,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
     let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
         let mut scene = injected();
         change(&mut scene);
-        match ladder::solve(&scene, None, &mut billow_solver::deployment::Unobserved) {
+        match models::solve(&scene, None, &mut billow_solver::models::run::Unobserved) {
             Err(SceneError::Invalid { key, problem }) => {
                 assert_eq!(key, expected, "{problem}");
                 assert!(!problem.is_empty());
@@ -222,7 +224,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
 
 #[test]
 fn the_reference_stretches_a_little_with_pressure() {
-    use billow_solver::deployment::Model;
+    use billow_solver::models::run::Model;
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
     let reference = run.reference().expect("a capsule has one");
     let height = |pressure: f64| reference.at(pressure).1;

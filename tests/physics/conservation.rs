@@ -1,7 +1,7 @@
 //! Whatever the scene, energy and gas add up, and the same scene gives the same bits.
 
-use billow_solver::deployment::Stop;
-use billow_solver::fold::{Chirality, Fit, FoldDesign};
+use billow_solver::geometry::fold::{Chirality, Fit, FoldDesign};
+use billow_solver::output::outcome::Stop;
 use billow_solver::scene::{HeatTransfer, Scene, Stepping};
 use proptest::prelude::*;
 
@@ -120,7 +120,7 @@ proptest! {
         if scene.gas.leak_area == 0.0 {
             let mass = history.column("gas_mass").last().unwrap();
             let expected = scene.gas.initial_mass
-                + billow_solver::gas::Schedule::new(&scene.gas.windows)
+                + billow_solver::scene::inflow::Schedule::new(&scene.gas.windows)
                     .mass_until(*history.column("time").last().unwrap());
             prop_assert!((mass - expected).abs() <= 1e-14 * expected);
         }
@@ -144,7 +144,7 @@ proptest! {
         let adaptive = run(&scene);
         scene.solver.stepping = Stepping::Fixed(5e-5);
         let fixed = run(&scene);
-        let heights = |d: &billow_solver::deployment::Deployment| d.history.column("z_rim").to_vec();
+        let heights = |d: &billow_solver::output::outcome::Deployment| d.history.column("z_rim").to_vec();
         for (one, two) in heights(&adaptive).iter().zip(heights(&fixed)) {
             prop_assert!((one - two).abs() < 1e-5, "{one} {two}");
         }

@@ -1,11 +1,11 @@
 //! The folded capsule with contact, put back on its state: the same bits from any step on.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::FilmContact;
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::ladder::film::capsule;
-use billow_solver::mesh::Shape;
+use billow_solver::geometry::mesh::Shape;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::models::film::capsule;
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 
 use crate::geometry::paper_design;
 use crate::rig::paper_scene;

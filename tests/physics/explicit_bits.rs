@@ -1,17 +1,17 @@
 //! The same bits whatever the instruction set, and from any step on.
 
-use billow_solver::course::Phase;
-use billow_solver::forces::membrane::viscous_forces;
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::explicit::{Explicit, State};
-use billow_solver::ladder::film::capsule;
-use billow_solver::mesh::Shape;
-use billow_solver::simd::Path;
+use billow_solver::geometry::mesh::Shape;
+use billow_solver::integrators::explicit::{Explicit, State};
+use billow_solver::mechanics::forces::membrane::viscous_forces;
+use billow_solver::models::film::capsule;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 
 use crate::geometry::paper_design;
 use crate::rig::paper_scene;
 
-fn film(path: Path) -> Explicit {
+fn film(path: InstructionSet) -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     scene.film.compression = 0.01;
@@ -31,13 +31,13 @@ fn bits(state: &State) -> String {
 
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
-    let end = |path: Path| {
+    let end = |path: InstructionSet| {
         let mut film = film(path);
         film.advance(8e-3, &INFLOW).unwrap();
         (bits(&film.state), film.ledger())
     };
-    let scalar = end(Path::Scalar);
-    for path in Path::ALL.into_iter().filter(|path| path.available()) {
+    let scalar = end(InstructionSet::Scalar);
+    for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
         assert!(end(path) == scalar, "{}", path.name());
     }
 }
@@ -45,13 +45,13 @@ fn every_instruction_set_gives_the_same_bits() {
 #[test]
 fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
     let whole = {
-        let mut film = film(Path::best());
+        let mut film = film(InstructionSet::detect());
         film.advance(2e-3, &INFLOW).unwrap();
         film.advance(3e-3, &INFLOW).unwrap();
         bits(&film.state)
     };
     for pause in [0, 1, 7, 40, 100] {
-        let mut film = film(Path::best());
+        let mut film = film(InstructionSet::detect());
         let mut steps = pause;
         for target in [2e-3, 3e-3] {
             while !film.advance_at_most(target, &INFLOW, &mut steps).unwrap() {
@@ -68,7 +68,7 @@ fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
 /// Targets that differ by rounding: over a step of next to no time the rounding of a strain is no rate.
 #[test]
 fn a_sliver_of_a_step_leaves_viscosity_as_it_is() {
-    let mut film = film(Path::best());
+    let mut film = film(InstructionSet::detect());
     film.advance(2e-3, &INFLOW).unwrap();
     let drags = |film: &Explicit| viscous_forces(&film.model, &film.state.places, &film.state.past);
     let (before, steps) = (drags(&film), film.state.steps);

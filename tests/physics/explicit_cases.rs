@@ -1,12 +1,13 @@
 //! Film in motion: moving supports, weight, typed stops. Momentum, the stable step and damping are
 //! reference cases of `billow validate`.
 
-use billow_solver::deployment::FailureKind;
-use billow_solver::film_scene::{FilmSupport, Hold, Motion, Profile};
-use billow_solver::gas::GasState;
-use billow_solver::integrate::explicit::Interior;
-use billow_solver::ledger::Ledger;
-use billow_solver::supports::Supports;
+use billow_solver::integrators::explicit::PressureLoad;
+use billow_solver::mechanics::gas::GasState;
+use billow_solver::mechanics::supports::Supports;
+use billow_solver::output::ledger::Ledger;
+use billow_solver::output::outcome::FailureKind;
+use billow_solver::scene::film_support::{FilmSupport, Hold};
+use billow_solver::scene::motion::{Motion, Profile};
 use nalgebra::Vector3;
 
 use crate::film_rig::{at_rest, free, icosphere, mapped, nitrogen_gas, sheet};
@@ -15,7 +16,8 @@ use crate::rig::PAPER_FILM;
 #[test]
 fn a_moving_support_does_the_work_it_should() {
     let piece = sheet(6, 3, 0.3, 0.15);
-    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
+    let mut film =
+        at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
     let edge = |x: f64| -> Vec<u32> {
         let on = |node: &u32| (piece.nodes[*node as usize].x - x).abs() < 1e-12;
         (0..piece.nodes.len() as u32).filter(on).collect()
@@ -51,7 +53,8 @@ fn a_moving_support_does_the_work_it_should() {
 #[test]
 fn weight_falls_as_it_should() {
     let piece = icosphere(0, 0.5);
-    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
+    let mut film =
+        at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
     film.setting.gravity = Vector3::new(0.0, 0.0, -9.806_65);
     film.advance(0.1, &free()).unwrap();
     let drop = film.state.places.z[0] - piece.nodes[0].z;
@@ -65,7 +68,7 @@ fn typed_stops() {
     let piece = icosphere(1, 0.5);
     let gas = nitrogen_gas();
     let mut film =
-        at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), gas.at_temperature(1e-3, 293.0));
+        at_rest(&piece, &PAPER_FILM, PressureLoad::Gas(gas), gas.at_temperature(1e-3, 293.0));
     film.setting.step_limit = 7;
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!((failure.kind, film.state.steps), (FailureKind::StepLimit, 7));
@@ -77,7 +80,7 @@ fn typed_stops() {
     assert!(failure.place.starts_with("node ") && failure.time < 0.1, "{failure:?}");
 
     // Thrown through itself, turned inside out.
-    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Gas(gas), GasState::default());
+    let mut film = at_rest(&piece, &PAPER_FILM, PressureLoad::Gas(gas), GasState::default());
     film.state.velocities = mapped(&piece, |x| x * -400.0);
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::InvertedVolume, "{failure:?}");

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use billow_solver::fold::{Assignment, Chirality, FoldDesign};
-use billow_solver::mesh::{Mesh, Shape};
-use billow_solver::mesh_io::{fold, obj};
+use billow_solver::geometry::fold::{Assignment, Chirality, FoldDesign};
+use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::geometry::mesh_io::{fold, obj};
 
 use crate::geometry::{paper_design, solved};
 

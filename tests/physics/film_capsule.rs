@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
-use billow_solver::deployment::{Deployment, Stop, Unobserved};
-use billow_solver::integrate::explicit::DEFAULT_CFL;
-use billow_solver::ladder::SceneError;
-use billow_solver::ladder::film::{self, static_states};
-use billow_solver::measures::Reference;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::models::film::{self, static_states};
+use billow_solver::models::run::Unobserved;
+use billow_solver::output::measures::Reference;
+use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::scene::error::SceneError;
 use billow_solver::scene::{HeatTransfer, Scene};
 
 use crate::rig::{paper_scene, window};

@@ -1,14 +1,14 @@
 //! Small films for the tests of the explicit solver.
 
-use billow_solver::course::Phase;
-use billow_solver::forces::membrane::{NodeForces, Past, film_pass};
-use billow_solver::gas::{Gas, GasState};
-use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
-use billow_solver::model::FilmModel;
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::forces::membrane::{NodeForces, ViscousHistory, assemble_membrane};
+use billow_solver::mechanics::gas::{Gas, GasState};
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Film;
-use billow_solver::shell::Shell;
-use billow_solver::simd::Path;
-use billow_solver::state::Field;
+use billow_solver::scene::timeline::Phase;
 use nalgebra::{Vector2, Vector3};
 
 use crate::rig::{PAPER_FILM, supply};
@@ -113,8 +113,8 @@ pub fn icosphere(level: u32, radius: f64) -> Piece {
 /// Film forces on nodes at these places, at rest.
 pub fn film_forces(model: &FilmModel, places: &Field) -> NodeForces {
     let mut nodes = NodeForces::new(model);
-    let past = &mut Past::at_rest(model);
-    let _ = film_pass(Path::best(), model, places, 0.0, past, &mut nodes);
+    let past = &mut ViscousHistory::at_rest(model);
+    let _ = assemble_membrane(InstructionSet::detect(), model, places, 0.0, past, &mut nodes);
     nodes
 }
 
@@ -135,9 +135,9 @@ pub fn pattern(length: usize, seed: u64) -> Vec<Vector3<f64>> {
 }
 
 /// A piece of film at rest where it is stress free.
-pub fn at_rest(piece: &Piece, film: &Film, interior: Interior, gas: GasState) -> Explicit {
+pub fn at_rest(piece: &Piece, film: &Film, interior: PressureLoad, gas: GasState) -> Explicit {
     let viscosity = film.viscosity;
-    let setting = Setting { viscosity, ..Setting::free(interior, piece.nodes.len()) };
+    let setting = Parameters { viscosity, ..Parameters::free(interior, piece.nodes.len()) };
     let still = Field::zeros(piece.nodes.len());
     Explicit::new(piece.model(film), setting, Field::of(&piece.nodes), still, gas)
 }

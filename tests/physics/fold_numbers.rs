@@ -1,7 +1,7 @@
 //! The paper's capsule and its neighbours, to every digit known (physics of the fold, section 1).
 
-use billow_solver::fold::{FoldDesign, FoldError, FoldPattern};
-use billow_solver::mesh::{Mesh, Shape};
+use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
+use billow_solver::geometry::mesh::{Mesh, Shape};
 
 use crate::geometry::{crossings, paper_angles, paper_design, paper_height, solved};
 
@@ -147,7 +147,8 @@ fn erected_on_the_cone() {
     let frustum = pattern.erected_volume();
     let mut last = f64::INFINITY;
     for n in [4, 8, 16] {
-        let design = FoldDesign { caps: billow_solver::fold::Caps::Circular, ..paper_design() };
+        let design =
+            FoldDesign { caps: billow_solver::geometry::fold::Caps::Circular, ..paper_design() };
         let round = Mesh::new(&solved(&design), n, Shape::Erected).expect("a mesh");
         let error = 1.0 - round.volume() / frustum;
         assert!(error > 0.0 && error < 0.3 * last, "inscribed, second order: {error}");

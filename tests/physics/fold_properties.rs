@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use billow_solver::fold::{Caps, Chirality, Corner, Fit, FoldDesign, FoldPattern};
-use billow_solver::mesh::{Mesh, Part, Shape};
+use billow_solver::geometry::fold::{Caps, Chirality, Corner, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::mesh::{Mesh, Part, Shape};
 use proptest::prelude::*;
 
 use crate::geometry::crossings;

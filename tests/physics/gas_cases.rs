@@ -1,11 +1,12 @@
 //! The gas laws against independent quadratures and the schedule's closed form. Filling, blow-down
 //! and cooling are reference cases of `billow validate`.
 
-use billow_solver::course::Phase;
-use billow_solver::deployment::Model;
-use billow_solver::gas::{Gas, Inflow, Schedule};
-use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
-use billow_solver::ladder::piston::{PistonRun, PistonState};
+use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
+use billow_solver::mechanics::gas::Gas;
+use billow_solver::models::piston::{PistonRun, PistonState};
+use billow_solver::models::run::Model;
+use billow_solver::scene::inflow::{Inflow, Schedule};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
 use crate::rig::{adaptive, nitrogen, paper_scene, run, supply, tube, window};

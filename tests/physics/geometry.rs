@@ -1,7 +1,7 @@
 //! Geometry the tests judge by, kept apart from the code they judge.
 
-use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
-use billow_solver::mesh::Mesh;
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::mesh::Mesh;
 use nalgebra::Vector3;
 
 /// The paper's capsule (r2 0.5, r1 0.365, H 1 m; N 6, M 3), fit `cone`.

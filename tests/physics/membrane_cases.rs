@@ -1,8 +1,8 @@
 //! What is no film, and the factors of damping. Film forces against their energies, rigid motions,
 //! the patch and the stable step are reference cases of `billow validate`.
 
-use billow_solver::forces::damping;
-use billow_solver::model::{FilmError, FilmModel};
+use billow_solver::mechanics::film_model::{FilmError, FilmModel};
+use billow_solver::mechanics::forces::damping;
 
 use crate::film_rig::{ELASTIC, Piece, sheet};
 

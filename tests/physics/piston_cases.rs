@@ -1,11 +1,12 @@
 //! The order of the moving mass's step, and its end film. Its closed forms are reference cases of
 //! `billow validate`.
 
-use billow_solver::course::Phase;
-use billow_solver::deployment::Model;
-use billow_solver::gas::{Gas, Inflow};
-use billow_solver::integrate::Control;
-use billow_solver::ladder::piston::{EndFilm, Piston, PistonRun, PistonState};
+use billow_solver::integrators::dormand_prince::Control;
+use billow_solver::mechanics::gas::Gas;
+use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState};
+use billow_solver::models::run::Model;
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 
 use crate::rig::{adaptive, fixed, number, supply, tube};
 

@@ -2,11 +2,12 @@
 
 use std::sync::LazyLock;
 
-use billow_solver::deployment::{Deployment, Unobserved};
-use billow_solver::gas::Gas;
-use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
-use billow_solver::ladder;
-use billow_solver::ladder::piston::{EndFilm, Piston, VolumeLaw};
+use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
+use billow_solver::mechanics::gas::Gas;
+use billow_solver::models;
+use billow_solver::models::piston::{EndFilm, Piston, VolumeLaw};
+use billow_solver::models::run::Unobserved;
+use billow_solver::output::outcome::Deployment;
 use billow_solver::scene::{
     Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
     Species, Stepping, Support, SupportPlace, Thresholds,
@@ -93,5 +94,5 @@ pub fn paper_scene() -> Scene {
 }
 
 pub fn run(scene: &Scene) -> Deployment {
-    ladder::solve(scene, None, &mut Unobserved).expect("a scene that can be run")
+    models::solve(scene, None, &mut Unobserved).expect("a scene that can be run")
 }

@@ -1,11 +1,11 @@
 //! Rigid planes and slanted supports, against what they stand for.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{FilmSupport, Hold, PlaneBody};
-use billow_solver::gas::GasState;
-use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
-use billow_solver::state::Field;
-use billow_solver::supports::Supports;
+use billow_solver::geometry::field::Field;
+use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use billow_solver::mechanics::gas::GasState;
+use billow_solver::mechanics::supports::Supports;
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::timeline::Phase;
 use nalgebra::{Rotation3, Vector3};
 
 use crate::film_rig::{at_rest, sheet};
@@ -30,13 +30,14 @@ fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
         support(left, Hold::Plane(turn * Vector3::z())),
         support(right, Hold::Body(plane)),
     ];
-    let mut film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
-    let setting = Setting {
+    let mut film =
+        at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
+    let setting = Parameters {
         supports: Supports::new(&supports, &film.state.places),
         viscosity: film.setting.viscosity,
         mass_damping: 5.0,
         cfl,
-        ..Setting::free(Interior::Overpressure(0.0), piece.nodes.len())
+        ..Parameters::free(PressureLoad::Overpressure(0.0), piece.nodes.len())
     };
     let still = Field::zeros(piece.nodes.len());
     film = Explicit::new(film.model, setting, film.state.places, still, GasState::default());
@@ -84,10 +85,10 @@ fn planes_and_film_keep_their_momentum() {
         Hold::Body(PlaneBody { normal: Vector3::x(), mass, velocity, force: 0.0 })
     };
     let supports = [support(edge(0.0), plane(0.01, -1.0)), support(edge(0.3), plane(0.03, 2.0))];
-    let film = at_rest(&piece, &PAPER_FILM, Interior::Overpressure(0.0), GasState::default());
-    let setting = Setting {
+    let film = at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
+    let setting = Parameters {
         supports: Supports::new(&supports, &film.state.places),
-        ..Setting::free(Interior::Overpressure(0.0), piece.nodes.len())
+        ..Parameters::free(PressureLoad::Overpressure(0.0), piece.nodes.len())
     };
     let still = Field::zeros(piece.nodes.len());
     let mut film =

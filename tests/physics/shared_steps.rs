@@ -1,13 +1,13 @@
 //! The folded capsule with contact, one thread or two: the same bits, changed at any step.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::FilmContact;
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::ladder::film::capsule;
-use billow_solver::mesh::Shape;
-use billow_solver::simd::Path;
-use billow_solver::workers::Workers;
+use billow_solver::geometry::mesh::Shape;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::models::film::capsule;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::platform::workers::Workers;
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 
 use crate::geometry::paper_design;
 use crate::rig::paper_scene;
@@ -17,7 +17,7 @@ const INFLOW: Phase =
 const END: f64 = 5e-3;
 
 /// The paper's capsule, stowed, with enough elements for two.
-fn stowed(path: Path) -> Explicit {
+fn stowed(path: InstructionSet) -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 11;
     scene.film.compression = 0.01;
@@ -35,10 +35,10 @@ fn text(film: &Explicit) -> String {
 
 #[test]
 fn two_threads_give_the_bits_of_one() {
-    let mut alone = stowed(Path::Scalar);
+    let mut alone = stowed(InstructionSet::Scalar);
     alone.advance(END, &INFLOW).unwrap();
     assert!(alone.state.steps > 500 && !alone.state.meeting.contacts.is_empty());
-    for path in Path::ALL.into_iter().filter(|path| path.available()) {
+    for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
         let mut film = stowed(path);
         film.share_with(Workers::of(2));
         film.advance(END, &INFLOW).unwrap();
@@ -50,10 +50,10 @@ fn two_threads_give_the_bits_of_one() {
 
 #[test]
 fn threads_may_change_at_any_step() {
-    let mut whole = stowed(Path::best());
+    let mut whole = stowed(InstructionSet::detect());
     whole.advance(END, &INFLOW).unwrap();
     for (pause, before, after) in [(1, 2, 2), (99, 1, 2), (250, 2, 1), (431, 2, 2)] {
-        let mut film = stowed(Path::best());
+        let mut film = stowed(InstructionSet::detect());
         film.share_with(Workers::of(before));
         assert!(!film.advance_at_most(END, &INFLOW, &mut pause.clone()).unwrap());
         // Put back on its state, and merely given other workers.

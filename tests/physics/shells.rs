@@ -3,8 +3,8 @@
 
 use std::sync::LazyLock;
 
-use billow_solver::gas::GasState;
-use billow_solver::integrate::explicit::{Explicit, Interior};
+use billow_solver::integrators::explicit::{Explicit, PressureLoad};
+use billow_solver::mechanics::gas::GasState;
 use billow_solver::statics::Relaxation;
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -29,7 +29,7 @@ fn rows(case: &str) -> Vec<[f64; 2]> {
 fn sphere_stretch(level: u32, overpressure: f64) -> (f64, Explicit) {
     let piece = icosphere(level, number("sphere/radius"));
     let mut film =
-        at_rest(&piece, &PAPER_FILM, Interior::Overpressure(overpressure), GasState::default());
+        at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(overpressure), GasState::default());
     film.setting.cfl = 0.9;
     let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
     relaxation.relax_at(&mut film, overpressure).unwrap();
@@ -81,7 +81,7 @@ fn cylinder_under_pressure() {
             let mut film = at_rest(
                 &piece,
                 &PAPER_FILM,
-                Interior::Overpressure(overpressure),
+                PressureLoad::Overpressure(overpressure),
                 GasState::default(),
             );
             film.setting.cfl = 0.9;
@@ -113,10 +113,10 @@ fn released(level: u32, pressure: f64) -> Explicit {
     let gas = nitrogen_gas();
     let rest = sphere_stretch(level, pressure).1.state.volume;
     let piece = icosphere(level, number("breathing_sphere/radius"));
-    let empty = at_rest(&piece, &ELASTIC, Interior::Gas(gas), GasState::default());
+    let empty = at_rest(&piece, &ELASTIC, PressureLoad::Gas(gas), GasState::default());
     let pressure = pressure * (rest / empty.state.volume).powf(gas.gamma());
     let mass = pressure * empty.state.volume / (supply().species.gas_constant * 293.0);
-    at_rest(&piece, &ELASTIC, Interior::Gas(gas), gas.at_temperature(mass, 293.0))
+    at_rest(&piece, &ELASTIC, PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0))
 }
 
 #[test]

@@ -2,23 +2,23 @@
 
 use std::time::Instant;
 
-use billow_solver::film_scene::{
-    Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold, Motion, PlaneBody, Profile,
-};
-use billow_solver::gas::GasState;
-use billow_solver::integrate::explicit::{Explicit, Interior, Setting};
-use billow_solver::ladder::film::erected;
-use billow_solver::material::Regime;
-use billow_solver::model::FilmModel;
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::gas::GasState;
+use billow_solver::mechanics::material::Regime;
+use billow_solver::mechanics::supports::Supports;
+use billow_solver::models::film::erected;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Film;
-use billow_solver::shell::Shell;
-use billow_solver::simd::Path;
-use billow_solver::state::Field;
+use billow_solver::scene::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver};
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::statics::tangent::{self, Stiffness};
 use billow_solver::statics::{
     Loaded, Relaxation, Settling, StaticError, StaticFailureKind, equilibrium, solve_unwatched,
 };
-use billow_solver::supports::Supports;
 use nalgebra::{SVector, Vector2, Vector3};
 
 use crate::film_rig::{ELASTIC, film_forces, icosphere, pattern};
@@ -64,7 +64,9 @@ fn the_tangent_is_the_slope_of_the_forces_in_every_regime() {
             let film = Film { compression, ..ELASTIC };
             let (model, places) = stretched(&film, a, b);
             assert_eq!(
-                model.material.regime(billow_solver::forces::membrane::strain(&model, &places, 0)),
+                model
+                    .material
+                    .regime(billow_solver::mechanics::forces::membrane::strain(&model, &places, 0)),
                 regime
             );
             let own = tangent::elastic(&model, &places, 0);
@@ -139,11 +141,11 @@ fn where_damped_motion_rests_newton_rests() {
     let mut capsule = erected(&scene).unwrap();
     let state = capsule.settle(100.0).unwrap();
     let nodes = capsule.model.nodes();
-    let setting = Setting {
+    let setting = Parameters {
         supports: capsule.supports.clone(),
         cfl: 0.9,
         viscosity: scene.film.viscosity,
-        ..Setting::free(Interior::Overpressure(100.0), nodes)
+        ..Parameters::free(PressureLoad::Overpressure(100.0), nodes)
     };
     let mut film = Explicit::new(
         capsule.model.clone(),
@@ -186,7 +188,7 @@ fn scene(shell: Shell, pressure: f64, supports: Vec<FilmSupport>) -> FilmScene {
             statics: true,
             mass_damping: 0.0,
             step_limit: 0,
-            path: Path::best(),
+            path: InstructionSet::detect(),
         },
         outputs: FilmOutputs {
             sample_interval: 1.0,
@@ -293,7 +295,7 @@ fn the_watcher_can_end_a_search() {
         supports: &supports,
         overpressure: 100.0,
         gravity: Vector3::zeros(),
-        path: Path::best(),
+        path: InstructionSet::detect(),
     };
     let mut looks = 0;
     let stop = &mut |_: &_| {
@@ -314,7 +316,7 @@ fn a_state_has_the_same_bits_on_every_path() {
     let mut scene = paper_scene();
     scene.design.subdivisions = 2;
     let capsule = erected(&scene).unwrap();
-    let states = Path::ALL.map(|path| {
+    let states = InstructionSet::ALL.map(|path| {
         let loaded = Loaded {
             model: &capsule.model,
             supports: &Supports::none(capsule.model.nodes()),

@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use billow_solver::simd::Path;
-use billow_solver::stages::Stage;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::platform::stopwatch::Stage;
 use serde_json::Value;
 
 use crate::resume::signal;
@@ -54,8 +54,8 @@ fn positive(row: &Value, key: &str) -> f64 {
 
 /// The row's path of instructions is one this machine has.
 fn on_a_path(row: &Value) {
-    let here = |path: &Path| path.available() && row["path"] == path.name();
-    assert!(Path::ALL.iter().any(here), "{row}");
+    let here = |path: &InstructionSet| path.available() && row["path"] == path.name();
+    assert!(InstructionSet::ALL.iter().any(here), "{row}");
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn every_part_has_its_figures() {
     }
     let kernel =
         |name: &str| rows(&report, "kernels").iter().filter(|row| row["kernel"] == name).count();
-    let paths = Path::ALL.iter().filter(|path| path.available()).count();
+    let paths = InstructionSet::ALL.iter().filter(|path| path.available()).count();
     assert_eq!(kernel("reference"), 2);
     assert_eq!((kernel("step"), kernel("film")), (2 * paths, 2 * paths));
 

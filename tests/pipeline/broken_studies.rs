@@ -4,9 +4,9 @@
 use std::fs;
 use std::process::Command;
 
-use billow_study::plan::next_jobs;
+use billow_study::input::study_file;
+use billow_study::study::plan::next_jobs;
 use billow_study::study::{Limits, Study};
-use billow_study::study_file;
 use serde_json::{Value as Json, json};
 
 /// A sound study with one place changed.
@@ -323,7 +323,7 @@ fn mangle_tree(json: &mut Json, random: &mut Random) {
             match random.below(10) {
                 0 => drop(members.remove(&name)),
                 1 => {
-                    let keys = billow_study::keys::KEYS;
+                    let keys = billow_study::input::keys::KEYS;
                     let key = random.pick(keys);
                     let name = if random.below(2) == 0 { key.leaf() } else { key.path };
                     members.insert(name.to_owned(), random.pick(&values).clone());

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use billow_study::history_file;
+use billow_study::store::history_file;
 use serde_json::{Value, json};
 
 use crate::solving::{desk, done, number, solve};

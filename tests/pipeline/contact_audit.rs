@@ -1,18 +1,19 @@
 //! The audit sees what a faulty contact lets through, in the scene of the case it judges.
 
-use billow_solver::audit::Audit;
-use billow_solver::contact::Law;
-use billow_solver::course::Course;
-use billow_solver::deployment::{self, FailureKind, Stop, Unobserved};
-use billow_solver::film_scene::FilmContact;
-use billow_solver::integrate::explicit::Explicit;
+use billow_solver::collision::contact::ContactModel;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::models::run::{self, Unobserved};
+use billow_solver::output::audit::Audit;
+use billow_solver::output::outcome::{FailureKind, Stop};
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::timeline::Timeline;
 use billow_study::cases::capsule_run::paper_capsule;
 use billow_study::cases::contact_capsule::stowed;
 use billow_study::cases::contact_rig::not_returned;
 use billow_study::cases::reference::number;
 
 /// What is done to contact.
-type Fault = fn(&mut Law);
+type Fault = fn(&mut ContactModel);
 
 /// The capsule of `capsule_deployed` for 30 ms, its contact changed; how it ended, what was counted,
 /// and the share of its kinetic energy contact did not return.
@@ -22,7 +23,7 @@ fn deploy(fault: Fault) -> (Stop, Audit, f64) {
     let Explicit { model, mut setting, state, .. } = run.film;
     fault(setting.contact.as_mut().expect("contact"));
     run.film = Explicit::new(model, setting, state.places, state.velocities, state.gas);
-    let deployment = deployment::run(&mut run, &Course::new(&scene), &mut Unobserved);
+    let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     let kinetic = deployment.history.column("kinetic_energy");
     let peak = kinetic.iter().copied().fold(0.0, f64::max);
     (deployment.stop, deployment.audit, not_returned(&run.film) / peak)

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use billow_solver::frames::Frame;
-use billow_study::history_file::{self, StoredFrames};
+use billow_solver::output::frames::Frame;
+use billow_study::store::history_file::{self, StoredFrames};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use billow_solver::mutation::{Mutation, Term};
+use billow_solver::platform::fault_injection::{Fault, Term};
 use billow_study::cases::{CASES, Judged, Rig};
 
 /// A case and the beginning of its quantity; `run` where the case comes to no end.
@@ -43,13 +43,13 @@ const JUDGES: [(Term, Judge, Judge); 22] = [
     (Term::GasPressure, FILM_LEDGER, SPHERE_STOPS),
 ];
 
-fn judged(case: &str, mutation: Option<Mutation>) -> Judged {
+fn judged(case: &str, mutation: Option<Fault>) -> Judged {
     let case = CASES.iter().find(|own| own.name == case).expect("a case");
     case.run(&Rig { mutation })
 }
 
 /// Whether a judge sees a fault.
-fn sees((case, quantity): Judge, mutation: Option<Mutation>) -> bool {
+fn sees((case, quantity): Judge, mutation: Option<Fault>) -> bool {
     let rows = judged(case, mutation).rows;
     rows.iter().any(|row| row.quantity.starts_with(quantity) && !row.pass)
 }
@@ -61,7 +61,7 @@ fn every_fault_is_noticed() {
     let mut survivors = Vec::new();
     for (term, slight, lost) in JUDGES {
         for (judge, factor) in [(slight, 1.01), (lost, -1.0)] {
-            if !sees(judge, Some(Mutation { term, factor })) {
+            if !sees(judge, Some(Fault { term, factor })) {
                 survivors.push(format!("{term:?} times {factor}: {judge:?} did not notice"));
             }
         }
@@ -77,6 +77,6 @@ fn judges_see_no_fault_where_there_is_none() {
         assert!(judged.pass(), "{case}: {:?}", judged.rows);
     }
     // A factor of one is no fault.
-    let idle = Mutation { term: Term::Elastic, factor: 1.0 };
+    let idle = Fault { term: Term::Elastic, factor: 1.0 };
     assert!(!sees(TAUT_FORCE, Some(idle)));
 }

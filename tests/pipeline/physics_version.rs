@@ -4,16 +4,16 @@
 //! and the version they belong to. Whoever changes physics raises the version, records the hashes
 //! this test prints, and says so in CHANGELOG.
 
-use billow_solver::course::Phase;
-use billow_solver::deployment::Model;
-use billow_solver::deployment::Unobserved;
-use billow_solver::film_scene::{
-    Filling, FilmContact, FilmScene, FilmSupport, Hold, Motion, Profile, Turn,
-};
-use billow_solver::gas::Inflow;
-use billow_solver::history::COLUMNS;
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::ladder;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::models;
+use billow_solver::models::run::Model;
+use billow_solver::models::run::Unobserved;
+use billow_solver::output::history::COLUMNS;
+use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::film_support::{FilmSupport, Hold};
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::motion::{Motion, Profile, Turn};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer, InflowWindow, Scene};
 use billow_study::cases::Rig;
 use billow_study::cases::capsule_run::paper_capsule;
@@ -33,7 +33,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
 
 /// Of a piston's whole history.
 fn piston(scene: &Scene) -> String {
-    let deployment = ladder::solve(scene, None, &mut Unobserved).expect("a scene that can be run");
+    let deployment = models::solve(scene, None, &mut Unobserved).expect("a scene that can be run");
     let columns = COLUMNS.iter().map(|column| deployment.history.column(column.name));
     hash(columns.flatten().copied())
 }

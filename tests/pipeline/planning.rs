@@ -3,11 +3,11 @@
 
 use std::time::Instant;
 
-use billow_study::error::InputError;
+use billow_study::input::value::Value;
 use billow_study::job::JobId;
-use billow_study::plan::{FinishedRow, Generation, next_jobs};
+use billow_study::platform::error::InputError;
+use billow_study::study::plan::{FinishedRow, Generation, next_jobs};
 use billow_study::study::{Limits, Study};
-use billow_study::value::Value;
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
 
@@ -43,7 +43,7 @@ fn with_grid(grid: Json) -> Json {
 }
 
 fn column(generation: &Generation, name: &str) -> Vec<Value> {
-    let value = |point: &billow_study::point::Point| {
+    let value = |point: &billow_study::job::point::Point| {
         let parameters = &point.job.parameters;
         parameters.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone()).unwrap()
     };

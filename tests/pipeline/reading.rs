@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use billow_study::files::{Disk, Files};
+use billow_study::platform::files::{Disk, Files};
 use serde_json::{Value, json};
 
 use crate::support::{Desk, failed, file_of, grid, ids, json_of, ran, small_grid, stderr};
@@ -187,7 +187,7 @@ fn show_prints_the_row_the_scene_and_the_history_that_are_stored() {
 
     let scene: Value = serde_json::from_str(&desk.stdout(&["show", id, "--scene"])).unwrap();
     assert_eq!(scene["design"]["N"], row["N"]);
-    let stored = billow_study::history_file::read(&file_of(&desk, id)).unwrap();
+    let stored = billow_study::store::history_file::read(&file_of(&desk, id)).unwrap();
     assert_eq!(scene, serde_json::from_str::<Value>(&stored.scene).unwrap());
 
     let samples = stored.history.len();

@@ -1,10 +1,10 @@
 //! Scene files: meshes of other programs, and what is wrong with broken scenes, flags and files.
 
-use billow_study::keys::{
+use billow_study::input::keys::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS,
     SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
-use billow_study::schema::scene_schema;
+use billow_study::input::schema::scene_schema;
 use serde_json::{Value, json};
 
 use crate::solving::{CUBE, capsule, cube, desk, done, number, solve};

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use billow_solver::mesh_io::obj_reader;
-use billow_study::history_file;
-use billow_study::schema::scene_schema;
+use billow_solver::geometry::mesh_io::obj_reader;
+use billow_study::input::schema::scene_schema;
+use billow_study::store::history_file;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -196,7 +196,10 @@ fn same_bits(scene: &Value, pauses: &[&str]) {
     let (summary, file) = run("threads.h5", &["--threads", "2"], "");
     assert_eq!(summary, whole.0);
     assert!(file == whole.1, "the files differ");
-    for path in billow_solver::simd::Path::ALL.into_iter().filter(|path| path.available()) {
+    for path in billow_solver::platform::simd::InstructionSet::ALL
+        .into_iter()
+        .filter(|path| path.available())
+    {
         let (summary, file) = run("path.h5", &[], path.name());
         assert_eq!(summary, whole.0, "{}", path.name());
         assert!(file == whole.1, "{}: the files differ", path.name());

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use billow_study::history_file;
+use billow_study::store::history_file;
 
 use crate::support::{Desk, small_grid, stderr};
 

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use billow_study::input::schema::study_schema;
 use billow_study::job::JobId;
-use billow_study::plan::next_jobs;
-use billow_study::schema::study_schema;
+use billow_study::study::plan::next_jobs;
 use billow_study::study::{Limits, Study};
 
 fn folder() -> PathBuf {

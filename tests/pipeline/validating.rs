@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
 
-use billow_solver::mutation::{Mutation, Term};
+use billow_solver::platform::fault_injection::{Fault, Term};
 use billow_study::cases::{self, CASES, Rig, Tier};
 use billow_study::cli::{Format, validate};
 use serde_json::Value;
@@ -103,7 +103,7 @@ fn the_list_runs_nothing() {
 #[test]
 fn a_case_out_of_band_is_told_and_ends_in_exit_code_1() {
     let case = CASES.iter().find(|case| case.name == "shear_panel").expect("the case");
-    let fault = Mutation { term: Term::WrinkledModulus, factor: 1.01 };
+    let fault = Fault { term: Term::WrinkledModulus, factor: 1.01 };
     let judged = [case.run(&Rig { mutation: Some(fault) }), case.run(&Rig::default())];
     let mut out = Vec::new();
     validate::print(&judged, Format::Json, &mut out).expect("a Vec takes all");

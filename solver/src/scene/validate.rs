@@ -1,7 +1,7 @@
 //! What a scene must be before any model may run it.
 
 use super::{HeatTransfer, Scene, Stepping, Support};
-use crate::ladder::SceneError;
+use crate::scene::error::SceneError;
 
 /// Samples a history may hold; more do not fit a table, a file or a machine.
 const MOST_SAMPLES: f64 = 1e7;
@@ -9,7 +9,7 @@ const MOST_SAMPLES: f64 = 1e7;
 const MOST_FRAMES: u32 = 10_000;
 
 impl Scene {
-    /// Checks every key but those of the design, which [`crate::fold::FoldPattern::new`] checks.
+    /// Checks every key but those of the design, which [`crate::geometry::fold::FoldPattern::new`] checks.
     ///
     /// # Errors
     /// [`SceneError::Invalid`] with the dotted key of the first value out of range.

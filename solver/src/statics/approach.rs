@@ -17,17 +17,17 @@
 use nalgebra::Vector3;
 
 use super::newton::{
-    Loaded, Rest, Settling, StaticFailure, StaticFailureKind, Watch, equilibrium, extent,
-    tensile_stiffness,
+    Loaded, Rest, Settling, StaticFailure, StaticFailureKind, TunnellingMonitor, equilibrium,
+    extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
-use crate::forces::pressure::volume;
-use crate::gas::GasState;
-use crate::integrate::explicit::{Explicit, Interior, Setting};
-use crate::model::FilmModel;
-use crate::resultants::thickness;
-use crate::state::Field;
-use crate::supports::Supports;
+use crate::geometry::field::Field;
+use crate::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::forces::pressure::volume;
+use crate::mechanics::gas::GasState;
+use crate::mechanics::resultants::thickness;
+use crate::mechanics::supports::Supports;
 
 /// p L/(E t) of the first pressure.
 const FIRST_STRETCH: f64 = 0.5;
@@ -63,7 +63,7 @@ pub fn settle(
     places: &Field,
     from: Option<f64>,
     settling: &Settling,
-    watch: Watch<'_>,
+    watch: TunnellingMonitor<'_>,
 ) -> Result<Rest, StaticFailure> {
     let stages = stages(loaded, places, from);
     let moves = !loaded.supports.movers.is_empty();
@@ -129,7 +129,7 @@ fn fullness(model: &FilmModel, places: &Field) -> f64 {
 struct Way<'a, 'b> {
     loaded: &'a Loaded<'a>,
     settling: &'a Settling,
-    watch: Watch<'b>,
+    watch: TunnellingMonitor<'b>,
     iterations: u32,
 }
 
@@ -211,12 +211,12 @@ fn relaxed(loaded: &Loaded<'_>, places: &Field) -> Option<Field> {
     let mut supports = loaded.supports.clone();
     // What moves has got to where it is meant to be.
     supports.movers.clear();
-    let setting = Setting {
+    let setting = Parameters {
         supports,
         gravity: loaded.gravity,
         path: loaded.path,
         cfl: Relaxation::default().cfl,
-        ..Setting::free(Interior::Overpressure(loaded.overpressure), loaded.model.nodes())
+        ..Parameters::free(PressureLoad::Overpressure(loaded.overpressure), loaded.model.nodes())
     };
     let still = Field::zeros(loaded.model.nodes());
     let mut film =

@@ -10,7 +10,7 @@
 
 #![allow(clippy::inline_always, reason = "inside the elimination")]
 
-use crate::simd::{Lanes, WIDTH, dispatch};
+use crate::platform::simd::{Lanes, WIDTH, dispatch};
 
 /// Columns updated together.
 const TILE: usize = 4;
@@ -106,7 +106,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::simd::Path;
+    use crate::platform::simd::InstructionSet;
 
     #[test]
     fn a_front_is_eliminated_in_part_with_the_same_bits_on_every_path() {
@@ -121,7 +121,7 @@ mod tests {
                     start[j * front.stride() + i] = full[(i, j)];
                 }
             }
-            let done = Path::ALL.map(|path| {
+            let done = InstructionSet::ALL.map(|path| {
                 let mut own = start.clone();
                 assert_eq!(eliminate(path, &mut own, front, &vec![0.0; pivots]), None);
                 own
@@ -148,6 +148,6 @@ mod tests {
         let front = Front { pivots: 2, size: 2 };
         let mut matrix = vec![0.0; front.area()];
         (matrix[0], matrix[1], matrix[front.stride() + 1]) = (1.0, 2.0, 3.0);
-        assert_eq!(eliminate(Path::Scalar, &mut matrix, front, &[0.0; 2]), Some(1));
+        assert_eq!(eliminate(InstructionSet::Scalar, &mut matrix, front, &[0.0; 2]), Some(1));
     }
 }

@@ -15,9 +15,9 @@ use super::dense::{Front, eliminate};
 use super::order::dissect;
 use super::tangent::Stiffness;
 use super::unknowns::Unknowns;
-use crate::model::FilmModel;
-use crate::simd::Path;
-use crate::state::Field;
+use crate::geometry::field::Field;
+use crate::mechanics::film_model::FilmModel;
+use crate::platform::simd::InstructionSet;
 
 /// How little may be left of a diagonal entry for a matrix to count as positive definite.
 const PIVOT: f64 = 1e-14;
@@ -171,7 +171,12 @@ impl Elimination {
 
     /// Factors a stiffness given face by face, film first, with a shift of its diagonal (both N/m);
     /// `None` where that is not positive definite.
-    pub fn factor(&self, path: Path, stiffness: &[Stiffness], shift: &[f64]) -> Option<Factor> {
+    pub fn factor(
+        &self,
+        path: InstructionSet,
+        stiffness: &[Stiffness],
+        shift: &[f64],
+    ) -> Option<Factor> {
         let diagonal = self.diagonal(stiffness);
         let mut columns = Vec::with_capacity(self.plans.len());
         let mut left: Vec<Vec<f64>> = vec![Vec::new(); self.plans.len()];

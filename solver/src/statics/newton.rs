@@ -18,13 +18,13 @@ use nalgebra::Vector3;
 use super::factor::{Elimination, Factor};
 use super::tangent::{self, Stiffness};
 use super::unknowns::Unknowns;
-use crate::forces::membrane::{NodeForces, Past, film_pass};
-use crate::forces::pressure::add_closure;
-use crate::model::FilmModel;
-use crate::resultants::thickness;
-use crate::simd::Path;
-use crate::state::Field;
-use crate::supports::Supports;
+use crate::geometry::field::Field;
+use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::forces::membrane::{NodeForces, ViscousHistory, assemble_membrane};
+use crate::mechanics::forces::pressure::add_closure;
+use crate::mechanics::resultants::thickness;
+use crate::mechanics::supports::Supports;
+use crate::platform::simd::InstructionSet;
 
 /// Film, what holds it, and what loads it.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,7 @@ pub struct Loaded<'a> {
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
     /// Instruction set; the bits are the same on each.
-    pub path: Path,
+    pub path: InstructionSet,
 }
 
 /// When a state counts as found, and when the search ends without one.
@@ -74,7 +74,7 @@ pub struct Iteration {
 }
 
 /// Hears of every step; may end the search.
-pub type Watch<'a> = &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>;
+pub type TunnellingMonitor<'a> = &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>;
 
 /// Why no state of rest was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -146,22 +146,22 @@ pub fn equilibrium(
     loaded: &Loaded<'_>,
     places: Field,
     settling: &Settling,
-    watch: Watch<'_>,
+    watch: TunnellingMonitor<'_>,
 ) -> Result<Rest, StaticFailure> {
     let unknowns = Unknowns::new(loaded.model, loaded.supports);
     let elimination = Elimination::new(loaded.model, &unknowns, &places);
-    let mut search = Search::new(loaded, unknowns, places);
+    let mut search = CandidateList::new(loaded, unknowns, places);
     search.run(&elimination, settling, watch)
 }
 
 /// A search under way.
-struct Search<'a> {
+struct CandidateList<'a> {
     loaded: &'a Loaded<'a>,
     unknowns: Unknowns,
     places: Field,
     /// Room: trial places, what a pass remembers, node forces.
     trial: Field,
-    past: Vec<[Past; 2]>,
+    past: Vec<[ViscousHistory; 2]>,
     nodes: NodeForces,
     /// Forces on nodes and along the unknowns at the last places looked at.
     forces: Field,
@@ -169,7 +169,7 @@ struct Search<'a> {
     iterations: u32,
 }
 
-impl<'a> Search<'a> {
+impl<'a> CandidateList<'a> {
     fn new(loaded: &'a Loaded<'a>, unknowns: Unknowns, places: Field) -> Self {
         let model = loaded.model;
         Self {
@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
             unknowns,
             trial: places.clone(),
             places,
-            past: Past::at_rest(model),
+            past: ViscousHistory::at_rest(model),
             nodes: NodeForces::new(model),
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
@@ -192,7 +192,7 @@ impl<'a> Search<'a> {
             self.unknowns.shift(&mut self.trial, by, share);
         }
         let Loaded { model, overpressure, gravity, path, .. } = *self.loaded;
-        let _ = film_pass(path, model, &self.trial, 0.0, &mut self.past, &mut self.nodes);
+        let _ = assemble_membrane(path, model, &self.trial, 0.0, &mut self.past, &mut self.nodes);
         let _ = add_closure(model, &self.trial, &mut self.nodes);
         for node in 0..model.nodes() {
             let force = self.nodes.film(node)
@@ -259,7 +259,7 @@ impl<'a> Search<'a> {
         &mut self,
         elimination: &Elimination,
         settling: &Settling,
-        watch: Watch<'_>,
+        watch: TunnellingMonitor<'_>,
     ) -> Result<Rest, StaticFailure> {
         let size = extent(&self.places);
         let omega = self.loaded.model.largest_frequency();

@@ -6,7 +6,7 @@
 //! on a surface of n nodes the factor then has O(n log n) entries (A. George, "Nested dissection of
 //! a regular finite element mesh", 1973).
 
-use crate::state::Field;
+use crate::geometry::field::Field;
 
 /// One set of nodes eliminated together, with the sets it separates.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -10,10 +10,10 @@
 
 use nalgebra::Vector3;
 
-use crate::course::Phase;
-use crate::deployment::Failure;
-use crate::integrate::explicit::{Explicit, Interior};
-use crate::state::Field;
+use crate::geometry::field::Field;
+use crate::integrators::explicit::{Explicit, PressureLoad};
+use crate::output::outcome::Failure;
+use crate::scene::timeline::Phase;
 
 /// How a relaxation goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ impl Relaxation {
     /// # Errors
     /// [`Failure`] of the motion, or `step_limit` when it does not settle.
     pub fn relax_at(&self, film: &mut Explicit, overpressure: f64) -> Result<(), Failure> {
-        film.setting.interior = Interior::Overpressure(overpressure);
+        film.setting.interior = PressureLoad::Overpressure(overpressure);
         film.state.pressure = overpressure;
         let limit = film.state.steps + self.step_limit;
         film.setting.step_limit = limit;

@@ -17,10 +17,10 @@
 
 use nalgebra::{Matrix3, Matrix3x2, SMatrix, Vector2, Vector3};
 
-use crate::forces::membrane::strain;
-use crate::material::{Material, PlaneTensor, Regime};
-use crate::model::FilmModel;
-use crate::state::Field;
+use crate::geometry::field::Field;
+use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::forces::membrane::strain;
+use crate::mechanics::material::{Material, PlaneTensor, Regime};
 
 /// Stiffness of three nodes, three components each, N/m.
 pub type Stiffness = SMatrix<f64, 9, 9>;

@@ -11,9 +11,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::model::FilmModel;
-use crate::state::Field;
-use crate::supports::Supports;
+use crate::geometry::field::Field;
+use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::supports::Supports;
 
 /// Unknown displacements and what they move.
 #[derive(Debug, Clone, PartialEq)]

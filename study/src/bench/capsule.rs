@@ -6,16 +6,17 @@
 use std::path::Path;
 use std::time::Instant;
 
-use billow_solver::course::Course;
-use billow_solver::deployment::{Model, Observer, Progress, Run, Stop as End};
-use billow_solver::ladder::film::FilmRun;
-use billow_solver::simd;
+use billow_solver::models::film::FilmRun;
+use billow_solver::models::run::{Model, Observer, Progress, Run};
+use billow_solver::output::outcome::Stop as End;
+use billow_solver::platform::simd;
+use billow_solver::scene::timeline::Timeline;
 
 use super::{Line, interrupted, machine};
-use crate::error::{Error, Result};
-use crate::scene_file::SceneFile;
-use crate::stop::Stop;
-use crate::value::Value;
+use crate::input::value::Value;
+use crate::platform::error::{Error, Result};
+use crate::platform::stop::Stop;
+use crate::scene::file::SceneFile;
 
 /// The scene, as it ships.
 const SCENE: &str = include_str!("../../../scenes/capsule.json");
@@ -32,7 +33,7 @@ pub struct Capsule {
     /// What is run.
     pub scene: SceneFile,
     /// What happens when.
-    pub course: Course,
+    pub course: Timeline,
 }
 
 impl Capsule {
@@ -40,10 +41,10 @@ impl Capsule {
     ///
     /// # Errors
     /// Where the scene is none on this mesh.
-    pub fn new(subdivisions: u32, path: simd::Path) -> Result<Self> {
+    pub fn new(subdivisions: u32, path: simd::InstructionSet) -> Result<Self> {
         let sets = [END.to_owned(), format!("design.subdivisions={subdivisions}")];
         let scene = SceneFile::from_text(SCENE, Path::new(NAME), &sets, path)?;
-        let course = Course::of_film(&scene.film);
+        let course = Timeline::of_film(&scene.film);
         Ok(Self { subdivisions, scene, course })
     }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use billow_solver::stages::{Stage, Stopwatch};
+use billow_solver::platform::stopwatch::{Stage, Stopwatch};
 
 /// Adds up the time of each stage.
 #[derive(Debug, Default)]

@@ -5,18 +5,18 @@ use std::num::NonZero;
 use std::time::Instant;
 
 use super::{Effort, INTERRUPTED, Line};
-use crate::error::{Error, Result};
-use crate::event::Silent;
-use crate::executor::Solver;
-use crate::files::scratch::Scratch;
-use crate::files::{Disk, disk_error};
-use crate::plan;
-use crate::results::Results;
-use crate::row::DONE;
-use crate::runner::{self, Run};
-use crate::stop::Stop;
+use crate::input::value::Value;
+use crate::job::executor::Solver;
+use crate::job::row::DONE;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::scratch::Scratch;
+use crate::platform::files::{Disk, disk_error};
+use crate::platform::stop::Stop;
+use crate::run::event::Silent;
+use crate::run::runner::{self, Run};
+use crate::store::results::Results;
+use crate::study::plan;
 use crate::study::{Limits, Study};
-use crate::value::Value;
 
 /// The study.
 const STUDY: &str = include_str!("study.json");

@@ -4,19 +4,19 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use billow_solver::course::Course;
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::integrate::explicit::plain::{Moving, fast_step, plain_step};
-use billow_solver::integrate::explicit::update::Push;
-use billow_solver::simd::Path;
-use billow_solver::stages::Untimed;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::explicit::reference_step::{Moving, fast_step, plain_step};
+use billow_solver::integrators::explicit::update::Push;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::platform::stopwatch::Untimed;
+use billow_solver::scene::timeline::Timeline;
 
 use super::capsule::{Capsule, Mark, travel};
 use super::stages::take;
 use super::{Effort, Line, RISING, interrupted};
-use crate::error::Result;
-use crate::stop::Stop;
-use crate::value::Value;
+use crate::input::value::Value;
+use crate::platform::error::Result;
+use crate::platform::stop::Stop;
 
 /// Name of the whole step's kernel.
 pub const STEP: &str = "step";
@@ -33,7 +33,7 @@ pub struct KernelRow {
     /// Its name: [`STEP`], [`FILM`], [`REFERENCE`].
     pub kernel: &'static str,
     /// Instruction set.
-    pub path: Path,
+    pub path: InstructionSet,
     /// ns per element and step.
     pub cost: f64,
 }
@@ -57,7 +57,7 @@ impl KernelRow {
 /// A run that stops short; a signal.
 pub fn measure(
     subdivisions: u32,
-    path: Path,
+    path: InstructionSet,
     effort: Effort,
     stop: &Stop,
 ) -> Result<Vec<KernelRow>> {
@@ -74,8 +74,8 @@ pub fn measure(
         cost: 1e9 * seconds / (steps as f64 * elements as f64),
     };
     let mut rows = Vec::new();
-    let widths = Path::ALL.into_iter().take_while(|narrow| *narrow != path).chain([path]);
-    let widths: Vec<Path> = widths.filter(|width| width.available()).collect();
+    let widths = InstructionSet::ALL.into_iter().take_while(|narrow| *narrow != path).chain([path]);
+    let widths: Vec<InstructionSet> = widths.filter(|width| width.available()).collect();
     for width in widths.iter().copied() {
         let seconds = least(effort, stop, &mut || stepped(film, width, &capsule.course, steps))?;
         rows.push(row(STEP, width, seconds));
@@ -104,17 +104,17 @@ pub fn measure(
         rows.push(row(FILM, width, seconds));
     }
     let seconds = least(effort, stop, &mut || {
-        let mut own = moving(Path::Scalar);
+        let mut own = moving(InstructionSet::Scalar);
         Ok(timed(steps, &mut || {
             black_box(plain_step(&film.model, &push, free, length, &mut own));
         }))
     })?;
-    rows.push(row(REFERENCE, Path::Scalar, seconds));
+    rows.push(row(REFERENCE, InstructionSet::Scalar, seconds));
     Ok(rows)
 }
 
 /// Seconds of so many steps on a path.
-fn stepped(film: &Explicit, path: Path, course: &Course, steps: u64) -> Result<f64> {
+fn stepped(film: &Explicit, path: InstructionSet, course: &Timeline, steps: u64) -> Result<f64> {
     let mut film = film.clone();
     film.setting.path = path;
     let start = Instant::now();

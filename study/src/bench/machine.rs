@@ -7,15 +7,15 @@
 use std::path::Path as FilePath;
 use std::time::Instant;
 
-use billow_solver::probe;
-use billow_solver::simd::Path;
+use billow_solver::platform::probe;
+use billow_solver::platform::simd::InstructionSet;
 
 use super::{Effort, Line, interrupted};
-use crate::error::Result;
-use crate::files::{Disk, Files};
-use crate::provenance;
-use crate::stop::Stop;
-use crate::value::Value;
+use crate::input::value::Value;
+use crate::platform::error::Result;
+use crate::platform::files::{Disk, Files};
+use crate::platform::provenance;
+use crate::platform::stop::Stop;
 
 /// Bytes of a buffer beyond a core's own cache.
 const LARGE: usize = 64 << 20;
@@ -30,7 +30,7 @@ pub struct Machine {
     /// Threads the system gives.
     pub cores: Option<usize>,
     /// Instruction set in use.
-    pub path: Path,
+    pub path: InstructionSet,
     /// Pairs of a multiplication and an addition, 1/s of one core.
     pub multiply_adds: Option<f64>,
     /// Bytes read and written a second, beyond a core's own cache.
@@ -43,7 +43,7 @@ pub struct Machine {
 
 impl Machine {
     /// Its name, unmeasured.
-    pub fn named(path: Path) -> Self {
+    pub fn named(path: InstructionSet) -> Self {
         Self {
             cpu: cpu(),
             cores: std::thread::available_parallelism().ok().map(std::num::NonZero::get),

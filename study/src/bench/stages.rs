@@ -6,18 +6,18 @@
 
 use std::time::Instant;
 
-use billow_solver::course::Course;
-use billow_solver::deployment::Model;
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::stages::{Stage, Stopwatch, Untimed};
-use billow_solver::workers::Workers;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::models::run::Model;
+use billow_solver::platform::stopwatch::{Stage, Stopwatch, Untimed};
+use billow_solver::platform::workers::Workers;
+use billow_solver::scene::timeline::Timeline;
 
 use super::capsule::{Capsule, State};
 use super::clock::Clock;
 use super::{Effort, Line, interrupted, machine};
-use crate::error::{Error, Result};
-use crate::stop::Stop;
-use crate::value::Value;
+use crate::input::value::Value;
+use crate::platform::error::{Error, Result};
+use crate::platform::stop::Stop;
 
 /// Threads inside one run it is timed on.
 pub const THREADS: [u32; 2] = [1, 2];
@@ -149,7 +149,7 @@ fn on_threads(film: &Explicit, threads: u32) -> Explicit {
 /// A run that stops short.
 pub fn take(
     film: &mut Explicit,
-    course: &Course,
+    course: &Timeline,
     mut steps: u64,
     stopwatch: &mut dyn Stopwatch,
 ) -> Result<()> {
@@ -174,7 +174,7 @@ pub fn take(
 }
 
 /// The first break or sample after a time, s.
-fn landing(course: &Course, breaks: &[f64], time: f64) -> f64 {
+fn landing(course: &Timeline, breaks: &[f64], time: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
     let passed = libm::floor(time / course.sample_interval + 1e-6) as u64;
     let sample = course.sample_time(passed + 1);

@@ -3,7 +3,7 @@
 use super::capsule::Case;
 use super::kernels::{KernelRow, REFERENCE, STEP};
 use super::{EARLY, Effort, Line, Report};
-use crate::value::Value;
+use crate::input::value::Value;
 
 /// A target.
 #[derive(Debug, Clone, PartialEq)]
@@ -154,7 +154,7 @@ fn linear(report: &Report) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::bench::jobs::JobsRow;
-    use billow_solver::simd::Path;
+    use billow_solver::platform::simd::InstructionSet;
 
     fn early(subdivisions: u32, nanoseconds: f64) -> Case {
         Case {
@@ -177,19 +177,19 @@ mod tests {
 
     #[test]
     fn nothing_measured_is_nothing_met() {
-        let report = Report::empty(Effort::Usual, Path::Scalar);
+        let report = Report::empty(Effort::Usual, InstructionSet::Scalar);
         assert!(of(&report).iter().all(|target| target.met().is_none()));
         assert!(!report.targets_met());
     }
 
     #[test]
     fn bounds_hold_from_their_side() {
-        let mut report = Report::empty(Effort::Usual, Path::Avx2);
+        let mut report = Report::empty(Effort::Usual, InstructionSet::Avx2);
         let row = |kernel, path, cost| KernelRow { subdivisions: 16, kernel, path, cost };
         report.kernels = vec![
-            row(STEP, Path::Scalar, 30.0),
-            row(STEP, Path::Avx2, 8.0),
-            row(REFERENCE, Path::Scalar, 16.0),
+            row(STEP, InstructionSet::Scalar, 30.0),
+            row(STEP, InstructionSet::Avx2, 8.0),
+            row(REFERENCE, InstructionSet::Scalar, 16.0),
         ];
         report.cases = vec![early(5, 50.0), early(8, 40.0), early(32, 30.0)];
         let targets = of(&report);
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn jobs_are_held_against_a_job_a_core() {
-        let mut report = Report::empty(Effort::Usual, Path::Scalar);
+        let mut report = Report::empty(Effort::Usual, InstructionSet::Scalar);
         let row = |threads, wall_seconds| JobsRow {
             threads,
             jobs: 64,

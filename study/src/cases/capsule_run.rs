@@ -5,16 +5,17 @@
 //! residual = |Δ(kinetic + strain) + viscous + damping − external works| / (peak kinetic + Σ|external works|)
 //! ```
 
-use billow_solver::course::{Course, Phase};
-use billow_solver::deployment::{self, Stop, Unobserved};
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign};
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::DEFAULT_TOLERANCE;
-use billow_solver::integrate::explicit::DEFAULT_CFL;
-use billow_solver::ladder::film::FilmRun;
-use billow_solver::ledger::{GasBooks, gas_residuals, residuals};
-use billow_solver::measures::Reference;
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
+use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::models::film::FilmRun;
+use billow_solver::models::run::{self, Unobserved};
+use billow_solver::output::ledger::{GasBalance, gas_residuals, residuals};
+use billow_solver::output::measures::Reference;
+use billow_solver::output::outcome::Stop;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::{Phase, Timeline};
 use billow_solver::scene::{
     Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
     Stepping, Support, SupportPlace, Thresholds,
@@ -73,7 +74,7 @@ pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     let mut run =
         FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(unread)).map_err(|e| e.to_string())?;
     run.film = rig.faulty(run.film);
-    let deployment = deployment::run(&mut run, &Course::new(&scene), &mut Unobserved);
+    let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     if deployment.stop != Stop::Done {
         return Err(format!("stopped: {:?}", deployment.stop));
     }
@@ -118,7 +119,7 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
         let time = f64::from(sample) * 1e-3;
         advance(&mut film, time, &phase)?;
         ledgers.push(film.ledger());
-        books.push(GasBooks { mass_in: inflow.mass * time, ..film.books() });
+        books.push(GasBalance { mass_in: inflow.mass * time, ..film.books() });
     }
     let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
     Ok(vec![

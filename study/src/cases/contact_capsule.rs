@@ -6,15 +6,16 @@
 //!
 //! Through the very run a study makes: packed pattern, gas, contact, audit.
 
-use billow_solver::audit::watch::Watchfulness;
-use billow_solver::course::Course;
-use billow_solver::deployment::{self, Deployment, Stop, Unobserved};
-use billow_solver::film_scene::FilmContact;
-use billow_solver::fold::Chirality;
-use billow_solver::integrate::explicit::DEFAULT_CFL;
-use billow_solver::ladder::film::FilmRun;
-use billow_solver::measures::Reference;
+use billow_solver::geometry::fold::Chirality;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::models::film::FilmRun;
+use billow_solver::models::run::{self, Unobserved};
+use billow_solver::output::measures::Reference;
+use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::Scene;
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::scene::timeline::Timeline;
 
 use super::capsule_run::paper_capsule;
 use super::contact_rig::not_returned;
@@ -36,7 +37,7 @@ pub fn stowed(scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
 fn deploy(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<(FilmRun, Deployment), String> {
     let mut run = stowed(scene, contact)?;
     run.film = rig.faulty(run.film);
-    let deployment = deployment::run(&mut run, &Course::new(scene), &mut Unobserved);
+    let deployment = run::run(&mut run, &Timeline::new(scene), &mut Unobserved);
     match &deployment.stop {
         Stop::Done => Ok((run, deployment)),
         Stop::Cancelled => Err("cancelled".to_owned()),
@@ -71,7 +72,7 @@ fn sound(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: f64) -
 /// The coarsest capsule, every step looked at: tension field and film that bears compression, both
 /// chiralities.
 pub(super) fn capsule_every_step(rig: &Rig) -> Outcome {
-    let watch = Watchfulness::EVERY_STEP;
+    let watch = MonitorSettings::EVERY_STEP;
     let mut judged = Vec::new();
     for (compression, key) in [(0.0, "ledger_band"), (1.0, "compressed_ledger_band")] {
         for (chirality, name) in [(Chirality::Same, "same"), (Chirality::Alternate, "alternate")] {

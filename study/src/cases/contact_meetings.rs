@@ -5,11 +5,11 @@
 //! what was below an element of the other film is below it at the end
 //! ```
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::integrate::explicit::Explicit;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
-use billow_solver::shell::Shell;
 use nalgebra::Vector3;
 
 use super::contact_rig::{follow, moved, plate, together, watched};

@@ -8,12 +8,12 @@
 //! N-gon caps, bottom ring on its stowed N-gon. What is compared is V, the height of the top rim and
 //! the strain energy; the reference is the static state, so no number is stored.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmContact, FilmScene};
-use billow_solver::integrate::explicit::{DEFAULT_CFL, Explicit};
-use billow_solver::ladder::film::{StaticState, capsule, static_states};
-use billow_solver::mesh::{Mesh, Shape};
+use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::models::film::{StaticState, capsule, static_states};
 use billow_solver::scene::Scene;
+use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::timeline::Phase;
 
 use super::capsule_run::paper_capsule;
 use super::contact_rig::crossings;

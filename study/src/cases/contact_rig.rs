@@ -5,14 +5,15 @@
 //!                / largest kinetic energy
 //! ```
 
-use billow_solver::audit::watch::Watchfulness;
-use billow_solver::contact::intersections::intersections;
-use billow_solver::contact::plates::Plate;
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{FilmContact, Motion, Profile};
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::ledger::{Ledger, residuals};
-use billow_solver::shell::Shell;
+use billow_solver::collision::contact::intersections::intersections;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::output::ledger::{Ledger, residuals};
+use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::scene::motion::{Motion, Profile};
+use billow_solver::scene::plate::Plate;
+use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use super::Row;
@@ -24,7 +25,7 @@ use super::row::worse;
 pub fn watched(distance: f64) -> FilmContact {
     FilmContact {
         distance: Some(distance),
-        watch: Watchfulness::EVERY_STEP,
+        watch: MonitorSettings::EVERY_STEP,
         ..FilmContact::default()
     }
 }

@@ -5,10 +5,10 @@
 //!                                                                   pull-off pressure
 //! ```
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{FilmContact, FilmScene};
+use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::Film;
-use billow_solver::shell::Shell;
+use billow_solver::scene::film_scene::{FilmContact, FilmScene};
+use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use super::contact_rig::{follow, moved, together, watched};

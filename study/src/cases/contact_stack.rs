@@ -7,11 +7,12 @@
 //! The lowest sheet lies on a plate, the highest is a rigid plane under the force p A; the meshes are
 //! shifted, so that nodes do not lie on nodes.
 
-use billow_solver::contact::{Law, Meeting};
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{FilmContact, FilmScene, FilmSupport, Hold, PlaneBody};
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::shell::Shell;
+use billow_solver::collision::contact::{ContactModel, ContactState};
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::film_scene::{FilmContact, FilmScene};
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use super::contact_rig::{follow, moved, plate, together, watched};
@@ -63,10 +64,10 @@ fn nodes_of(shell: &Shell) -> u32 {
 }
 
 /// Mean and largest interlayer pressure between sheet `k` and the next, Pa.
-fn between(film: &Explicit, law: &Law, k: u32) -> [f64; 2] {
+fn between(film: &Explicit, law: &ContactModel, k: u32) -> [f64; 2] {
     let each = film.model.mass.len() / LAYERS as usize;
     let layer = |node: u32| node as usize / each;
-    let mut meeting = Meeting::default();
+    let mut meeting = ContactState::default();
     let own = film.state.meeting.contacts.iter().filter(|contact| {
         let layers = contact.pair.nodes(&law.topology).map(layer);
         let (low, high) = (layers.iter().min(), layers.iter().max());

@@ -8,10 +8,10 @@
 //! A area of the section, A0 at the start; m. A slice between two symmetry planes, its volume closed by
 //! end fans; its pressure is so low that the film does not stretch.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::geometry::shell::Shell;
+use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
-use billow_solver::shell::Shell;
 use nalgebra::Vector3;
 
 use super::contact_rig::{follow, plate, watched};

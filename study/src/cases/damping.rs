@@ -7,9 +7,9 @@
 
 use core::f64::consts::{PI, TAU};
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::FilmScene;
 use billow_solver::scene::Film;
+use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use super::oscillation::turns;

@@ -11,8 +11,8 @@
 
 use core::f64::consts::TAU;
 
-use billow_solver::film_scene::FilmScene;
 use billow_solver::scene::Film;
+use billow_solver::scene::film_scene::FilmScene;
 use nalgebra::Vector3;
 
 use super::oscillation::frequency;

@@ -6,14 +6,14 @@
 //! dissipative:   Σ f·v = −power ≤ 0,  Σ f = 0,  Σ x × f = 0
 //! ```
 
-use billow_solver::film_scene::FilmScene;
-use billow_solver::forces::membrane::{strain, strain_energy, viscous_forces};
-use billow_solver::forces::pressure;
-use billow_solver::integrate::explicit::Explicit;
-use billow_solver::material::Regime;
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::mechanics::forces::membrane::{strain, strain_energy, viscous_forces};
+use billow_solver::mechanics::forces::pressure;
+use billow_solver::mechanics::material::Regime;
 use billow_solver::scene::Film;
-use billow_solver::shell::Shell;
-use billow_solver::state::Field;
+use billow_solver::scene::film_scene::FilmScene;
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;

@@ -8,9 +8,9 @@
 //! The plate is film bound to a rigid plane; the walls enclose and are no film. Steps are shares of
 //! the plate's own stable step, halved from one to the next.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::integrate::explicit::Explicit;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, Species};
 
 use super::piston_model;

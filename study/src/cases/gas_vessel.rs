@@ -7,9 +7,9 @@
 //! cooling:                     T − T_film ~ exp(−h A t/(m cv))
 //! ```
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::integrate::explicit::Explicit;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
 use super::reference::{number, rows};

@@ -7,12 +7,14 @@
 //! shear:     F = 1 + γ e1⊗e2  →  P12 = −Σ f·e1 X·e2/V
 //! ```
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::forces::membrane::{NodeForces, film_pass, strain, viscous_forces};
-use billow_solver::integrate::explicit::Explicit;
+use billow_solver::geometry::field::Field;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::mechanics::forces::membrane::{
+    NodeForces, assemble_membrane, strain, viscous_forces,
+};
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
-use billow_solver::state::Field;
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
@@ -68,7 +70,7 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let mut out = NodeForces::new(&film.model);
     let spun = film.state.places.iter().map(|x| turn * x).collect::<Vec<_>>();
     let (spun, path) = (Field::of(&spun), film.setting.path);
-    let stepped = film_pass(path, &film.model, &spun, 1e-5, &mut past, &mut out);
+    let stepped = assemble_membrane(path, &film.model, &spun, 1e-5, &mut past, &mut out);
     let dragged = viscous_forces(&film.model, &spun, &past);
     let dragged = dragged.iter().map(|force| force.norm()).fold(0.0, worse);
     let band = number("patch/band");

@@ -1,7 +1,7 @@
 //! Reading an oscillation: by where it crosses nought, and by where it turns.
 
-use billow_solver::course::Phase;
-use billow_solver::integrate::explicit::Explicit;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::timeline::Phase;
 
 use super::rig::advance;
 

@@ -1,10 +1,10 @@
 //! The piston model on the gas cases it stands for: the same closed forms, without film.
 
-use billow_solver::course::Phase;
-use billow_solver::deployment::Model;
-use billow_solver::gas::{Gas, GasState};
-use billow_solver::integrate::{Control, DEFAULT_TOLERANCE};
-use billow_solver::ladder::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
+use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
+use billow_solver::mechanics::gas::{Gas, GasState};
+use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
+use billow_solver::models::run::Model;
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer, Species, Stepping};
 
 use super::gas_vessel::emptying_time;

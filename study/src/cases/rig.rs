@@ -1,14 +1,15 @@
 //! What the cases share: film, gas, scenes of film, and the deliberate fault a test may ask for.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver, FilmSupport, Hold};
-use billow_solver::gas::Inflow;
-use billow_solver::integrate::explicit::{DEFAULT_CFL, Explicit};
-use billow_solver::ladder::film::capsule;
-use billow_solver::mutation::Mutation;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::models::film::capsule;
+use billow_solver::platform::fault_injection::Fault;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver};
+use billow_solver::scene::film_support::{FilmSupport, Hold};
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer, Species};
-use billow_solver::shell::Shell;
-use billow_solver::simd::Path;
 use nalgebra::Vector3;
 
 use super::reference::number;
@@ -17,7 +18,7 @@ use super::reference::number;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Rig {
     /// The fault; tests only.
-    pub mutation: Option<Mutation>,
+    pub mutation: Option<Fault>,
 }
 
 impl Rig {
@@ -85,7 +86,7 @@ pub fn scene(shell: Shell, film: Film) -> FilmScene {
             statics: false,
             mass_damping: 0.0,
             step_limit: u64::MAX,
-            path: Path::best(),
+            path: InstructionSet::detect(),
         },
         outputs: FilmOutputs {
             sample_interval: 1e-3,
@@ -119,9 +120,9 @@ pub fn advance(film: &mut Explicit, target: f64, phase: &Phase) -> Result<(), St
 
 /// The gas's temperature, K.
 pub fn temperature(film: &Explicit) -> f64 {
-    use billow_solver::integrate::explicit::Interior;
+    use billow_solver::integrators::explicit::PressureLoad;
     match film.setting.interior {
-        Interior::Gas(gas) => gas.temperature(film.state.gas),
-        Interior::Overpressure(_) => f64::NAN,
+        PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
+        PressureLoad::Overpressure(_) => f64::NAN,
     }
 }

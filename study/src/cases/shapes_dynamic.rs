@@ -1,7 +1,7 @@
 //! Shapes of film the cases move.
 
-use billow_solver::film_scene::{FilmSupport, Hold, PlaneBody};
-use billow_solver::shell::Shell;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use nalgebra::Vector3;
 
 use super::rig::held;

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use billow_solver::shell::Shell;
+use billow_solver::geometry::shell::Shell;
 use nalgebra::{Vector2, Vector3};
 
 /// Rings of nodes, each of `around`, joined by two elements a cell; ring k at radius and height

@@ -4,11 +4,11 @@
 //! m λ̈ R² = (p 4π R³ λ² − dW/dλ)         p = p0 (λ0/λ)^(3γ),  W = 4π R² t E/(1−ν) ((λ²−1)/2)²
 //! ```
 
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::integrate::explicit::{Explicit, Interior};
-use billow_solver::ladder::film::Relaxation;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::{Explicit, PressureLoad};
+use billow_solver::models::film::Relaxation;
 use billow_solver::scene::GasSupply;
-use billow_solver::shell::Shell;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
 
 use super::oscillation::{frequency, turns};
 use super::reference::{number, rows};
@@ -102,7 +102,7 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
 /// where it is at rest.
 fn let_go(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
     let rest = rest(rig, level, pressure)?;
-    let Interior::Overpressure(_) = rest.setting.interior else { unreachable!("relaxed so") };
+    let PressureLoad::Overpressure(_) = rest.setting.interior else { unreachable!("relaxed so") };
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);
     let species = nitrogen().species;

@@ -4,9 +4,9 @@
 //! it. There are several minima of energy near each other: the potential energy tells which is
 //! found, and lower is better.
 
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::resultants::resultants;
+use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
 
 use super::reference::{number, rows};
 use super::rig::{held, scene};

@@ -9,9 +9,9 @@
 //! found at 10 Pa on 16, 32 and 48 rings, and at 5 kPa on 32 and 48, is dented by 8 to 11 % in places:
 //! the mean rim lies 0.7 to 1.0 % inside, the thickness 0.3 to 0.7 % over, the volume within 0.6 %.
 
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::resultants::resultants;
+use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};

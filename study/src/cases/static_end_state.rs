@@ -5,10 +5,10 @@
 //! the tension of wrinkled caps and side; its sizes come near the table's, but the small differences
 //! between two pressures drown in what the mesh does to each: they are told there, not judged.
 
-use billow_solver::film_scene::{Filling, FilmScene};
-use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
-use billow_solver::mesh::{Mesh, Shape};
-use billow_solver::shell::Shell;
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::geometry::shell::Shell;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::statics::StaticSolution;
 use nalgebra::Vector3;
 

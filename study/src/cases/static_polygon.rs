@@ -2,10 +2,10 @@
 //! bottom ring on its stowed N-gon.
 //!
 //! No outside reference is known. The numbers are billow's own, by the path every run's static
-//! references take ([`billow_solver::ladder::film::static_states`]); the band is wide enough for
+//! references take ([`billow_solver::models::film::static_states`]); the band is wide enough for
 //! another minimum of wrinkled film near by, and narrow enough for a change of physics of a percent.
 
-use billow_solver::ladder::film::static_states;
+use billow_solver::models::film::static_states;
 
 use super::capsule_run::paper_capsule;
 use super::reference::{numbers, rows};

@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use billow_solver::film_scene::FilmScene;
 use billow_solver::scene::Film;
+use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::statics::{self, StaticSolution};
 use nalgebra::Vector3;
 

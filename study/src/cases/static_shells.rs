@@ -12,8 +12,9 @@
 
 use core::f64::consts::PI;
 
-use billow_solver::film_scene::{Filling, FilmScene, FilmSupport, Hold, PlaneBody};
-use billow_solver::resultants::resultants;
+use billow_solver::mechanics::resultants::resultants;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};

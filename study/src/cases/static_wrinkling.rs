@@ -9,9 +9,11 @@
 //! the section. The annulus's inner edge is turned; its torque is what it bears, its wrinkle radius
 //! the outer edge of the last ring most of whose elements are wrinkled.
 
-use billow_solver::film_scene::{FilmScene, FilmSupport, Hold, Motion, PlaneBody, Profile, Turn};
-use billow_solver::material::Regime;
-use billow_solver::resultants::resultants;
+use billow_solver::mechanics::material::Regime;
+use billow_solver::mechanics::resultants::resultants;
+use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::motion::{Motion, Profile, Turn};
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};

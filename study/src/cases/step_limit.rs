@@ -8,11 +8,11 @@
 //! K is put together here from the gradients of the reference, not by the solver; the measured
 //! limit is found by bisection on whether a small motion grows.
 
-use billow_solver::course::Phase;
-use billow_solver::film_scene::FilmScene;
-use billow_solver::model::FilmModel;
+use billow_solver::geometry::shell::Shell;
+use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::scene::Film;
-use billow_solver::shell::Shell;
+use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::timeline::Phase;
 use nalgebra::{Matrix2x3, Vector2, Vector3};
 
 use super::reference::number;

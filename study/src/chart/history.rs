@@ -1,19 +1,19 @@
 //! Histories of several jobs in one figure: a panel a quantity, a line a job.
 
-use billow_solver::history::COLUMNS;
+use billow_solver::output::history::COLUMNS;
 
 use super::vary::{self, Parameter};
 use super::{Source, outcome, refused, titled, unknown};
-use crate::error::Result;
-use crate::history_file::StoredHistory;
+use crate::input::value::Value;
 use crate::job::JobId;
+use crate::job::row;
+use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, ticks};
-use crate::row;
-use crate::value::Value;
+use crate::store::history_file::StoredHistory;
 
 /// Jobs in one figure, at most: more lines cannot be told apart.
 const JOBS: usize = 20;

@@ -3,7 +3,7 @@
 use super::outcome::{self, Outcomes};
 use super::vary::{self, Parameter};
 use super::{Source, refused, titled};
-use crate::error::Result;
+use crate::platform::error::Result;
 use crate::render::figure::Sheet;
 use crate::render::figure::map::{Cell, Maps, Panel};
 use crate::render::figure::unit::Unit;

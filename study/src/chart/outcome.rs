@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::Source;
+use crate::input::value::Value;
+use crate::job::row;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::style::Fill;
-use crate::row;
-use crate::table::Column;
-use crate::value::Value;
+use crate::store::table::Column;
 
 /// What a done job without a value is called.
 const NEVER: &str = "done, measure never happened";

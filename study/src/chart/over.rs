@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use super::outcome::{self, Outcomes};
 use super::vary::{self, Group, Parameter};
 use super::{Source, number, refused, titled};
-use crate::error::Result;
+use crate::job::row::Kind;
+use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::lane::Mark;
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, columns, ticks};
-use crate::row::Kind;
 
 /// Lines in one panel, as long as further panels can take them.
 const LINES: usize = 8;

@@ -2,13 +2,13 @@ use std::collections::BTreeMap;
 
 use super::standard::Kind;
 use super::*;
-use crate::fixture;
-use crate::history_file::{self, StoredHistory};
+use crate::job::point::{Infeasible, Point};
+use crate::job::row::Cells;
 use crate::job::{Job, JobId};
-use crate::point::{Infeasible, Point};
 use crate::render::figure::check;
-use crate::row::Cells;
-use crate::table::Table;
+use crate::run::fixture;
+use crate::store::history_file::{self, StoredHistory};
+use crate::store::table::Table;
 
 /// A point of a made-up study: parameters, and what its row says.
 fn point(number: u32, parameters: &[(&str, Value)]) -> Point {
@@ -43,12 +43,13 @@ fn study(say: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
     }
     let mut records = BTreeMap::new();
     for (at, point) in points.iter().enumerate() {
-        let mut cells = Cells::new(crate::row::DONE);
+        let mut cells = Cells::new(crate::job::row::DONE);
         cells.set("verdict", "deployed");
         cells.set("peak_vz", 20.0 + at as f64);
         cells.set("content_hash", "made up");
         say(at, &mut cells);
-        let record = crate::journal::Record { job: point.job.id.clone(), file_hash: None, cells };
+        let record =
+            crate::store::journal::Record { job: point.job.id.clone(), file_hash: None, cells };
         records.insert(point.job.id.clone(), record);
     }
     let unit = |name: &str| match name {

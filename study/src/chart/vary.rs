@@ -4,12 +4,12 @@
 use std::collections::BTreeMap;
 
 use super::number;
-use crate::compare::{self, canonical};
+use crate::analysis::compare::{self, canonical};
+use crate::input::value::{Value, short_number};
+use crate::job::row::Kind;
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
-use crate::row::Kind;
-use crate::table::{Column, Table};
-use crate::value::{Value, short_number};
+use crate::store::table::{Column, Table};
 
 /// A parameter and the unit it is shown in.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use billow_solver::audit::RESIDUAL_BOUND;
+use billow_solver::output::audit::RESIDUAL_BOUND;
 use serde_json::{Map, json};
 
 use super::print::count;
-use crate::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
-use crate::row;
-use crate::value::{Value, brief_number, json_value, short_number};
+use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
+use crate::input::value::{Value, brief_number, json_value, short_number};
+use crate::job::row;
 
 /// Characters a line of medians may have.
 const WIDTH: usize = 120;

@@ -6,10 +6,10 @@ use std::path::Path;
 use super::print::print_rows;
 use super::{Format, Global, output_error};
 use crate::bench::{self, Effort, LARGEST_RUN, Line, Part, Plan, Report};
-use crate::error::{Error, InputError, Result};
-use crate::files::disk_error;
-use crate::stop::Stop;
-use crate::value::{Value, brief_number, json_value};
+use crate::input::value::{Value, brief_number, json_value};
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::disk_error;
+use crate::platform::stop::Stop;
 
 /// Least share of its wall time a run has a core on a machine that does nothing else.
 const QUIET: f64 = 0.95;

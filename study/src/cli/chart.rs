@@ -9,11 +9,11 @@ use super::target::{self, Target};
 use super::{Format, Global, output_error};
 use crate::chart::standard::{self, Kind};
 use crate::chart::{Source, history, map, over};
-use crate::error::{Error, Result};
-use crate::files::{Disk, Files, disk_error};
-use crate::history_file::{self, StoredHistory};
+use crate::input::value::Value;
 use crate::job::JobId;
-use crate::value::Value;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::{Disk, Files, disk_error};
+use crate::store::history_file::{self, StoredHistory};
 
 /// Arguments of `billow chart`.
 #[derive(Debug, clap::Args)]

@@ -8,18 +8,18 @@ use super::print::count;
 use super::print::print_rows;
 use super::target::{filtered, find, folder};
 use super::{Format, Global, output_error};
-use crate::compare::{
+use crate::analysis::compare::{
     self, Better, Compared, LARGER_IS_BETTER, Pair, SMALLER_IS_BETTER, Sets, TIE, Tally,
 };
-use crate::error::{Error, InputError, Result};
-use crate::files::Disk;
-use crate::keys;
-use crate::results::Results;
-use crate::row;
-use crate::stored::Stored;
-use crate::table::{Column, Table};
-use crate::units::{self, Dimension};
-use crate::value::Value;
+use crate::input::keys;
+use crate::input::units::{self, Dimension};
+use crate::input::value::Value;
+use crate::job::row;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::Disk;
+use crate::store::results::Results;
+use crate::store::stored::Stored;
+use crate::store::table::{Column, Table};
 
 /// Measures compared where nobody names any, on a terminal.
 const SHOWN: [&str; 2] = ["t_90_z_rim", "peak_vz"];

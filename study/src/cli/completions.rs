@@ -5,7 +5,7 @@ use std::io::Write;
 use clap::CommandFactory;
 
 use super::{Cli, output_error};
-use crate::error::Result;
+use crate::platform::error::Result;
 
 /// Arguments of `billow completions`.
 #[derive(Debug, clap::Args)]

@@ -7,11 +7,11 @@ use super::print::count;
 use super::print::print_rows;
 use super::target::folder;
 use super::{Format, Global, output_error};
-use crate::doctor::{self, Depth, Finding};
-use crate::error::{Error, Result};
-use crate::files::{Disk, Files, disk_error};
-use crate::results::{OURS, Results};
-use crate::value::Value;
+use crate::input::value::Value;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::{Disk, Files, disk_error};
+use crate::store::doctor::{self, Depth, Finding};
+use crate::store::results::{OURS, Results};
 
 /// Arguments of `billow doctor`.
 #[derive(Debug, clap::Args)]

@@ -11,9 +11,9 @@
 use billow_solver::scene::ModelKind;
 
 use crate::bench::machine;
-use crate::error::{Error, InputError, Result};
+use crate::input::value::brief_number;
+use crate::platform::error::{Error, InputError, Result};
 use crate::study::Study;
-use crate::value::brief_number;
 
 /// Bytes an element takes at least.
 const LEAST: f64 = 5.5e3;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::error::{Error, InputError, Result};
-use crate::files::{self, Disk, disk_error};
+use crate::input::units::{self, Dimension};
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::{self, Disk, disk_error};
 use crate::render::png;
-use crate::units::{self, Dimension};
 
 /// Format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,8 +4,8 @@
 use std::io::{self, IsTerminal, Write};
 
 use super::{Format, output_error};
-use crate::error::Result;
-use crate::value::{Value, brief_number, json_value, short_number};
+use crate::input::value::{Value, brief_number, json_value, short_number};
+use crate::platform::error::Result;
 
 /// Prints rows under their columns.
 ///

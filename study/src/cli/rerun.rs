@@ -10,13 +10,13 @@ use super::run::run_study;
 
 use super::target::{filtered, folder};
 use super::{Format, Global};
-use crate::error::{Error, InputError, Result};
-use crate::files::Disk;
+use crate::input::value::Value;
 use crate::job::JobId;
-use crate::results::Results;
-use crate::row;
-use crate::stored::Stored;
-use crate::value::Value;
+use crate::job::row;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::Disk;
+use crate::store::results::Results;
+use crate::store::stored::Stored;
 
 /// Arguments of `billow rerun`.
 #[derive(Debug, clap::Args)]

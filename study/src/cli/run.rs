@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 
 use super::print::count;
 use super::{Format, Global, memory, notes, output_error};
-use crate::answer::Answer;
-use crate::error::{Error, InputError, Result};
-use crate::executor::Solver;
-use crate::files::{Disk, disk_error};
+use crate::analysis::answer::Answer;
 use crate::job::JobId;
-use crate::plan;
-use crate::progress::{self, Loudness};
-use crate::references::References;
-use crate::results::Results;
-use crate::row;
-use crate::runner::{self, Run, Summary};
-use crate::stop::Stop;
-use crate::stored::Stored;
+use crate::job::executor::Solver;
+use crate::job::references::References;
+use crate::job::row;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::{Disk, disk_error};
+use crate::platform::stop::Stop;
+use crate::run::progress::{self, Loudness};
+use crate::run::runner::{self, Run, Summary};
+use crate::store::results::Results;
+use crate::store::stored::Stored;
 use crate::study::Study;
+use crate::study::plan;
 
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]

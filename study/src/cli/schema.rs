@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::{Global, output_error};
-use crate::error::Result;
-use crate::schema;
+use crate::input::schema;
+use crate::platform::error::Result;
 
 /// Arguments of `billow schema`.
 #[derive(Debug, clap::Args)]

@@ -3,21 +3,21 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::history::COLUMNS;
+use billow_solver::output::history::COLUMNS;
 
 use super::print::print_rows;
 use super::target::folder_of_job;
 use super::{Format, Global, output_error};
-use crate::error::{Error, InputError, Result};
-use crate::files::Disk;
-use crate::history_file::{self, StoredHistory};
+use crate::input::keys::{self, KEYS};
+use crate::input::value::Value;
 use crate::job::JobId;
-use crate::keys::{self, KEYS};
-use crate::results::Results;
-use crate::row::{self, Cells, RowColumn};
-use crate::stored::Stored;
-use crate::summary;
-use crate::value::Value;
+use crate::job::row::{self, Cells, RowColumn};
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::Disk;
+use crate::scene::summary;
+use crate::store::history_file::{self, StoredHistory};
+use crate::store::results::Results;
+use crate::store::stored::Stored;
 
 /// Columns of a history shown where nobody names any, on a terminal.
 const SHOWN: [&str; 8] = [

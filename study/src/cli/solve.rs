@@ -6,20 +6,20 @@ use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
-use billow_solver::mesh_io::obj;
-use billow_solver::simd;
+use billow_solver::geometry::mesh_io::obj;
+use billow_solver::platform::simd;
 
 use super::print::print_rows;
 use super::{Format, Global, output_error};
-use crate::error::{Error, InputError, Result};
-use crate::files::{Disk, check_place, disk_error, write_atomic};
-use crate::history_file;
 use crate::job::JobId;
-use crate::row;
-use crate::scene_file::SceneFile;
-use crate::solve::{self, Ended, Pauses, Solved};
-use crate::stop::Stop;
-use crate::summary;
+use crate::job::row;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::{Disk, check_place, disk_error, write_atomic};
+use crate::platform::stop::Stop;
+use crate::scene::file::SceneFile;
+use crate::scene::solve::{self, Ended, Pauses, Solved};
+use crate::scene::summary;
+use crate::store::history_file;
 
 /// Arguments of `billow solve`.
 #[derive(Debug, clap::Args)]
@@ -97,24 +97,24 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 }
 
 /// The instruction set: that of `BILLOW_SIMD`, or the widest this machine has.
-pub(super) fn instruction_set() -> Result<simd::Path> {
+pub(super) fn instruction_set() -> Result<simd::InstructionSet> {
     let Some(word) = std::env::var_os("BILLOW_SIMD").filter(|word| !word.is_empty()) else {
-        return Ok(simd::Path::best());
+        return Ok(simd::InstructionSet::detect());
     };
     let word = word.to_string_lossy();
-    let known = simd::Path::ALL.into_iter().find(|path| path.name() == word);
+    let known = simd::InstructionSet::ALL.into_iter().find(|path| path.name() == word);
     let problem = match known {
         Some(path) if path.available() => return Ok(path),
         Some(_) => "is no instruction set of this machine",
         None => "is no instruction set",
     };
-    let here = simd::Path::ALL.into_iter().filter(|path| path.available());
+    let here = simd::InstructionSet::ALL.into_iter().filter(|path| path.available());
     Err(Error::Input(InputError {
         file: "BILLOW_SIMD".to_owned(),
         key: String::new(),
         value: word.into_owned(),
         problem: problem.to_owned(),
-        allowed: here.map(simd::Path::name).collect::<Vec<_>>().join(", "),
+        allowed: here.map(simd::InstructionSet::name).collect::<Vec<_>>().join(", "),
         hint: "leave it unset: every one gives the same bits".to_owned(),
     }))
 }

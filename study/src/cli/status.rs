@@ -9,14 +9,14 @@ use super::print::{count, duration, print_rows};
 use super::run::{listed, threads};
 use super::target::folder;
 use super::{Format, Global, output_error};
-use crate::doctor::{self, Depth, Health};
-use crate::error::Result;
-use crate::files::Disk;
-use crate::results::Results;
-use crate::row::{self, Counts};
-use crate::stored::Stored;
-use crate::summary;
-use crate::value::Value;
+use crate::input::value::Value;
+use crate::job::row::{self, Counts};
+use crate::platform::error::Result;
+use crate::platform::files::Disk;
+use crate::scene::summary;
+use crate::store::doctor::{self, Depth, Health};
+use crate::store::results::Results;
+use crate::store::stored::Stored;
 
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]

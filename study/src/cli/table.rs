@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use super::print::print_rows;
 use super::target::{self, filtered, find};
 use super::{Format, Global};
-use crate::error::{InputError, Result};
-use crate::table::{Column, Table};
-use crate::value::{Value, short_number};
+use crate::input::value::{Value, short_number};
+use crate::platform::error::{InputError, Result};
+use crate::store::table::{Column, Table};
 
 /// Measures shown after the parameters, in this order, as far as they fit.
 const MAIN: [&str; 10] = [

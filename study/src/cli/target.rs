@@ -4,18 +4,18 @@ use std::path::{Path, PathBuf};
 
 use super::Global;
 use super::run::results_folder;
-use crate::error::{Error, InputError, Result};
-use crate::expression::{Expression, Type, Variable};
-use crate::files::{Disk, Files};
+use crate::input::expression::{Expression, Type, Variable};
+use crate::input::keys;
+use crate::input::units::Dimension;
+use crate::input::value::Value;
 use crate::job;
-use crate::keys;
-use crate::results::Results;
-use crate::row::Kind;
-use crate::stored::Stored;
+use crate::job::row::Kind;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::{Disk, Files};
+use crate::store::results::Results;
+use crate::store::stored::Stored;
+use crate::store::table::{Column, Table};
 use crate::study::Study;
-use crate::table::{Column, Table};
-use crate::units::Dimension;
-use crate::value::Value;
 
 /// Results of a study, and their table.
 pub struct Target {

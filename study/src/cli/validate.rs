@@ -11,11 +11,11 @@ use rayon::ThreadPool;
 use super::print::print_rows;
 use super::{Format, Global};
 use crate::cases::{self, CASES, Case, Judged, Rig, Tier};
-use crate::error::{Error, InputError, Result};
-use crate::files::disk_error;
-use crate::keys;
-use crate::stop::Stop;
-use crate::value::Value;
+use crate::input::keys;
+use crate::input::value::Value;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::disk_error;
+use crate::platform::stop::Stop;
 
 /// How long a signal may go unseen.
 const LOOK: Duration = Duration::from_millis(50);

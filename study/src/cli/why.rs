@@ -4,22 +4,22 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::audit::RESIDUAL_BOUND;
-use billow_solver::measures::REFERENCE_PRESSURES;
+use billow_solver::output::audit::RESIDUAL_BOUND;
+use billow_solver::output::measures::REFERENCE_PRESSURES;
 use serde_json::{Map, json};
 
 use super::print::print_rows;
 use super::target::folder_of_job;
 use super::{Format, Global, output_error};
-use crate::error::Result;
-use crate::files::Disk;
-use crate::history_file;
+use crate::input::value::{Value, brief_number, json_value};
 use crate::job::JobId;
-use crate::results::Results;
-use crate::row::{self, Cells};
-use crate::stored::Stored;
-use crate::summary;
-use crate::value::{Value, brief_number, json_value};
+use crate::job::row::{self, Cells};
+use crate::platform::error::Result;
+use crate::platform::files::Disk;
+use crate::scene::summary;
+use crate::store::history_file;
+use crate::store::results::Results;
+use crate::store::stored::Stored;
 
 /// Arguments of `billow why`.
 #[derive(Debug, clap::Args)]

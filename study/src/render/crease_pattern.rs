@@ -6,8 +6,8 @@
 
 use std::fmt::Write;
 
-use billow_solver::fold::{Assignment, Corner, FoldPattern};
-use billow_solver::mesh_io::obj::Sheet;
+use billow_solver::geometry::fold::{Assignment, Corner, FoldPattern};
+use billow_solver::geometry::mesh_io::obj::Sheet;
 use nalgebra::Vector2;
 
 /// Millimetres a metre.
@@ -254,7 +254,7 @@ fn stroke(colour: &str, width: f64, dashes: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use billow_solver::fold::{Caps, Chirality, Fit, FoldDesign};
+    use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
 
     use super::*;
 

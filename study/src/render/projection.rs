@@ -9,7 +9,7 @@
 //! Orthographic: lengths across the line of sight are the same everywhere. Elements are drawn in the
 //! order of [`super::painter`], whichever side they show: film has no back.
 
-use billow_solver::frames::Frame;
+use billow_solver::output::frames::Frame;
 use nalgebra::Vector3;
 
 use super::painter::{self, Patch};
@@ -83,7 +83,7 @@ impl View {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use billow_solver::material::Regime;
+    use billow_solver::mechanics::material::Regime;
     use proptest::prelude::*;
 
     use super::*;

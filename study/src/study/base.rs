@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use serde_json::{Map, json};
 
 use super::strategy::{Strategy, read_strategy};
-use super::supports;
-use crate::error::InputError;
-use crate::keys::{self, KEYS, STUDY};
-use crate::settings::{Settings, check_version, object};
-use crate::source::Source;
-use crate::study_file::Json;
-use crate::value::{Value, json_value};
+use crate::input::keys::{self, KEYS, STUDY};
+use crate::input::settings::{Settings, check_version, object};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::supports;
+use crate::input::value::{Value, json_value};
+use crate::platform::error::InputError;
 use billow_solver::scene::Support;
 
 /// Everything a point starts from.

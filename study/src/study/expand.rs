@@ -7,16 +7,17 @@ use super::base::Base;
 use super::grid::{Axis, Column, Grid, Target};
 use super::resolve::{self, Fold};
 use super::{Limits, StudyPoint};
-use crate::error::InputError;
-use crate::expression::{Type, Variable};
-use crate::keys::{self, KEYS, Key, Kind};
-use crate::point::Solved;
-use crate::settings::{design, read};
-use crate::source::Source;
-use crate::study_file::Json;
-use crate::units::Dimension;
-use crate::value::{Value, json_value};
-use billow_solver::ladder::{self, SceneError};
+use crate::input::expression::{Type, Variable};
+use crate::input::keys::{self, KEYS, Key, Kind};
+use crate::input::settings::{design, read};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::units::Dimension;
+use crate::input::value::{Value, json_value};
+use crate::job::point::Solved;
+use crate::platform::error::InputError;
+use billow_solver::models::{self};
+use billow_solver::scene::error::SceneError;
 
 /// Derived quantities an expression may use, before the keys of the same name.
 const DERIVED: [(&str, Dimension); 6] = [
@@ -78,7 +79,7 @@ pub(super) fn range(
                 (Json::Integer(number), _) => Some(*number as f64),
                 (Json::Number(number), _) => Some(*number),
                 (Json::Text(text), Kind::Quantity(quantity)) => {
-                    crate::units::parse_powers(text, quantity.dimension.powers()).ok()
+                    crate::input::units::parse_powers(text, quantity.dimension.powers()).ok()
                 }
                 _ => None,
             };
@@ -369,7 +370,7 @@ impl Expansion<'_> {
             }
         };
         let scene = resolve::scene(point, design, self.source).map_err(place)?;
-        ladder::check(&scene).map_err(|error| place(self.refused(&error)))?;
+        models::check(&scene).map_err(|error| place(self.refused(&error)))?;
         self.points.push(StudyPoint { parameters: parameters(), scene, infeasible, solved });
         Ok(())
     }

@@ -3,13 +3,13 @@
 use super::Limits;
 use super::base::Base;
 use super::expand;
-use crate::error::InputError;
-use crate::expression::Expression;
-use crate::keys::{self, KEYS, Key, Kind, STRATEGY_KEYS, STUDY, WINDOW_KEYS};
-use crate::settings::{list, object, read};
-use crate::source::Source;
-use crate::study_file::Json;
-use crate::value::Value;
+use crate::input::expression::Expression;
+use crate::input::keys::{self, KEYS, Key, Kind, STRATEGY_KEYS, STUDY, WINDOW_KEYS};
+use crate::input::settings::{list, object, read};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::value::Value;
+use crate::platform::error::InputError;
 
 /// What a study varies.
 #[derive(Debug, Clone, PartialEq)]

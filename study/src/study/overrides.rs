@@ -1,10 +1,10 @@
 //! `--set key=value`: overrides written into the tree of the file before it is read.
 
 use super::grid::{Grid, Target};
-use crate::error::InputError;
-use crate::keys::{self, KEYS, Table};
-use crate::source::Source;
-use crate::study_file::{self, Json};
+use crate::input::keys::{self, KEYS, Table};
+use crate::input::source::Source;
+use crate::input::study_file::{self, Json};
+use crate::platform::error::InputError;
 
 /// Applies the overrides, in order, and notes their flags in `source`.
 pub(crate) fn apply(

@@ -1,18 +1,18 @@
 //! From the settings of a point to its scene.
 
-use billow_solver::fold::{FoldDesign, FoldError, FoldPattern};
+use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
 use billow_solver::scene::{
     Contact, GasSupply, InflowWindow, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
 };
 
 use super::base::Base;
 use super::strategy::Strategy;
-use crate::error::InputError;
-use crate::keys::{STRATEGY_KEYS, WINDOW_KEYS};
-use crate::point::Infeasible;
-use crate::settings::{film, gas_laws, missing, number, unsigned, whole};
-use crate::source::{Source, shown};
-use crate::value::Value;
+use crate::input::keys::{STRATEGY_KEYS, WINDOW_KEYS};
+use crate::input::settings::{film, gas_laws, missing, number, unsigned, whole};
+use crate::input::source::{Source, shown};
+use crate::input::value::Value;
+use crate::job::point::Infeasible;
+use crate::platform::error::InputError;
 
 /// A design's pattern, or why it has none.
 #[derive(Debug)]

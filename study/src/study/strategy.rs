@@ -2,12 +2,12 @@
 
 use serde_json::{Map, json};
 
-use crate::error::InputError;
-use crate::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS};
-use crate::settings::{list, read};
-use crate::source::Source;
-use crate::study_file::Json;
-use crate::value::{Value, json_value};
+use crate::input::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::input::settings::{list, read};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::value::{Value, json_value};
+use crate::platform::error::InputError;
 
 /// A named inflation schedule.
 #[derive(Debug, Clone, PartialEq)]

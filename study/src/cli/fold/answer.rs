@@ -1,9 +1,9 @@
 //! What `billow fold` says of a design.
 
-use billow_solver::fold::{FoldDesign, FoldPattern, Nearest};
+use billow_solver::geometry::fold::{FoldDesign, FoldPattern, Nearest};
 use serde_json::{Value as Json, json};
 
-use crate::value::Value;
+use crate::input::value::Value;
 
 /// A pattern as JSON: SI, angles in rad, keys as in the glossary.
 pub(super) fn feasible_json(pattern: &FoldPattern) -> Json {

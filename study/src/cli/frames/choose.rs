@@ -1,7 +1,7 @@
 //! Which of the stored frames a strip shows.
 
 use crate::cli::picture::{self, refused};
-use crate::error::Result;
+use crate::platform::error::Result;
 
 /// Frames on one picture, at most.
 const MOST: usize = 64;
@@ -66,7 +66,7 @@ pub(super) fn nearest(texts: &[String], stored: &[f64], quiet: bool) -> Result<V
         if off > NEAR * time.abs().max(1e-9) && !quiet {
             eprintln!(
                 "billow: --times {text}: the nearest frame stored is that of {} s",
-                crate::value::short_number(stored[nearest])
+                crate::input::value::short_number(stored[nearest])
             );
         }
         numbers.push(nearest);

@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use billow_solver::ladder::{self, Cost};
+use billow_solver::models::{self, Cost};
 use billow_solver::scene::ModelKind;
 
 use crate::cli::print::{count, duration};
+use crate::input::value::short_number;
+use crate::job::point::Point;
 use crate::job::{JobId, canonical_json};
-use crate::point::Point;
-use crate::value::short_number;
 
 /// Nanoseconds an element takes on one core for each step of film that never gets calm, about: measured
 /// on the paper's capsule, which does, at n 4 to 8 over 0.5 s.
@@ -39,10 +39,10 @@ pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> 
                     "forecast: over {MESHES} meshes, none made to foretell a cost"
                 ));
             }
-            known.insert(key.clone(), ladder::cost(scene).ok()?);
+            known.insert(key.clone(), models::cost(scene).ok()?);
         }
         let cost = known[&key];
-        if let Some(of) = ladder::reference_scene(scene)
+        if let Some(of) = models::reference_scene(scene)
             && known_states.insert(JobId::of(&of))
         {
             states += STATES * libm::pow(cost.elements as f64, STATES_POWER);

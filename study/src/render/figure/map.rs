@@ -5,9 +5,9 @@
 
 use super::style::{self, AXIS, EMPTY, Fill, HATCH, MARGIN, MEDIUM, SMALL};
 use super::{INNER, Sheet, ticks};
+use crate::input::value::short_number;
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Place, cut};
-use crate::value::short_number;
 
 /// A figure of maps.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! Where an axis is marked: steps of 1, 2 or 5 times a power of ten, and how the numbers are written.
 
-use crate::value::short_number;
+use crate::input::value::short_number;
 
 /// A mark on an axis: its place, and its number.
 pub type Tick = (f64, String);

@@ -2,9 +2,9 @@
 //! shape.
 
 use super::{Filmstrip, HEIGHT, LETTER, LINE, MARGIN, WIDTH};
+use crate::input::value::short_number;
 use crate::render::font;
 use crate::render::page::{Letters, Page, Stroke};
-use crate::value::short_number;
 
 /// Where everything lies on the page, mm.
 pub(super) struct Layout {

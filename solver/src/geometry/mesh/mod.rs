@@ -1,0 +1,95 @@
+//! Nodes and triangles of a fold pattern: welded, closed, wound outward.
+//!
+//! Every facet of the lateral film and every wedge of a cap (centre and two ring corners) is cut
+//! into n² triangles. A node is known by its barycentric weights on the corners of the pattern, so
+//! facets that share an edge share its nodes exactly. Each triangle carries its own flat
+//! coordinates in the developed film: the stress-free reference.
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::geometry::fold::{FoldError, FoldPattern};
+
+mod build;
+
+/// Which state of the pattern the nodes are placed in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// Flat folded, all at z = 0.
+    Flat,
+    /// Stowed at this stack height, m.
+    Stowed(f64),
+    /// Rolled onto its cone, folds open. The ring lines are chords of the developed sector, so on
+    /// the cone they rise between their corners; N-gon caps follow them.
+    Erected,
+}
+
+/// The piece of film an element belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Part {
+    /// Lateral film of this storey, 0 the lowest.
+    Storey(u32),
+    /// Bottom cap.
+    BottomCap,
+    /// Top cap.
+    TopCap,
+}
+
+/// A closed triangle mesh with its stress-free reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Node positions, m.
+    pub positions: Vec<Vector3<f64>>,
+    /// Nodes of each element, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Flat coordinates of each element's nodes in the developed film, m; positively oriented.
+    pub reference: Vec<[Vector2<f64>; 3]>,
+    /// Piece of film of each element.
+    pub parts: Vec<Part>,
+    /// Nodes of the bottom ring, in order round it.
+    pub bottom_ring: Vec<u32>,
+    /// Nodes of the top ring, in order round it.
+    pub top_ring: Vec<u32>,
+    /// Centre node of the bottom cap.
+    pub bottom_centre: u32,
+    /// Centre node of the top cap.
+    pub top_centre: u32,
+}
+
+impl Mesh {
+    /// Meshes a pattern with `subdivisions` parts an edge, in the given shape: 2 N (M + 1) n²
+    /// elements.
+    ///
+    /// # Errors
+    /// [`FoldError::Invalid`] for circular caps on a folded shape, which only strain could sew on.
+    pub fn new(pattern: &FoldPattern, subdivisions: u32, shape: Shape) -> Result<Self, FoldError> {
+        build::mesh(pattern, subdivisions, shape)
+    }
+
+    /// Enclosed volume, m³, by the divergence theorem.
+    pub fn volume(&self) -> f64 {
+        self.corners().map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0).sum()
+    }
+
+    /// Area of the developed film, m².
+    pub fn reference_area(&self) -> f64 {
+        self.reference.iter().map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum()
+    }
+
+    /// Undirected edges, each once, lower node first, in ascending order.
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        let mut edges: Vec<[u32; 2]> = self
+            .triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Corner positions of each element.
+    pub fn corners(&self) -> impl Iterator<Item = [Vector3<f64>; 3]> {
+        self.triangles.iter().map(|triangle| triangle.map(|node| self.positions[node as usize]))
+    }
+}

@@ -1,0 +1,246 @@
+//! The gas: one control volume of an ideal gas, uniform in pressure and temperature.
+//!
+//! ```text
+//! dm/dt = ṁ_in − ṁ_out
+//! dU/dt = ṁ_in cp T_in − ṁ_out cp T − p dV/dt + Q̇        Q̇ = h A (T_film − T)
+//! T = U/(m cv)          p = (γ − 1) U/V                   γ = cp/cv, cv = cp − R
+//!
+//! ṁ_out = C_d A_leak p √(γ/(R T)) (2/(γ+1))^((γ+1)/(2(γ−1)))                 choked:
+//!                                                p_ambient/p ≤ (2/(γ+1))^(γ/(γ−1))
+//! ṁ_out = C_d A_leak p √(2γ/((γ−1) R T) (r^(2/γ) − r^((γ+1)/γ)))             subsonic,
+//!                                                r = p_ambient/p < 1
+//! ```
+//!
+//! Symbols: m mass, kg; U internal energy, J; T temperature, K; p pressure, Pa; V volume, m³;
+//! h heat transfer coefficient, W/(m² K); A film area, m²; `C_d` discharge coefficient. The orifice
+//! laws are those of one-dimensional isentropic flow (any text on gas dynamics).
+//!
+//! - Without gas p = 0, and the temperature shown is that of the film.
+//! - The leak lets gas out only: at p ≤ `p_ambient` nothing passes it, as through a flap valve. A
+//!   capsule under ambient pressure does not breathe air in.
+//! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat is what the balance asks for.
+//! - With h > 0 the gas warms at the rate h A/(m cv), but never faster than in
+//!   1 µs: a nearly empty volume (first gas, a leak that has emptied the capsule)
+//!   costs small steps, not ever smaller ones.
+//!
+//! Every model gets its gas from here; it brings V, dV/dt and its own work of p on the film.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::inflow::Inflow;
+use crate::scene::{GasSupply, HeatTransfer};
+
+mod leak;
+mod step;
+
+use leak::Orifice;
+pub use step::GasStep;
+
+/// What the gas is at one moment.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GasState {
+    /// m, kg.
+    pub mass: f64,
+    /// U, J.
+    pub internal_energy: f64,
+}
+
+/// What changes the gas: its two balances, term by term.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GasRates {
+    /// dm/dt, kg/s.
+    pub mass: f64,
+    /// dU/dt, W.
+    pub internal_energy: f64,
+    /// Mass leaking out, kg/s.
+    pub mass_out: f64,
+    /// Enthalpy let in, W.
+    pub enthalpy_in: f64,
+    /// Enthalpy leaking out, W.
+    pub enthalpy_out: f64,
+    /// Heat the film gives to the gas, W.
+    pub heat: f64,
+    /// Work the gas does on the film, p dV/dt, W.
+    pub work: f64,
+}
+
+/// Shortest time, s, in which gas takes on film temperature. h A/(m cv) grows without bound as the
+/// gas runs out; beyond this it would stiffen the equations and say nothing: no film motion is as
+/// fast.
+const FASTEST_EXCHANGE: f64 = 1e-6;
+
+/// The laws of one control volume: constant during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gas {
+    /// cp, J/(kg K).
+    pub cp: f64,
+    /// cv, J/(kg K).
+    pub cv: f64,
+    /// Pressure outside, Pa.
+    pub ambient_pressure: f64,
+    /// `T_film`, K.
+    pub film_temperature: f64,
+    /// Heat exchange with the film.
+    pub heat_transfer: HeatTransfer,
+    /// Film area the gas exchanges heat with, m².
+    pub film_area: f64,
+    orifice: Orifice,
+}
+
+impl Gas {
+    /// The laws of a supply, around film of the given temperature (K) and area (m²).
+    pub fn new(supply: &GasSupply, film_temperature: f64, film_area: f64) -> Self {
+        let cp = supply.species.cp;
+        let cv = cp - supply.species.gas_constant;
+        Self {
+            cp,
+            cv,
+            ambient_pressure: supply.ambient_pressure,
+            film_temperature,
+            heat_transfer: supply.heat_transfer,
+            film_area,
+            orifice: Orifice::new(cp / cv, supply.discharge_coefficient * supply.leak_area),
+        }
+    }
+
+    /// γ = cp/cv.
+    pub fn gamma(&self) -> f64 {
+        self.cp / self.cv
+    }
+
+    /// Gas of the given mass (kg) at the given temperature (K).
+    pub fn at_temperature(&self, mass: f64, temperature: f64) -> GasState {
+        GasState { mass, internal_energy: mass * self.cv * temperature }
+    }
+
+    /// T, K; that of the film where there is no gas.
+    pub fn temperature(&self, state: GasState) -> f64 {
+        match self.heat_transfer {
+            HeatTransfer::Isothermal => self.film_temperature,
+            HeatTransfer::Coefficient(_) => {
+                let temperature = state.internal_energy / (state.mass * self.cv);
+                let any_gas = state.mass > 0.0 && temperature.is_finite() && temperature >= 0.0;
+                if any_gas { temperature } else { self.film_temperature }
+            }
+        }
+    }
+
+    /// p, Pa, in the volume V (m³).
+    pub fn pressure(&self, state: GasState, volume: f64) -> f64 {
+        let internal_energy = match self.heat_transfer {
+            HeatTransfer::Isothermal => state.mass * self.cv * self.film_temperature,
+            HeatTransfer::Coefficient(_) => state.internal_energy,
+        };
+        (self.gamma() - 1.0) * internal_energy / volume
+    }
+
+    /// T, K, of the first gas to enter an empty volume, the limit of both balances for m → 0, so
+    /// that the rates are continuous there: m cv T = ṁ cp `T_in` t with m = ṁ t gives T = γ `T_in`
+    /// (the film's share vanishes with m, see `FASTEST_EXCHANGE`).
+    fn first_temperature(&self, inflow: Inflow) -> f64 {
+        match self.heat_transfer {
+            HeatTransfer::Coefficient(_) if inflow.mass > 0.0 => {
+                self.gamma() * inflow.mass_temperature / inflow.mass
+            }
+            _ => self.film_temperature,
+        }
+    }
+
+    /// Both balances, for the volume V (m³) growing at dV/dt (m³/s).
+    pub fn rates(
+        &self,
+        state: GasState,
+        volume: f64,
+        volume_rate: f64,
+        inflow: Inflow,
+    ) -> GasRates {
+        let temperature =
+            if state.mass > 0.0 { self.temperature(state) } else { self.first_temperature(inflow) };
+        let pressure = self.pressure(state, volume);
+        let mass_out = self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
+        let enthalpy_out = mass_out * self.cp * temperature;
+        let enthalpy_in = self.cp * inflow.mass_temperature;
+        let work = pressure * volume_rate;
+        let mass = inflow.mass - mass_out;
+        let without_heat = enthalpy_in - enthalpy_out - work;
+        let (internal_energy, heat) = match self.heat_transfer {
+            HeatTransfer::Coefficient(coefficient) => {
+                let exchange = coefficient * self.film_area;
+                let exchange = exchange.min(state.mass * self.cv / FASTEST_EXCHANGE);
+                let heat = exchange * (self.film_temperature - temperature);
+                (without_heat + heat, heat)
+            }
+            HeatTransfer::Isothermal => {
+                let internal_energy = self.cv * self.film_temperature * mass;
+                (internal_energy, internal_energy - without_heat)
+            }
+        };
+        GasRates { mass, internal_energy, mass_out, enthalpy_in, enthalpy_out, heat, work }
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
+mod tests {
+    use super::*;
+    use crate::scene::Species;
+
+    const NITROGEN: Species = Species { gas_constant: 296.803_052, cp: 1_038.810_68 };
+
+    fn gas(heat_transfer: HeatTransfer, leak_area: f64) -> Gas {
+        let supply = GasSupply {
+            species: NITROGEN,
+            initial_mass: 0.0,
+            windows: Vec::new(),
+            ambient_pressure: 0.0,
+            heat_transfer,
+            leak_area,
+            discharge_coefficient: 0.6,
+        };
+        Gas::new(&supply, 293.0, 2.0)
+    }
+
+    #[test]
+    fn ideal_gas_law_holds() {
+        let gas = gas(HeatTransfer::Coefficient(0.0), 0.0);
+        let state = gas.at_temperature(0.003, 250.0);
+        let expected = 0.003 * NITROGEN.gas_constant * 250.0 / 0.2;
+        assert!((gas.pressure(state, 0.2) / expected - 1.0).abs() < 1e-14);
+        assert!((gas.temperature(state) / 250.0 - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn no_gas_has_no_pressure_and_film_temperature() {
+        for heat in [HeatTransfer::Coefficient(5.0), HeatTransfer::Isothermal] {
+            let gas = gas(heat, 1e-4);
+            let rates = gas.rates(GasState::default(), 0.01, 1.0, Inflow::default());
+            assert_eq!(gas.temperature(GasState::default()), 293.0);
+            assert_eq!(gas.pressure(GasState::default(), 0.01), 0.0);
+            assert_eq!([rates.mass, rates.internal_energy, rates.heat, rates.work], [0.0; 4]);
+        }
+    }
+
+    #[test]
+    fn nearly_no_gas_is_finite() {
+        let gas = gas(HeatTransfer::Coefficient(0.3), 1e-4);
+        for mass in [f64::MIN_POSITIVE, 1e-320, 1e-200, 1e-30] {
+            for internal_energy in [0.0, 1e-310, 1e-30] {
+                let state = GasState { mass, internal_energy };
+                let rates = gas.rates(state, 0.01, 1.0, Inflow::default());
+                assert!(rates.internal_energy.is_finite() && rates.mass.is_finite(), "{state:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn isothermal_heat_closes_the_balance() {
+        let gas = gas(HeatTransfer::Isothermal, 1e-4);
+        let state = gas.at_temperature(0.002, 293.0);
+        let inflow = Inflow { mass: 0.01, mass_temperature: 0.01 * 350.0 };
+        let rates = gas.rates(state, 0.1, 0.7, inflow);
+        let balance = rates.enthalpy_in - rates.enthalpy_out - rates.work + rates.heat;
+        assert!((balance - rates.internal_energy).abs() < 1e-12 * rates.enthalpy_in);
+        assert!((rates.internal_energy - rates.mass * gas.cv * 293.0).abs() < 1e-12);
+    }
+}

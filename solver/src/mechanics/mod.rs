@@ -1,0 +1,8 @@
+//! Forces and energies of film and gas: material, membrane, pressure, gas, supports.
+
+pub mod film_model;
+pub mod forces;
+pub mod gas;
+pub mod material;
+pub mod resultants;
+pub mod supports;

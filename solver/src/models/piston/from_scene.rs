@@ -1,0 +1,72 @@
+//! From a scene and its pattern to a piston.
+
+use super::{EndFilm, MovingMass, Piston, PistonRun, PistonState, Stroke, VolumeLaw};
+use crate::geometry::fold::FoldPattern;
+use crate::integrators::dormand_prince::Control;
+use crate::mechanics::gas::Gas;
+use crate::scene::error::SceneError;
+use crate::scene::{Scene, SupportPlace};
+
+/// A piston's bottom is held along z and its top is free along it.
+pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
+    let invalid =
+        |key: String, problem: &str| Err(SceneError::Invalid { key, problem: problem.to_owned() });
+    let mut bottom_held = false;
+    for (index, support) in scene.supports.iter().enumerate() {
+        let along_z = support.fix.contains('z');
+        match support.on {
+            SupportPlace::BottomRing | SupportPlace::BottomCap => bottom_held |= along_z,
+            SupportPlace::TopRing | SupportPlace::TopCap if along_z => {
+                return invalid(
+                    format!("supports[{index}].fix"),
+                    "model `piston` moves the top along z, so it cannot be held along z; allowed \
+                     there: letters of \"xy\"",
+                );
+            }
+            SupportPlace::TopRing | SupportPlace::TopCap => {}
+        }
+    }
+    if bottom_held {
+        return Ok(());
+    }
+    invalid(
+        "supports".to_owned(),
+        "model `piston` stands on its bottom ring; allowed: at least one support on bottom_ring or \
+         bottom_cap that fixes z",
+    )
+}
+
+/// The piston of a validated scene, stowed, with the gas that is there at time 0.
+pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, SceneError> {
+    let film = &scene.film;
+    let mass = MovingMass::new(pattern, film.area_density());
+    let stowed_height = scene.design.stowed_height;
+    let stowed = (stowed_height, pattern.stowed_volume(stowed_height));
+    let erected = (pattern.height, pattern.erected_volume());
+    let stroke = Stroke::new(stowed, erected).map_err(|problem| SceneError::Invalid {
+        key: "design.stowed_height".to_owned(),
+        problem,
+    })?;
+    let end = EndFilm::of_cone(
+        (pattern.bottom_radius, pattern.top_radius),
+        pattern.height,
+        (film.youngs_modulus, film.thickness),
+        film.viscosity,
+        mass.effective,
+    );
+    let gas = Gas::new(&scene.gas, film.temperature, mass.area);
+    let start = PistonState {
+        height: stowed_height,
+        speed: 0.0,
+        gas: gas.at_temperature(scene.gas.initial_mass, film.temperature),
+    };
+    let piston = Piston {
+        volume: VolumeLaw::Stroke(stroke),
+        mass: mass.effective,
+        weight: scene.gravity * mass.first_moment,
+        end,
+        gas,
+    };
+    let control = Control { stepping: scene.solver.stepping, step_limit: scene.solver.step_limit };
+    Ok(PistonRun::new(piston, 0.0, start, control))
+}

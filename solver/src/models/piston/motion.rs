@@ -1,0 +1,282 @@
+//! The motion: a piston's constants, its state, and its run.
+
+use super::{EndFilm, EndState, VolumeLaw};
+use crate::integrators::dormand_prince::{Control, Integrator, System};
+use crate::mechanics::gas::{Gas, GasState};
+use crate::models::run::Model;
+use crate::output::history::Sample;
+use crate::output::ledger::{GasBalance, Ledger};
+use crate::output::measures::{REFERENCE_PRESSURES, Reference};
+use crate::output::outcome::{Failure, FailureKind};
+use crate::scene::timeline::Phase;
+
+/// A piston's constants: plain data, so that an injected piston, a rigid tank and a gas spring run
+/// through the same functions as a capsule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piston {
+    /// V(z).
+    pub volume: VolumeLaw,
+    /// What is accelerated, kg.
+    pub mass: f64,
+    /// Constant force along z, N: gravity.
+    pub weight: f64,
+    /// The film at full height.
+    pub end: EndFilm,
+    /// The gas.
+    pub gas: Gas,
+}
+
+/// Where a piston stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PistonState {
+    /// z, m.
+    pub height: f64,
+    /// ż, m/s.
+    pub speed: f64,
+    /// Gas inside.
+    pub gas: GasState,
+}
+
+// Components of the integrated state.
+const HEIGHT: usize = 0;
+const SPEED: usize = 1;
+const MASS: usize = 2;
+const INTERNAL_ENERGY: usize = 3;
+const MASS_OUT: usize = 4;
+const ENTHALPY_IN: usize = 5;
+const ENTHALPY_OUT: usize = 6;
+const HEAT: usize = 7;
+const GAS_WORK: usize = 8;
+const AMBIENT_WORK: usize = 9;
+const GRAVITY_WORK: usize = 10;
+const VISCOUS_WORK: usize = 11;
+const STRAIN_WORK: usize = 12;
+const COMPONENTS: usize = 13;
+
+/// A piston under one phase: what is integrated.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    piston: &'a Piston,
+    phase: &'a Phase,
+    /// Volume that counts as none, m³.
+    least_volume: f64,
+}
+
+impl System<COMPONENTS> for Motion<'_> {
+    type Branch = EndState;
+
+    // Lengths, speeds, masses, energies of the gas, works on the film: an error in the work of
+    // viscosity is judged by all the work done, not by a first trickle of its own.
+    const GROUPS: [usize; COMPONENTS] = [0, 1, 2, 3, 2, 3, 3, 3, 4, 4, 4, 4, 4];
+
+    fn rates(&self, branch: EndState, state: &[f64; COMPONENTS]) -> [f64; COMPONENTS] {
+        let piston = self.piston;
+        let z = state[HEIGHT];
+        let speed = if self.phase.packed { 0.0 } else { state[SPEED] };
+        let (volume, slope) = (piston.volume.volume(z), piston.volume.slope(z));
+        let gas_state = GasState { mass: state[MASS], internal_energy: state[INTERNAL_ENERGY] };
+        let gas = piston.gas.rates(gas_state, volume, slope * speed, self.phase.inflow);
+        let ambient = -piston.gas.ambient_pressure * slope;
+        let (elastic, viscous) = piston.end.pull(branch, z, speed);
+        let force = piston.gas.pressure(gas_state, volume) * slope + ambient + piston.weight
+            - elastic
+            - viscous;
+
+        let mut rates = [0.0; COMPONENTS];
+        rates[HEIGHT] = speed;
+        rates[SPEED] = if self.phase.packed { 0.0 } else { force / piston.mass };
+        rates[MASS] = gas.mass;
+        rates[INTERNAL_ENERGY] = gas.internal_energy;
+        rates[MASS_OUT] = gas.mass_out;
+        rates[ENTHALPY_IN] = gas.enthalpy_in;
+        rates[ENTHALPY_OUT] = gas.enthalpy_out;
+        rates[HEAT] = gas.heat;
+        rates[GAS_WORK] = gas.work;
+        rates[AMBIENT_WORK] = ambient * speed;
+        rates[GRAVITY_WORK] = piston.weight * speed;
+        rates[VISCOUS_WORK] = viscous * speed;
+        rates[STRAIN_WORK] = elastic * speed;
+        rates
+    }
+
+    fn margin(&self, branch: EndState, state: &[f64; COMPONENTS]) -> f64 {
+        self.piston.end.margin(branch, state[HEIGHT], state[SPEED])
+    }
+
+    fn next_branch(&self, branch: EndState, state: &[f64; COMPONENTS]) -> EndState {
+        self.piston.end.next(branch, state[HEIGHT], state[SPEED])
+    }
+
+    fn check(&self, state: &[f64; COMPONENTS]) -> Result<(), (FailureKind, &'static str)> {
+        if state[HEIGHT] <= 0.0 {
+            return Err((FailureKind::InvertedVolume, "height of the top ring"));
+        }
+        if self.piston.volume.volume(state[HEIGHT]) <= self.least_volume {
+            return Err((FailureKind::InvertedVolume, "gas volume"));
+        }
+        Ok(())
+    }
+}
+
+/// Share of the starting volume that counts as none: a leaking capsule pressed shut would take ever
+/// smaller steps towards a volume of 0 and never reach it.
+const NO_VOLUME: f64 = 1e-9;
+
+/// Gas of this share of the moving mass is the least that errors are judged by.
+///
+/// An empty capsule that begins to fill is the same at every scale: at time t the gas warms at the
+/// rate (h A/(ṁ cv))/t, so without a least scale a fast exchange would leave no step short enough.
+const LEAST_GAS: f64 = 1e-9;
+
+/// Error scales of a run that starts from nothing, by group.
+fn least_scales(piston: &Piston) -> [f64; COMPONENTS] {
+    let mass = LEAST_GAS * piston.mass;
+    let energy = mass * piston.gas.cp * piston.gas.film_temperature;
+    let speed = (2.0 * energy / piston.mass).sqrt();
+    let mut scales = [0.0; COMPONENTS];
+    scales[..5].copy_from_slice(&[0.0, speed, mass, energy, energy]);
+    scales
+}
+
+/// A piston in the middle of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PistonRun {
+    piston: Piston,
+    control: Control,
+    integrator: Integrator<COMPONENTS, EndState>,
+    film_stress: f64,
+    least_volume: f64,
+}
+
+impl PistonRun {
+    /// Starts at a time (s) from a state.
+    pub fn new(piston: Piston, time: f64, start: PistonState, control: Control) -> Self {
+        let mut state = [0.0; COMPONENTS];
+        state[HEIGHT] = start.height;
+        state[SPEED] = start.speed;
+        state[MASS] = start.gas.mass;
+        state[INTERNAL_ENERGY] = start.gas.internal_energy;
+        let branch = piston.end.state_at(start.height, start.speed);
+        let integrator = Integrator::new(time, state, branch, least_scales(&piston));
+        let least_volume = NO_VOLUME * piston.volume.volume(start.height);
+        Self { piston, control, integrator, film_stress: 0.0, least_volume }
+    }
+
+    /// Where it stands.
+    pub fn state(&self) -> PistonState {
+        let state = &self.integrator.state;
+        let gas = GasState { mass: state[MASS], internal_energy: state[INTERNAL_ENERGY] };
+        PistonState { height: state[HEIGHT], speed: state[SPEED], gas }
+    }
+
+    /// Its constants.
+    pub fn piston(&self) -> &Piston {
+        &self.piston
+    }
+
+    /// Work done on the end spring, J, from its force and displacement; its strain energy, if both
+    /// are right.
+    pub fn strain_work(&self) -> f64 {
+        self.integrator.state[STRAIN_WORK]
+    }
+
+    fn ledger(&self) -> Ledger {
+        let state = &self.integrator.state;
+        Ledger {
+            kinetic: 0.5 * self.piston.mass * state[SPEED] * state[SPEED],
+            strain: self.piston.end.strain_energy(state[HEIGHT]),
+            gas_work: state[GAS_WORK],
+            ambient_work: state[AMBIENT_WORK],
+            gravity_work: state[GRAVITY_WORK],
+            viscous_work: state[VISCOUS_WORK],
+            // Neither contact nor friction; the bottom ring and the lid hold what does not move,
+            // and so do no work.
+            contact: 0.0,
+            friction_work: 0.0,
+            damping_work: 0.0,
+            support_work: 0.0,
+        }
+    }
+
+    fn books(&self) -> GasBalance {
+        let state = &self.integrator.state;
+        GasBalance {
+            mass: state[MASS],
+            internal_energy: state[INTERNAL_ENERGY],
+            mass_in: 0.0,
+            mass_out: state[MASS_OUT],
+            enthalpy_in: state[ENTHALPY_IN],
+            enthalpy_out: state[ENTHALPY_OUT],
+            heat: state[HEAT],
+            gas_work: state[GAS_WORK],
+        }
+    }
+}
+
+impl Model for PistonRun {
+    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
+        let piston = &self.piston;
+        let film_stress = &mut self.film_stress;
+        let motion = Motion { piston, phase, least_volume: self.least_volume };
+        let mut accepted = |state: &[f64; COMPONENTS]| {
+            let z = state[HEIGHT];
+            let gas = GasState { mass: state[MASS], internal_energy: state[INTERNAL_ENERGY] };
+            let pressure = piston.gas.pressure(gas, piston.volume.volume(z));
+            let overpressure = pressure - piston.gas.ambient_pressure;
+            *film_stress = film_stress.max(piston.end.stress(z, overpressure));
+        };
+        self.integrator.advance(&motion, target, &self.control, &mut accepted)
+    }
+
+    fn sample(&self, phase: &Phase) -> Sample {
+        let PistonState { height, speed, gas } = self.state();
+        let volume = self.piston.volume.volume(height);
+        let slope = self.piston.volume.slope(height);
+        let pressure = self.piston.gas.pressure(gas, volume);
+        let push = (pressure - self.piston.gas.ambient_pressure) * slope + self.piston.weight;
+        Sample {
+            time: self.integrator.time,
+            z_centre: height,
+            z_rim: height,
+            z_max: height,
+            vz: speed,
+            volume,
+            pressure,
+            temperature: self.piston.gas.temperature(gas),
+            // The lid only pushes; what presses the stack down is borne by the stack.
+            lid_force: if phase.packed { push.max(0.0) } else { 0.0 },
+            ledger: self.ledger(),
+            gas: self.books(),
+            passages: 0,
+            intersections: 0,
+        }
+    }
+
+    /// z = H + p (dV/dz)/k: above H the volume is linear. Gravity is left out, so that a design has
+    /// one reference on the ground and in orbit.
+    fn reference(&self) -> Option<Reference> {
+        let end = &self.piston.end;
+        let slope = self.piston.volume.slope(end.free_length);
+        let state = |pressure: f64| {
+            let height = end.free_length + pressure * slope / end.stiffness;
+            [pressure, self.piston.volume.volume(height), height]
+        };
+        Some(Reference::new(REFERENCE_PRESSURES.map(state).to_vec()))
+    }
+
+    fn film_stress(&self) -> f64 {
+        self.film_stress
+    }
+
+    fn steps(&self) -> u64 {
+        self.integrator.steps
+    }
+
+    fn elements(&self) -> usize {
+        0
+    }
+
+    fn counts_passages(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,131 @@
+use super::*;
+use crate::output::ledger::Ledger;
+use crate::scene::InflowWindow;
+use crate::scene::Thresholds;
+use crate::scene::inflow::Schedule;
+
+/// A model that computes nothing: it writes down what it is asked, and shows the energy it is told.
+struct Recorder {
+    asked: Vec<(f64, Phase)>,
+    energy: fn(f64) -> f64,
+    fails_after: f64,
+}
+
+impl Recorder {
+    fn new(energy: fn(f64) -> f64) -> Self {
+        Self { asked: Vec::new(), energy, fails_after: f64::INFINITY }
+    }
+
+    fn time(&self) -> f64 {
+        self.asked.last().map_or(0.0, |(time, _)| *time)
+    }
+}
+
+impl Model for Recorder {
+    fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
+        assert!(target > self.time(), "time goes on");
+        if target > self.fails_after {
+            let (kind, place) = (FailureKind::Unstable, "a test".to_owned());
+            return Err(Failure { kind, time: self.fails_after, place });
+        }
+        self.asked.push((target, *phase));
+        Ok(())
+    }
+
+    fn sample(&self, _: &Phase) -> Sample {
+        let (time, kinetic) = (self.time(), (self.energy)(self.time()));
+        let gas_work = time;
+        let ledger = Ledger { kinetic, gas_work, ..Ledger::default() };
+        Sample { time, volume: 1.0, z_rim: 1.0, ledger, ..Sample::default() }
+    }
+
+    fn reference(&self) -> Option<Reference> {
+        Some(Reference::new(vec![[1.0, 1.0, 1.0]]))
+    }
+
+    fn film_stress(&self) -> f64 {
+        0.0
+    }
+
+    fn steps(&self) -> u64 {
+        self.asked.len() as u64
+    }
+
+    fn elements(&self) -> usize {
+        7
+    }
+
+    fn counts_passages(&self) -> bool {
+        true
+    }
+}
+
+fn course() -> Timeline {
+    let window = |from, to, rate| InflowWindow { from, to, rate, temperature: 300.0 };
+    Timeline {
+        end_time: 1.05,
+        sample_interval: 0.1,
+        release_time: 0.25,
+        schedule: Schedule::new(&[window(0.0, 0.5, 1.0), window(0.33, 2.0, 0.5)]),
+        ambient_pressure: 0.0,
+        frames: 0,
+        thresholds: Thresholds::default(),
+    }
+}
+
+#[test]
+fn samples_are_even_and_breaks_are_landed_on() {
+    let mut model = Recorder::new(|time| time);
+    let deployment = run(&mut model, &course(), &mut Unobserved);
+    assert_eq!(deployment.stop, Stop::Done);
+    let mut samples: Vec<f64> = (0..=10).map(|k| f64::from(k) * 0.1).collect();
+    samples.push(1.05);
+    assert_eq!(deployment.history.column("time"), samples);
+
+    let targets: Vec<f64> = model.asked.iter().map(|(target, _)| *target).collect();
+    for expected in samples[1..].iter().chain(&[0.25, 0.33]) {
+        assert!(targets.contains(expected), "{expected} {targets:?}");
+    }
+    for (target, phase) in &model.asked {
+        assert_eq!(phase.packed, *target <= 0.25, "{target}");
+        let first = if *target <= 0.5 { 1.0 } else { 0.0 };
+        let second = if *target > 0.33 { 0.5 } else { 0.0 };
+        assert!((phase.inflow.mass - first - second).abs() < 1e-15, "{target}: {phase:?}");
+    }
+    assert_eq!((deployment.steps, deployment.elements), (targets.len() as u64, 7));
+    assert_eq!(deployment.audit.passages, Some(0));
+}
+
+#[test]
+fn an_end_on_the_grid_is_sampled_once() {
+    let exact = Timeline { end_time: 0.3, ..course() };
+    let deployment = run(&mut Recorder::new(|time| time), &exact, &mut Unobserved);
+    assert_eq!(deployment.history.len(), 4);
+    assert_eq!(deployment.history.column("time")[3].to_bits(), 0.3_f64.to_bits());
+}
+
+#[test]
+fn energy_from_nowhere_is_a_drift_with_its_time_and_no_verdict() {
+    let mut model = Recorder::new(|time| if time > 0.45 { 1.1 * time } else { time });
+    let deployment = run(&mut model, &course(), &mut Unobserved);
+    let Stop::Failed(failure) = &deployment.stop else { panic!("{:?}", deployment.stop) };
+    assert_eq!(
+        (failure.kind, failure.time.to_bits()),
+        (FailureKind::EnergyDrift, 0.5_f64.to_bits())
+    );
+    assert_eq!(deployment.measures.verdict, None);
+    assert_eq!(deployment.history.len(), 12, "kept whole for whoever looks for the cause");
+    assert!(deployment.audit.ledger_residual > audit::RESIDUAL_BOUND);
+}
+
+#[test]
+fn a_failure_keeps_what_came_before_it() {
+    let mut model = Recorder::new(|time| time);
+    model.fails_after = 0.61;
+    let deployment = run(&mut model, &course(), &mut Unobserved);
+    let Stop::Failed(failure) = &deployment.stop else { panic!("{:?}", deployment.stop) };
+    assert_eq!(failure.kind, FailureKind::Unstable);
+    assert_eq!(deployment.history.len(), 7);
+    assert_eq!(deployment.measures.verdict, None);
+    assert!(deployment.measures.final_volume.is_some());
+}

@@ -1,0 +1,107 @@
+//! Shapes of the film at chosen moments of a run, for pictures and for programs that play them.
+//!
+//! ```text
+//! t_k = t_release + (t_end − t_release) (k/n)²,  k = 0 … n        and t = 0
+//! ```
+//!
+//! Film moves most right after its release, so frames lie densely there and thin out. Each is taken at
+//! the sample nearest to its time: frames change no step, and so no bit of a run.
+
+use serde::{Deserialize, Serialize};
+
+use crate::mechanics::material::Regime;
+use crate::scene::timeline::Timeline;
+
+/// The film at one moment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Frame {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Place of each node, m, in single precision: for the eye, not to go on from.
+    pub places: Vec<[f32; 3]>,
+    /// What each element does.
+    pub regimes: Vec<Regime>,
+}
+
+/// Frames of one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frames {
+    /// Nodes of each element, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Storey of each element: 0 the bottom cap, 1 to M the storeys from below, M + 1 the top cap; 0
+    /// throughout where the film is no capsule.
+    pub storeys: Vec<u32>,
+    /// In order of time.
+    pub frames: Vec<Frame>,
+}
+
+impl Timeline {
+    /// Numbers of the samples that are frames, rising.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "times above 0")]
+    pub(crate) fn frame_samples(&self) -> Vec<u64> {
+        let sample = |time: f64| libm::round(time / self.sample_interval) as u64;
+        let end = libm::ceil(self.end_time / self.sample_interval - 1e-6) as u64;
+        let mut samples = match self.frames {
+            0 => return Vec::new(),
+            1 => return vec![end],
+            _ => vec![0],
+        };
+        let left = self.end_time - self.release_time;
+        let last = self.frames - 1;
+        samples.extend((0..=last).map(|k| {
+            let share = f64::from(k) / f64::from(last);
+            sample(self.release_time + left * share * share).min(end)
+        }));
+        // Whatever rounding says, the end is one.
+        samples.push(end);
+        samples.sort_unstable();
+        samples.dedup();
+        samples
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Thresholds;
+    use crate::scene::inflow::Schedule;
+    use proptest::prelude::*;
+
+    fn course(frames: u32, end_time: f64, release_time: f64, sample_interval: f64) -> Timeline {
+        Timeline {
+            end_time,
+            sample_interval,
+            release_time,
+            schedule: Schedule::new(&[]),
+            ambient_pressure: 0.0,
+            frames,
+            thresholds: Thresholds::default(),
+        }
+    }
+
+    #[test]
+    fn frames_lie_densely_after_the_release() {
+        let dense = course(5, 1.6, 0.0, 0.001).frame_samples();
+        assert_eq!(dense, [0, 100, 400, 900, 1600]);
+        assert_eq!(course(3, 2.0, 1.0, 0.25).frame_samples(), [0, 4, 5, 8]);
+        assert_eq!(course(1, 1.0, 0.0, 0.3).frame_samples(), [4], "the end is a sample of its own");
+        assert!(course(0, 1.0, 0.0, 0.3).frame_samples().is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn every_frame_is_a_sample_and_start_and_end_are_frames(
+            frames in 2_u32..200, end in 0.001..20.0_f64, part in 0.0..0.99_f64, samples in 1.0..3000.0_f64,
+        ) {
+            let course = course(frames, end, part * end, end / samples);
+            let chosen = course.frame_samples();
+            let last = *chosen.last().unwrap();
+            prop_assert_eq!(chosen[0], 0);
+            prop_assert_eq!(course.sample_time(last).to_bits(), end.to_bits());
+            prop_assert!(last == 0 || course.sample_time(last - 1) < end);
+            prop_assert!(chosen.windows(2).all(|pair| pair[0] < pair[1]));
+            prop_assert!(chosen.len() <= frames as usize + 2);
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Time histories: one column a quantity, one row a sample.
+
+use serde::{Deserialize, Serialize};
+
+use crate::output::ledger::{GasBalance, Ledger};
+
+/// What a model shows of itself at one moment.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sample {
+    /// Time since the start of the run, s.
+    pub time: f64,
+    /// Height of the top centre node, m.
+    pub z_centre: f64,
+    /// Mean height of the top ring, m.
+    pub z_rim: f64,
+    /// Largest height of any node, m.
+    pub z_max: f64,
+    /// Mean velocity of the top ring along z, m/s.
+    pub vz: f64,
+    /// Enclosed volume, m³.
+    pub volume: f64,
+    /// Gas pressure, Pa.
+    pub pressure: f64,
+    /// Gas temperature, K.
+    pub temperature: f64,
+    /// Force on the packing lid, N.
+    pub lid_force: f64,
+    /// Film's side of the ledger.
+    pub ledger: Ledger,
+    /// Gas's side of the ledger.
+    pub gas: GasBalance,
+    /// Film through film counted so far.
+    pub passages: u64,
+    /// Intersections of the mesh now.
+    pub intersections: u64,
+}
+
+impl Sample {
+    /// Values in the order of [`COLUMNS`].
+    fn row(&self, ledger_residual: f64, gas_residual: f64) -> [f64; COLUMNS.len()] {
+        [
+            self.time,
+            self.z_centre,
+            self.z_rim,
+            self.z_max,
+            self.vz,
+            self.volume,
+            self.pressure,
+            self.temperature,
+            self.gas.mass,
+            self.lid_force,
+            self.ledger.kinetic,
+            self.ledger.strain,
+            self.ledger.contact,
+            self.ledger.gas_work,
+            self.ledger.ambient_work,
+            self.ledger.gravity_work,
+            self.ledger.support_work,
+            self.ledger.viscous_work,
+            self.ledger.friction_work,
+            self.ledger.damping_work,
+            self.gas.heat,
+            self.gas.enthalpy_in,
+            self.gas.enthalpy_out,
+            ledger_residual,
+            gas_residual,
+            self.passages as f64,
+            self.intersections as f64,
+        ]
+    }
+}
+
+/// The series a run leaves, sampled at [`crate::scene::Outputs::sample_interval`]. Every column
+/// has the length of `time`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// Columns in the order of [`COLUMNS`].
+    columns: Vec<Vec<f64>>,
+    /// Whether [`RING_COLUMNS`] are among them.
+    rings: bool,
+}
+
+/// Columns of a capsule alone: film without rings has none of them.
+pub const RING_COLUMNS: [&str; 3] = ["z_centre", "z_rim", "vz"];
+
+/// A series of one more quantity than [`COLUMNS`], at the same times: a node's place, an element's
+/// resultant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    /// Name, as in the file.
+    pub name: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Meaning, one line.
+    pub meaning: &'static str,
+    /// One value a sample.
+    pub values: Vec<f64>,
+}
+
+/// Name, unit and meaning of a history column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HistoryColumn {
+    /// Name, as in the file.
+    pub name: &'static str,
+    /// SI unit; "1" for a pure number.
+    pub unit: &'static str,
+    /// Meaning, one line.
+    pub meaning: &'static str,
+}
+
+macro_rules! columns {
+    ($($name:literal [$unit:literal] $meaning:literal),+ $(,)?) => {
+        /// Every column of a history, in stored order.
+        pub const COLUMNS: &[HistoryColumn] = &[$(HistoryColumn { name: $name, unit: $unit, meaning: $meaning }),+];
+    };
+}
+
+columns! {
+    "time" ["s"] "time since the start of the run",
+    "z_centre" ["m"] "height of the top centre node",
+    "z_rim" ["m"] "mean height of the top ring",
+    "z_max" ["m"] "largest height of any node",
+    "vz" ["m/s"] "mean velocity of the top ring along z",
+    "volume" ["m3"] "enclosed volume",
+    "pressure" ["Pa"] "gas pressure",
+    "temperature" ["K"] "gas temperature (film temperature while there is no gas)",
+    "gas_mass" ["kg"] "gas inside",
+    "lid_force" ["N"] "force on the packing lid",
+    "kinetic_energy" ["J"] "kinetic energy of the film",
+    "strain_energy" ["J"] "elastic energy of the film",
+    "contact_energy" ["J"] "elastic energy of contact",
+    "gas_work" ["J"] "work of the gas on the film since time 0",
+    "ambient_work" ["J"] "work of the ambient pressure on the film since time 0",
+    "gravity_work" ["J"] "work of gravity on the film since time 0",
+    "support_work" ["J"] "work of moving supports and the lid on the film since time 0",
+    "viscous_work" ["J"] "energy dissipated by film viscosity since time 0",
+    "friction_work" ["J"] "energy dissipated by friction since time 0",
+    "damping_work" ["J"] "energy dissipated by mass damping since time 0",
+    "heat" ["J"] "heat given by the film to the gas since time 0",
+    "enthalpy_in" ["J"] "enthalpy let in since time 0",
+    "enthalpy_out" ["J"] "enthalpy leaked since time 0",
+    "ledger_residual" ["1"] "energy ledger residual over the energy moved so far",
+    "gas_residual" ["1"] "gas energy and mass balance residual, relative",
+    "passages" ["1"] "film through film counted so far",
+    "intersections" ["1"] "intersections of the mesh at this sample",
+}
+
+impl Default for History {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl History {
+    /// An empty history.
+    pub fn new() -> Self {
+        Self { columns: vec![Vec::new(); COLUMNS.len()], rings: true }
+    }
+
+    /// The same without [`RING_COLUMNS`].
+    #[must_use]
+    pub fn without_rings(mut self) -> Self {
+        self.rings = false;
+        for (column, values) in COLUMNS.iter().zip(&mut self.columns) {
+            if RING_COLUMNS.contains(&column.name) {
+                values.clear();
+            }
+        }
+        self
+    }
+
+    /// The history of a series of samples, with both residuals judged over the whole of it.
+    pub fn of(samples: &[Sample]) -> Self {
+        let ledgers: Vec<Ledger> = samples.iter().map(|sample| sample.ledger).collect();
+        let books: Vec<GasBalance> = samples.iter().map(|sample| sample.gas).collect();
+        let residuals = crate::output::ledger::residuals(&ledgers);
+        let gas_residuals = crate::output::ledger::gas_residuals(&books);
+        let mut history = Self::new();
+        for column in &mut history.columns {
+            column.reserve_exact(samples.len());
+        }
+        for ((sample, residual), gas_residual) in samples.iter().zip(residuals).zip(gas_residuals) {
+            history.push(&sample.row(residual, gas_residual));
+        }
+        history
+    }
+
+    /// Appends one sample: values in the order of [`COLUMNS`].
+    pub fn push(&mut self, sample: &[f64; COLUMNS.len()]) {
+        for (column, value) in self.columns.iter_mut().zip(sample) {
+            column.push(*value);
+        }
+    }
+
+    /// The column of that name; empty where it is left out.
+    ///
+    /// # Panics
+    /// When no column has that name: names are fixed at compile time, so that is a mistake in code.
+    pub fn column(&self, name: &str) -> &[f64] {
+        let index = COLUMNS.iter().position(|column| column.name == name);
+        &self.columns[index.unwrap_or_else(|| panic!("no history column {name:?}"))]
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Whether there is no sample yet.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Columns with their names, in stored order.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static HistoryColumn, &[f64])> {
+        let all = COLUMNS.iter().zip(self.columns.iter().map(Vec::as_slice));
+        all.filter(|(column, _)| self.rings || !RING_COLUMNS.contains(&column.name))
+    }
+}

@@ -1,0 +1,9 @@
+//! What a run leaves: history, frames, measures, energy ledger, audit, checkpoint.
+
+pub mod audit;
+pub mod checkpoint;
+pub mod frames;
+pub mod history;
+pub mod ledger;
+pub mod measures;
+pub mod outcome;

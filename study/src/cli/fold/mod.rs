@@ -1,0 +1,290 @@
+//! `billow fold`: one fold design, its numbers and its crease pattern.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldError, FoldPattern};
+use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::geometry::mesh_io::{fold as fold_text, obj};
+use clap::ValueEnum;
+use serde_json::Value as Json;
+
+use super::print::print_rows;
+use super::{Format, Global, output_error};
+use crate::input::keys;
+use crate::input::study_file::Json as Typed;
+use crate::input::value::Value;
+use crate::platform::error::{Error, InputError, Result};
+use crate::platform::files::{Disk, Files, disk_error, write_atomic};
+use crate::render::crease_pattern;
+
+mod answer;
+
+/// Arguments of `billow fold`. A number is SI; a value may carry its unit ("500 mm", "30 deg").
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Which quantities are given: `cone` (top radius, height), `angles` (alpha1/phi and the half
+    /// angle, or a nominal top radius and height), `height` (height, alpha1/phi).
+    #[arg(long, value_enum, default_value = "cone")]
+    fit: FitArg,
+    /// N, panels round a ring, at least 4.
+    #[arg(long, visible_alias = "N", value_name = "N")]
+    panels: u32,
+    /// M, storeys.
+    #[arg(long, visible_alias = "M", value_name = "M")]
+    storeys: u32,
+    /// Radius of the bottom ring.
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    bottom_radius: String,
+    /// Radius of the top ring.
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    top_radius: Option<String>,
+    /// Height of the erected cone.
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    height: Option<String>,
+    /// Half top angle.
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    half_angle: Option<String>,
+    /// alpha1/phi.
+    #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
+    alpha1_over_phi: Option<String>,
+    /// Turn of successive storeys.
+    #[arg(long, value_enum, default_value = "same")]
+    chirality: ChiralityArg,
+    /// Height of the stowed stack [default: 40 mm, or the highest this design can be packed to].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    stowed_height: Option<String>,
+    /// n, mesh subdivisions of every facet edge in the .obj shapes.
+    #[arg(long, value_name = "n", default_value_t = 8)]
+    subdivisions: u32,
+    /// Shape of the caps; circular ones for the erected shape only.
+    #[arg(long, value_enum, default_value = "polygon")]
+    caps: CapsArg,
+    /// Folder to write `crease_pattern.fold`, `crease_pattern.svg`, `flat.obj`, `stowed.obj`,
+    /// `developed.obj` and `erected.obj` to.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Draw glue flaps of this width in the .svg.
+    #[arg(long, value_name = "WIDTH", requires = "out", allow_hyphen_values = true)]
+    glue_flaps: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FitArg {
+    Cone,
+    Angles,
+    Height,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ChiralityArg {
+    Same,
+    Alternate,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum CapsArg {
+    Polygon,
+    Circular,
+}
+
+/// Runs `billow fold`.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let design = design(args)?;
+    if args.out.is_some() {
+        check_size(&design)?;
+    }
+    let solved = match solve(&design, args.stowed_height.is_none()) {
+        Ok(pattern) => Ok(pattern),
+        Err(FoldError::Infeasible { reason, nearest }) => Err((reason, nearest)),
+        Err(FoldError::Invalid { key, problem }) => {
+            return Err(bad(&flag(key), "", &problem, ""));
+        }
+    };
+    let flap = match (&args.glue_flaps, &solved) {
+        (Some(text), Ok(pattern)) => Some(flap_width(text, pattern)?),
+        _ => None,
+    };
+    match (global.format(), &solved) {
+        (Format::Json, Ok(pattern)) => print_json(&answer::feasible_json(pattern), out)?,
+        (Format::Json, Err((reason, nearest))) => {
+            print_json(&answer::infeasible_json(&design, reason, nearest), out)?;
+        }
+        (format, Ok(pattern)) => {
+            print_rows(&["quantity", "value", "unit"], &answer::rows(pattern), format, out)?;
+        }
+        (format, Err((reason, nearest))) => {
+            print_rows(
+                &["quantity", "value", "unit"],
+                &answer::infeasible_rows(reason, nearest),
+                format,
+                out,
+            )?;
+        }
+    }
+    match (&args.out, solved) {
+        (Some(folder), Ok(pattern)) => write_files(&Disk, folder, &pattern, flap, global),
+        (Some(folder), Err(_)) => {
+            eprintln!("billow: infeasible, so nothing is written to {}", folder.display());
+            Ok(())
+        }
+        (None, _) => Ok(()),
+    }
+}
+
+fn design(args: &Args) -> Result<FoldDesign> {
+    let given =
+        |key: &str, text: &Option<String>| text.as_deref().map(|text| value(key, text)).transpose();
+    Ok(FoldDesign {
+        fit: match args.fit {
+            FitArg::Cone => Fit::Cone,
+            FitArg::Angles => Fit::Angles,
+            FitArg::Height => Fit::Height,
+        },
+        panels: args.panels,
+        storeys: args.storeys,
+        bottom_radius: value("bottom_radius", &args.bottom_radius)?,
+        top_radius: given("top_radius", &args.top_radius)?,
+        height: given("height", &args.height)?,
+        half_angle: given("half_angle", &args.half_angle)?,
+        alpha1_over_phi: given("alpha1_over_phi", &args.alpha1_over_phi)?,
+        chirality: match args.chirality {
+            ChiralityArg::Same => Chirality::Same,
+            ChiralityArg::Alternate => Chirality::Alternate,
+        },
+        stowed_height: given("stowed_height", &args.stowed_height)?.unwrap_or(STOWED_HEIGHT),
+        subdivisions: args.subdivisions,
+        caps: match args.caps {
+            CapsArg::Polygon => Caps::Polygon,
+            CapsArg::Circular => Caps::Circular,
+        },
+    })
+}
+
+/// Height of the stowed stack where none is asked for, m.
+const STOWED_HEIGHT: f64 = 0.04;
+
+/// Solves a design; `lower` allows a stack lower than the design's, where that one cannot be packed.
+fn solve(design: &FoldDesign, lower: bool) -> std::result::Result<FoldPattern, FoldError> {
+    let stowed_at =
+        |stowed_height| FoldPattern::new(&FoldDesign { stowed_height, ..design.clone() });
+    match FoldPattern::new(design) {
+        Err(FoldError::Infeasible { nearest, .. }) if lower => {
+            match nearest.iter().find(|near| near.key == "stowed_height") {
+                Some(near) => stowed_at(near.value),
+                // No height will do, so that of the stack shall keep no nearest value back.
+                None => stowed_at(1e-6 * design.bottom_radius),
+            }
+        }
+        solved => solved,
+    }
+}
+
+/// A key of the design, read from its flag as from a study file: a plain number is SI, a text
+/// carries its unit, both within the same range.
+fn value(key: &str, text: &str) -> Result<f64> {
+    let json = match text.trim().parse::<f64>() {
+        Ok(number) => Typed::Number(number),
+        Err(_) => Typed::Text(text.to_owned()),
+    };
+    let known = keys::find(&format!("design.{key}")).map(|at| &keys::KEYS[at]);
+    let refuse = |problem: &str, allowed: &str| Err(bad(&flag(key), text, problem, allowed));
+    match known.map(|known| known.read(&json)) {
+        Some(Ok(Value::Number(number))) if number.is_finite() => Ok(number),
+        Some(Err(refusal)) => refuse(&refusal.problem, &refusal.allowed),
+        _ => refuse("is not a finite number", ""),
+    }
+}
+
+/// Width of the glue flaps, m: up to 0.4 of the shortest edge they stand on, where their ends meet.
+fn flap_width(text: &str, pattern: &FoldPattern) -> Result<f64> {
+    let width = value("top_radius", text).map_err(|error| match error {
+        Error::Input(error) => Error::Input(InputError { key: "--glue-flaps".to_owned(), ..error }),
+        other => other,
+    })?;
+    let top = pattern.lengths(pattern.design.storeys - 1);
+    let most = 0.4 * top.de.min(top.ad);
+    if width > most {
+        let allowed = format!("up to {most:.4} m, 0.4 of the shortest edge");
+        return Err(bad("--glue-flaps", text, "is too wide", &allowed));
+    }
+    Ok(width)
+}
+
+fn bad(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
+    Error::Input(InputError {
+        file: "fold".to_owned(),
+        key: flag.to_owned(),
+        value: value.to_owned(),
+        problem: problem.to_owned(),
+        allowed: allowed.to_owned(),
+        hint: "see `billow fold --help`".to_owned(),
+    })
+}
+
+/// The flag of a design key.
+fn flag(key: &str) -> String {
+    match key {
+        "N" => "--panels".to_owned(),
+        "M" => "--storeys".to_owned(),
+        key => format!("--{}", key.replace('_', "-")),
+    }
+}
+
+fn print_json(answer: &Json, out: &mut dyn Write) -> Result<()> {
+    serde_json::to_writer_pretty(&mut *out, answer)
+        .map_err(std::io::Error::from)
+        .and_then(|()| writeln!(out))
+        .map_err(output_error)
+}
+
+/// Most elements of a shape written as .obj: more would fill the memory and no program opens it.
+const MOST_ELEMENTS: u64 = 4_000_000;
+
+fn check_size(design: &FoldDesign) -> Result<()> {
+    let (n, elements) = (design.subdivisions, design.elements());
+    if elements <= MOST_ELEMENTS {
+        return Ok(());
+    }
+    let problem = format!("makes shapes of {elements} elements");
+    let allowed = format!("fewer: 2 N (M + 1) n² up to {MOST_ELEMENTS}");
+    Err(bad("--subdivisions", &n.to_string(), &problem, &allowed))
+}
+
+fn write_files(
+    files: &dyn Files,
+    folder: &Path,
+    pattern: &FoldPattern,
+    flap: Option<f64>,
+    global: &Global,
+) -> Result<()> {
+    let design = &pattern.design;
+    let title = format!("billow: N {} panels, M {} storeys", design.panels, design.storeys);
+    let shape = |shape, name: &str| -> Result<String> {
+        let mesh = Mesh::new(pattern, design.subdivisions, shape)
+            .map_err(|error| bad("--caps", "circular", &error.to_string(), "polygon"))?;
+        Ok(obj::mesh(&mesh, &format!("{title}, {name}")))
+    };
+    let mut texts = vec![("erected.obj", shape(Shape::Erected, "erected")?)];
+    if design.caps == Caps::Circular {
+        eprintln!("billow: circular caps cannot be folded: only the erected shape is written");
+    } else {
+        texts.extend([
+            ("crease_pattern.fold", fold_text::crease_pattern(pattern, &title)),
+            ("crease_pattern.svg", crease_pattern::svg(pattern, flap)),
+            ("flat.obj", shape(Shape::Flat, "flat folded")?),
+            ("stowed.obj", shape(Shape::Stowed(design.stowed_height), "stowed")?),
+            ("developed.obj", obj::developed(pattern, &format!("{title}, developed"))),
+        ]);
+    }
+    files.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
+    for (name, text) in &texts {
+        let path = folder.join(name);
+        write_atomic(files, &path, text.as_bytes()).map_err(|error| disk_error(&path, &error))?;
+    }
+    if !global.quiet {
+        let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();
+        eprintln!("billow: wrote {} to {}", names.join(", "), folder.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,251 @@
+//! `billow frames`: the shapes of one job side by side.
+
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use billow_solver::output::frames::Frame;
+use clap::ValueEnum;
+
+use super::Global;
+use super::picture::{self, Picture, refused};
+use super::print::print_rows;
+use super::target::folder_of_job;
+use crate::input::value::{Value, short_number};
+use crate::job::JobId;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::{Disk, Files, disk_error};
+use crate::render::figure::unit::Unit;
+use crate::render::filmstrip::{Colour, Filmstrip};
+use crate::render::projection::View;
+use crate::store::history_file::{self, StoredFrames};
+use crate::store::results::Results;
+use crate::store::stored::Stored;
+
+mod choose;
+
+use choose::{by_motion, nearest};
+
+/// Arguments of `billow frames`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The job: the first digits of its id; or a history file (.h5).
+    pub job: String,
+    /// Study file, or folder of its results [default: the only one under results].
+    pub study: Option<PathBuf>,
+    /// How many frames, first to last, with as much motion from each to the next; of one, the last.
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub count: usize,
+    /// The frames nearest to these times instead, comma-separated: seconds, or with a unit, as in
+    /// "10 ms, 0.5".
+    #[arg(
+        long,
+        value_name = "TIMES",
+        value_delimiter = ',',
+        conflicts_with = "count",
+        allow_hyphen_values = true
+    )]
+    pub times: Vec<String>,
+    /// What the colours say [default: the storey; plain where there are none].
+    #[arg(long, value_enum)]
+    pub colour: Option<ColourArg>,
+    /// Where it is looked at from: azimuth and elevation, degrees.
+    #[arg(
+        long,
+        value_name = "AZIMUTH,ELEVATION",
+        default_value = "30,20",
+        allow_hyphen_values = true
+    )]
+    pub view: String,
+    /// Picture to write, .svg or .png [default: both, `charts/frames_JOB` in the folder of the
+    /// results, or beside the history file].
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// What the colours say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ColourArg {
+    /// The storey of a capsule.
+    Storey,
+    /// What the film does: taut, wrinkled, slack.
+    Regime,
+    /// Nothing.
+    Plain,
+}
+
+/// A run whose shapes are asked for.
+struct Source {
+    /// Its history file.
+    path: PathBuf,
+    /// What it is called above the picture.
+    title: String,
+    /// Pictures, without their extensions, where nobody names any.
+    out: PathBuf,
+}
+
+/// Runs `billow frames`: one row a picture written.
+///
+/// # Errors
+/// A job that is not there or has no frames; a flag that makes no sense; a file that cannot be read or
+/// written.
+pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+    let view = view(&args.view)?;
+    let source = source(args, global)?;
+    let pictures = pictures(args, &source)?;
+    let stored = history_file::read_frames(&source.path)?.ok_or_else(|| Error::Disk {
+        path: source.path.clone(),
+        problem: "no frames in this file: its model has no shape (piston), or it was to keep none \
+                  (outputs.frames 0)\n  next: run it with solver.model \"film\" and \
+                  outputs.frames above 0"
+            .to_owned(),
+    })?;
+    let colour = colour(args.colour, &stored)?;
+    let numbers = if args.times.is_empty() {
+        by_motion(args.count, &ways(&stored)?)?
+    } else {
+        nearest(&args.times, stored.times(), global.quiet)?
+    };
+    let frames: Vec<Frame> =
+        numbers.iter().map(|number| stored.frame(*number)).collect::<Result<_>>()?;
+    let svg = Filmstrip {
+        title: &source.title,
+        triangles: stored.triangles(),
+        storeys: stored.storeys(),
+        frames: &frames,
+        view,
+        colour,
+    }
+    .svg();
+    if args.out.is_none()
+        && let Some(folder) = source.out.parent().filter(|folder| !folder.as_os_str().is_empty())
+    {
+        Disk.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
+    }
+    let mut rows = Vec::with_capacity(pictures.len());
+    for path in pictures {
+        picture::write(&path, &svg)?;
+        let time = |frame: Option<&Frame>| frame.map_or(Value::Null, |f| Value::Number(f.time));
+        rows.push(vec![
+            Value::Text(path.display().to_string()),
+            Value::Integer(i64::try_from(frames.len()).unwrap_or(i64::MAX)),
+            time(frames.first()),
+            time(frames.last()),
+        ]);
+    }
+    print_rows(&["file", "frames", "from", "to"], &rows, global.format(), out)
+}
+
+/// How far the film moved on the way to each frame but the first: root mean square over its nodes, m.
+fn ways(stored: &StoredFrames) -> Result<Vec<f64>> {
+    let mut ways = Vec::with_capacity(stored.times().len());
+    let mut before = stored.frame(0)?;
+    for number in 1..stored.times().len() {
+        let frame = stored.frame(number)?;
+        let square = |(a, b): (&[f32; 3], &[f32; 3])| {
+            (0..3).map(|k| f64::from(a[k] - b[k]) * f64::from(a[k] - b[k])).sum::<f64>()
+        };
+        let sum: f64 = before.places.iter().zip(&frame.places).map(square).sum();
+        ways.push((sum / frame.places.len().max(1) as f64).sqrt());
+        before = frame;
+    }
+    Ok(ways)
+}
+
+fn source(args: &Args, global: &Global) -> Result<Source> {
+    let path = Path::new(&args.job);
+    if path.is_file() || path.extension().is_some_and(|extension| extension == "h5") {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let out = path.with_file_name(format!("{stem}_frames"));
+        return Ok(Source { path: path.to_owned(), title: stem.into_owned(), out });
+    }
+    let root = folder_of_job(&args.job, args.study.as_deref(), global)?;
+    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let id = stored.job(&args.job)?;
+    Ok(Source {
+        path: stored.history_path(&id)?,
+        title: title(&stored, &id),
+        out: stored.results.charts_path().join(format!("frames_{}", id.short())),
+    })
+}
+
+/// Study, job and its parameters with their units.
+fn title(stored: &Stored<'_>, id: &JobId) -> String {
+    let mut title = format!("{}, job {}", stored.study.name, id.short());
+    for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
+        let text = if let Value::Number(si) = value {
+            let unit = Unit::of(stored.study.unit(name), si.abs());
+            unit.behind(&short_number(unit.shown(*si)))
+        } else {
+            value.to_string()
+        };
+        let _ = write!(title, ", {name} {text}");
+    }
+    title
+}
+
+/// Files to write: the one asked for, or both.
+fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
+    let Some(path) = &args.out else {
+        let path = |format: Picture| {
+            let mut path = source.out.clone().into_os_string();
+            path.push(format!(".{}", format.ending()));
+            PathBuf::from(path)
+        };
+        return Ok(Picture::ALL.map(path).to_vec());
+    };
+    Picture::of(path)?;
+    Ok(vec![path.clone()])
+}
+
+/// What to colour by: storeys where there are some and nobody says otherwise.
+fn colour(asked: Option<ColourArg>, stored: &StoredFrames) -> Result<Colour> {
+    let capsule = stored.storeys().iter().any(|storey| *storey > 0);
+    match asked {
+        Some(ColourArg::Regime) => Ok(Colour::Regime),
+        Some(ColourArg::Plain) => Ok(Colour::Plain),
+        Some(ColourArg::Storey) if !capsule => Err(refused(
+            "--colour",
+            "storey",
+            "this film is no capsule: no storeys",
+            "regime, plain",
+        )),
+        Some(ColourArg::Storey) => Ok(Colour::Storey),
+        None => Ok(if capsule { Colour::Storey } else { Colour::Plain }),
+    }
+}
+
+fn view(text: &str) -> Result<View> {
+    let wrong = |problem: &str| {
+        let allowed = "azimuth,elevation in degrees, as 30,20; elevation -90 to 90";
+        refused("--view", text, problem, allowed)
+    };
+    let parts: Vec<&str> = text.split(',').collect();
+    let [azimuth, elevation] = parts.as_slice() else {
+        return Err(wrong("not two numbers"));
+    };
+    let degrees = |part: &str| part.trim().parse::<f64>().ok().filter(|angle| angle.is_finite());
+    let (Some(azimuth), Some(elevation)) = (degrees(azimuth), degrees(elevation)) else {
+        return Err(wrong("not two numbers"));
+    };
+    if elevation.abs() > 90.0 {
+        return Err(wrong("looks from beyond the zenith"));
+    }
+    Ok(View::new(azimuth.to_radians(), elevation.to_radians()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_is_two_angles() {
+        assert_eq!(
+            view(" -30, 20.5").unwrap(),
+            View::new(-30_f64.to_radians(), 20.5_f64.to_radians())
+        );
+        for wrong in ["30", "30,20,10", "30,91", "north,up", "inf,0"] {
+            assert!(view(wrong).unwrap_err().to_string().contains("--view"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! What the study crate takes from the machine: files, signals, the identity of the program, errors.
+
+pub mod error;
+pub mod files;
+pub mod provenance;
+pub mod stop;

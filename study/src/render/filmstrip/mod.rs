@@ -1,0 +1,234 @@
+//! Shapes of one run side by side, as SVG: the same view and the same scale in every panel, the time
+//! under it, one scale bar and one legend for all.
+//!
+//! Colours hold for the colour-blind. In grey, neighbouring storeys differ in brightness, and the three
+//! states of the film do so far more than the shading does.
+
+use billow_solver::mechanics::material::Regime;
+use billow_solver::output::frames::Frame;
+
+use self::layout::Layout;
+use super::font;
+use super::page::{self, Anchor, Letters, Page, Stroke};
+use super::projection::{Facet, View};
+use crate::input::value::short_number;
+
+mod layout;
+
+/// Width of the page, mm: across an A4 page with its margins.
+const WIDTH: f64 = 180.0;
+/// Height all rows together may have, mm.
+const HEIGHT: f64 = 110.0;
+/// Margin of the page and space between panels, mm.
+const MARGIN: f64 = 4.0;
+/// Size of letters, mm.
+const LETTER: f64 = 2.8;
+/// Height of a line of text, mm.
+const LINE: f64 = 1.7 * LETTER;
+/// The inside of film is so much darker than its outside.
+const INSIDE: f64 = 0.72;
+
+/// Colours of storeys, taken in turn: neighbours differ in hue and in brightness (Okabe and Ito's set).
+const STOREYS: [[u8; 3]; 7] = [
+    [0x00, 0x72, 0xb2],
+    [0xe6, 0x9f, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xf0, 0xe4, 0x42],
+    [0xd5, 0x5e, 0x00],
+    [0x56, 0xb4, 0xe9],
+    [0xcc, 0x79, 0xa7],
+];
+/// Colour of both caps.
+const CAPS: [u8; 3] = [0xd9, 0xd9, 0xd9];
+/// Colour of film as such.
+const PLAIN: [u8; 3] = [0xc2, 0xd2, 0xe0];
+/// States of the film, from bright to dark.
+const REGIMES: [(Regime, &str, [u8; 3]); 3] = [
+    (Regime::Taut, "taut", [0xfd, 0xe7, 0x8c]),
+    (Regime::Wrinkled, "wrinkled", [0x3d, 0x9f, 0xb5]),
+    (Regime::Slack, "slack", [0x3f, 0x1f, 0x63]),
+];
+
+/// What the colours say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Colour {
+    /// The storey of a capsule.
+    Storey,
+    /// What the film does: taut, wrinkled, slack.
+    Regime,
+    /// Nothing.
+    Plain,
+}
+
+/// What is drawn.
+#[derive(Debug)]
+pub struct Filmstrip<'a> {
+    /// Heading, cut where it is wider than the page.
+    pub title: &'a str,
+    /// Nodes of each element, counter-clockwise seen from outside.
+    pub triangles: &'a [[u32; 3]],
+    /// Storey of each element, as [`billow_solver::output::frames::Frames::storeys`].
+    pub storeys: &'a [u32],
+    /// Shapes, in the order they are shown; at least one, and no more than a page holds (64 fit).
+    pub frames: &'a [Frame],
+    /// Where it is looked at from.
+    pub view: View,
+    /// What the colours say.
+    pub colour: Colour,
+}
+
+impl Filmstrip<'_> {
+    /// Draws it.
+    pub fn svg(&self) -> String {
+        let layout = Layout::of(self);
+        let legend = self.legend();
+        let below = LINE * layout.lines_below(&legend) as f64;
+        let height = layout.bottom() + below + MARGIN;
+        let mut page = Page::new();
+        let title = page::cut(self.title, LETTER, WIDTH - 2.0 * MARGIN);
+        page.text([MARGIN, MARGIN + LETTER], &Letters::new(LETTER), &title);
+        let seconds = self.frames.iter().any(|frame| frame.time >= 1.0);
+        for (number, frame) in self.frames.iter().enumerate() {
+            self.panel(&mut page, &layout, number, frame);
+            let [x, y] = layout.corner(number);
+            let under = [x + 0.5 * layout.width, y + 1.3 * LETTER];
+            let letters = Letters::new(LETTER).at(Anchor::Middle);
+            page.text(under, &letters, &time_label(frame.time, seconds));
+        }
+        let mut at = [MARGIN, layout.bottom() + LETTER];
+        layout.scale_bar(&mut page, at);
+        at[0] += layout.bar_width();
+        for (name, colour) in &legend {
+            let width = 1.6 * LETTER + font::width(name, LETTER);
+            if at[0] + width > WIDTH - MARGIN {
+                at = [MARGIN, at[1] + LINE];
+            }
+            let (corner, size) = ([at[0], at[1] - 0.9 * LETTER], [1.2 * LETTER, LETTER]);
+            page.fill(corner, size, &hexadecimal(*colour));
+            page.frame(corner, size, &Stroke::solid("#000000", 0.12));
+            page.text([at[0] + 1.6 * LETTER, at[1]], &Letters::new(LETTER), name);
+            at[0] += width + LETTER;
+        }
+        page.finish(WIDTH, height, self.title)
+    }
+
+    /// One shape. The lines between its elements are thin where there are many.
+    fn panel(&self, page: &mut Page, layout: &Layout, number: usize, frame: &Frame) {
+        let facets = self.view.facets(self.triangles, frame);
+        let line = (6.0 / (facets.len() as f64).sqrt()).clamp(0.03, 0.12);
+        page.open(
+            &format!("frame{number}"),
+            &format!(
+                "stroke=\"#000000\" stroke-opacity=\"0.35\" stroke-width=\"{line:.3}\" \
+                 stroke-linejoin=\"round\""
+            ),
+        );
+        for facet in &facets {
+            // Hundredths of a millimetre, each corner from the one before: short, and no error adds
+            // up.
+            let corners =
+                facet.corners.map(|corner| layout.page(number, corner).map(|mm| 100.0 * mm));
+            let [a, b, c] = corners.map(|corner| corner.map(f64::round));
+            let d = format!(
+                "M{},{}l{},{} {},{}z",
+                short(a[0]),
+                short(a[1]),
+                short(b[0] - a[0]),
+                short(b[1] - a[1]),
+                short(c[0] - b[0]),
+                short(c[1] - b[1]),
+            );
+            page.path(&hexadecimal(self.fill(facet, frame)), &d);
+        }
+        page.close();
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a colour between 0 and 255"
+    )]
+    fn fill(&self, facet: &Facet, frame: &Frame) -> [u8; 3] {
+        let (colour, dark) = match self.colour {
+            Colour::Plain => (PLAIN, 0.4),
+            Colour::Storey => (self.storey_colour(self.storeys[facet.element]), 0.45),
+            // Brightness tells the state here; the shading only hints at the shape.
+            Colour::Regime => {
+                let regime = frame.regimes[facet.element];
+                let known = REGIMES.iter().find(|(known, ..)| *known == regime);
+                (known.map_or(PLAIN, |(.., colour)| *colour), 0.75)
+            }
+        };
+        let side = if facet.outside { 1.0 } else { INSIDE };
+        let bright = side * (dark + (1.0 - dark) * facet.light);
+        colour.map(|part| (f64::from(part) * bright).round() as u8)
+    }
+
+    /// Number of the top cap: one above the topmost storey.
+    fn top_cap(&self) -> u32 {
+        self.storeys.iter().copied().max().unwrap_or(0)
+    }
+
+    fn storey_colour(&self, storey: u32) -> [u8; 3] {
+        if storey == 0 || storey == self.top_cap() {
+            return CAPS;
+        }
+        STOREYS[(storey as usize - 1) % STOREYS.len()]
+    }
+
+    /// Names and their colours.
+    fn legend(&self) -> Vec<(String, [u8; 3])> {
+        match self.colour {
+            Colour::Plain => Vec::new(),
+            Colour::Regime => {
+                REGIMES.iter().map(|(_, name, colour)| ((*name).to_owned(), *colour)).collect()
+            }
+            Colour::Storey => {
+                let storeys = self.top_cap().saturating_sub(1);
+                // Where the colours begin anew, one swatch stands for all storeys that have it.
+                let turns = u32::try_from(STOREYS.len()).unwrap_or(u32::MAX);
+                let name = |first: u32| {
+                    let all: Vec<String> = (first..=storeys)
+                        .step_by(STOREYS.len())
+                        .map(|storey| storey.to_string())
+                        .collect();
+                    let all = match all.as_slice() {
+                        [one, two, three, .., last] => format!("{one}, {two}, {three} … {last}"),
+                        few => few.join(", "),
+                    };
+                    (format!("storey {all}"), self.storey_colour(first))
+                };
+                let mut legend: Vec<_> = (1..=storeys.min(turns)).map(name).collect();
+                legend.push(("caps".to_owned(), CAPS));
+                legend
+            }
+        }
+    }
+}
+
+fn time_label(time: f64, seconds: bool) -> String {
+    if seconds {
+        format!("{} s", short_number(time))
+    } else {
+        format!("{} ms", short_number(1e3 * time))
+    }
+}
+
+fn hexadecimal([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Hundredths of a millimetre as millimetres, in as few characters as it takes.
+fn short(hundredths: f64) -> String {
+    let text = format!("{:.2}", hundredths / 100.0);
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "-0" => "0".to_owned(),
+        text => {
+            text.replacen("0.", ".", usize::from(text.starts_with("0.") || text.starts_with("-0.")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+//! Jobs and deployments made up for tests: sound scenes, invented series.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
+use billow_solver::mechanics::material::Regime;
+use billow_solver::models::run::Progress;
+use billow_solver::output::audit::Audit;
+use billow_solver::output::frames::{Frame, Frames};
+use billow_solver::output::history::{COLUMNS, History};
+use billow_solver::output::measures::{Measures, Verdict};
+use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::scene::{
+    Contact, Film, GasSupply, HeatTransfer, ModelKind, Outputs, Scene, Solver, Species, Stepping,
+    Thresholds,
+};
+
+use crate::input::value::Value;
+use crate::job::executor::{Executor, Outcome, Watch};
+use crate::job::point::{Infeasible, Point};
+use crate::job::{Job, JobId};
+use crate::study::plan::Generation;
+
+/// A job whose seed is `number`.
+pub fn job(number: u32) -> Job {
+    let id =
+        JobId::from_digits(&crate::store::history_file::bytes_hash(&number.to_le_bytes())[..32]);
+    Job {
+        id: id.unwrap(),
+        parameters: vec![
+            ("N".to_owned(), Value::Integer(6)),
+            ("mass_flow_rate".to_owned(), Value::Number(0.001 * f64::from(number))),
+        ],
+        scene: scene(number),
+    }
+}
+
+fn scene(number: u32) -> Scene {
+    Scene {
+        design: FoldDesign {
+            fit: Fit::Height,
+            panels: 6,
+            storeys: 3,
+            bottom_radius: 0.25,
+            top_radius: None,
+            height: Some(0.7),
+            half_angle: None,
+            alpha1_over_phi: Some(1.0),
+            chirality: Chirality::Same,
+            stowed_height: 0.04,
+            subdivisions: 4,
+            caps: Caps::Polygon,
+        },
+        film: Film {
+            youngs_modulus: 3.5e9,
+            poisson_ratio: 0.3,
+            density: 1390.0,
+            thickness: 25e-6,
+            compression: 0.01,
+            viscosity: 0.0,
+            temperature: 293.15,
+        },
+        gas: GasSupply {
+            species: Species { gas_constant: 296.8, cp: 1039.0 },
+            initial_mass: 0.0,
+            windows: Vec::new(),
+            ambient_pressure: 0.0,
+            heat_transfer: HeatTransfer::Coefficient(0.0),
+            leak_area: 0.0,
+            discharge_coefficient: 0.6,
+        },
+        supports: Vec::new(),
+        contact: Contact { distance: None, friction: 0.0, adhesion: 0.0 },
+        gravity: 0.0,
+        release_time: 0.0,
+        solver: Solver {
+            model: ModelKind::Piston,
+            end_time: 1.0,
+            stepping: Stepping::Adaptive(1e-9),
+            step_limit: 1_000_000,
+        },
+        outputs: Outputs { sample_interval: 0.001, frames: 0, thresholds: Thresholds::default() },
+        seed: u64::from(number),
+    }
+}
+
+/// A deployment of that many samples; its series depend on `number` alone.
+pub fn deployment(number: u32, samples: usize) -> Deployment {
+    let mut history = History::new();
+    for sample in 0..samples {
+        let mut values = [0.0; COLUMNS.len()];
+        for (column, value) in values.iter_mut().enumerate() {
+            *value =
+                2.0 + libm::sin(f64::from(number) + 0.1 * column as f64 + 0.01 * sample as f64);
+        }
+        values[0] = 0.001 * sample as f64;
+        history.push(&values);
+    }
+    let last = |name: &str| history.column(name).last().copied();
+    let measures = Measures {
+        verdict: Some(Verdict::Deployed),
+        final_z_rim: last("z_rim"),
+        final_volume: last("volume"),
+        final_pressure: last("pressure"),
+        final_temperature: last("temperature"),
+        t_50_z_rim: Some(0.1 + 0.2),
+        ..Measures::default()
+    };
+    Deployment {
+        history,
+        tracks: Vec::new(),
+        frames: None,
+        measures,
+        audit: Audit { ledger_residual: 1e-12, ..Audit::default() },
+        stop: Stop::Done,
+        steps: 100,
+        elements: 0,
+    }
+}
+
+/// Frames of a two-sided film of four nodes and two elements; their places depend on `number`.
+pub fn frames(number: u32, count: u32) -> Frames {
+    #[expect(clippy::cast_possible_truncation, reason = "made up")]
+    let place = |frame: u32, node: u32| {
+        let at = f64::from(7 * number + 3 * frame + node);
+        [libm::sin(at), libm::sin(2.0 * at), -0.0].map(|place| place as f32)
+    };
+    let all = [Regime::Slack, Regime::Wrinkled, Regime::Taut];
+    let frame = |frame: u32| Frame {
+        time: 0.1 * f64::from(frame),
+        places: (0..4).map(|node| place(frame, node)).collect(),
+        regimes: (0..2).map(|element| all[((frame + element) % 3) as usize]).collect(),
+    };
+    Frames {
+        triangles: vec![[0, 1, 2], [1, 3, 2]],
+        storeys: vec![0, 1],
+        frames: (0..count).map(frame).collect(),
+    }
+}
+
+/// A plan of `jobs` jobs, whose third point is infeasible.
+pub fn generation(jobs: u32) -> Generation {
+    let points = (0..jobs)
+        .map(|number| Point {
+            job: job(number),
+            infeasible: (number == 2).then(|| Infeasible {
+                reason: "alpha1 would exceed pi/2 - pi/N".to_owned(),
+                nearest: Vec::new(),
+            }),
+            solved: None,
+            merged: Vec::new(),
+        })
+        .collect();
+    Generation { number: 0, points }
+}
+
+/// An executor that makes its deployments up and does as `script` says.
+pub struct Scripted<S> {
+    /// What becomes of the job with that seed; it may panic.
+    pub script: S,
+    /// Jobs asked for so far.
+    pub asked: AtomicUsize,
+    /// Size of a batch.
+    pub batch: usize,
+    /// Threads the last job was given.
+    pub threads: AtomicUsize,
+}
+
+impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
+    /// Of one job a batch.
+    pub fn new(script: S) -> Self {
+        Self { script, asked: AtomicUsize::new(0), batch: 1, threads: AtomicUsize::new(0) }
+    }
+}
+
+/// A job that ran, with seven samples.
+pub fn ran(number: u32) -> Outcome {
+    Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5, note: None }
+}
+
+impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
+    fn batch(&self) -> usize {
+        self.batch
+    }
+
+    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome> {
+        self.threads.store(threads, Ordering::SeqCst);
+        let run = |(position, job): (usize, &&Job)| {
+            self.asked.fetch_add(1, Ordering::SeqCst);
+            let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
+            if !watch(position, progress) {
+                return Outcome::Cancelled;
+            }
+            (self.script)(u32::try_from(job.scene.seed).unwrap())
+        };
+        jobs.iter().enumerate().map(run).collect()
+    }
+}

@@ -1,0 +1,7 @@
+//! Running jobs in parallel: the runner, its events, and the progress display.
+
+pub mod event;
+#[cfg(test)]
+pub(crate) mod fixture;
+pub mod progress;
+pub mod runner;

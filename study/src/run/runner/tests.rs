@@ -1,0 +1,387 @@
+//! Running on a fake executor: nothing lost, nothing run twice, same bits in any order.
+
+#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::*;
+use crate::input::value::Value;
+use crate::job::executor::Outcome;
+use crate::platform::files::failing::FailingFiles;
+use crate::platform::files::{Disk, Files};
+use crate::run::event::Silent;
+use crate::run::fixture::{self, Scripted, ran};
+
+/// A folder in memory where the machine has one: these tests are about order, not about disks.
+fn folder() -> tempfile::TempDir {
+    let memory = Path::new("/dev/shm");
+    if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap()
+}
+
+struct Heard(Vec<Event>);
+
+impl Reporter for Heard {
+    fn event(&mut self, event: &Event) {
+        self.0.push(event.clone());
+    }
+}
+
+impl Heard {
+    fn notes(&self) -> Vec<&str> {
+        let mut notes = Vec::new();
+        for event in &self.0 {
+            if let Event::Note(text) = event {
+                notes.push(text.as_str());
+            }
+        }
+        notes
+    }
+}
+
+fn generation_zero(jobs: u32) -> impl Fn(&[FinishedRow]) -> Option<Generation> {
+    move |finished| finished.is_empty().then(|| fixture::generation(jobs))
+}
+
+/// Runs a plan of `jobs` points, the third infeasible.
+fn run_on(
+    files: &dyn Files,
+    root: &Path,
+    jobs: u32,
+    threads: usize,
+    executor: &dyn Executor,
+    reporter: &mut dyn Reporter,
+) -> Result<Summary> {
+    let study = Run {
+        name: "test",
+        study: &serde_json::json!({ "jobs": jobs }).into(),
+        planner: &generation_zero(jobs),
+        unit: &|_| String::new(),
+        executor,
+        results: Results::new(files, root),
+        threads: NonZero::new(threads),
+        stop: Stop::new(),
+        again: None,
+    };
+    run(&study, reporter)
+}
+
+fn run_quiet(root: &Path, jobs: u32, threads: usize, executor: &dyn Executor) -> Summary {
+    run_on(&Disk, root, jobs, threads, executor, &mut Silent).unwrap()
+}
+
+fn table(root: &Path) -> Table {
+    Results::new(&Disk, root).read_table().unwrap()
+}
+
+/// Every file under a folder: bytes and time of last change.
+fn files_under(root: &Path) -> BTreeMap<PathBuf, (Vec<u8>, SystemTime)> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let changed = path.metadata().unwrap().modified().unwrap();
+                found.insert(
+                    path.strip_prefix(root).unwrap().to_owned(),
+                    (fs::read(&path).unwrap(), changed),
+                );
+            }
+        }
+    }
+    found
+}
+
+fn histories(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let all = files_under(&root.join("jobs"));
+    all.into_iter().map(|(path, (bytes, _))| (path, bytes)).collect()
+}
+
+fn asked<S>(executor: &Scripted<S>) -> usize {
+    executor.asked.load(Ordering::SeqCst)
+}
+
+#[test]
+fn any_number_of_threads_and_any_batch_leave_the_same_bytes() {
+    let folder = folder();
+    let mut left = Vec::new();
+    for (threads, batch) in [(1, 1), (2, 1), (3, 4), (1, 50)] {
+        let root = folder.path().join(format!("{threads}-{batch}"));
+        let mut executor = Scripted::new(ran);
+        executor.batch = batch;
+        let summary = run_quiet(&root, 20, threads, &executor);
+        assert_eq!(summary.ran, 19);
+        assert_eq!(
+            summary.counts.status,
+            [("done".to_owned(), 19), ("infeasible".to_owned(), 1)].into()
+        );
+        assert_eq!(summary.counts.verdict, [("deployed".to_owned(), 19)].into());
+        left.push((histories(&root), fs::read(root.join("summary.parquet")).unwrap()));
+    }
+    assert_eq!(left[0].0.len(), 19);
+    assert!(left.iter().all(|one| *one == left[0]));
+}
+
+#[test]
+fn jobs_fewer_than_threads_share_them() {
+    for (jobs, threads, each) in [(9, 2, 1), (3, 2, 1), (1, 2, 2), (3, 5, 2), (1, 5, 5)] {
+        // One of the points is no job, from the third on.
+        let folder = folder();
+        let executor = Scripted::new(ran);
+        run_quiet(folder.path(), jobs, threads, &executor);
+        assert_eq!(executor.threads.load(Ordering::SeqCst), each, "{jobs} points on {threads}");
+    }
+}
+
+#[test]
+fn a_second_run_computes_nothing_and_changes_no_file() {
+    let folder = folder();
+    let executor = Scripted::new(ran);
+    run_quiet(folder.path(), 6, 2, &executor);
+    let before = files_under(folder.path());
+    let again = Scripted::new(ran);
+    let mut heard = Heard(Vec::new());
+    let summary = run_on(&Disk, folder.path(), 6, 2, &again, &mut heard).unwrap();
+    assert_eq!((asked(&again), summary.ran), (0, 0));
+    assert_eq!(summary.counts.status["done"], 5);
+    assert_eq!(files_under(folder.path()), before);
+    assert!(heard.0.contains(&Event::GenerationStarted { number: 0, jobs: 5, finished: 5 }));
+}
+
+#[test]
+fn a_study_that_grows_runs_only_what_is_new_and_one_that_shrinks_runs_nothing() {
+    let folder = folder();
+    run_quiet(folder.path(), 4, 1, &Scripted::new(ran));
+    let executor = Scripted::new(ran);
+    run_quiet(folder.path(), 9, 1, &executor);
+    assert_eq!(asked(&executor), 5);
+    assert_eq!(table(folder.path()).rows(), 9);
+    let executor = Scripted::new(ran);
+    run_quiet(folder.path(), 4, 1, &executor);
+    assert_eq!(asked(&executor), 0);
+    assert_eq!(table(folder.path()).rows(), 4);
+}
+
+#[test]
+fn a_panic_and_a_refusal_are_rows_with_their_reason() {
+    let script = |number| match number {
+        1 => panic!("bad luck with {number}"),
+        3 => Outcome::Refused(billow_solver::scene::error::SceneError::Invalid {
+            key: "film.thickness".to_owned(),
+            problem: "too thick".to_owned(),
+        }),
+        number => ran(number),
+    };
+    for batch in [1, 3] {
+        let folder = folder();
+        let mut executor = Scripted::new(script);
+        executor.batch = batch;
+        let summary = run_quiet(folder.path(), 6, 2, &executor);
+        assert_eq!(summary.counts.failed(), 2, "batch {batch}");
+        let table = table(folder.path());
+        let cell = |name: &str, row: usize| table.column(name).unwrap().cells[row].to_string();
+        let status: Vec<String> = (0..6).map(|row| cell("status", row)).collect();
+        assert_eq!(status, ["done", "panicked", "infeasible", "invalid", "done", "done"]);
+        assert!(cell("reason", 1).starts_with("bad luck with 1 ("), "{}", cell("reason", 1));
+        assert_eq!(cell("reason", 3), "film.thickness: too thick");
+
+        let again = Scripted::new(script);
+        let summary = run_quiet(folder.path(), 6, 2, &again);
+        assert_eq!((asked(&again), summary.counts.failed()), (0, 2), "a failure is an answer too");
+    }
+}
+
+#[test]
+fn whatever_write_fails_nothing_stored_is_lost_and_the_next_run_completes() {
+    let folder = folder();
+    let whole = folder.path().join("whole");
+    run_quiet(&whole, 4, 1, &Scripted::new(ran));
+    for kind in [io::ErrorKind::StorageFull, io::ErrorKind::ReadOnlyFilesystem] {
+        for nth in 1.. {
+            let root = folder.path().join(format!("{kind:?}-{nth}"));
+            let failing = FailingFiles::new(nth, kind);
+            let ended = run_on(&failing, &root, 4, 1, &Scripted::new(ran), &mut Silent);
+            if ended.is_ok() {
+                assert!(nth > 20, "only {nth} changing operations");
+                break;
+            }
+            let Err(Error::Disk { path, problem }) = &ended else { panic!("{ended:?}") };
+            assert!(path.starts_with(&root) && problem.contains("next:"), "{ended:?}");
+
+            let results = Results::new(&Disk, &root);
+            let stored = results.journal().unwrap().records;
+            for record in stored.values() {
+                assert_eq!(results.damage(record).unwrap(), None, "a record without its file");
+            }
+            let executor = Scripted::new(ran);
+            run_quiet(&root, 4, 1, &executor);
+            assert_eq!(asked(&executor), 3 - stored.len(), "{kind:?} at operation {nth}");
+            assert_eq!(histories(&root), histories(&whole), "{kind:?} at operation {nth}");
+            assert_eq!(
+                fs::read(root.join("summary.parquet")).unwrap(),
+                fs::read(whole.join("summary.parquet")).unwrap()
+            );
+            let leftover = files_under(&root);
+            assert!(leftover.keys().all(|path| path.extension().is_none_or(|end| end != "tmp")));
+        }
+    }
+}
+
+#[test]
+fn a_missing_or_damaged_history_is_run_again_with_a_note() {
+    let folder = folder();
+    run_quiet(folder.path(), 5, 1, &Scripted::new(ran));
+    let before = histories(folder.path());
+    let results = Results::new(&Disk, folder.path());
+    let path = |number| results.job_path(&fixture::job(number).id);
+    fs::remove_file(path(0)).unwrap();
+    let bytes = fs::read(path(3)).unwrap();
+    fs::write(path(3), &bytes[..bytes.len() / 2]).unwrap();
+    let mut flipped = fs::read(path(4)).unwrap();
+    *flipped.last_mut().unwrap() ^= 1;
+    fs::write(path(4), flipped).unwrap();
+
+    let executor = Scripted::new(ran);
+    let mut heard = Heard(Vec::new());
+    run_on(&Disk, folder.path(), 5, 1, &executor, &mut heard).unwrap();
+    assert_eq!(asked(&executor), 3);
+    let notes = heard.notes();
+    assert_eq!(notes.len(), 3);
+    assert!(notes[0].contains("missing; its job is run again"), "{notes:?}");
+    assert!(notes[2].contains("not the file that was written"), "{notes:?}");
+    assert_eq!(histories(folder.path()), before);
+}
+
+#[test]
+fn a_torn_journal_line_costs_its_job_and_no_other() {
+    let folder = folder();
+    run_quiet(folder.path(), 5, 1, &Scripted::new(ran));
+    let before = table(folder.path());
+    let path = folder.path().join("journal").join("000001.jsonl");
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
+    let executor = Scripted::new(ran);
+    let mut heard = Heard(Vec::new());
+    run_on(&Disk, folder.path(), 5, 1, &executor, &mut heard).unwrap();
+    assert_eq!(asked(&executor), 1);
+    assert!(heard.notes()[0].contains("line 5 is torn"), "{:?}", heard.notes());
+    assert_eq!(table(folder.path()), before);
+}
+
+#[test]
+fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
+    let folder = folder();
+    let stop = Stop::new();
+    let script = |number| {
+        if number == 4 {
+            stop.request(2);
+        }
+        ran(number)
+    };
+    let executor = Scripted::new(script);
+    let study = Run {
+        name: "test",
+        study: &serde_json::json!({}).into(),
+        planner: &generation_zero(12),
+        unit: &|_| String::new(),
+        executor: &executor,
+        results: Results::new(&Disk, folder.path()),
+        threads: NonZero::new(1),
+        stop: stop.clone(),
+        again: None,
+    };
+    let summary = run(&study, &mut Silent).unwrap();
+    assert_eq!(summary.signal, Some(2));
+    assert_eq!(summary.counts.status["done"], 4, "0, 1, 3 and the one that was running");
+    assert_eq!(summary.counts.status["pending"], 7);
+    assert_eq!(table(folder.path()).rows(), 12);
+    let again = Scripted::new(ran);
+    run_quiet(folder.path(), 12, 1, &again);
+    assert_eq!(asked(&again), 7);
+}
+
+#[test]
+fn generations_are_replayed_on_resume() {
+    let folder = folder();
+    // Two generations: the second is planned from the rows of the first.
+    let planner = |finished: &[FinishedRow]| -> Option<Generation> {
+        let mut all = fixture::generation(6).points;
+        let second = all.split_off(3);
+        match finished.len() {
+            0 => Some(Generation { number: 0, points: all }),
+            3 => Some(Generation { number: 1, points: second }),
+            _ => None,
+        }
+    };
+    for expected in [5, 0] {
+        let executor = Scripted::new(ran);
+        let study = Run {
+            name: "test",
+            study: &serde_json::json!({}).into(),
+            planner: &planner,
+            unit: &|_| String::new(),
+            executor: &executor,
+            results: Results::new(&Disk, folder.path()),
+            threads: NonZero::new(2),
+            stop: Stop::new(),
+            again: None,
+        };
+        run(&study, &mut Silent).unwrap();
+        assert_eq!(asked(&executor), expected);
+        assert_eq!(table(folder.path()).rows(), 6);
+    }
+}
+
+#[test]
+fn another_study_a_newer_one_and_a_second_command_are_refused() {
+    let folder = folder();
+    run_quiet(folder.path(), 3, 1, &Scripted::new(ran));
+    let refused = || {
+        let executor = Scripted::new(ran);
+        let ended = run_on(&Disk, folder.path(), 3, 1, &executor, &mut Silent);
+        ended.unwrap_err().to_string()
+    };
+    let path = folder.path().join("study.json");
+    let sound = fs::read_to_string(&path).unwrap();
+    fs::write(&path, sound.replace("\"test\"", "\"other\"")).unwrap();
+    assert!(refused().contains("holds results of the study \"other\", not of \"test\""));
+    fs::write(&path, sound.replace("\"version\": 1", "\"version\": 2")).unwrap();
+    assert!(refused().contains("version 2, this program reads up to 1"));
+    fs::write(&path, "{}").unwrap();
+    assert!(refused().contains("not a study.json of billow"));
+    fs::write(&path, sound).unwrap();
+    let lock = Results::new(&Disk, folder.path()).lock().unwrap();
+    assert!(refused().contains("another billow command is running this study"));
+    drop(lock);
+    run_quiet(folder.path(), 3, 1, &Scripted::new(ran));
+}
+
+#[test]
+fn a_thousand_tiny_jobs_cost_less_than_a_millisecond_each_besides_writing() {
+    // User time of this thread in ticks, of which Linux has 100 a second (proc_pid_stat(5)).
+    let cpu = || {
+        let line = fs::read_to_string("/proc/thread-self/stat").unwrap();
+        let after = line.rsplit(')').next().unwrap();
+        after.split_whitespace().nth(11).unwrap().parse::<f64>().unwrap() / 100.0
+    };
+    let folder = folder();
+    let start = cpu();
+    let summary = run_quiet(folder.path(), 1000, 1, &Scripted::new(ran));
+    let all = (cpu() - start) / 999.0;
+    assert_eq!(summary.ran, 999);
+    let start = cpu();
+    for number in 0..999 {
+        let deployment = fixture::deployment(number, 7);
+        history_file::encode(&fixture::job(number), &deployment, "").unwrap();
+    }
+    let writing = (cpu() - start) / 999.0;
+    println!("storing thread: {:.2} ms a job, {:.2} ms of it HDF5", 1e3 * all, 1e3 * writing);
+    assert!(all - writing < 1e-3, "{all} s a job, {writing} s of it HDF5");
+    assert_eq!(table(folder.path()).column("steps").unwrap().cells[999], Value::Integer(100));
+}

@@ -1,0 +1,10 @@
+//! What is kept on disk: journal, history files, static references, summary table; and whether it is
+//! sound.
+
+pub mod doctor;
+pub mod history_file;
+pub mod journal;
+pub mod reference_file;
+pub mod results;
+pub mod stored;
+pub mod table;

@@ -1,0 +1,124 @@
+//! References ([`crate::job::references`]) on disk.
+//!
+//! ```text
+//! results/<study>/references/<id>.json     {"format", "version", "physics_version", "states": [[p, V, z_rim], …]}
+//! ```
+//!
+//! A stored state is a saving, never a truth: what is missing, damaged or of another physics version is
+//! looked for again and gives the same bits.
+
+use std::io;
+use std::path::PathBuf;
+
+use billow_solver::PHYSICS_VERSION;
+use billow_solver::output::measures::Reference;
+use serde::{Deserialize, Serialize};
+
+use crate::job::JobId;
+use crate::platform::error::Result;
+use crate::platform::files::{self, disk_error};
+use crate::store::results::Results;
+
+/// Name of the format.
+const FORMAT: &str = "billow-reference";
+/// Version of the format this program writes and reads.
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    format: String,
+    version: u32,
+    physics_version: u32,
+    /// Overpressure, Pa, volume, m³, mean height of the top ring, m; pressure rising.
+    states: Vec<[f64; 3]>,
+}
+
+fn read(bytes: &[u8]) -> Option<Reference> {
+    let stored: Stored = serde_json::from_slice(bytes).ok()?;
+    let ours = stored.format == FORMAT
+        && stored.version == VERSION
+        && stored.physics_version == PHYSICS_VERSION;
+    let rising = stored.states.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+    let sound = rising && stored.states.first().is_some_and(|first| first[0] > 0.0);
+    (ours && sound).then(|| Reference::new(stored.states))
+}
+
+impl Results<'_> {
+    /// References found by earlier runs; what cannot be read is not known.
+    pub fn references(&self) -> Vec<(JobId, Reference)> {
+        let paths = self.files().list(&self.references_path()).unwrap_or_default();
+        let known = |path: PathBuf| {
+            let id = JobId::from_digits(&path.file_stem()?.to_string_lossy())?;
+            Some((id, read(&self.files().read(&path).ok()?)?))
+        };
+        paths.into_iter().filter_map(known).collect()
+    }
+
+    /// Files that should be references and are none this program reads.
+    pub fn unread_references(&self) -> Vec<PathBuf> {
+        let paths = self.files().list(&self.references_path()).unwrap_or_default();
+        let sound = |path: &PathBuf| self.files().read(path).ok().and_then(|bytes| read(&bytes));
+        paths.into_iter().filter(|path| sound(path).is_none()).collect()
+    }
+
+    /// Stores a reference.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn write_reference(&self, id: &JobId, reference: &Reference) -> Result<()> {
+        let folder = self.references_path();
+        let path = folder.join(format!("{id}.json"));
+        let stored = Stored {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            physics_version: PHYSICS_VERSION,
+            states: reference.states().to_vec(),
+        };
+        let written = || -> io::Result<()> {
+            self.files().create_folder(&folder)?;
+            let mut bytes = serde_json::to_vec(&stored).map_err(io::Error::other)?;
+            bytes.push(b'\n');
+            files::write_atomic(self.files(), &path, &bytes)
+        };
+        written().map_err(|error| disk_error(&path, &error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::files::Disk;
+    use crate::platform::files::failing::FailingFiles;
+
+    #[test]
+    fn what_is_stored_is_read_and_what_is_damaged_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let results = Results::new(&Disk, folder.path());
+        let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
+        let reference = Reference::new(vec![[1.0, 0.1 + 0.2, 0.9], [10.0, 0.4, 1.0]]);
+        results.write_reference(&id, &reference).unwrap();
+        let path = results.references_path().join(format!("{id}.json"));
+        let bytes = results.files().read(&path).unwrap();
+        assert_eq!(read(&bytes), Some(reference.clone()));
+        assert_eq!(read(&bytes[..bytes.len() / 2]), None);
+        let other = String::from_utf8(bytes).unwrap().replace("\"version\":1", "\"version\":2");
+        assert_eq!(read(other.as_bytes()), None);
+        assert!(results.unread_references().is_empty());
+        let damaged = path.with_file_name(format!("{}.json", "cd".repeat(16)));
+        files::write_atomic(&Disk, &damaged, other.as_bytes()).unwrap();
+        assert_eq!(results.unread_references(), [damaged]);
+        // A disk that fails at any operation leaves the old file or the new one.
+        let sound = read(&results.files().read(&path).unwrap());
+        for nth in 1..=4 {
+            let failing = FailingFiles::new(nth, io::ErrorKind::StorageFull);
+            let other = Reference::new(vec![[1.0, 0.5, 0.9]]);
+            let told = Results::new(&failing, folder.path()).write_reference(&id, &other);
+            let found = read(&results.files().read(&path).unwrap());
+            assert_eq!(told.is_err(), nth < 4, "operation {nth}");
+            assert!(found == sound || found == Some(other), "operation {nth}");
+            results.write_reference(&id, &reference).unwrap();
+        }
+        assert_eq!(results.references(), [(id, reference)]);
+    }
+}
