@@ -1,4 +1,4 @@
-//! Schedules distance queries: a pair of tree nodes is pending until its two parts can have met.
+//! Schedules distance queries: a pair of tree nodes is pending until its two parts may have met.
 //!
 //! ```text
 //! due = b + d        while b is below due, the two parts are still apart
@@ -72,7 +72,7 @@ const QUEUE_BINS: usize = 32;
 /// again; without it their number would only grow.
 const RESTART_BINS: f64 = 128.0;
 
-/// All candidates of a film, pending until they can have met.
+/// All candidates of a film, pending until they may have met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CandidateScheduler {
     kind: QueryKind,

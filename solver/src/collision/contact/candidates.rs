@@ -7,10 +7,10 @@
 //! Symbols: d gap of the pair when it was measured, r distance at which contact or adhesion begins, m.
 //! Two points approach each other by at most twice the largest displacement of any node.
 //!
-//! A pair has one of three places: the candidate list (measured in every step), a queue of pending
-//! pairs, or the broad phase ([`crate::collision::broad_phase::scheduler`]). Pairs that matter are
-//! always in the list, whatever the history; pairs that are in it for other reasons exert no force. So
-//! no result depends on when a pair was measured.
+//! Each pair is in one of three structures: the candidate list, which is measured in every step, a
+//! queue of pending pairs, or the broad phase ([`crate::collision::broad_phase::scheduler`]). Pairs that
+//! matter are always in the list, whatever the history. Other pairs in the list exert no force. So no
+//! result depends on when a pair was measured.
 
 use super::model::{ContactModel, pair_kind};
 use super::pair::{CandidatePair, Pair, PairKind};
@@ -270,7 +270,7 @@ mod tests {
                 let mut missing = Vec::new();
                 model.pairs_within(&to, model.distance, |pair, gap| {
                     if gap < model.distance_of(pair.kind)
-                        && list.candidates.binary_search_by_key(&pair, |own| own.pair).is_err()
+                        && list.candidates.binary_search_by_key(&pair, |candidate| candidate.pair).is_err()
                     {
                         missing.push(pair);
                     }

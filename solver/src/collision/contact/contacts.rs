@@ -81,8 +81,10 @@ impl ContactModel {
         }
         // Which pairs beyond the contact distance are in the list depends on when they were measured,
         // so they must not enter a result.
-        let in_contact = candidates.iter().filter(|own| own.gap < self.distance_of(own.pair.kind));
-        *smallest_gap = in_contact.map(|own| own.gap).fold(f64::INFINITY, f64::min);
+        let in_contact = candidates
+            .iter()
+            .filter(|candidate| candidate.gap < self.distance_of(candidate.pair.kind));
+        *smallest_gap = in_contact.map(|candidate| candidate.gap).fold(f64::INFINITY, f64::min);
         list.release_distant(self, state.path_length);
         previous.clear();
         state.scratch = previous;

@@ -150,8 +150,8 @@ mod tests {
         let v = |x: f64, y: f64, z: f64| Vector3::new(x, y, z);
         let parallel = [v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.5, 1.0, 0.0), v(3.0, 1.0, 0.0)];
         assert!((segment_segment(&parallel).squared - 1.0).abs() < 1e-15);
-        let apart = [v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(3.0, 0.0, 0.0), v(4.0, 0.0, 0.0)];
-        assert!((segment_segment(&apart).squared - 4.0).abs() < 1e-15);
+        let separate = [v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(3.0, 0.0, 0.0), v(4.0, 0.0, 0.0)];
+        assert!((segment_segment(&separate).squared - 4.0).abs() < 1e-15);
         let points = [v(0.0, 0.0, 0.0), v(0.0, 0.0, 0.0), v(0.0, 2.0, 0.0), v(0.0, 2.0, 0.0)];
         assert!((segment_segment(&points).squared - 4.0).abs() < 1e-15);
         let line = [v(0.0, 1.0, 0.0), v(-1.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(2.0, 0.0, 0.0)];

@@ -36,7 +36,7 @@ pub fn intersections(mesh: &CollisionMesh, positions: &Field) -> Vec<(u32, u32)>
     found
 }
 
-/// Counts the intersections of moving film. A pair is tested again only after it can have met.
+/// Counts the intersections of moving film. A pair is tested again only after it may have met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntersectionCounter {
     scheduler: CandidateScheduler,

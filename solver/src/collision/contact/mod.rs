@@ -11,8 +11,8 @@
 //! that becoming a contact creates no energy. The force starts with zero slope at d = o, so a contact
 //! that begins within a step costs little accuracy. The stiffness grows to k at d = 0.
 //!
-//! - **Candidates.** A pair is in the [`candidates`] list only while the displacements since it was
-//!   measured can have brought it within the contact distance; otherwise it is pending, in a queue or
+//! - **Candidates.** A pair is in the [`candidates`] list only if it may come within the contact
+//!   distance soon; otherwise it is pending, in a queue or
 //!   in the broad phase ([`crate::collision::broad_phase`]).
 //! - **Contacts.** A node is in contact with a feature that is a nearest feature of its
 //!   neighbourhood: an edge or a node counts only if all elements that contain it agree, and it counts

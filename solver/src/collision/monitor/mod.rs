@@ -1,7 +1,7 @@
 //! Monitors a run for passages of film through film, step by step or from frame to frame.
 //!
 //! A block is a number of steps between two frames. On the straight motion from one frame to the next
-//! only pairs that can have met are tested ([`crate::collision::broad_phase::scheduler`]); a pair that
+//! only pairs that may have met are tested ([`crate::collision::broad_phase::scheduler`]); a pair that
 //! seems to pass is then tested in each step. Some blocks, or all where every step is asked for, are
 //! tested step by step from their positions alone, without the history of the scheduler. So an error
 //! in that history is found.
@@ -42,7 +42,7 @@ pub struct TunnellingMonitor {
     frames: Vec<Field>,
     /// Number of frames recorded in the block.
     recorded: usize,
-    /// Candidates, pending until they can have met.
+    /// Candidates, pending until they may have met.
     scheduler: CandidateScheduler,
     /// Intersections of the mesh.
     pub intersection_counter: IntersectionCounter,

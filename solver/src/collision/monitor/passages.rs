@@ -8,7 +8,7 @@
 //! All points move on straight lines from t = 0 to t = 1, so the left sides are cubic polynomials in
 //! t. Their roots are bracketed by the roots of their derivatives.
 //!
-//! [`passages`] tests one straight motion of the whole mesh, [`super::TunnellingMonitor`] a run. The
+//! [`passages`] tests one straight motion of the whole mesh; the tunnelling monitor tests a run. The
 //! tests use positions only, no bound or decision of the contact model. The candidates come from the
 //! mesh, the hierarchy and the k-DOP code that contact uses too, but from k-DOPs fitted here.
 
