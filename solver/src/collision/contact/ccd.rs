@@ -18,7 +18,8 @@ use super::distance::Closest;
 /// reached so far, which is still a lower bound.
 const MAX_ADVANCES: u32 = 2000;
 
-/// Smallest advance, as a share of the motion; a smaller one counts as touching. Chosen.
+/// Smallest advance, as a share of the motion; a smaller one counts as touching. Chosen: far
+/// above rounding, and too small to reach the end of the motion.
 const MIN_ADVANCE: f64 = 1e-9;
 
 /// Share of the motion, 0 to 1, during which the pair certainly stays farther apart than `min_gap`

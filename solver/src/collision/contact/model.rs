@@ -57,7 +57,7 @@ const MAX_STIFFNESS_RATIO: f64 = 0.8;
 const MIN_STEP_SHARE: f64 = 0.8;
 
 /// Largest number of fully compressed pairs that are assumed to act on one mode at the same time.
-/// Chosen.
+/// Chosen: a few, because a pair has its full stiffness only at zero gap.
 const MAX_ACTIVE_PAIRS: f64 = 3.0;
 
 /// Default contact distance over the smallest gap of a node and an element at the start. Chosen:
