@@ -29,7 +29,7 @@ fn contact_goes_on_bit_for_bit_from_any_step() {
     let text = |film: &Explicit| serde_json::to_string(&film.state).unwrap();
     let mut whole = stowed();
     whole.advance(0.02, &INFLOW).unwrap();
-    assert!(whole.state.meeting.path > 0.1 && whole.state.works.contact != 0.0);
+    assert!(whole.state.meeting.path_length > 0.1 && whole.state.works.contact != 0.0);
     for pause in [1, 100, 777, 1500] {
         let mut film = stowed();
         let mut steps = pause;

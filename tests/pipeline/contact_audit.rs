@@ -32,11 +32,11 @@ fn deploy(fault: Fault) -> (Stop, Audit, f64) {
 #[test]
 fn every_fault_of_contact_is_counted() {
     let faults: [(&str, Fault); 3] = [
-        ("edges do not meet", |law| law.edges = false),
-        ("bounds ten times too wide", |law| law.bounds = 10.0),
+        ("edges do not meet", |law| law.edge_contacts = false),
+        ("bounds ten times too wide", |law| law.bound_factor = 10.0),
         ("film is drawn together and nothing guards it", |law| {
-            law.stiffness = -law.stiffness;
-            law.bounds = f64::INFINITY;
+            law.stiffness_per_mass = -law.stiffness_per_mass;
+            law.bound_factor = f64::INFINITY;
         }),
     ];
     for (name, fault) in faults {
@@ -53,7 +53,7 @@ fn every_fault_of_contact_is_counted() {
 /// The guard lets nothing through film that is drawn together; the energy shows it.
 #[test]
 fn a_force_of_the_wrong_sign_is_noticed() {
-    let (stop, audit, share) = deploy(|law| law.stiffness = -law.stiffness);
+    let (stop, audit, share) = deploy(|law| law.stiffness_per_mass = -law.stiffness_per_mass);
     println!("{stop:?}, {audit:?}, not returned {share:e}");
     assert!(stop != Stop::Done || share > number("contact/not_returned_band"), "{share}");
 }

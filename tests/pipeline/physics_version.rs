@@ -89,7 +89,7 @@ fn capsule() -> String {
     let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
     let phase = Phase { packed: false, inflow };
     run.advance(0.02, &phase).expect("it runs");
-    assert!(run.film.state.meeting.path > 0.1 && run.film.state.works.contact != 0.0);
+    assert!(run.film.state.meeting.path_length > 0.1 && run.film.state.works.contact != 0.0);
     let in_motion = run.film.state.last_step;
     for target in 21..=300 {
         run.advance(1e-3 * f64::from(target), &phase).expect("it runs");

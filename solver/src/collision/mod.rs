@@ -1,4 +1,4 @@
-//! Film against film and plates: broad phase, distances, contact model, collision response,
+//! Collision detection and contact: broad phase, distances, contact model, collision response,
 //! intersections, and the monitor that counts passages of film through film.
 
 pub mod broad_phase;

@@ -55,7 +55,10 @@ fn sound(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: f64) -
     let meeting = &run.film.state.meeting;
     let word = format!(
         "{} elements, {} steps, {} searches, {} approaches taken out",
-        deployment.elements, deployment.steps, meeting.searches, meeting.impulses
+        deployment.elements,
+        deployment.steps,
+        meeting.broad_phase_rebuilds,
+        meeting.collision_impulses
     );
     vec![
         Row::at_most(&format!("{name}passages"), count(audit.passages), 0.0).with_note(&word),

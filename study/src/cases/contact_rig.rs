@@ -100,7 +100,7 @@ pub fn follow(film: &mut Explicit, end: f64, samples: u32, phase: &Phase) -> Res
 /// Intersections of the whole film now.
 pub fn crossings(film: &Explicit) -> usize {
     let law = film.setting.contact.as_ref();
-    law.map_or(0, |law| intersections(&law.topology, &film.state.places).len())
+    law.map_or(0, |law| intersections(&law.mesh, &film.state.places).len())
 }
 
 /// Energy that went into contact and neither is stored nor was taken by impulses, J.
@@ -108,7 +108,7 @@ pub fn not_returned(film: &Explicit) -> f64 {
     let meeting = &film.state.meeting;
     let pairs: f64 = meeting.contacts.iter().map(|contact| contact.energy).sum();
     let plates: f64 = meeting.plates.iter().map(|plate| plate.energy).sum();
-    (film.ledger().contact - pairs - plates + meeting.taken).abs()
+    (film.ledger().contact - pairs - plates + meeting.collision_dissipation).abs()
 }
 
 impl Seen {
@@ -126,7 +126,7 @@ impl Seen {
                  {:.1e}",
                 film.state.steps,
                 self.pairs,
-                film.state.meeting.impulses,
+                film.state.meeting.collision_impulses,
                 self.residual()
             )),
             Row::at_most(&format!("{run}intersections"), self.intersections as f64, 0.0),

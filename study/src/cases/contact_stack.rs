@@ -69,13 +69,13 @@ fn between(film: &Explicit, law: &ContactModel, k: u32) -> [f64; 2] {
     let layer = |node: u32| node as usize / each;
     let mut meeting = ContactState::default();
     let own = film.state.meeting.contacts.iter().filter(|contact| {
-        let layers = contact.pair.nodes(&law.topology).map(layer);
+        let layers = contact.pair.nodes(&law.mesh.topology).map(layer);
         let (low, high) = (layers.iter().min(), layers.iter().max());
         low == Some(&(k as usize)) && high == Some(&(k as usize + 1))
     });
     meeting.contacts = own.copied().collect();
     let areas: Vec<f64> = film.model.mass.iter().map(|mass| mass / law.area_density).collect();
-    let pressed = law.interlayer(&film.state.places, &areas, &meeting);
+    let pressed = law.interlayer_pressure(&film.state.places, &areas, &meeting);
     let whole: f64 = areas.iter().sum();
     // Each of the two sheets bears the force once.
     let force = 0.5 * pressed.mean * pressed.area_fraction * whole;

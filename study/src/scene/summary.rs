@@ -20,8 +20,8 @@
 //! | `film_stress` | largest principal second Piola-Kirchhoff stress: over the run, or at rest, Pa |
 //! | `steps`, `end_time`, `elements`, `wall_seconds` | steps (at rest: Newton steps); time reached, s; elements; wall time, s |
 
+use billow_solver::collision::broad_phase::collision_mesh::CollisionMesh;
 use billow_solver::collision::contact::intersections::intersections;
-use billow_solver::collision::contact::topology::Topology;
 use billow_solver::geometry::field::Field;
 use billow_solver::integrators::explicit::PressureLoad;
 use billow_solver::mechanics::film_model::FilmModel;
@@ -188,10 +188,10 @@ fn contact(run: &FilmRun, deployment: &billow_solver::output::outcome::Deploymen
         "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(law.distance, f64::min),
         "interlayer_pressure": most("interlayer_pressure"),
         "contact_area_fraction": most("contact_area_fraction"),
-        "searches": meeting.searches,
+        "searches": meeting.broad_phase_rebuilds,
         "pairs": most("contact_pairs"),
-        "impulses": meeting.impulses,
-        "not_returned": run.film.ledger().contact - stored + meeting.taken,
+        "impulses": meeting.collision_impulses,
+        "not_returned": run.film.ledger().contact - stored + meeting.collision_dissipation,
         "plates": plates.map(|(plate, own)| (plate.name.clone(), own.force.into()))
             .collect::<Map<_, _>>(),
     })
@@ -214,7 +214,7 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         let own = resultants(&rest.model, &rest.places, element);
         largest.max(own.principal[0] / thickness(&rest.model, element))
     });
-    let topology = Topology::new(rest.model.nodes(), &rest.model.triangles);
+    let mesh = CollisionMesh::new(rest.model.nodes(), &rest.model.triangles);
     if scene.film.shell.is_closed() && rest.volume <= 0.0 {
         let place = format!("the film is turned inside out: V {:.6} m3", rest.volume);
         summary["stop"] = json!({"kind": "inverted_volume", "time": null, "place": place});
@@ -227,7 +227,7 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         "gas_mass": 0.0,
         "reactions": reactions,
         "passages": null,
-        "intersections": intersections(&topology, &rest.places).len(),
+        "intersections": intersections(&mesh, &rest.places).len(),
         "energies": {
             "kinetic": 0.0, "strain": rest.strain_energy, "potential": rest.potential_energy,
         },

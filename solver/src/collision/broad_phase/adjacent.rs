@@ -1,168 +1,180 @@
-//! Elements that share a node, waiting by what moves round that node.
+//! Pairs of elements that share a node: they are due when the film around that node has deformed
+//! enough.
 //!
 //! ```text
-//! due = way + d      way = Σ over looks of 2 max |u_i − u_v|        i over the neighbours of node v
+//! due = b + d      b = Σ over queries of 2 max |u_i − u_v|        i over the neighbours of node v
 //! ```
 //!
-//! Symbols: u displacement of a node, m; d least distance of the primitives of two elements at v that share
-//! no node, m. Every point of an element at v moves with a mean of its corners, so no farther from v than
-//! the farthest of them. Such elements are never far apart, so a look at zones would find them due
-//! again and again; but film one element wide moves together far more than a zone does.
+//! Symbols: u displacement of a node, m; d smallest distance of the candidates of two elements at v,
+//! m. The displacement of a point of an element, relative to v, is a mean of the relative
+//! displacements of the corners, so it is at most their largest. Two such points approach each other
+//! by at most twice that.
+//!
+//! Elements that share a node are never far apart, so the bounds of whole motion clusters would make
+//! them due in almost every query. The film around one node moves together far more than the film of
+//! a whole cluster.
 
 use super::hierarchy::Hierarchy;
-use super::query::{Pairs, QueryKind, primitives};
+use super::query::{Candidates, QueryKind, push_candidates};
 use crate::geometry::field::Field;
 
-/// Share by which rounding could shorten a way at most.
-const ROUNDING: f64 = 1.0 + 1e-9;
+/// Factor on a bound that covers rounding. Chosen: far above the relative error of a norm (about
+/// 1e-15), far below any effect on cost.
+const ROUNDING_FACTOR: f64 = 1.0 + 1e-9;
 
-/// Pairs of elements that share a node, each with the lowest node they share: constant.
+/// Pairs of elements that share a node, each listed at the lowest node that they share; constant.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AdjacentPairs {
-    /// The first pair of each node, and the end of the last's.
+    /// First pair of each node, then the number of pairs.
     starts: Vec<usize>,
-    /// Where the primitives of each pair end.
+    /// End of the candidates of each pair.
     ends: Vec<[usize; 2]>,
-    /// Pairs of primitives that share no node.
-    primitives: Pairs,
+    /// Candidates of all pairs.
+    candidates: Candidates,
 }
 
 impl AdjacentPairs {
-    /// What is sought of elements that share one of so many nodes.
-    pub fn new(sought: QueryKind, nodes: usize, patches: &Hierarchy) -> Self {
-        let mut at_node = vec![Vec::new(); nodes];
-        for leaf in patches.leaves()..patches.tree() {
-            for node in patches.corners(leaf) {
-                at_node[*node as usize].push(leaf);
+    /// The pairs of elements that share one of `nodes` nodes and have candidates of this query.
+    pub fn new(kind: QueryKind, nodes: usize, hierarchy: &Hierarchy) -> Self {
+        let mut leaves_at_node = vec![Vec::new(); nodes];
+        for leaf in hierarchy.leaves() {
+            for node in hierarchy.corners(leaf) {
+                leaves_at_node[*node as usize].push(leaf);
             }
         }
-        let mut stars = Self { starts: vec![0], ..Self::default() };
-        for (node, leaves) in at_node.iter().enumerate() {
-            for (at, one) in leaves.iter().enumerate() {
-                for two in &leaves[at + 1..] {
-                    let theirs = patches.corners(*two);
-                    let shared = patches.corners(*one).iter().filter(|own| theirs.contains(own));
+        let mut pairs = Self { starts: vec![0], ..Self::default() };
+        for (node, leaves) in leaves_at_node.iter().enumerate() {
+            for (position, a) in leaves.iter().enumerate() {
+                for b in &leaves[position + 1..] {
+                    let corners_of_b = hierarchy.corners(*b);
+                    let corners_of_a = hierarchy.corners(*a).iter();
+                    let shared = corners_of_a.filter(|corner| corners_of_b.contains(corner));
                     if shared.min().is_some_and(|lowest| *lowest as usize == node) {
-                        stars.add(sought, patches, *one, *two);
+                        pairs.push(kind, hierarchy, *a, *b);
                     }
                 }
             }
-            stars.starts.push(stars.ends.len());
+            pairs.starts.push(pairs.ends.len());
         }
-        stars
+        pairs
     }
 
-    fn add(&mut self, sought: QueryKind, patches: &Hierarchy, one: usize, two: usize) {
-        let before = [self.primitives[0].len(), self.primitives[1].len()];
-        primitives(sought, patches, one, two, &mut self.primitives);
-        let ends = [self.primitives[0].len(), self.primitives[1].len()];
-        // What has no primitives waits for nothing.
+    fn push(&mut self, kind: QueryKind, hierarchy: &Hierarchy, a: usize, b: usize) {
+        let before = [self.candidates[0].len(), self.candidates[1].len()];
+        push_candidates(kind, hierarchy, a, b, &mut self.candidates);
+        let ends = [self.candidates[0].len(), self.candidates[1].len()];
+        // A pair without candidates is never due.
         if ends != before {
             self.ends.push(ends);
         }
     }
 
-    /// The primitives of a pair.
+    /// The candidates of a pair.
     #[inline]
-    fn of(&self, pair: usize) -> [&[[u32; 2]]; 2] {
+    fn candidates_of(&self, pair: usize) -> [&[[u32; 2]]; 2] {
         let [first, second] = if pair == 0 { [0; 2] } else { self.ends[pair - 1] };
-        let to = self.ends[pair];
-        [&self.primitives[0][first..to[0]], &self.primitives[1][second..to[1]]]
+        let end = self.ends[pair];
+        [&self.candidates[0][first..end[0]], &self.candidates[1][second..end[1]]]
     }
 }
 
-/// Pairs of elements that share a node, each waiting for its time.
+/// When each pair of [`AdjacentPairs`] is due.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PendingAdjacentPairs {
-    /// How far film round each node has come towards each other so far at most, m.
-    ways: Vec<f64>,
-    /// How far it comes now, m.
-    reach: Vec<f64>,
-    /// Way at which each pair is due, m.
+    /// b of each node: upper bound of the approach around it so far, m.
+    approach_bounds: Vec<f64>,
+    /// The same for the motion that [`Self::bound_motion`] was given last, m.
+    motion_bounds: Vec<f64>,
+    /// Approach bound at which each pair is due, m; infinite if the pair is not in the queue.
     due: Vec<f64>,
-    /// The first of them at each node, m.
-    first: Vec<f64>,
+    /// Smallest due bound at each node, m.
+    first_due: Vec<f64>,
 }
 
 impl PendingAdjacentPairs {
-    /// Stars that have looked at nothing yet.
-    pub fn new(stars: &AdjacentPairs) -> Self {
-        let (nodes, pairs) = (stars.starts.len() - 1, stars.ends.len());
-        let (ways, reach) = (vec![0.0; nodes], vec![0.0; nodes]);
-        Self { ways, reach, due: vec![0.0; pairs], first: vec![0.0; nodes] }
+    /// All pairs, due at once.
+    pub fn new(pairs: &AdjacentPairs) -> Self {
+        let (nodes, count) = (pairs.starts.len() - 1, pairs.ends.len());
+        Self {
+            approach_bounds: vec![0.0; nodes],
+            motion_bounds: vec![0.0; nodes],
+            due: vec![0.0; count],
+            first_due: vec![0.0; nodes],
+        }
     }
 
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
-        self.ways.len()
+        self.approach_bounds.len()
     }
 
-    /// Has every pair wait for nothing.
-    pub fn begin(&mut self) {
+    /// Makes every pair due at once.
+    pub fn restart(&mut self) {
         self.due.fill(0.0);
-        self.first.fill(0.0);
-        self.ways.fill(0.0);
+        self.first_due.fill(0.0);
+        self.approach_bounds.fill(0.0);
     }
 
-    /// How far film round each node comes towards each other at most between two places of all nodes,
-    /// m; `edges`: their ends.
-    pub fn travel(&mut self, edges: &[[u32; 2]], from: &Field, to: &Field) -> &[f64] {
-        self.reach.fill(0.0);
+    /// Upper bound (m) of the approach around each node between two positions of all nodes; `edges`:
+    /// the nodes of each edge. The motion counts once [`Self::commit_motion`] is called.
+    pub fn bound_motion(&mut self, edges: &[[u32; 2]], from: &Field, to: &Field) -> &[f64] {
+        self.motion_bounds.fill(0.0);
         for [a, b] in edges {
             let (a, b) = (*a as usize, *b as usize);
-            let apart = (to.get(b) - from.get(b)) - (to.get(a) - from.get(a));
-            let square = apart.norm_squared();
+            let relative = (to.get(b) - from.get(b)) - (to.get(a) - from.get(a));
+            let square = relative.norm_squared();
             for node in [a, b] {
-                let own = self.reach[node];
-                // What is no number stays: nothing waits for it.
-                self.reach[node] = if square <= own || own.is_nan() { own } else { square };
+                let largest = self.motion_bounds[node];
+                // Once NaN, always NaN: pairs at this node are then always due.
+                self.motion_bounds[node] =
+                    if square <= largest || largest.is_nan() { largest } else { square };
             }
         }
-        for reach in &mut self.reach {
-            *reach = 2.0 * ROUNDING * reach.sqrt();
+        for bound in &mut self.motion_bounds {
+            *bound = 2.0 * ROUNDING_FACTOR * bound.sqrt();
         }
-        &self.reach
+        &self.motion_bounds
     }
 
-    /// Goes where it was asked to travel.
-    pub fn arrive(&mut self) {
-        for (way, reach) in self.ways.iter_mut().zip(&self.reach) {
-            *way += reach;
+    /// Adds the motion of the last [`Self::bound_motion`] to the approach so far.
+    pub fn commit_motion(&mut self) {
+        for (total, motion) in self.approach_bounds.iter_mut().zip(&self.motion_bounds) {
+            *total += motion;
         }
     }
 
-    /// Tells `look` of every pair that is due where film round each node comes so far (m) towards each
-    /// other: its node, its number, its primitives of each kind.
-    pub fn take(
+    /// Removes every pair that is due when the film around each node approaches by `reach` (m) more,
+    /// and calls `visit` with its node, its number and its candidates of each kind.
+    pub fn pop_due(
         &mut self,
-        stars: &AdjacentPairs,
+        pairs: &AdjacentPairs,
         reach: &[f64],
-        mut look: impl FnMut(usize, usize, [&[[u32; 2]]; 2]),
+        mut visit: impl FnMut(usize, usize, [&[[u32; 2]]; 2]),
     ) {
-        let until = self.ways.iter().zip(reach).map(|(way, reach)| way + reach);
-        for (node, (first, until)) in self.first.iter_mut().zip(until).enumerate() {
-            if *first > until {
+        let limits = self.approach_bounds.iter().zip(reach).map(|(bound, reach)| bound + reach);
+        for (node, (first_due, limit)) in self.first_due.iter_mut().zip(limits).enumerate() {
+            if *first_due > limit {
                 continue;
             }
-            *first = f64::INFINITY;
-            for pair in stars.starts[node]..stars.starts[node + 1] {
+            *first_due = f64::INFINITY;
+            for pair in pairs.starts[node]..pairs.starts[node + 1] {
                 let due = self.due[pair];
-                if due > until {
-                    *first = first.min(due);
+                if due > limit {
+                    *first_due = first_due.min(due);
                 } else {
                     self.due[pair] = f64::INFINITY;
-                    look(node, pair, stars.of(pair));
+                    visit(node, pair, pairs.candidates_of(pair));
                 }
             }
         }
     }
 
-    /// Has a pair wait for a length (m) more.
+    /// Makes a pair due after the film around its node has approached by `length` (m) more.
     #[inline]
-    pub fn put(&mut self, node: usize, pair: usize, length: f64) {
-        let due = self.ways[node] + length;
+    pub fn push(&mut self, node: usize, pair: usize, length: f64) {
+        let due = self.approach_bounds[node] + length;
         self.due[pair] = due;
-        self.first[node] = self.first[node].min(due);
+        self.first_due[node] = self.first_due[node].min(due);
     }
 }
 
@@ -174,66 +186,68 @@ mod tests {
     use nalgebra::Vector3;
     use proptest::prelude::*;
 
-    use crate::collision::contact::topology::Topology;
+    use crate::geometry::topology::Topology;
 
-    /// What is sought of any two leaves that share a node, by looking at all of them.
-    fn next_to_each_other(topology: &Topology) -> [BTreeSet<[u32; 2]>; 2] {
-        let (patches, mut found) = (&topology.patches, Pairs::default());
-        for one in patches.leaves()..patches.tree() {
-            for two in one + 1..patches.tree() {
-                let theirs = patches.corners(two);
-                if patches.corners(one).iter().any(|node| theirs.contains(node)) {
-                    primitives(QueryKind::Collision, patches, one, two, &mut found);
+    /// The candidates of all pairs of leaves that share a node, by testing every pair.
+    fn adjacent_candidates(hierarchy: &Hierarchy) -> [BTreeSet<[u32; 2]>; 2] {
+        let mut candidates = Candidates::default();
+        for a in hierarchy.leaves() {
+            for b in a + 1..hierarchy.end() {
+                if hierarchy.share_mesh_node(a, b) {
+                    push_candidates(QueryKind::Collision, hierarchy, a, b, &mut candidates);
                 }
             }
         }
-        found.map(|pairs| pairs.into_iter().collect())
+        candidates.map(|pairs| pairs.into_iter().collect())
     }
 
     proptest! {
-        /// No points of two elements that share a node come nearer by more than is told of it, and each
-        /// pair of such elements is told of once.
+        /// No points of two elements that share a node approach each other by more than the bound,
+        /// and each pair of such elements is visited once.
         #[test]
-        fn ways_are_bounds(
+        fn approach_is_never_underestimated_and_each_pair_is_visited_once(
             from in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 7),
             to in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 7),
         ) {
-            // A fan of six, and one that is apart.
+            // A fan of five elements, and one more at an edge of the fan.
             let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5], [0, 5, 1], [1, 2, 6]];
             let topology = Topology::new(7, &triangles);
-            let stars = topology.stars(QueryKind::Collision);
-            let mut waiting = PendingAdjacentPairs::new(stars);
+            let hierarchy =
+                Hierarchy::new(7, &triangles, &topology.element_edges, topology.edges.len());
+            let pairs = AdjacentPairs::new(QueryKind::Collision, 7, &hierarchy);
+            let mut pending = PendingAdjacentPairs::new(&pairs);
             let (from, to): (Vec<_>, Vec<_>) =
                 from.into_iter().zip(to).map(|(x, y)| (Vector3::from(x), Vector3::from(y))).unzip();
-            let reach =
-                waiting.travel(&topology.edges, &Field::of(&from), &Field::of(&to)).to_vec();
-            for (node, reach) in reach.iter().enumerate() {
-                let own = |corners: &&[u32; 3]| corners.iter().any(|own| *own as usize == node);
+            let bounds =
+                pending.bound_motion(&topology.edges, &Field::of(&from), &Field::of(&to)).to_vec();
+            for (node, bound) in bounds.iter().enumerate() {
+                let at_node =
+                    |corners: &&[u32; 3]| corners.iter().any(|corner| *corner as usize == node);
                 let nodes: Vec<usize> =
-                    triangles.iter().filter(own).flatten().map(|own| *own as usize).collect();
+                    triangles.iter().filter(at_node).flatten().map(|node| *node as usize).collect();
                 for p in &nodes {
                     for q in &nodes {
-                        let closer = ((to[*p] - from[*p]) - (to[*q] - from[*q])).norm();
-                        prop_assert!(closer <= *reach, "{closer} {reach}");
+                        let approach = ((to[*p] - from[*p]) - (to[*q] - from[*q])).norm();
+                        prop_assert!(approach <= *bound, "{approach} {bound}");
                     }
                 }
             }
-            let mut seen: [BTreeSet<[u32; 2]>; 2] = Default::default();
-            waiting.take(stars, &reach, |_, _, told| {
-                for (seen, told) in seen.iter_mut().zip(told) {
-                    for pair in told {
-                        assert!(seen.insert(*pair), "{pair:?} twice");
+            let mut visited: [BTreeSet<[u32; 2]>; 2] = Default::default();
+            pending.pop_due(&pairs, &bounds, |_, _, candidates| {
+                for (visited, candidates) in visited.iter_mut().zip(candidates) {
+                    for pair in candidates {
+                        assert!(visited.insert(*pair), "{pair:?} twice");
                     }
                 }
             });
-            prop_assert_eq!(seen, next_to_each_other(&topology));
-            // Of what waits nothing is told before its time.
-            waiting.put(0, 0, 1.0);
-            let mut told = 0_u32;
-            waiting.take(stars, &[0.5; 7], |_, _, _| told += 1);
-            prop_assert_eq!(told, 0);
-            waiting.take(stars, &[1.0; 7], |_, _, _| told += 1);
-            prop_assert_eq!(told, 1);
+            prop_assert_eq!(visited, adjacent_candidates(&hierarchy));
+            // A pending pair is not visited before it is due.
+            pending.push(0, 0, 1.0);
+            let mut visits = 0_u32;
+            pending.pop_due(&pairs, &[0.5; 7], |_, _, _| visits += 1);
+            prop_assert_eq!(visits, 0);
+            pending.pop_due(&pairs, &[1.0; 7], |_, _, _| visits += 1);
+            prop_assert_eq!(visits, 1);
         }
     }
 }

@@ -1,110 +1,119 @@
-//! An order of the film's elements in which neighbours on the film are near.
+//! An order of the elements in which neighbours on the film have nearby positions in the order.
 //!
-//! The film is halved again and again: from an element far from all others of its part, outward
-//! over shared edges; the first half of what is met so is one part, the rest the other. Whatever the
-//! film does later, a part stays a patch of it.
+//! The mesh is bisected recursively. Each part is traversed breadth-first over shared edges, from an
+//! element far from the others; the first half of the traversal is one child, the rest is the other.
+//! The order depends on connectivity alone, so it stays useful however the film folds.
 
 use std::collections::VecDeque;
 
-/// The order of elements whose sides (edges) these are; `edges`: how many there are. Parts are not
-/// halved below `patch` elements.
-pub fn of_elements(sides: &[[u32; 3]], edges: usize, patch: usize) -> Vec<u32> {
-    let mut at_edge: Vec<Vec<u32>> = vec![Vec::new(); edges];
-    for (element, own) in (0_u32..).zip(sides) {
-        for side in own {
-            at_edge[*side as usize].push(element);
+/// The order of elements with these edges; `edges` is the number of edges. Parts of at most
+/// `max_part_size` elements are not bisected further.
+pub fn element_order(element_edges: &[[u32; 3]], edges: usize, max_part_size: usize) -> Vec<u32> {
+    let mut elements_at_edge: Vec<Vec<u32>> = vec![Vec::new(); edges];
+    for (element, edges) in (0_u32..).zip(element_edges) {
+        for edge in edges {
+            elements_at_edge[*edge as usize].push(element);
         }
     }
-    let mut walk = Walk { sides, at_edge, part: vec![0; sides.len()], met: Vec::new() };
-    let mut order: Vec<u32> = (0_u32..).take(sides.len()).collect();
-    // Parts yet to be halved: where they start and end in the order; each has a number of its own.
-    let mut later = vec![(0, order.len())];
-    let mut number = 0;
-    while let Some((from, to)) = later.pop() {
-        if to - from <= patch {
+    let mut traversal = Traversal {
+        element_edges,
+        elements_at_edge,
+        part_of_element: vec![0; element_edges.len()],
+        visited: Vec::new(),
+    };
+    let mut order: Vec<u32> = (0_u32..).take(element_edges.len()).collect();
+    // Parts to bisect, as ranges of the order. Each part gets a new number.
+    let mut pending = vec![(0, order.len())];
+    let mut part_number = 0;
+    while let Some((start, end)) = pending.pop() {
+        if end - start <= max_part_size {
             continue;
         }
-        number += 1;
-        let own = &mut order[from..to];
-        for element in own.iter() {
-            walk.part[*element as usize] = number;
+        part_number += 1;
+        let part = &mut order[start..end];
+        for element in part.iter() {
+            traversal.part_of_element[*element as usize] = part_number;
         }
-        walk.outward(own);
-        let far = own[own.len() - 1];
-        let start = own.iter().position(|element| *element == far).unwrap_or(0);
-        own.swap(0, start);
-        walk.outward(own);
-        // The halves are filled up to whole patches, so that leaves of a tree are patches.
-        let middle = from + (to - from).next_power_of_two() / 2;
-        later.extend([(from, middle), (middle, to)]);
+        // The last element of a traversal is far from its first one: start again from there.
+        traversal.sort_breadth_first(part);
+        let farthest = part[part.len() - 1];
+        let seed = part.iter().position(|element| *element == farthest).unwrap_or(0);
+        part.swap(0, seed);
+        traversal.sort_breadth_first(part);
+        // The first half has a power of two of elements, so that halves are subtrees of the hierarchy.
+        let middle = start + (end - start).next_power_of_two() / 2;
+        pending.extend([(start, middle), (middle, end)]);
     }
     order
 }
 
-struct Walk<'a> {
-    sides: &'a [[u32; 3]],
-    at_edge: Vec<Vec<u32>>,
-    /// Part each element is in now.
-    part: Vec<u32>,
-    met: Vec<bool>,
+/// Breadth-first traversal within one part.
+struct Traversal<'a> {
+    element_edges: &'a [[u32; 3]],
+    elements_at_edge: Vec<Vec<u32>>,
+    /// Number of the part that contains each element.
+    part_of_element: Vec<u32>,
+    visited: Vec<bool>,
 }
 
-impl Walk<'_> {
-    /// Puts the elements of one part in the order in which a walk outward from its first meets them; of
-    /// pieces that hang together nowhere one after the other.
-    fn outward(&mut self, own: &mut [u32]) {
-        self.met.resize(self.sides.len(), false);
-        let part = self.part[own[0] as usize];
-        let mut found = Vec::with_capacity(own.len());
+impl Traversal<'_> {
+    /// Sorts the elements of one part breadth-first from its first element. Components that are not
+    /// connected follow one after the other.
+    fn sort_breadth_first(&mut self, part: &mut [u32]) {
+        self.visited.resize(self.element_edges.len(), false);
+        let part_number = self.part_of_element[part[0] as usize];
+        let mut sorted = Vec::with_capacity(part.len());
         let mut queue = VecDeque::new();
-        for start in own.iter() {
-            if core::mem::replace(&mut self.met[*start as usize], true) {
+        for seed in part.iter() {
+            if core::mem::replace(&mut self.visited[*seed as usize], true) {
                 continue;
             }
-            queue.push_back(*start);
+            queue.push_back(*seed);
             while let Some(element) = queue.pop_front() {
-                found.push(element);
-                for side in self.sides[element as usize] {
-                    for next in &self.at_edge[side as usize] {
-                        let at = *next as usize;
-                        if self.part[at] == part && !core::mem::replace(&mut self.met[at], true) {
-                            queue.push_back(*next);
+                sorted.push(element);
+                for edge in self.element_edges[element as usize] {
+                    for neighbour in &self.elements_at_edge[edge as usize] {
+                        let index = *neighbour as usize;
+                        if self.part_of_element[index] == part_number
+                            && !core::mem::replace(&mut self.visited[index], true)
+                        {
+                            queue.push_back(*neighbour);
                         }
                     }
                 }
             }
         }
-        for element in &found {
-            self.met[*element as usize] = false;
+        for element in &sorted {
+            self.visited[*element as usize] = false;
         }
-        own.copy_from_slice(&found);
+        part.copy_from_slice(&sorted);
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::collision::contact::topology::Topology;
+    use crate::geometry::topology::Topology;
 
     #[test]
-    fn every_element_comes_once_and_patches_hang_together() {
-        let at = |i: u32, j: u32| j * 9 + i;
+    fn the_order_is_a_permutation_and_its_blocks_are_compact() {
+        let node = |i: u32, j: u32| j * 9 + i;
         let mut triangles = Vec::new();
         for j in 0..8 {
             for i in 0..8 {
-                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
                 triangles.extend([[a, b, c], [a, c, d]]);
             }
         }
-        // Shuffled, so that numbers say nothing.
+        // Shuffled, so that element numbers carry no information.
         let shuffled: Vec<_> = (0..128).map(|k| triangles[k * 37 % 128]).collect();
         let topology = Topology::new(81, &shuffled);
-        let order = super::of_elements(&topology.sides, topology.edges.len(), 4);
+        let order = super::element_order(&topology.element_edges, topology.edges.len(), 4);
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.iter().copied().eq(0..128));
-        // Sixteen elements of a patch, eight cells' worth, lie within a few cells.
-        for patch in order.chunks(16) {
-            let nodes = patch.iter().flat_map(|element| shuffled[*element as usize]);
+        // The sixteen elements of a block fill eight cells; they span few rows and columns.
+        for block in order.chunks(16) {
+            let nodes = block.iter().flat_map(|element| shuffled[*element as usize]);
             let (columns, rows): (Vec<u32>, Vec<u32>) =
                 nodes.map(|node| (node % 9, node / 9)).unzip();
             let span = |of: &[u32]| of.iter().max().unwrap() - of.iter().min().unwrap();

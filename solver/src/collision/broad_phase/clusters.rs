@@ -1,41 +1,45 @@
-//! How far two parts of a film have moved towards each other at most.
+//! Upper bounds of how far two parts of the film have approached each other.
 //!
 //! ```text
-//! way(G, H) = |ū_G − ū_H| + max |u_i − ū_G| + max |u_j − ū_H|       nodes i of G, j of H
+//! b(G, H) = |ū_G − ū_H| + max |u_i − ū_G| + max |u_j − ū_H|       nodes i of G, j of H
 //! ```
 //!
-//! Symbols: u displacement of a node, ū its mean over a zone, m. No distance between film of G and film
-//! of H has shrunk by more. Neighbouring film moves together, so this is far less than twice the
-//! largest displacement anywhere.
+//! Symbols: u displacement of a node, ū its mean over a motion cluster, m. No distance between a
+//! point of cluster G and a point of cluster H has shrunk by more than b. Neighbouring film moves
+//! together, so b is far smaller than twice the largest displacement of any node.
 
 use nalgebra::Vector3;
 
 use super::hierarchy::Hierarchy;
 use crate::geometry::field::Field;
 
-/// Most zones of a film.
-const MOST: usize = 32;
-/// Share by which rounding could shorten a way at most.
-const ROUNDING: f64 = 1.0 + 1e-9;
+/// Largest number of motion clusters; a power of two. Chosen: a compromise between the cost of a query,
+/// which grows with the square of this number, and the tightness of the bounds.
+const MAX_CLUSTERS: usize = 32;
 
-/// A film in zones: subtrees of its patches.
+/// Factor on a bound that covers rounding. Chosen: far above the relative error of the sums (about
+/// 1e-13 for a cluster of 1000 nodes), far below any effect on cost.
+const ROUNDING_FACTOR: f64 = 1.0 + 1e-9;
+
+/// The motion clusters of a film: the subtrees of its hierarchy at one level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionClusters {
-    /// Number of zones, a power of two: nodes `count..2 count` of the tree.
+    /// Number of clusters, a power of two. Their tree nodes are `count..2 * count`.
     count: usize,
-    /// Nodes of the film in each.
+    /// Mesh nodes of each cluster.
     nodes: Vec<Vec<u32>>,
 }
 
 impl MotionClusters {
-    /// The zones of a film.
-    pub fn new(patches: &Hierarchy) -> Self {
-        let count = MOST.min(patches.leaves());
-        let under = patches.leaves() / count;
-        let nodes = (0..count).map(|zone| {
-            let leaves = patches.leaves() + zone * under..patches.leaves() + (zone + 1) * under;
+    /// The motion clusters of a hierarchy.
+    pub fn new(hierarchy: &Hierarchy) -> Self {
+        let count = MAX_CLUSTERS.min(hierarchy.first_leaf());
+        let leaves_per_cluster = hierarchy.first_leaf() / count;
+        let nodes = (0..count).map(|cluster| {
+            let leaves = hierarchy.first_leaf() + cluster * leaves_per_cluster
+                ..hierarchy.first_leaf() + (cluster + 1) * leaves_per_cluster;
             let mut nodes: Vec<u32> =
-                leaves.flat_map(|leaf| patches.corners(leaf)).copied().collect();
+                leaves.flat_map(|leaf| hierarchy.corners(leaf)).copied().collect();
             nodes.sort_unstable();
             nodes.dedup();
             nodes
@@ -43,52 +47,58 @@ impl MotionClusters {
         Self { count, nodes: nodes.collect() }
     }
 
-    /// Number of pairs of zones, those of a zone with itself counted.
+    /// Number of pairs of clusters, including each cluster with itself.
     pub fn pairs(&self) -> usize {
         self.count * (self.count + 1) / 2
     }
 
-    /// The number of a pair of zones, the lower first.
+    /// Index of the pair of clusters `a` and `b`, `a` not above `b`.
     #[inline]
-    fn number(&self, one: usize, two: usize) -> usize {
-        // So many come before the first of `one`.
-        one * (2 * self.count - one + 1) / 2 + two - one
+    fn pair_index(&self, a: usize, b: usize) -> usize {
+        // The first term is the number of pairs whose lower cluster is below `a`.
+        a * (2 * self.count - a + 1) / 2 + b - a
     }
 
-    /// First node of the tree that is a zone.
-    pub fn first(&self) -> usize {
-        self.count
+    /// Tree nodes that are clusters.
+    pub fn tree_nodes(&self) -> core::ops::Range<usize> {
+        self.count..2 * self.count
     }
 
-    /// The pair of zones two nodes of the tree lie in; they must be zones or below.
+    /// Index of the pair of clusters that contain two tree nodes. Each of the two must be a cluster
+    /// or a descendant of one.
     #[inline]
-    pub fn pair(&self, a: usize, b: usize) -> usize {
-        let zone = |node: usize| (node >> (node.ilog2() - self.count.ilog2())) - self.count;
-        let (a, b) = (zone(a), zone(b));
-        self.number(a.min(b), a.max(b))
+    pub fn pair_of(&self, a: usize, b: usize) -> usize {
+        let cluster = |node: usize| (node >> (node.ilog2() - self.count.ilog2())) - self.count;
+        let (a, b) = (cluster(a), cluster(b));
+        self.pair_index(a.min(b), a.max(b))
     }
 
-    /// Adds to `ways`, a number for each pair of zones, how far the two have come towards each other at
-    /// most between two places of all nodes, m; gives the largest displacement of a node, m.
-    pub fn travel(&self, from: &Field, to: &Field, ways: &mut [f64]) -> f64 {
-        let mut own = Vec::with_capacity(self.count);
-        let mut largest = 0.0_f64;
+    /// Adds to `approach_bounds` (m), one entry per pair of clusters, the bound b of the motion
+    /// between two positions of all nodes. Returns an upper bound of the displacement of any node, m.
+    pub fn add_approach_bounds(
+        &self,
+        from: &Field,
+        to: &Field,
+        approach_bounds: &mut [f64],
+    ) -> f64 {
+        let mut motions = Vec::with_capacity(self.count);
+        let mut max_displacement = 0.0_f64;
         for nodes in &self.nodes {
-            let way = |node: &u32| to.get(*node as usize) - from.get(*node as usize);
-            let sum: Vector3<f64> = nodes.iter().map(way).sum();
+            let displacement = |node: &u32| to.get(*node as usize) - from.get(*node as usize);
+            let sum: Vector3<f64> = nodes.iter().map(displacement).sum();
             let mean = if nodes.is_empty() { sum } else { sum / nodes.len() as f64 };
-            let apart = nodes.iter().map(|node| (way(node) - mean).norm_squared());
-            let apart = apart.fold(0.0, f64::max).sqrt();
-            largest = largest.max(mean.norm() + apart);
-            own.push((mean, apart));
+            let squares = nodes.iter().map(|node| (displacement(node) - mean).norm_squared());
+            let deviation = squares.fold(0.0, f64::max).sqrt();
+            max_displacement = max_displacement.max(mean.norm() + deviation);
+            motions.push((mean, deviation));
         }
-        for (one, (mean, apart)) in own.iter().enumerate() {
-            for (two, (other, far)) in own.iter().enumerate().skip(one) {
-                let way = (mean - other).norm() + apart + far;
-                ways[self.number(one, two)] += way * ROUNDING;
+        for (a, (mean_a, deviation_a)) in motions.iter().enumerate() {
+            for (b, (mean_b, deviation_b)) in motions.iter().enumerate().skip(a) {
+                let bound = (mean_a - mean_b).norm() + deviation_a + deviation_b;
+                approach_bounds[self.pair_index(a, b)] += bound * ROUNDING_FACTOR;
             }
         }
-        largest
+        max_displacement
     }
 }
 
@@ -98,31 +108,31 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// No two nodes of two zones come nearer by more than is told.
+        /// No two nodes of two clusters approach each other by more than the bound.
         #[test]
-        fn ways_are_bounds(
+        fn approach_is_never_underestimated(
             from in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
-            ways in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
+            displacements in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
             drift in prop::array::uniform3(-9.0..9.0_f64),
         ) {
-            let sides = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
-            let patches = Hierarchy::new(12, &sides, &sides, 12);
-            let zones = MotionClusters::new(&patches);
+            let triangles = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
+            let hierarchy = Hierarchy::new(12, &triangles, &triangles, 12);
+            let clusters = MotionClusters::new(&hierarchy);
             let from: Vec<Vector3<f64>> = from.into_iter().map(Vector3::from).collect();
             let to: Vec<Vector3<f64>> = from
                 .iter()
-                .zip(ways)
-                .map(|(x, way)| x + Vector3::from(way) + Vector3::from(drift))
+                .zip(displacements)
+                .map(|(x, u)| x + Vector3::from(u) + Vector3::from(drift))
                 .collect();
-            let mut ways = vec![0.0; zones.pairs()];
-            zones.travel(&Field::of(&from), &Field::of(&to), &mut ways);
-            for a in patches.leaves()..patches.tree() {
-                for b in a..patches.tree() {
-                    let way = ways[zones.pair(a, b)];
-                    for p in patches.corners(a).iter().map(|node| *node as usize) {
-                        for q in patches.corners(b).iter().map(|node| *node as usize) {
-                            let closer = ((to[p] - from[p]) - (to[q] - from[q])).norm();
-                            prop_assert!(closer <= way, "{closer} {way}");
+            let mut bounds = vec![0.0; clusters.pairs()];
+            clusters.add_approach_bounds(&Field::of(&from), &Field::of(&to), &mut bounds);
+            for a in hierarchy.leaves() {
+                for b in a..hierarchy.end() {
+                    let bound = bounds[clusters.pair_of(a, b)];
+                    for p in hierarchy.corners(a).iter().map(|node| *node as usize) {
+                        for q in hierarchy.corners(b).iter().map(|node| *node as usize) {
+                            let approach = ((to[p] - from[p]) - (to[q] - from[q])).norm();
+                            prop_assert!(approach <= bound, "{approach} {bound}");
                         }
                     }
                 }

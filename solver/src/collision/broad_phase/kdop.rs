@@ -1,11 +1,14 @@
-//! Boxes round patches, cut by planes of eight directions: how far apart two are at least.
+//! Bounding volumes: discrete oriented polytopes (k-DOPs) with planes in eight directions.
 //!
 //! ```text
-//! separation = max over directions n and both orders of   min n·x_a − max n·x_b
+//! separation of A and B = max over directions n of   min n·a − max n·b  and  min n·b − max n·a
 //! ```
 //!
-//! Unit directions: the three axes, the four diagonals of a cube and one of a face. Single
-//! precision, with what rounding could hide taken off: a separation is never too large.
+//! The separation is a lower bound of the distance between a point a of A and a point b of B
+//! (J. Klosowski et al., "Efficient collision detection using bounding volume hierarchies of
+//! k-DOPs", IEEE TVCG 4, 1998). The directions are the three axes, the four diagonals of a cube and
+//! one diagonal of a face. Numbers have single precision; an upper bound of the rounding error is
+//! subtracted, so a separation is never too large.
 
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
 
@@ -13,111 +16,131 @@ use super::hierarchy::Hierarchy;
 use crate::geometry::field::Field;
 use crate::platform::simd::{InstructionSet, dispatch};
 
-/// Directions of the planes.
+/// Number of directions.
 const DIRECTIONS: usize = 8;
-const D: f64 = 0.577_350_269_189_625_8;
-const F: f64 = core::f64::consts::FRAC_1_SQRT_2;
-/// Components of the directions, x, y, z.
-const NORMALS: [[f64; DIRECTIONS]; 3] = [
-    [1.0, 0.0, 0.0, D, D, -D, -D, F],
-    [0.0, 1.0, 0.0, D, -D, D, -D, F],
-    [0.0, 0.0, 1.0, D, D, D, D, 0.0],
-];
+/// 1/√3: component of the unit vector along a diagonal of a cube.
+const CUBE_DIAGONAL: f64 = 0.577_350_269_189_625_8;
+/// 1/√2: component of the unit vector along a diagonal of a face.
+const FACE_DIAGONAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// x, y and z components of the unit directions.
+const NORMALS: [[f64; DIRECTIONS]; 3] = {
+    const C: f64 = CUBE_DIAGONAL;
+    const F: f64 = FACE_DIAGONAL;
+    [
+        [1.0, 0.0, 0.0, C, C, -C, -C, F],
+        [0.0, 1.0, 0.0, C, -C, C, -C, F],
+        [0.0, 0.0, 1.0, C, C, C, C, 0.0],
+    ]
+};
 
-/// Least n·x, and least −n·x, of some points in each direction.
+/// Upper bound of the rounding error of a separation, in units of the machine epsilon of `f32` times
+/// the largest |n·x|. The two rounded extents contribute ½ each, their sum 1 and the subtraction of
+/// this bound 1; the rest is margin.
+const MAX_ROUNDING_ERROR: f32 = 4.0;
+
+/// Smallest n·x, then smallest −n·x, of a set of points in each direction, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 struct KDop([f32; 2 * DIRECTIONS]);
 
 impl KDop {
-    /// That of no points: apart from everything.
-    const NONE: Self = Self([f32::INFINITY; 2 * DIRECTIONS]);
+    /// The k-DOP of no points. Its separation from everything is infinite.
+    const EMPTY: Self = Self([f32::INFINITY; 2 * DIRECTIONS]);
 
+    /// The smallest k-DOP that contains both.
     #[inline]
-    fn with(self, other: &Self) -> Self {
-        let mut both = self;
-        for (own, other) in both.0.iter_mut().zip(&other.0) {
-            *own = if *other < *own { *other } else { *own };
+    fn union(self, other: &Self) -> Self {
+        let mut union = self;
+        for (extent, other) in union.0.iter_mut().zip(&other.0) {
+            *extent = if *other < *extent { *other } else { *extent };
         }
-        both
+        union
     }
 }
 
-/// Boxes round the patches of a film, and round the nodes of their tree.
+/// k-DOPs of all tree nodes of a hierarchy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct KDops {
-    extents: Vec<KDop>,
-    nodes: Vec<KDop>,
-    /// What rounding can add to a separation at most, m.
-    rounding: f32,
+    /// k-DOP of each tree node.
+    tree: Vec<KDop>,
+    /// k-DOP of each mesh node: a point.
+    points: Vec<KDop>,
+    /// Upper bound of the rounding error of a separation, m.
+    rounding_error: f32,
 }
 
 impl KDops {
-    /// Boxes round patches at these places (m).
-    pub fn new(patches: &Hierarchy, places: &Field) -> Self {
-        let mut boxes = Self::default();
-        boxes.fit(patches, places);
-        boxes
+    /// The k-DOPs of a hierarchy whose mesh nodes have these positions (m).
+    pub fn new(hierarchy: &Hierarchy, positions: &Field) -> Self {
+        let mut kdops = Self::default();
+        kdops.fit(hierarchy, positions);
+        kdops
     }
 
-    /// Fits the boxes to places (m).
-    pub fn fit(&mut self, patches: &Hierarchy, places: &Field) {
-        self.extents.resize(patches.tree(), KDop::NONE);
-        self.rounding = 0.0;
-        self.grow(patches, places, |_| KDop::NONE);
+    /// Fits the k-DOPs to positions (m).
+    pub fn fit(&mut self, hierarchy: &Hierarchy, positions: &Field) {
+        self.tree.resize(hierarchy.end(), KDop::EMPTY);
+        self.rounding_error = 0.0;
+        self.update(hierarchy, positions, |_| KDop::EMPTY);
     }
 
-    /// Grows the boxes so that they hold these places (m) too.
-    pub fn hold(&mut self, patches: &Hierarchy, places: &Field) {
-        self.grow(patches, places, |own| own);
+    /// Enlarges the k-DOPs so that they also contain these positions (m).
+    pub fn extend(&mut self, hierarchy: &Hierarchy, positions: &Field) {
+        self.update(hierarchy, positions, |kdop| kdop);
     }
 
-    /// Fits the boxes to places (m) and what is left of each leaf's own.
+    /// Sets the k-DOP of each leaf to the union of `initial` of its old one and its nodes at these
+    /// positions (m), then updates the rest of the tree from the leaves to the root.
     #[inline]
-    fn grow(&mut self, patches: &Hierarchy, places: &Field, left: impl Fn(KDop) -> KDop) {
-        self.fit_nodes(places);
-        for leaf in patches.leaves()..patches.tree() {
-            let corners = patches.corners(leaf).iter();
-            let own = left(self.extents[leaf]);
-            self.extents[leaf] =
-                corners.fold(own, |all, node| all.with(&self.nodes[*node as usize]));
+    fn update(&mut self, hierarchy: &Hierarchy, positions: &Field, initial: impl Fn(KDop) -> KDop) {
+        self.update_points(positions);
+        for leaf in hierarchy.leaves() {
+            let corners = hierarchy.corners(leaf).iter();
+            let kdop = initial(self.tree[leaf]);
+            self.tree[leaf] =
+                corners.fold(kdop, |union, node| union.union(&self.points[*node as usize]));
         }
-        for node in (1..patches.leaves()).rev() {
-            self.extents[node] = self.extents[2 * node].with(&self.extents[2 * node + 1]);
+        for parent in (1..hierarchy.first_leaf()).rev() {
+            self.tree[parent] = self.tree[2 * parent].union(&self.tree[2 * parent + 1]);
         }
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "single precision is what boxes have")]
-    fn fit_nodes(&mut self, places: &Field) {
-        self.nodes.resize(places.len(), KDop::NONE);
+    #[expect(clippy::cast_possible_truncation, reason = "k-DOPs have single precision")]
+    fn update_points(&mut self, positions: &Field) {
+        self.points.resize(positions.len(), KDop::EMPTY);
         let mut largest = 0.0_f32;
-        let [along_x, along_y, along_z] = &NORMALS;
-        for (node, own) in self.nodes.iter_mut().enumerate() {
-            let (x, y, z) = (places.x[node], places.y[node], places.z[node]);
+        let [normal_x, normal_y, normal_z] = &NORMALS;
+        for (node, point) in self.points.iter_mut().enumerate() {
+            let (x, y, z) = (positions.x[node], positions.y[node], positions.z[node]);
             for direction in 0..DIRECTIONS {
-                let along =
-                    x * along_x[direction] + y * along_y[direction] + z * along_z[direction];
-                let along = along as f32;
-                own.0[direction] = along;
-                own.0[DIRECTIONS + direction] = -along;
-                let size = along.abs();
+                let extent =
+                    x * normal_x[direction] + y * normal_y[direction] + z * normal_z[direction];
+                let extent = extent as f32;
+                point.0[direction] = extent;
+                point.0[DIRECTIONS + direction] = -extent;
+                let size = extent.abs();
                 largest = if size > largest { size } else { largest };
             }
         }
-        // Each of two numbers is rounded once, and their difference.
-        self.rounding = self.rounding.max(4.0 * f32::EPSILON * largest);
+        self.rounding_error = self.rounding_error.max(MAX_ROUNDING_ERROR * f32::EPSILON * largest);
     }
 
-    /// How far apart the boxes of two nodes of the tree are at least, m; not above 0 where they may meet.
+    /// Lower bound of the distance between the points of two tree nodes, m. It is zero or negative
+    /// if the k-DOPs may overlap.
     #[inline]
     pub fn separation(&self, a: usize, b: usize) -> f64 {
-        f64::from(separation(&self.extents[a], &self.extents[b]) - self.rounding)
+        f64::from(separation(&self.tree[a], &self.tree[b]) - self.rounding_error)
     }
 
-    /// The separations (m) of pairs of nodes of the tree, in place of what `apart` held.
-    pub fn separations(&self, path: InstructionSet, pairs: &[[u32; 2]], apart: &mut Vec<f32>) {
-        apart.clear();
-        separations(path, self, pairs, apart);
+    /// Replaces the content of `separations` with the separation (m) of each pair of tree nodes.
+    pub fn separations(
+        &self,
+        instruction_set: InstructionSet,
+        pairs: &[[u32; 2]],
+        separations: &mut Vec<f32>,
+    ) {
+        separations.clear();
+        push_separations(instruction_set, self, pairs, separations);
     }
 }
 
@@ -131,25 +154,25 @@ fn separation(KDop(a): &KDop, KDop(b): &KDop) -> f32 {
         gaps[direction] = larger(above, below);
     }
     let mut half = [0.0_f32; DIRECTIONS / 2];
-    for at in 0..DIRECTIONS / 2 {
-        half[at] = larger(gaps[at], gaps[at + DIRECTIONS / 2]);
+    for lane in 0..DIRECTIONS / 2 {
+        half[lane] = larger(gaps[lane], gaps[lane + DIRECTIONS / 2]);
     }
     larger(larger(half[0], half[2]), larger(half[1], half[3]))
 }
 
 #[inline(always)]
-fn separations_kernel(boxes: &KDops, pairs: &[[u32; 2]], apart: &mut Vec<f32>) {
+fn push_separations_kernel(kdops: &KDops, pairs: &[[u32; 2]], separations: &mut Vec<f32>) {
     for [a, b] in pairs {
-        let (a, b) = (&boxes.extents[*a as usize], &boxes.extents[*b as usize]);
-        apart.push(separation(a, b) - boxes.rounding);
+        let (a, b) = (&kdops.tree[*a as usize], &kdops.tree[*b as usize]);
+        separations.push(separation(a, b) - kdops.rounding_error);
     }
 }
 
 dispatch! {
-    fn separations / separations_kernel(
-        boxes: &KDops,
+    fn push_separations / push_separations_kernel(
+        kdops: &KDops,
         pairs: &[[u32; 2]],
-        apart: &mut Vec<f32>,
+        separations: &mut Vec<f32>,
     )
 }
 
@@ -168,26 +191,28 @@ mod tests {
     }
 
     proptest! {
-        /// No two points of two patches are nearer than the separation of their boxes.
+        /// No two mesh nodes of two leaves are closer than the separation of the leaves.
         #[test]
         fn a_separation_is_never_too_large(
-            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
+            positions in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
             shift in -3.0..3.0_f64,
         ) {
-            let sides = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
-            let patches = Hierarchy::new(12, &sides, &sides, 12);
-            let mut places: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
-            for place in &mut places[..6] {
-                place.x += shift;
+            let triangles = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
+            let hierarchy = Hierarchy::new(12, &triangles, &triangles, 12);
+            let mut positions: Vec<Vector3<f64>> =
+                positions.into_iter().map(Vector3::from).collect();
+            for position in &mut positions[..6] {
+                position.x += shift;
             }
-            let boxes = KDops::new(&patches, &Field::of(&places));
-            for a in patches.leaves()..patches.tree() {
-                for b in a + 1..patches.tree() {
-                    let apart = boxes.separation(a, b);
-                    for p in patches.corners(a) {
-                        for q in patches.corners(b) {
-                            let real = (places[*p as usize] - places[*q as usize]).norm();
-                            prop_assert!(apart <= real, "{apart} {real}");
+            let kdops = KDops::new(&hierarchy, &Field::of(&positions));
+            for a in hierarchy.leaves() {
+                for b in a + 1..hierarchy.end() {
+                    let separation = kdops.separation(a, b);
+                    for p in hierarchy.corners(a) {
+                        for q in hierarchy.corners(b) {
+                            let distance =
+                                (positions[*p as usize] - positions[*q as usize]).norm();
+                            prop_assert!(separation <= distance, "{separation} {distance}");
                         }
                     }
                 }

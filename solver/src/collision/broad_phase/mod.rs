@@ -1,15 +1,22 @@
-//! What is near what, found without looking at everything again and again.
+//! Broad phase: finds the pairs of film primitives that may be close, without testing every pair in
+//! every step.
 //!
-//! The film is cut into patches of a few neighbouring elements, and they into a tree
-//! ([`patches`]); boxes round them ([`boxes`]) say how far two patches are apart at least; a
-//! [`lookout`] keeps every pair of patches waiting ([`bins`]) until their parts of the film
-//! ([`zones`]), or what is round a node of theirs ([`stars`]), have moved so far that they could have met.
+//! - [`hierarchy`] is a bounding-volume hierarchy over the elements. Its tree is constant.
+//! - [`kdop`] bounds each tree node by a k-DOP and gives lower bounds of distances.
+//! - [`clusters`] bounds how far two parts of the film have approached each other; [`adjacent`] does
+//!   so for elements that share a node.
+//! - [`scheduler`] keeps every pair of tree nodes pending in a [`queue`] until its parts have
+//!   approached by the distance between them.
+//! - [`traversal`] visits all pairs within a radius at once, without any history.
+//! - [`collision_mesh`] holds the constant data of all of these.
 
 pub mod adjacent;
 mod bisection;
 pub mod clusters;
+pub mod collision_mesh;
 pub mod hierarchy;
 pub mod kdop;
-mod query;
+pub mod query;
 pub mod queue;
 pub mod scheduler;
+pub mod traversal;

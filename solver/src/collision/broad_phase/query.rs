@@ -1,15 +1,16 @@
-//! What is sought of two elements: the pairs of their primitives that share no node.
+//! The pairs of primitives that a query looks for. Primitives of a pair never share a node.
 //!
 //! ```text
-//! meetings    node and element of each other, edge and edge        film that passes through film
-//! piercings   edge and element of each other                       film that lies through film
+//! collision      node and element, edge and edge      film that would pass through film
+//! intersection   edge and element                     film that lies through film
 //! ```
 //!
-//! A node and an edge belong to one leaf only, so every pair of primitives is of one pair of leaves.
+//! Each node and each edge belongs to one leaf of the hierarchy only, so each pair of primitives
+//! belongs to exactly one pair of leaves.
 
-use super::hierarchy::{Hierarchy, NONE};
+use super::hierarchy::{Hierarchy, NO_INDEX};
 
-/// What a lookout is for.
+/// The purpose of a query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QueryKind {
     /// Nodes and elements, edges and edges, that share no node.
@@ -18,7 +19,7 @@ pub enum QueryKind {
     Intersection,
 }
 
-/// A kind of pairs of primitives that share no node.
+/// The kind of a candidate: a pair of primitives that share no node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CandidateKind {
     /// A node and an element.
@@ -30,8 +31,8 @@ pub enum CandidateKind {
 }
 
 impl QueryKind {
-    /// The kinds of pairs sought.
-    pub(super) fn couples(self) -> [Option<CandidateKind>; 2] {
+    /// The kinds of candidates of this query.
+    pub(super) fn candidate_kinds(self) -> [Option<CandidateKind>; 2] {
         match self {
             Self::Collision => [Some(CandidateKind::NodeElement), Some(CandidateKind::EdgeEdge)],
             Self::Intersection => [Some(CandidateKind::EdgeElement), None],
@@ -39,53 +40,53 @@ impl QueryKind {
     }
 }
 
-/// Pairs of primitives, those of one kind apart from those of the other.
-pub(super) type Pairs = [Vec<[u32; 2]>; 2];
+/// Candidates, one list per candidate kind, in the order of [`QueryKind::candidate_kinds`].
+pub(super) type Candidates = [Vec<[u32; 2]>; 2];
 
-/// Adds the pairs of primitives of two leaves that share no node.
-pub(super) fn primitives(
-    sought: QueryKind,
-    patches: &Hierarchy,
-    one: usize,
-    two: usize,
-    pairs: &mut Pairs,
+/// Adds the candidates of two leaves to `candidates`.
+pub(super) fn push_candidates(
+    kind: QueryKind,
+    hierarchy: &Hierarchy,
+    first_leaf: usize,
+    second_leaf: usize,
+    candidates: &mut Candidates,
 ) {
-    // The three nodes and edges of one element share nodes.
-    if one == two {
+    // The primitives of one element always share nodes.
+    if first_leaf == second_leaf {
         return;
     }
-    let (one, two) = (patches.leaf(one), patches.leaf(two));
-    let [first, second] = pairs;
-    for (a, b) in [(one, two), (two, one)] {
-        let has = |node: u32| b.corners[0] == node || b.corners[1] == node || b.corners[2] == node;
-        match sought {
+    let (first_leaf, second_leaf) = (hierarchy.leaf(first_leaf), hierarchy.leaf(second_leaf));
+    let [with_element, edge_edge] = candidates;
+    for (a, b) in [(first_leaf, second_leaf), (second_leaf, first_leaf)] {
+        let in_b = |node: u32| b.corners[0] == node || b.corners[1] == node || b.corners[2] == node;
+        match kind {
             QueryKind::Collision => {
                 for node in a.nodes {
-                    if node != NONE && !has(node) {
-                        first.push([node, b.element]);
+                    if node != NO_INDEX && !in_b(node) {
+                        with_element.push([node, b.element]);
                     }
                 }
             }
             QueryKind::Intersection => {
-                for (at, edge) in a.edges.into_iter().enumerate() {
-                    let [p, q] = a.ends(at);
-                    if edge != NONE && !has(p) && !has(q) {
-                        first.push([edge, b.element]);
+                for (side, edge) in a.edges.into_iter().enumerate() {
+                    let [p, q] = a.edge_nodes(side);
+                    if edge != NO_INDEX && !in_b(p) && !in_b(q) {
+                        with_element.push([edge, b.element]);
                     }
                 }
             }
         }
     }
-    if sought == QueryKind::Collision {
-        for (at, edge) in one.edges.into_iter().enumerate() {
-            if edge == NONE {
+    if kind == QueryKind::Collision {
+        for (side, edge) in first_leaf.edges.into_iter().enumerate() {
+            if edge == NO_INDEX {
                 continue;
             }
-            let [p, q] = one.ends(at);
-            for (at, other) in two.edges.into_iter().enumerate() {
-                let [r, s] = two.ends(at);
-                if other != NONE && p != r && p != s && q != r && q != s {
-                    second.push([edge.min(other), edge.max(other)]);
+            let [p, q] = first_leaf.edge_nodes(side);
+            for (side, other) in second_leaf.edges.into_iter().enumerate() {
+                let [r, s] = second_leaf.edge_nodes(side);
+                if other != NO_INDEX && p != r && p != s && q != r && q != s {
+                    edge_edge.push([edge.min(other), edge.max(other)]);
                 }
             }
         }

@@ -1,377 +1,388 @@
-//! Which pairs may have come near each other, looked at no more often than they can have moved.
+//! Schedules distance queries: a pair of tree nodes is pending until its two parts may have met.
 //!
 //! ```text
-//! due = way + d        film of two zones that came towards each other by less than d since is still apart
+//! due = b + d        while b is below due, the two parts are still apart
 //! ```
 //!
-//! Symbols: way how far two zones of the film have come towards each other so far at most
-//! ([`super::clusters`]), m; d distance of two patches of theirs, m, or a lower bound of it. Two patches
-//! wait as one until they are due; then they are looked at closer, or taken apart. Elements that share
-//! a node are never far apart, and wait by what moves round that node alone ([`super::adjacent`]).
+//! Symbols: b upper bound of how far two motion clusters have approached each other so far
+//! ([`super::clusters`]), m; d lower bound of the distance of two tree nodes in these clusters, m.
+//!
+//! A due pair is either pushed again with its new distance, or refined into the pairs of its
+//! children, down to pairs of leaves. The candidates of due leaves are measured; they are either
+//! pushed again or given to the caller. Elements that share a node are never far apart, so they are
+//! pending by the deformation around that node ([`super::adjacent`]).
 
 use super::adjacent::PendingAdjacentPairs;
 use super::clusters::MotionClusters;
+use super::collision_mesh::CollisionMesh;
+use super::hierarchy::push_child_pairs;
 use super::kdop::KDops;
-pub use super::query::{CandidateKind, QueryKind};
-use super::query::{Pairs, primitives};
+use super::query::{CandidateKind, Candidates, QueryKind, push_candidates};
 use super::queue::PairQueue;
-use crate::collision::contact::topology::Topology;
 use crate::geometry::field::Field;
 use crate::platform::simd::InstructionSet;
 
-/// Where two elements wait.
+/// Two elements, and the queue that they are pending in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum PendingPair {
-    /// Leaves with their pair of zones.
-    MotionClusters { pair: [u32; 2], zones: usize },
-    /// A pair of a star with the node they share.
-    Star { pair: usize, node: usize },
+    /// Two leaves, and the pair of motion clusters that they are in.
+    Leaves { leaves: [u32; 2], clusters: usize },
+    /// A pair of elements that share a node.
+    Adjacent { pair: usize, node: usize },
 }
 
-/// Two elements, and how many pairs of primitives of each kind there were with them.
-type Leaves = (PendingPair, [usize; 2]);
+/// Two elements that are due, and the end of their candidates of each kind in the list of all due
+/// candidates.
+type DuePair = (PendingPair, [usize; 2]);
 
-/// How far film may come towards each other now, m.
+/// How far the film may approach in a query, m.
 struct Reach {
-    /// Of each pair of zones.
-    zones: Vec<f64>,
-    /// Round each node.
-    stars: Vec<f64>,
+    /// Of each pair of motion clusters.
+    clusters: Vec<f64>,
+    /// Around each node.
+    nodes: Vec<f64>,
 }
 
 impl Reach {
-    fn of(&self, waiter: PendingPair) -> f64 {
-        match waiter {
-            PendingPair::MotionClusters { zones, .. } => self.zones[zones],
-            PendingPair::Star { node, .. } => self.stars[node],
+    fn of(&self, pair: PendingPair) -> f64 {
+        match pair {
+            PendingPair::Leaves { clusters, .. } => self.clusters[clusters],
+            PendingPair::Adjacent { node, .. } => self.nodes[node],
         }
     }
 }
 
-/// Bins of a pair of zones.
-const RING: usize = 32;
-/// Bins after which all is looked for anew: what came near once and went far away need not be
-/// followed leaf by leaf for ever.
-const RENEWAL: f64 = 128.0;
+/// What [`CandidateScheduler::query_within`] looks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProximityQuery {
+    /// Largest displacement of any node until the next query, m.
+    pub max_displacement: f64,
+    /// Distance within which a candidate matters, m.
+    pub radius: f64,
+    /// Factor on the length for which a pair is pending. It is 1 except in tests that inject a fault.
+    pub bound_factor: f64,
+}
 
-/// Every pair of a film, each waiting for its time.
+/// Bins in the queue of a pair of motion clusters; a power of two. Chosen: a pair that is due beyond
+/// 32 bins is looked at early, which costs little.
+const QUEUE_BINS: usize = 32;
+
+/// Displacement, in bin widths, after which all pairs start again from the root. Chosen: pairs of
+/// leaves that were close once and are now far apart are then merged into pairs of large tree nodes
+/// again; without it their number would only grow.
+const RESTART_BINS: f64 = 128.0;
+
+/// All candidates of a film, pending until they may have met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CandidateScheduler {
-    sought: QueryKind,
-    zones: MotionClusters,
-    /// How far each pair of zones has come towards each other so far at most, m.
-    ways: Vec<f64>,
-    /// Patches waiting, by their pair of zones.
-    waiting: Vec<PairQueue>,
-    /// Elements that share a node.
-    stars: PendingAdjacentPairs,
-    width: f64,
-    /// Sum of the largest displacements since all was looked for anew, m.
-    path: f64,
-    boxes: KDops,
-    // Room for what is due.
-    later: Vec<[u32; 2]>,
-    next: Vec<[u32; 2]>,
-    apart: Vec<f32>,
-    leaves: Vec<Leaves>,
-    due: Pairs,
-    gaps: [Vec<f64>; 2],
+    kind: QueryKind,
+    instruction_set: InstructionSet,
+    clusters: MotionClusters,
+    /// b of each pair of motion clusters since the last restart, m.
+    approach_bounds: Vec<f64>,
+    /// Pending pairs of tree nodes, one queue per pair of motion clusters.
+    queues: Vec<PairQueue>,
+    /// Pending pairs of elements that share a node.
+    adjacent: PendingAdjacentPairs,
+    /// Width of the bins of the queues, m.
+    bin_width: f64,
+    /// Sum of the largest displacements since the last restart, m.
+    path_length: f64,
+    kdops: KDops,
+    // Scratch memory: pairs of tree nodes that are due, their children, and their separations.
+    due_nodes: Vec<[u32; 2]>,
+    children: Vec<[u32; 2]>,
+    separations: Vec<f32>,
+    // Scratch memory: pairs of elements that are due, their candidates, and the distances of these.
+    due_pairs: Vec<DuePair>,
+    candidates: Candidates,
+    distances: [Vec<f64>; 2],
 }
 
 impl CandidateScheduler {
-    /// A lookout that has looked at nothing yet. `width`: way below which no pair of patches is looked
-    /// at twice, m.
-    pub fn new(sought: QueryKind, topology: &Topology, width: f64) -> Self {
-        let zones = MotionClusters::new(&topology.patches);
-        let pairs = zones.pairs();
-        let mut lookout = Self {
-            sought,
-            zones,
-            ways: vec![0.0; pairs],
-            waiting: vec![PairQueue::new(width, RING, 0.0); pairs],
-            stars: PendingAdjacentPairs::new(topology.stars(sought)),
-            width,
-            path: 0.0,
-            boxes: KDops::default(),
-            later: Vec::new(),
-            next: Vec::new(),
-            apart: Vec::new(),
-            leaves: Vec::new(),
-            due: Pairs::default(),
-            gaps: <[Vec<f64>; 2]>::default(),
+    /// A scheduler in which every pair is due. No pair of tree nodes is looked at twice while the
+    /// film approaches by less than `bin_width` (m).
+    pub fn new(
+        kind: QueryKind,
+        mesh: &CollisionMesh,
+        bin_width: f64,
+        instruction_set: InstructionSet,
+    ) -> Self {
+        let clusters = MotionClusters::new(&mesh.hierarchy);
+        let pairs = clusters.pairs();
+        let mut scheduler = Self {
+            kind,
+            instruction_set,
+            clusters,
+            approach_bounds: vec![0.0; pairs],
+            queues: vec![PairQueue::new(bin_width, QUEUE_BINS, 0.0); pairs],
+            adjacent: PendingAdjacentPairs::new(mesh.adjacent_pairs(kind)),
+            bin_width,
+            path_length: 0.0,
+            kdops: KDops::default(),
+            due_nodes: Vec::new(),
+            children: Vec::new(),
+            separations: Vec::new(),
+            due_pairs: Vec::new(),
+            candidates: Candidates::default(),
+            distances: <[Vec<f64>; 2]>::default(),
         };
-        lookout.begin();
-        lookout
+        scheduler.restart();
+        scheduler
     }
 
-    /// Forgets all: every pair waits for nothing.
-    pub fn forget(&mut self) {
-        self.begin();
-        self.stars.begin();
+    /// Makes every pair due at once, as in a new scheduler.
+    pub fn reset(&mut self) {
+        self.restart();
+        self.adjacent.restart();
     }
 
-    /// Has every pair of zones wait for nothing.
-    fn begin(&mut self) {
-        self.path = 0.0;
-        self.ways.fill(0.0);
-        self.waiting.iter_mut().for_each(|bins| bins.begin(0.0));
-        let zones = self.zones.first()..2 * self.zones.first();
-        for one in zones.clone() {
-            for two in one..zones.end {
-                let pair = [one, two].map(|zone| u32::try_from(zone).expect("few zones"));
-                self.waiting[self.zones.pair(one, two)].put(0.0, pair);
+    /// Starts again from the pairs of motion clusters; each is due at once. Pairs of elements that
+    /// share a node stay pending.
+    fn restart(&mut self) {
+        self.path_length = 0.0;
+        self.approach_bounds.fill(0.0);
+        self.queues.iter_mut().for_each(|queue| queue.restart(0.0));
+        let clusters = self.clusters.tree_nodes();
+        for a in clusters.clone() {
+            for b in a..clusters.end {
+                let pair = [a, b].map(|index| u32::try_from(index).expect("few clusters"));
+                self.queues[self.clusters.pair_of(a, b)].push(0.0, pair);
             }
         }
     }
 
-    /// The film goes from one place of its nodes to another.
-    pub fn travel(&mut self, topology: &Topology, from: &Field, to: &Field) {
-        self.path += self.zones.travel(from, to, &mut self.ways);
-        self.stars.travel(&topology.edges, from, to);
-        self.stars.arrive();
+    /// Restarts when the film has moved far since the last restart.
+    fn restart_if_due(&mut self) {
+        if self.path_length > RESTART_BINS * self.bin_width {
+            self.restart();
+        }
     }
 
-    /// Looks at all pairs that could come together on the straight way from one place of all nodes to
-    /// another, and goes there: of those pairs `meet` is told. `gaps`: distances of pairs of one kind at
-    /// the first place, m.
-    pub fn pass(
+    /// Takes account of a motion of all nodes, without a query.
+    pub fn advance(&mut self, mesh: &CollisionMesh, from: &Field, to: &Field) {
+        self.path_length += self.clusters.add_approach_bounds(from, to, &mut self.approach_bounds);
+        self.adjacent.bound_motion(&mesh.topology.edges, from, to);
+        self.adjacent.commit_motion();
+    }
+
+    /// Calls `visit` with every candidate that can meet on the straight motion of all nodes from one
+    /// position to another, then takes account of that motion. `distances` appends the distances (m)
+    /// of candidates of one kind at the first position.
+    pub fn query_swept(
         &mut self,
-        topology: &Topology,
+        mesh: &CollisionMesh,
         [from, to]: [&Field; 2],
-        gaps: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        meet: impl FnMut(CandidateKind, [u32; 2]),
+        distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
+        visit: impl FnMut(CandidateKind, [u32; 2]),
     ) {
-        self.renew();
-        let mut reach = self.reach(0.0);
-        let largest = self.zones.travel(from, to, &mut reach.zones);
-        reach.stars.copy_from_slice(self.stars.travel(&topology.edges, from, to));
-        self.look(topology, from, &reach, gaps, meet);
-        self.path += largest;
-        for (way, reach) in self.ways.iter_mut().zip(reach.zones) {
-            *way += reach;
+        self.restart_if_due();
+        let mut reach = self.uniform_reach(0.0);
+        let max_displacement = self.clusters.add_approach_bounds(from, to, &mut reach.clusters);
+        reach.nodes.copy_from_slice(self.adjacent.bound_motion(&mesh.topology.edges, from, to));
+        self.collect(mesh, from, &reach, distances, visit);
+        self.path_length += max_displacement;
+        for (total, motion) in self.approach_bounds.iter_mut().zip(reach.clusters) {
+            *total += motion;
         }
-        self.stars.arrive();
+        self.adjacent.commit_motion();
+    }
+
+    /// Calls `visit` with every candidate whose distance (m), as `distances` gives it, is not above
+    /// zero at these positions (m).
+    pub fn query_now(
+        &mut self,
+        mesh: &CollisionMesh,
+        positions: &Field,
+        distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
+        visit: impl FnMut(CandidateKind, [u32; 2]),
+    ) {
+        self.restart_if_due();
+        let reach = self.uniform_reach(0.0);
+        self.collect(mesh, positions, &reach, distances, visit);
+    }
+
+    /// Calls `take` with every candidate that can come within `query.radius` of each other until the
+    /// next query, and its distance (m). The caller is then responsible for these candidates; they
+    /// are pending no longer.
+    pub fn query_within(
+        &mut self,
+        mesh: &CollisionMesh,
+        positions: &Field,
+        query: ProximityQuery,
+        mut distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
+        mut take: impl FnMut(CandidateKind, [u32; 2], f64),
+    ) {
+        let ProximityQuery { max_displacement, radius, bound_factor } = query;
+        let reach = 2.0 * max_displacement;
+        self.refine(mesh, positions, &self.uniform_reach(reach), radius, bound_factor);
+        self.measure(&mut distances);
+        let kinds = self.kind.candidate_kinds();
+        let mut start = [0; 2];
+        let due_pairs = core::mem::take(&mut self.due_pairs);
+        for (pair, end) in &due_pairs {
+            let of_kind = |kind: usize| &self.distances[kind][start[kind]..end[kind]];
+            let smallest =
+                of_kind(0).iter().chain(of_kind(1)).copied().fold(f64::INFINITY, f64::min);
+            let slack = bound_factor * (smallest - radius);
+            if slack > reach {
+                // A pair without candidates is never due again.
+                if slack == f64::INFINITY {
+                    start = *end;
+                    continue;
+                }
+                self.push(*pair, slack);
+            } else {
+                for kind in 0..2 {
+                    let Some(candidate_kind) = kinds[kind] else { continue };
+                    for index in start[kind]..end[kind] {
+                        take(
+                            candidate_kind,
+                            self.candidates[kind][index],
+                            self.distances[kind][index],
+                        );
+                    }
+                }
+            }
+            start = *end;
+        }
+        self.due_pairs = due_pairs;
     }
 
     /// The same reach (m) everywhere.
-    fn reach(&self, reach: f64) -> Reach {
-        Reach { zones: vec![reach; self.ways.len()], stars: vec![reach; self.stars.nodes()] }
+    fn uniform_reach(&self, reach: f64) -> Reach {
+        Reach {
+            clusters: vec![reach; self.approach_bounds.len()],
+            nodes: vec![reach; self.adjacent.nodes()],
+        }
     }
 
-    /// Has two elements wait for a length (m) more.
-    fn put(&mut self, waiter: PendingPair, length: f64) {
-        match waiter {
-            PendingPair::MotionClusters { pair, zones } => {
-                self.waiting[zones].put(self.ways[zones] + length, pair);
+    /// Makes two elements due after they have approached by `length` (m) more.
+    fn push(&mut self, pair: PendingPair, length: f64) {
+        match pair {
+            PendingPair::Leaves { leaves, clusters } => {
+                self.queues[clusters].push(self.approach_bounds[clusters] + length, leaves);
             }
-            PendingPair::Star { pair, node } => self.stars.put(node, pair, length),
+            PendingPair::Adjacent { pair, node } => self.adjacent.push(node, pair, length),
         }
     }
 
-    /// Looks at all pairs that are together now, at these places (m): of those `meet` is told.
-    pub fn now(
+    /// Calls `visit` with the candidates that are no farther apart than their reach. All pairs stay
+    /// pending.
+    fn collect(
         &mut self,
-        topology: &Topology,
-        places: &Field,
-        gaps: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        meet: impl FnMut(CandidateKind, [u32; 2]),
-    ) {
-        self.renew();
-        let reach = self.reach(0.0);
-        self.look(topology, places, &reach, gaps, meet);
-    }
-
-    /// Begins anew, now and then.
-    fn renew(&mut self) {
-        if self.path > RENEWAL * self.width {
-            self.begin();
-        }
-    }
-
-    /// Tells `meet` of the pairs that come together where film comes towards each other so far.
-    fn look(
-        &mut self,
-        topology: &Topology,
-        places: &Field,
+        mesh: &CollisionMesh,
+        positions: &Field,
         reach: &Reach,
-        mut gaps: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        mut meet: impl FnMut(CandidateKind, [u32; 2]),
+        mut distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
+        mut visit: impl FnMut(CandidateKind, [u32; 2]),
     ) {
-        self.take_apart(topology, places, reach, 0.0, 1.0);
-        self.ask(&mut gaps);
-        let couples = self.sought.couples();
-        let mut from = [0; 2];
-        let leaves = core::mem::take(&mut self.leaves);
-        for (waiter, to) in &leaves {
-            let (mut first, reach) = (f64::INFINITY, reach.of(*waiter));
+        self.refine(mesh, positions, reach, 0.0, 1.0);
+        self.measure(&mut distances);
+        let kinds = self.kind.candidate_kinds();
+        let mut start = [0; 2];
+        let due_pairs = core::mem::take(&mut self.due_pairs);
+        for (pair, end) in &due_pairs {
+            let (mut smallest, reach) = (f64::INFINITY, reach.of(*pair));
             for kind in 0..2 {
-                for at in from[kind]..to[kind] {
-                    let gap = self.gaps[kind][at];
-                    first = first.min(gap);
-                    if gap <= reach
-                        && let Some(couple) = couples[kind]
+                for index in start[kind]..end[kind] {
+                    let distance = self.distances[kind][index];
+                    smallest = smallest.min(distance);
+                    if distance <= reach
+                        && let Some(candidate_kind) = kinds[kind]
                     {
-                        meet(couple, self.due[kind][at]);
+                        visit(candidate_kind, self.candidates[kind][index]);
                     }
                 }
             }
-            if first < f64::INFINITY {
-                self.put(*waiter, first);
+            if smallest < f64::INFINITY {
+                self.push(*pair, smallest);
             }
-            from = *to;
+            start = *end;
         }
-        self.leaves = leaves;
+        self.due_pairs = due_pairs;
     }
 
-    /// The pairs of all patches that could come within `keep` (m) of each other while no node moves
-    /// farther than `ahead` (m) from these places (m): `take` is told of each, and its distance (m), and
-    /// sees to it from then on.
-    #[expect(clippy::too_many_arguments, reason = "one pass over what is due")]
-    pub fn fetch(
+    /// Measures the distances of the due candidates. NaN counts as touching.
+    fn measure(&mut self, distances: &mut impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>)) {
+        for (kind, candidate_kind) in self.kind.candidate_kinds().into_iter().enumerate() {
+            self.distances[kind].clear();
+            if let Some(candidate_kind) = candidate_kind {
+                distances(candidate_kind, &self.candidates[kind], &mut self.distances[kind]);
+                for distance in self.distances[kind].iter_mut().filter(|distance| distance.is_nan())
+                {
+                    *distance = f64::NEG_INFINITY;
+                }
+            }
+        }
+    }
+
+    /// Finds the pairs of elements that can come within `radius` (m) of each other while the film
+    /// approaches by `reach`, and collects their candidates. Due pairs of tree nodes that stay
+    /// farther apart are pushed again; the others are refined into pairs of children.
+    fn refine(
         &mut self,
-        topology: &Topology,
-        places: &Field,
-        ahead: f64,
-        keep: f64,
-        bounds: f64,
-        mut gaps: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        mut take: impl FnMut(CandidateKind, [u32; 2], f64),
-    ) {
-        let reach = 2.0 * ahead;
-        self.take_apart(topology, places, &self.reach(reach), keep, bounds);
-        self.ask(&mut gaps);
-        let couples = self.sought.couples();
-        let mut from = [0; 2];
-        let leaves = core::mem::take(&mut self.leaves);
-        for (waiter, to) in &leaves {
-            let of = |kind: usize| &self.gaps[kind][from[kind]..to[kind]];
-            let first = of(0).iter().chain(of(1)).copied().fold(f64::INFINITY, f64::min);
-            let free = bounds * (first - keep);
-            if free > reach {
-                // Leaves without pairs of primitives wait for nothing.
-                if free == f64::INFINITY {
-                    from = *to;
-                    continue;
-                }
-                self.put(*waiter, free);
-            } else {
-                for kind in 0..2 {
-                    let Some(couple) = couples[kind] else { continue };
-                    for at in from[kind]..to[kind] {
-                        take(couple, self.due[kind][at], self.gaps[kind][at]);
-                    }
-                }
-            }
-            from = *to;
-        }
-        self.leaves = leaves;
-    }
-
-    /// Asks how far what is due is apart.
-    fn ask(&mut self, gaps: &mut impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>)) {
-        for (kind, couple) in self.sought.couples().into_iter().enumerate() {
-            self.gaps[kind].clear();
-            if let Some(couple) = couple {
-                gaps(couple, &self.due[kind], &mut self.gaps[kind]);
-                // What is no number waits for nothing.
-                for gap in self.gaps[kind].iter_mut().filter(|gap| gap.is_nan()) {
-                    *gap = f64::NEG_INFINITY;
-                }
-            }
-        }
-    }
-
-    /// Takes pairs of patches that are due apart until each can wait; the leaves that are left, and
-    /// their primitives, are then due.
-    fn take_apart(
-        &mut self,
-        topology: &Topology,
-        places: &Field,
+        mesh: &CollisionMesh,
+        positions: &Field,
         reach: &Reach,
-        keep: f64,
-        bounds: f64,
+        radius: f64,
+        bound_factor: f64,
     ) {
-        self.leaves.clear();
-        self.due.iter_mut().for_each(Vec::clear);
-        self.boxes.fit(&topology.patches, places);
-        let path = InstructionSet::detect();
-        let Self { sought, ways, waiting, stars, boxes, due, later, next, apart, leaves, .. } =
-            self;
-        let first_leaf = topology.patches.leaves();
-        for (zones, bins) in waiting.iter_mut().enumerate() {
-            let (way, reach) = (ways[zones], reach.zones[zones]);
-            bins.take(way + reach, later);
-            // Row by row down the tree.
-            while !later.is_empty() {
-                boxes.separations(path, later, apart);
-                for (pair, apart) in later.drain(..).zip(&*apart) {
-                    let [a, b] = pair;
-                    if a != b {
-                        let free = bounds * (f64::from(*apart) - keep);
-                        // A place for patches that no patch is in is apart from everything.
-                        if free == f64::INFINITY {
-                            continue;
-                        }
-                        if free > reach + bins.width {
-                            bins.put(way + free, pair);
-                            continue;
-                        }
-                    }
-                    if a as usize >= first_leaf {
-                        if !topology.patches.share(a as usize, b as usize) {
-                            primitives(*sought, &topology.patches, a as usize, b as usize, due);
-                            let waiter = PendingPair::MotionClusters { pair, zones };
-                            leaves.push((waiter, [due[0].len(), due[1].len()]));
-                        }
-                    } else if a == b {
-                        next.extend([[2 * a, 2 * a], [2 * a + 1, 2 * a + 1], [2 * a, 2 * a + 1]]);
-                    } else {
-                        for a in [2 * a, 2 * a + 1] {
-                            next.extend([[a, 2 * b], [a, 2 * b + 1]]);
-                        }
-                    }
-                }
-                core::mem::swap(later, next);
-            }
+        self.due_pairs.clear();
+        self.candidates.iter_mut().for_each(Vec::clear);
+        self.kdops.fit(&mesh.hierarchy, positions);
+        for clusters in 0..self.queues.len() {
+            self.refine_clusters(mesh, clusters, reach.clusters[clusters], radius, bound_factor);
         }
-        stars.take(topology.stars(*sought), &reach.stars, |node, pair, own| {
-            for (due, own) in due.iter_mut().zip(own) {
-                due.extend_from_slice(own);
+        let Self { kind, adjacent, due_pairs, candidates, .. } = self;
+        adjacent.pop_due(mesh.adjacent_pairs(*kind), &reach.nodes, |node, pair, adjacent| {
+            for (candidates, adjacent) in candidates.iter_mut().zip(adjacent) {
+                candidates.extend_from_slice(adjacent);
             }
-            leaves.push((PendingPair::Star { pair, node }, [due[0].len(), due[1].len()]));
+            let ends = [candidates[0].len(), candidates[1].len()];
+            due_pairs.push((PendingPair::Adjacent { pair, node }, ends));
         });
     }
-}
 
-/// Every pair whose boxes are nearer than `radius` (m).
-pub fn nearer(
-    sought: QueryKind,
-    topology: &Topology,
-    boxes: &KDops,
-    radius: f64,
-    mut found: impl FnMut(CandidateKind, [u32; 2]),
-) {
-    let leaves = topology.patches.leaves();
-    let mut later = vec![[1_usize, 1]];
-    let mut pairs = Pairs::default();
-    while let Some([one, two]) = later.pop() {
-        if one != two && boxes.separation(one, two) > radius {
-            continue;
-        }
-        if one >= leaves {
-            primitives(sought, &topology.patches, one, two, &mut pairs);
-            for (couple, pairs) in sought.couples().into_iter().zip(&mut pairs) {
-                let Some(couple) = couple else { continue };
-                for pair in pairs.drain(..) {
-                    found(couple, pair);
+    /// The part of [`Self::refine`] for one pair of motion clusters.
+    fn refine_clusters(
+        &mut self,
+        mesh: &CollisionMesh,
+        clusters: usize,
+        reach: f64,
+        radius: f64,
+        bound_factor: f64,
+    ) {
+        let Self { kind, kdops, due_nodes, children, separations, due_pairs, candidates, .. } =
+            self;
+        let (approach, queue) = (self.approach_bounds[clusters], &mut self.queues[clusters]);
+        let first_leaf = mesh.hierarchy.first_leaf();
+        queue.pop_until(approach + reach, due_nodes);
+        // Each pass handles the children of the pass before: one row of the tree for pairs of one row.
+        while !due_nodes.is_empty() {
+            kdops.separations(self.instruction_set, due_nodes, separations);
+            for (pair, separation) in due_nodes.drain(..).zip(&*separations) {
+                let [a, b] = pair.map(|index| index as usize);
+                if a != b {
+                    let slack = bound_factor * (f64::from(*separation) - radius);
+                    // A tree node whose leaves are all empty is infinitely far from all others.
+                    if slack == f64::INFINITY {
+                        continue;
+                    }
+                    if slack > reach + queue.bin_width {
+                        queue.push(approach + slack, pair);
+                        continue;
+                    }
+                }
+                if a < first_leaf {
+                    push_child_pairs(pair, children);
+                } else if !mesh.hierarchy.share_mesh_node(a, b) {
+                    push_candidates(*kind, &mesh.hierarchy, a, b, candidates);
+                    let ends = [candidates[0].len(), candidates[1].len()];
+                    due_pairs.push((PendingPair::Leaves { leaves: pair, clusters }, ends));
                 }
             }
-        } else if one == two {
-            later.extend([[2 * one, 2 * one], [2 * one + 1, 2 * one + 1], [2 * one, 2 * one + 1]]);
-        } else {
-            for one in [2 * one, 2 * one + 1] {
-                later.extend([[one, 2 * two], [one, 2 * two + 1]]);
-            }
+            core::mem::swap(due_nodes, children);
         }
     }
 }

@@ -1,233 +1,232 @@
-//! Which pairs are near.
+//! The list of pairs that may be in contact in the next step.
 //!
 //! ```text
-//! looked at again when  path = path then + (d − o)/2     ([`crate::collision::broad_phase::scheduler`])
+//! a pair is measured again when   path length = path length then + (d − r)/2
 //! ```
 //!
-//! o: the distance at which a pair begins to matter. What is near follows from the places alone, up
-//! to pairs that are farther apart than they matter: no result depends on when it was looked for.
+//! Symbols: d gap of the pair when it was measured, r distance at which contact or adhesion begins, m.
+//! Two points approach each other by at most twice the largest displacement of any node.
+//!
+//! Each pair is in one of three structures: the candidate list, which is measured in every step, a
+//! queue of pending pairs, or the broad phase ([`crate::collision::broad_phase::scheduler`]). Pairs that
+//! matter are always in the list, whatever the history. Other pairs in the list exert no force. So no
+//! result depends on when a pair was measured.
 
-use super::contacts::Found;
-use super::distance_batch::{edge_gaps, element_gaps};
-use super::{CandidatePair, ContactModel, ContactState, Kind, Pair, at};
-use crate::collision::broad_phase::kdop::KDops;
+use super::model::{ContactModel, pair_kind};
+use super::pair::{CandidatePair, Pair, PairKind};
+use super::state::ContactState;
+use crate::collision::broad_phase::query::QueryKind;
 use crate::collision::broad_phase::queue::PairQueue;
-use crate::collision::broad_phase::scheduler::{
-    CandidateKind, CandidateScheduler, QueryKind, nearer,
-};
+use crate::collision::broad_phase::scheduler::{CandidateScheduler, ProximityQuery};
 use crate::geometry::field::Field;
+use crate::geometry::topology::Feature;
 
-/// Path of a bin of pairs waiting, as a share of the contact distance.
-const BIN: f64 = 0.1;
-/// Number of such bins.
-const BINS: usize = 1024;
-/// A pair that may be in contact within this path is near, as a share of the contact distance.
-const SOON: f64 = 0.25;
-/// A pair that cannot be in contact before this path is near no longer.
-const LEAVE: f64 = 0.75;
-/// Path between two looks at patches of film, as a share of the mean edge length.
-const AHEAD: f64 = 1.0 / 20.0;
-/// Path after which all is looked for anew, in mean edge lengths: what came near once and went far
-/// away need not be followed pair by pair for ever.
-const RENEW: f64 = 4.0;
+/// Width of a bin of the pending queues, as a share of the contact distance. Chosen: a pair is
+/// measured at most a tenth of the contact distance early.
+const PENDING_BIN_WIDTH: f64 = 0.1;
 
-/// What is near now, and what will have to be looked at when.
+/// Number of bins of a pending queue; a power of two. Chosen: together they span about a hundred
+/// contact distances of path length; a pair that is due later is measured early, which costs little.
+const PENDING_BINS: usize = 1024;
+
+/// A pair that can matter within this path length becomes a candidate; as a share of the contact
+/// distance. Chosen: below [`RELEASE_PATH`], so that pairs do not enter and leave again and again.
+const ADMISSION_PATH: f64 = 0.25;
+
+/// A candidate that cannot matter within this path length leaves the list; as a share of the contact
+/// distance. Chosen, see [`ADMISSION_PATH`].
+const RELEASE_PATH: f64 = 0.75;
+
+/// Smallest path length between two queries of the broad phase, as a share of the mean edge length.
+/// Chosen: longer intervals put more pairs into the queues, shorter ones query more often.
+const MIN_QUERY_INTERVAL: f64 = 1.0 / 20.0;
+
+/// Path length between two rebuilds of the list without history, in mean edge lengths. Chosen: pairs
+/// that were close once and are now far apart leave the queues then; without rebuilds their number
+/// would only grow.
+const REBUILD_PATH: f64 = 4.0;
+
+/// A feature within contact range of a node, found through one of the elements that contain it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FeatureHit {
+    /// The feature.
+    pub feature: Feature,
+    /// The node and the element.
+    pub pair: Pair,
+    /// Gap now, m.
+    pub gap: f64,
+    /// Gap at the update before, m.
+    pub previous_gap: f64,
+}
+
+/// Pairs that may be in contact in the next step, and when the others must be measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CandidateList {
-    /// Patches of film.
-    lookout: CandidateScheduler,
-    /// Where the film was when they were looked at, m.
-    seen: Field,
-    /// Path up to which that was enough, m.
-    enough: f64,
-    /// Pairs of nodes and elements, and of edges, waiting for the path.
-    singles: [PairQueue; 2],
-    /// Pairs looked at every step, in order.
-    pub near: Vec<CandidatePair>,
-    /// Smallest distance of any pair nearer than it is held apart, m; infinite where there is none.
+    /// The broad phase: pairs that are far apart.
+    scheduler: CandidateScheduler,
+    /// Positions at its last query, m.
+    query_positions: Field,
+    /// Path length up to which its last query is valid, m.
+    query_valid_until: f64,
+    /// Pending pairs of nodes and elements, and of edges, due at a path length.
+    pending: [PairQueue; 2],
+    /// Pairs that are measured in every step, in the order of [`Pair`].
+    pub candidates: Vec<CandidatePair>,
+    /// Smallest gap of the pairs closer than their contact distance, m; infinite if there is none.
+    /// Pairs beyond the contact distance are not considered.
     pub smallest_gap: f64,
-    /// Whether contact or a plate pushed when forces were last asked for, or may have.
-    pub pushed: bool,
-    // Room for pairs, their distances, and what a node has found.
+    /// Whether contact or a plate may have exerted a force at the last update; `true` before the first.
+    pub contact_active: bool,
+    // Scratch memory: pairs, their gaps, and the features within range of a node.
     due: Vec<[u32; 2]>,
     pub(super) gaps: Vec<f64>,
-    pub(super) found: Vec<Found>,
+    pub(super) hits: Vec<FeatureHit>,
 }
 
-/// Place of a kind of pairs among the singles.
-fn place(kind: Kind) -> usize {
+/// Index of a kind of pair in [`CandidateList::pending`].
+fn queue_index(kind: PairKind) -> usize {
     match kind {
-        Kind::NodeTriangle => 0,
-        Kind::EdgeEdge => 1,
-    }
-}
-
-fn kind_of(couple: CandidateKind) -> Kind {
-    if couple == CandidateKind::EdgeEdge { Kind::EdgeEdge } else { Kind::NodeTriangle }
-}
-
-impl CandidateList {
-    /// Has looked at nothing yet; the film is at these places (m), the path so long (m).
-    fn new(law: &ContactModel, places: &Field, path: f64) -> Self {
-        let width = 0.5 * AHEAD * law.edge_length;
-        let bins = || PairQueue::new(BIN * law.distance, BINS, path);
-        Self {
-            lookout: CandidateScheduler::new(QueryKind::Collision, &law.topology, width),
-            seen: places.clone(),
-            enough: f64::NEG_INFINITY,
-            singles: [bins(), bins()],
-            near: Vec::new(),
-            smallest_gap: f64::INFINITY,
-            pushed: true,
-            due: Vec::new(),
-            gaps: Vec::new(),
-            found: Vec::new(),
-        }
-    }
-
-    /// Forgets what is near; keeps the room it took.
-    fn forget(&mut self, places: &Field, path: f64) {
-        self.lookout.forget();
-        self.seen.copy_from(places);
-        self.enough = f64::NEG_INFINITY;
-        self.singles.iter_mut().for_each(|bins| bins.begin(path));
-        self.near.clear();
+        PairKind::NodeElement => 0,
+        PairKind::EdgeEdge => 1,
     }
 }
 
 impl ContactModel {
-    /// Path after which a pair this far apart (m) may matter, m.
-    fn free_path(&self, kind: Kind, gap: f64) -> f64 {
-        let reach = match kind {
-            Kind::NodeTriangle => self.adhesion.range,
-            Kind::EdgeEdge => 0.0,
+    /// Path length until a pair with this gap (m) can matter, m; negative if it may matter already.
+    fn free_path_length(&self, kind: PairKind, gap: f64) -> f64 {
+        let adhesion_range = match kind {
+            PairKind::NodeElement => self.adhesion.range,
+            PairKind::EdgeEdge => 0.0,
         };
-        0.5 * self.bounds * (gap - self.distance_of(kind) - reach)
+        0.5 * self.bound_factor * (gap - self.distance_of(kind) - adhesion_range)
+    }
+}
+
+impl CandidateList {
+    /// The list at these positions (m) and this path length (m).
+    pub fn build(model: &ContactModel, positions: &Field, path_length: f64) -> Self {
+        let bin_width = 0.5 * MIN_QUERY_INTERVAL * model.edge_length;
+        let queue =
+            || PairQueue::new(PENDING_BIN_WIDTH * model.distance, PENDING_BINS, path_length);
+        let mut list = Self {
+            scheduler: CandidateScheduler::new(
+                QueryKind::Collision,
+                &model.mesh,
+                bin_width,
+                model.instruction_set,
+            ),
+            query_positions: positions.clone(),
+            query_valid_until: f64::NEG_INFINITY,
+            pending: [queue(), queue()],
+            candidates: Vec::new(),
+            smallest_gap: f64::INFINITY,
+            contact_active: true,
+            due: Vec::new(),
+            gaps: Vec::new(),
+            hits: Vec::new(),
+        };
+        list.collect(model, positions, [path_length, path_length]);
+        list
     }
 
-    /// Distance of a pair at these places (m), m.
-    fn gap(&self, pair: Pair, places: &Field) -> f64 {
-        pair.closest(&at(places, pair.nodes(&self.topology))).squared.sqrt()
+    /// Removes all pairs from list and queues; the broad phase starts again. Memory is kept.
+    fn reset(&mut self, positions: &Field, path_length: f64) {
+        self.scheduler.reset();
+        self.query_positions.copy_from(positions);
+        self.query_valid_until = f64::NEG_INFINITY;
+        self.pending.iter_mut().for_each(|queue| queue.restart(path_length));
+        self.candidates.clear();
     }
 
-    /// Calls `found` with every pair nearer than `radius` (m), and its distance (m).
-    pub fn pairs_within(&self, places: &Field, radius: f64, mut found: impl FnMut(Pair, f64)) {
-        let boxes = KDops::new(&self.topology.patches, places);
-        nearer(QueryKind::Collision, &self.topology, &boxes, radius, |couple, [first, second]| {
-            let pair = Pair { kind: kind_of(couple), first, second };
-            let gap = self.gap(pair, places);
-            if gap < radius && (self.edges || pair.kind == Kind::NodeTriangle) {
-                found(pair, gap);
-            }
-        });
-    }
-
-    /// Adds the distances (m) of pairs of one kind at these places (m) to `gaps`; edges that do not meet
-    /// are infinitely far apart.
-    fn gaps(&self, places: &Field, kind: Kind, pairs: &[[u32; 2]], gaps: &mut Vec<f64>) {
-        match kind {
-            Kind::NodeTriangle => element_gaps(self.path, &self.topology, places, pairs, gaps),
-            Kind::EdgeEdge if self.edges => {
-                edge_gaps(self.path, &self.topology, places, pairs, gaps);
-            }
-            Kind::EdgeEdge => gaps.resize(gaps.len() + pairs.len(), f64::INFINITY),
-        }
-    }
-
-    /// Prepares for a step in which no node moves farther than `way` (m): fetches the pairs that could
-    /// come near.
-    pub fn prepare(
-        &self,
-        places: &Field,
-        meeting: &mut ContactState,
-        search: &mut CandidateList,
-        way: f64,
+    /// Prepares for a step in which no node moves by more than `max_displacement` (m): adds the pairs
+    /// that can come into contact, and adds `max_displacement` to the path length.
+    pub fn prepare_step(
+        &mut self,
+        model: &ContactModel,
+        positions: &Field,
+        state: &mut ContactState,
+        max_displacement: f64,
     ) {
-        let (path, until) = (meeting.path, meeting.path + way);
-        meeting.path = until;
+        let (from, to) = (state.path_length, state.path_length + max_displacement);
+        state.path_length = to;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let renewals = 1 + (until / (RENEW * self.edge_length)) as u64;
-        if renewals > meeting.searches {
-            meeting.searches = renewals;
-            search.forget(places, path);
+        let rebuilds = 1 + (to / (REBUILD_PATH * model.edge_length)) as u64;
+        if rebuilds > state.broad_phase_rebuilds {
+            state.broad_phase_rebuilds = rebuilds;
+            self.reset(positions, from);
         }
-        self.fetch(places, [path, until], search);
+        self.collect(model, positions, [from, to]);
     }
 
-    /// What is near at these places (m), the path being so long (m).
-    pub fn look(&self, places: &Field, path: f64) -> CandidateList {
-        let mut search = CandidateList::new(self, places, path);
-        self.fetch(places, [path, path], &mut search);
-        search
-    }
-
-    /// Fetches what may come near while the path goes from one length to another (m).
-    fn fetch(&self, places: &Field, [path, until]: [f64; 2], search: &mut CandidateList) {
-        let before = search.near.len();
-        let soon = until + SOON * self.distance;
-        let CandidateList { lookout, singles, near, due, gaps, .. } = search;
-        let mut sort =
-            |bins: &mut [PairQueue; 2], kind: Kind, [first, second]: [u32; 2], gap: f64| {
-                let due = path + self.free_path(kind, gap);
-                if due > soon {
-                    bins[place(kind)].put(due, [first, second]);
+    /// Adds the pairs that can matter while the path length grows from one value to another (m).
+    fn collect(&mut self, model: &ContactModel, positions: &Field, [from, to]: [f64; 2]) {
+        let before = self.candidates.len();
+        let admission_limit = to + ADMISSION_PATH * model.distance;
+        let Self { scheduler, pending, candidates, due, gaps, .. } = self;
+        let mut admit_or_defer =
+            |pending: &mut [PairQueue; 2], kind: PairKind, [first, second]: [u32; 2], gap: f64| {
+                let due = from + model.free_path_length(kind, gap);
+                if due > admission_limit {
+                    pending[queue_index(kind)].push(due, [first, second]);
                 } else {
-                    near.push(CandidatePair { pair: Pair { kind, first, second }, gap });
+                    candidates.push(CandidatePair { pair: Pair { kind, first, second }, gap });
                 }
             };
-        for kind in [Kind::NodeTriangle, Kind::EdgeEdge] {
+        for kind in PairKind::ALL {
             due.clear();
             gaps.clear();
-            singles[place(kind)].take(until, due);
-            self.gaps(places, kind, due, gaps);
+            pending[queue_index(kind)].pop_until(to, due);
+            model.append_gaps(positions, kind, due, gaps);
             for (pair, gap) in due.iter().zip(&*gaps) {
-                sort(singles, kind, *pair, *gap);
+                admit_or_defer(pending, kind, *pair, *gap);
             }
         }
-        let ahead = (AHEAD * self.edge_length).max(2.0 * (until - path));
-        if until > search.enough {
-            lookout.travel(&self.topology, &search.seen, places);
-            search.seen.copy_from(places);
-            search.enough = path + ahead;
-            lookout.fetch(
-                &self.topology,
-                places,
-                ahead,
-                self.distance + self.adhesion.range,
-                self.bounds,
-                |couple, pairs, gaps| self.gaps(places, kind_of(couple), pairs, gaps),
-                |couple, pair, gap| sort(singles, kind_of(couple), pair, gap),
+        let max_displacement = (MIN_QUERY_INTERVAL * model.edge_length).max(2.0 * (to - from));
+        if to > self.query_valid_until {
+            scheduler.advance(&model.mesh, &self.query_positions, positions);
+            self.query_positions.copy_from(positions);
+            self.query_valid_until = from + max_displacement;
+            scheduler.query_within(
+                &model.mesh,
+                positions,
+                ProximityQuery {
+                    max_displacement,
+                    radius: model.distance + model.adhesion.range,
+                    bound_factor: model.bound_factor,
+                },
+                |kind, pairs, gaps| model.append_gaps(positions, pair_kind(kind), pairs, gaps),
+                |kind, pair, gap| admit_or_defer(pending, pair_kind(kind), pair, gap),
             );
         }
-        let near = &mut search.near;
-        if near.len() > before {
-            near[before..].sort_unstable_by_key(|own| own.pair);
-            // Two runs in order: merged in one pass.
-            near.sort_by_key(|own| own.pair);
+        let candidates = &mut self.candidates;
+        if candidates.len() > before {
+            candidates[before..].sort_unstable_by_key(|candidate| candidate.pair);
+            // Two sorted runs: the stable sort merges them in one pass.
+            candidates.sort_by_key(|candidate| candidate.pair);
         }
     }
 
-    /// Distances of the near pairs at these places (m), in their order.
-    pub(super) fn measure(&self, places: &Field, search: &mut CandidateList) {
-        let CandidateList { near, due, gaps, .. } = search;
+    /// Measures the gaps of the candidates at these positions (m), in their order, into `gaps`.
+    pub(super) fn measure(&mut self, model: &ContactModel, positions: &Field) {
+        let Self { candidates, due, gaps, .. } = self;
         gaps.clear();
-        for kind in [Kind::NodeTriangle, Kind::EdgeEdge] {
+        for kind in PairKind::ALL {
             due.clear();
-            let own = near.iter().filter(|own| own.pair.kind == kind);
-            due.extend(own.map(|own| [own.pair.first, own.pair.second]));
-            self.gaps(places, kind, due, gaps);
+            let of_kind = candidates.iter().filter(|candidate| candidate.pair.kind == kind);
+            due.extend(of_kind.map(|candidate| [candidate.pair.first, candidate.pair.second]));
+            model.append_gaps(positions, kind, due, gaps);
         }
     }
 
-    /// Lets the near pairs go that cannot matter for a while.
-    pub(super) fn let_go(&self, path: f64, search: &mut CandidateList) {
-        let CandidateList { singles, near, .. } = search;
-        near.retain(|own| {
-            let free = self.free_path(own.pair.kind, own.gap);
-            let stays = free < LEAVE * self.distance;
+    /// Moves candidates that cannot matter soon from the list to the pending queues.
+    pub(super) fn release_distant(&mut self, model: &ContactModel, path_length: f64) {
+        let Self { pending, candidates, .. } = self;
+        candidates.retain(|candidate| {
+            let pair = candidate.pair;
+            let free = model.free_path_length(pair.kind, candidate.gap);
+            let stays = free < RELEASE_PATH * model.distance;
             if !stays {
-                let pair = [own.pair.first, own.pair.second];
-                singles[place(own.pair.kind)].put(path + free, pair);
+                pending[queue_index(pair.kind)].push(path_length + free, [pair.first, pair.second]);
             }
             stays
         });
@@ -240,46 +239,48 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::collision::contact::topology::Topology;
+    use crate::collision::broad_phase::collision_mesh::CollisionMesh;
+    use crate::platform::simd::InstructionSet;
 
     proptest! {
-        /// Whatever the film does, no pair comes within the contact distance unseen.
+        /// Whatever the motion, every pair within the contact distance is a candidate.
         #[test]
-        fn what_may_touch_is_near(
-            places in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18),
-            ways in prop::collection::vec(
+        fn no_pair_in_contact_is_missing_from_the_candidates(
+            positions in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18),
+            motions in prop::collection::vec(
                 prop::collection::vec(prop::array::uniform3(-0.1..0.1_f64), 18),
                 1..40,
             ),
         ) {
             let triangles =
                 [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12], [13, 14, 15], [13, 16, 17]];
-            let law = ContactModel::new(Topology::new(18, &triangles), 0.05, 1.0, 0.7);
-            let mut x: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
-            let mut meeting = ContactState { searches: 1, ..ContactState::default() };
-            let mut search = law.look(&Field::of(&x), 0.0);
-            for way in ways {
+            let mesh = CollisionMesh::new(18, &triangles);
+            let model = ContactModel::new(mesh, 0.05, 1.0, 0.7, InstructionSet::detect());
+            let mut x: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
+            let mut state = ContactState { broad_phase_rebuilds: 1, ..ContactState::default() };
+            let mut list = CandidateList::build(&model, &Field::of(&x), 0.0);
+            for motion in motions {
                 let from = Field::of(&x);
-                let longest = way.iter().map(|w| Vector3::from(*w).norm()).fold(0.0, f64::max);
-                law.prepare(&from, &mut meeting, &mut search, longest);
-                for (x, way) in x.iter_mut().zip(way) {
-                    *x += Vector3::from(way);
+                let longest = motion.iter().map(|u| Vector3::from(*u).norm()).fold(0.0, f64::max);
+                list.prepare_step(&model, &from, &mut state, longest);
+                for (x, u) in x.iter_mut().zip(motion) {
+                    *x += Vector3::from(u);
                 }
                 let to = Field::of(&x);
-                let mut unseen = Vec::new();
-                law.pairs_within(&to, law.distance, |pair, gap| {
-                    if gap < law.distance_of(pair.kind)
-                        && search.near.binary_search_by_key(&pair, |own| own.pair).is_err()
+                let mut missing = Vec::new();
+                model.pairs_within(&to, model.distance, |pair, gap| {
+                    if gap < model.distance_of(pair.kind)
+                        && list.candidates.binary_search_by_key(&pair, |candidate| candidate.pair).is_err()
                     {
-                        unseen.push(pair);
+                        missing.push(pair);
                     }
                 });
-                prop_assert!(unseen.is_empty(), "{unseen:?}");
-                law.measure(&to, &mut search);
-                for (own, gap) in search.near.iter_mut().zip(&search.gaps) {
-                    own.gap = *gap;
+                prop_assert!(missing.is_empty(), "{missing:?}");
+                list.measure(&model, &to);
+                for (candidate, gap) in list.candidates.iter_mut().zip(&list.gaps) {
+                    candidate.gap = *gap;
                 }
-                law.let_go(meeting.path, &mut search);
+                list.release_distant(&model, state.path_length);
             }
         }
     }

@@ -1,213 +1,203 @@
-//! Keeps film from passing through film in the step to come.
+//! Prevents film from passing through film in the drift to come.
 //!
 //! ```text
-//! approach  w = n·Σ w_i v_i < u      impulse  j = (u − w)/(Σ w_i² n·P n/m_i)      v_i += j w_i P n/m_i
-//! speed a pair must have at least   u = max(−w⁻, 0) first, then −s (d − f)/Δt
+//! u = −s (d − f)/Δt         and in the first iteration at least max(−w⁻, 0)
 //! ```
 //!
-//! Symbols: w⁻ the approach before the kick; s the share of its distance d above a floor f a pair may
-//! still close in the step Δt: none for some rounds; where many pairs press each other and plates close
-//! on them that has no solution, and they may close by half and more. Below the floor, a hundredth of
-//! the contact distance, they part again. Momentum is kept but where a support holds.
+//! Symbols: u speed of separation that an impulse gives a pair, w⁻ its speed of separation before the
+//! kick, m/s; d distance of the pair, f a floor, m; Δt duration of the drift, s; s share of d − f that
+//! the pair may still lose in the drift.
 //!
-//! An impulse is a force over one kick, so what it takes is its trapezoid, −½ J·(v⁻ + v⁺): nothing where
-//! it only bears what presses on a pair at rest, and nothing where a pair parts as fast as it came. So
-//! film too fast for the contact force bounces off, and only what more pairs than one want of a node at
-//! once costs energy.
+//! First the approach is reflected: film too fast for the contact force bounces off without loss. Then
+//! all candidates are tested again and again, because an impulse on one pair can make another one
+//! collide. Where many pairs press each other, s = 0 for all of them has no solution, so s grows with
+//! the number of iterations. Below the floor pairs separate again. If an impulse along the line
+//! between the closest points does not help, the pair gets a common velocity. So energy is dissipated
+//! only where several pairs act on a node at once, or where reflection does not suffice.
 
 use nalgebra::Vector3;
 
-use super::ccd::clear_until;
-use super::{CandidatePair, ContactModel, ContactState, Pair, at};
-use crate::geometry::field::Field;
-use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::supports::Supports;
+use super::ccd::{relative_motion, safe_time};
+use super::collision_step::{CollisionStep, MIN_KEPT_SHARE};
+use super::model::ContactModel;
+use super::pair::{CandidatePair, Pair, vectors_of};
+use super::state::ContactState;
 
-/// A pair that cannot close more than this share of its distance needs no sweep.
-const SAFE: f64 = 0.8;
-/// Share of its distance a pair keeps in any step.
-pub(super) const KEPT: f64 = 0.1;
-/// Rounds of impulses before relative motion is taken out altogether.
-const ROUNDS: u32 = 60;
-/// Rounds in a turn, at most.
-const MOST_ROUNDS: u32 = 120;
+/// A pair that cannot lose this share of its distance is safe without continuous collision
+/// detection. Chosen: below 1 − [`MIN_KEPT_SHARE`] = 0.9.
+const MAX_UNTESTED_APPROACH: f64 = 0.8;
 
-/// Least distance pairs are left, as a share of the contact distance.
-const FLOOR: f64 = 0.01;
-/// Share of what is missing to it by which a pair parts in a step.
-const OUT: f64 = 0.2;
+/// How far a pair can approach at most, in units of the largest displacement D of any node. A node
+/// moves by at most ¾ D + 3 · ¼ D = 1.5 D relative to the mean of the pair's four nodes, so both
+/// primitives together move by at most 3 D; the rest covers rounding.
+const MAX_APPROACH_PER_DISPLACEMENT: f64 = 3.01;
 
-/// Share of its distance a pair may close after an impulse, by the turn and the round in it.
-fn closing(turn: u32, round: u32) -> f64 {
-    match (turn, round) {
-        (0, 0..12) => 0.0,
-        (0..8, 0..36) => 0.5,
-        _ => 0.8,
+/// Largest number of iterations over all candidates in one alternation of pairs and plates. Chosen:
+/// it bounds the work in a step that has no solution.
+const MAX_ITERATIONS: u32 = 120;
+
+/// Iterations with restitution impulses. In the others pairs get a common velocity. Chosen: half of
+/// [`MAX_ITERATIONS`].
+const MAX_RESTITUTION_ITERATIONS: u32 = 60;
+
+/// Iterations, in the first alternation, in which pairs must not approach at all (s = 0). Chosen:
+/// where many pairs press each other, s = 0 has no solution, so it is tried only for a while.
+const NO_APPROACH_ITERATIONS: u32 = 12;
+
+/// Iterations after which pairs may lose more than [`MEDIUM_CLOSING_SHARE`] of their distance. Chosen:
+/// it leaves 24 iterations with the larger share before pairs get a common velocity.
+const MEDIUM_CLOSING_ITERATIONS: u32 = 36;
+
+/// Alternations in which [`MEDIUM_CLOSING_ITERATIONS`] applies. In later ones pairs may lose
+/// [`LARGE_CLOSING_SHARE`] from the first iteration on. Chosen: it leaves most of the alternations of a
+/// step to the share that is easiest to satisfy.
+const MEDIUM_CLOSING_ALTERNATIONS: u32 = 8;
+
+/// s after the iterations without approach. Chosen: between none and [`LARGE_CLOSING_SHARE`].
+const MEDIUM_CLOSING_SHARE: f64 = 0.5;
+
+/// s in all later iterations. Chosen: below 1 − [`MIN_KEPT_SHARE`], so that such a pair passes
+/// continuous collision detection.
+const LARGE_CLOSING_SHARE: f64 = 0.8;
+
+/// Distance f below which pairs separate again, as a share of the contact distance. Chosen: without a
+/// floor the distance of a pair that many others press could shrink by nine tenths in every step.
+const FLOOR_DISTANCE: f64 = 0.01;
+
+/// Share of f − d by which a pair below the floor separates in a step. Chosen: the pair returns to the
+/// floor over several steps, so impulses stay small.
+const SEPARATION_SHARE: f64 = 0.2;
+
+/// Share s of its distance above the floor that a pair may still lose after an impulse.
+fn closing_share(alternation: u32, iteration: u32) -> f64 {
+    if alternation == 0 && iteration < NO_APPROACH_ITERATIONS {
+        0.0
+    } else if alternation < MEDIUM_CLOSING_ALTERNATIONS && iteration < MEDIUM_CLOSING_ITERATIONS {
+        MEDIUM_CLOSING_SHARE
+    } else {
+        LARGE_CLOSING_SHARE
     }
 }
 
-/// What the guard changed in a step: node and impulse, N s.
-pub type Impulses = Vec<(usize, Vector3<f64>)>;
+/// The speed of separation that an impulse gives a pair.
+struct TargetSpeed {
+    /// Whether the approach before the kick is reflected.
+    reflects: bool,
+    /// Share s that a pair above the floor may lose.
+    closing_share: f64,
+    /// Floor f, m.
+    floor: f64,
+    /// Duration of the drift, s.
+    length: f64,
+}
 
-/// Energy impulses took from film whose velocities (m/s) were `before` the kick and are `after`
-/// them, J.
-pub fn taken(stopped: &Impulses, before: &Field, after: &Field) -> f64 {
-    let work =
-        |(node, push): &(usize, Vector3<f64>)| push.dot(&(before.get(*node) + after.get(*node)));
-    -0.5 * stopped.iter().map(work).sum::<f64>()
+impl TargetSpeed {
+    /// u (m/s) at a gap (m) and a speed of separation before the kick (m/s).
+    fn at(&self, gap: f64, speed_before: f64) -> f64 {
+        let reflected = if self.reflects { (-speed_before).max(0.0) } else { f64::MIN };
+        let share = if gap > self.floor { self.closing_share } else { SEPARATION_SHARE };
+        reflected.max(share * (self.floor - gap) / self.length)
+    }
 }
 
 impl ContactModel {
-    /// Takes out of the velocities (m/s) whatever would carry a near pair through itself in a drift of
-    /// `length` (s) in which no node moves farther than `way` (m), and adds the impulses to `stopped`.
-    /// `before`: velocities before the kick, m/s;
-    /// `turn`: how often plates have changed velocities in this step.
+    /// Changes the velocities of `step` by impulses until no candidate loses more than nine tenths of
+    /// its distance in the drift.
+    ///
+    /// `max_displacement` (m): upper bound of the displacement of any node before the first impulse of
+    /// this call. `alternation`: how many times pairs and plates have been resolved in this step. The
+    /// number of impulses is added to `state`.
     ///
     /// # Errors
-    /// The pair that could not be kept apart.
-    #[expect(clippy::too_many_arguments, reason = "one pass over what moves")]
-    pub fn guard(
+    /// A pair that still collides after the last iteration.
+    pub fn resolve_collisions(
         &self,
-        model: &FilmModel,
-        supports: &Supports,
-        places: &Field,
-        before: &Field,
-        velocities: &mut Field,
-        length: f64,
-        near: &[CandidatePair],
-        way: f64,
-        meeting: &mut ContactState,
-        turn: u32,
-        stopped: &mut Impulses,
+        step: &mut CollisionStep<'_>,
+        candidates: &[CandidatePair],
+        max_displacement: f64,
+        alternation: u32,
+        state: &mut ContactState,
     ) -> Result<(), Pair> {
-        // Each of two sides moves by at most 1.5 ways relative to the mean of the four nodes.
-        let calm = SAFE * self.bounds / 3.01;
-        for round in 0..MOST_ROUNDS {
-            let mut touched = None;
-            for own in near {
-                // No two nodes of it can have that much relative motion; while nothing is changed.
-                if own.gap * calm > way && touched.is_none() && round == 0 {
+        let safe_share = MAX_UNTESTED_APPROACH * self.bound_factor / MAX_APPROACH_PER_DISPLACEMENT;
+        let mut collided = None;
+        for iteration in 0..MAX_ITERATIONS {
+            collided = None;
+            for candidate in candidates {
+                // `max_displacement` holds only until the first impulse.
+                if candidate.gap * safe_share > max_displacement
+                    && collided.is_none()
+                    && iteration == 0
+                {
                     continue;
                 }
-                let nodes = own.pair.nodes(&self.topology);
-                let moves = at(velocities, nodes).map(|velocity| velocity * length);
-                let x = at(places, nodes);
-                let until = self.clear_until(own.pair, own.gap, &x, &moves);
-                if until >= 1.0 {
-                    continue;
-                }
-                touched = Some(own.pair);
-                meeting.impulses += 1;
-                let kicked = at(velocities, nodes);
-                let share = closing(turn, round);
-                let floor = FLOOR * self.distance_of(own.pair.kind);
-                let least = |gap: f64, came: f64| {
-                    let back = if turn == 0 && round == 0 { (-came).max(0.0) } else { f64::MIN };
-                    let share = if gap > floor { share } else { OUT };
-                    back.max(share * (floor - gap) / length)
-                };
-                // Where it only turns into the other on the way, the line between them there counts.
-                let there = || core::array::from_fn(|k| x[k] + moves[k] * until);
-                let mut bounced = |x: &[Vector3<f64>; 4]| {
-                    bounce(model, supports, own.pair, nodes, x, before, least, velocities)
-                };
-                if round >= ROUNDS || !(bounced(&x) || bounced(&there())) {
-                    stick(model, supports, nodes, velocities);
-                }
-                for (node, kicked) in nodes.iter().zip(kicked) {
-                    let push =
-                        (velocities.get(*node as usize) - kicked) * model.mass[*node as usize];
-                    stopped.push((*node as usize, push));
+                if self.resolve_collision(step, *candidate, [alternation, iteration]) {
+                    collided = Some(candidate.pair);
+                    state.collision_impulses += 1;
                 }
             }
-            if touched.is_none() {
+            if collided.is_none() {
                 return Ok(());
             }
-            if round + 1 == MOST_ROUNDS
-                && let Some(pair) = touched
-            {
-                return Err(pair);
-            }
         }
-        Ok(())
+        collided.map_or(Ok(()), Err)
     }
 
-    /// Part of the motion, 0 to 1, until which a pair certainly keeps its share of the distance.
-    fn clear_until(
+    /// Tests one candidate; if it collides in the drift, applies an impulse. Returns whether it
+    /// collides.
+    fn resolve_collision(
+        &self,
+        step: &mut CollisionStep<'_>,
+        candidate: CandidatePair,
+        [alternation, iteration]: [u32; 2],
+    ) -> bool {
+        let CandidatePair { pair, gap } = candidate;
+        let nodes = pair.nodes(&self.mesh.topology);
+        let velocities = vectors_of(step.velocities, nodes);
+        let displacements = velocities.map(|velocity| velocity * step.length);
+        let x = vectors_of(step.positions, nodes);
+        let time = self.safe_time_of_pair(pair, gap, &x, &displacements);
+        if time >= 1.0 {
+            return false;
+        }
+        let target = TargetSpeed {
+            reflects: alternation == 0 && iteration == 0,
+            closing_share: closing_share(alternation, iteration),
+            floor: FLOOR_DISTANCE * self.distance_of(pair.kind),
+            length: step.length,
+        };
+        let mut restitution = |x: &[Vector3<f64>; 4]| {
+            step.restitution_impulse(pair, nodes, x, |gap, speed| target.at(gap, speed))
+        };
+        // A pair that only rotates into contact does not approach along its closest points now; the line
+        // between the closest points at the end of the safe time counts then.
+        let x_later = || core::array::from_fn(|k| x[k] + displacements[k] * time);
+        if iteration >= MAX_RESTITUTION_ITERATIONS || !(restitution(&x) || restitution(&x_later()))
+        {
+            step.inelastic_impulse(nodes);
+        }
+        for (node, before) in nodes.iter().zip(velocities) {
+            let node = *node as usize;
+            let impulse = (step.velocities.get(node) - before) * step.film.mass[node];
+            step.impulses.push((node, impulse));
+        }
+        true
+    }
+
+    /// Share of the motion, 0 to 1, during which a pair certainly keeps [`MIN_KEPT_SHARE`] of its gap
+    /// (m).
+    fn safe_time_of_pair(
         &self,
         pair: Pair,
         gap: f64,
         x: &[Vector3<f64>; 4],
-        moves: &[Vector3<f64>; 4],
+        displacements: &[Vector3<f64>; 4],
     ) -> f64 {
-        let left = pair.left();
-        let mean = (moves[0] + moves[1] + moves[2] + moves[3]) * 0.25;
-        let largest = |side: &[Vector3<f64>]| {
-            side.iter().map(|u| (u - mean).norm_squared()).fold(0.0, f64::max).sqrt()
-        };
-        let speed = largest(&moves[..left]) + largest(&moves[left..]);
-        if speed < SAFE * gap * self.bounds {
+        let nodes_of_first = pair.nodes_of_first();
+        let (_, max_approach) = relative_motion(displacements, nodes_of_first);
+        if max_approach < MAX_UNTESTED_APPROACH * gap * self.bound_factor {
             return 1.0;
         }
-        clear_until(x, moves, left, KEPT * gap, |x| pair.closest(x))
-    }
-}
-
-/// Gives a pair at least the speed of parting (m/s), along the line between its closest points at `x`,
-/// that `least` names for its gap (m) and its speed of parting before the kick (m/s); whether that
-/// changed anything.
-#[expect(clippy::too_many_arguments, reason = "one pair and what it is made of")]
-fn bounce(
-    model: &FilmModel,
-    supports: &Supports,
-    pair: Pair,
-    nodes: [u32; 4],
-    x: &[Vector3<f64>; 4],
-    before: &Field,
-    least: impl Fn(f64, f64) -> f64,
-    velocities: &mut Field,
-) -> bool {
-    let closest = pair.closest(x);
-    let gap = closest.squared.sqrt();
-    let normal = closest.between / gap;
-    let mobile = nodes.map(|node| {
-        let node = node as usize;
-        supports.projector(node) * normal * model.inverse_mass[node]
-    });
-    let (mut approach, mut came, mut mobility) = (0.0, 0.0, 0.0);
-    for k in 0..4 {
-        let weight = closest.weights[k];
-        approach += weight * normal.dot(&velocities.get(nodes[k] as usize));
-        came += weight * normal.dot(&before.get(nodes[k] as usize));
-        mobility += weight * weight * normal.dot(&mobile[k]);
-    }
-    let missing = least(gap, came) - approach;
-    let helps = missing > 0.0 && mobility > 0.0;
-    if !helps {
-        return false;
-    }
-    let impulse = missing / mobility;
-    for k in 0..4 {
-        let node = nodes[k] as usize;
-        let push = mobile[k] * (impulse * closest.weights[k]);
-        velocities.set(node, velocities.get(node) + push);
-    }
-    true
-}
-
-/// Gives four nodes their common velocity, in what is free.
-fn stick(model: &FilmModel, supports: &Supports, nodes: [u32; 4], velocities: &mut Field) {
-    let (mut momentum, mut mass) = (Vector3::zeros(), 0.0);
-    for node in nodes {
-        let node = node as usize;
-        momentum += velocities.get(node) * model.mass[node];
-        mass += model.mass[node];
-    }
-    let common = momentum / mass;
-    for node in nodes {
-        let node = node as usize;
-        let old = velocities.get(node);
-        let new = old + supports.projector(node) * (common - old);
-        velocities.set(node, new);
+        let min_gap = MIN_KEPT_SHARE * gap;
+        safe_time(x, displacements, nodes_of_first, min_gap, |x| pair.closest(x))
     }
 }

@@ -1,243 +1,252 @@
-//! Which near pairs are contacts, and what they do.
+//! Which candidates are contacts, and the forces of the contacts.
 //!
-//! A contact is remembered while its features stay within the distance, even where it exerts nothing:
-//! its offset grows with its gap, never shrinks, so no change of it costs or creates energy.
+//! A contact is kept while its features are within the contact distance, even if it exerts no force.
+//! Its offset grows with its gap and never shrinks, so a change of the offset neither costs nor
+//! creates energy.
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 
-use super::candidates::CandidateList;
+use super::candidates::{CandidateList, FeatureHit};
 use super::distance::Closest;
-use super::topology::Feature;
-use super::{CandidatePair, ContactModel, ContactState, Kind, Pair, at};
+use super::force_law::Contact;
+use super::model::ContactModel;
+use super::pair::{CandidatePair, Pair, PairKind, vectors_of};
+use super::state::ContactState;
 use crate::geometry::field::Field;
+use crate::geometry::topology::Feature;
 
-/// One contact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// The pair; of the elements of a feature the lowest.
-    pub pair: Pair,
-    /// The feature the node is nearest to; 0 of two edges.
-    pub feature: Feature,
-    /// o, m.
-    pub offset: f64,
-    /// k, N/m.
-    pub stiffness: f64,
-    /// d when last looked at, m.
-    pub gap: f64,
-    /// Largest adhesive force, N.
-    pub adhesion: f64,
-    /// Energy now, J.
-    pub energy: f64,
+/// Largest number of elements within range of one node that can exert contact forces on it. Chosen:
+/// it bounds the work per node, which grows with the square of this number; film this crowded around
+/// a node is not expected.
+///
+/// If more elements are within range, the first 64 in the order of element numbers count, whatever
+/// their distance. The others, and features that are only partly among the first 64, exert no force
+/// on this node in this step. This is safe: their pairs stay in the candidate list with their
+/// current gaps, and the collision response tests every candidate before nodes move, so no film
+/// passes. The energy stored in a contact that is dropped this way is missing from then on; it shows
+/// as unrecovered contact energy. When the pair counts again, it is a new contact whose offset is its
+/// gap, so no energy is created.
+const MAX_HITS_PER_NODE: usize = 64;
+
+/// Relative tolerance of the first range test, which compares gaps where the final test compares
+/// their squares. Chosen: far above the rounding error of a square root.
+const RANGE_TOLERANCE: f64 = 1e-9;
+
+/// What an update of the contacts reads.
+struct Update<'a> {
+    /// Positions of the nodes, m.
+    positions: &'a Field,
+    /// Mass of each node, kg.
+    mass: &'a [f64],
+    /// Contacts at the last update, in order.
+    previous: &'a [Contact],
 }
-
-impl Contact {
-    /// Energy stored at a gap (m), J.
-    pub fn stored(&self, gap: f64) -> f64 {
-        let pressed = (self.offset - gap).max(0.0);
-        self.stiffness * pressed * pressed * pressed / (6.0 * self.offset)
-    }
-
-    /// The adhesive force at a gap (m) less than `range` (m) beyond the offset, N.
-    pub fn pull(&self, gap: f64, range: f64) -> f64 {
-        let part = (gap - self.offset) / range;
-        if self.adhesion > 0.0 && part > 0.0 && part < 1.0 {
-            4.0 * self.adhesion * part * (1.0 - part)
-        } else {
-            0.0
-        }
-    }
-
-    /// The force that pushes the pair apart at a gap (m), N.
-    pub fn force(&self, gap: f64) -> f64 {
-        let pressed = (self.offset - gap).max(0.0);
-        0.5 * self.stiffness * pressed * pressed / self.offset
-    }
-}
-
-/// A feature within reach of a node, by one of its elements: feature, pair, gap now and before, m.
-pub(super) type Found = (Feature, Pair, f64, f64);
-
-/// Most elements looked at for one node; beyond, the farther ones of the list are left to the guard.
-const MOST: usize = 64;
 
 impl ContactModel {
-    /// Finds the contacts at these places (m), adds their forces (N) to `forces`; gives their energy, J.
-    /// `mass`: of each node, kg.
-    pub fn meet(
+    /// Updates the contacts at these positions (m) and adds their forces (N) to `forces`. `mass`:
+    /// mass of each node, kg. Returns the energy stored in all contacts, J.
+    pub fn update_contacts(
         &self,
-        places: &Field,
+        positions: &Field,
         mass: &[f64],
         forces: &mut Field,
-        meeting: &mut ContactState,
-        search: &mut CandidateList,
+        state: &mut ContactState,
+        list: &mut CandidateList,
     ) -> f64 {
-        self.measure(places, search);
-        let CandidateList { near, smallest_gap, gaps, found, .. } = &mut *search;
-        let mut old =
-            core::mem::replace(&mut meeting.contacts, core::mem::take(&mut meeting.spare));
-        meeting.contacts.clear();
-        let mut from = 0;
-        while from < near.len() {
-            let mut to = from + 1;
-            let first = near[from].pair;
-            if first.kind == Kind::NodeTriangle {
-                while to < near.len()
-                    && near[to].pair.kind == first.kind
-                    && near[to].pair.first == first.first
+        list.measure(self, positions);
+        let CandidateList { candidates, smallest_gap, gaps, hits, .. } = &mut *list;
+        let mut previous =
+            core::mem::replace(&mut state.contacts, core::mem::take(&mut state.scratch));
+        state.contacts.clear();
+        let update = Update { positions, mass, previous: &previous };
+        let mut start = 0;
+        while start < candidates.len() {
+            let mut end = start + 1;
+            let first = candidates[start].pair;
+            if first.kind == PairKind::NodeElement {
+                while end < candidates.len()
+                    && candidates[end].pair.kind == first.kind
+                    && candidates[end].pair.first == first.first
                 {
-                    to += 1;
+                    end += 1;
                 }
-                let own = &mut near[from..to];
-                self.meet_node(places, mass, own, &gaps[from..to], found, &old, meeting);
+                let of_node = &mut candidates[start..end];
+                let gaps = &gaps[start..end];
+                self.update_node_contacts(&update, of_node, gaps, hits, &mut state.contacts);
             } else {
-                self.meet_edges(places, mass, &mut near[from], gaps[from], &old, meeting);
+                let candidate = &mut candidates[start];
+                self.update_edge_contact(&update, candidate, gaps[start], &mut state.contacts);
             }
-            from = to;
+            start = end;
         }
-        // Of pairs farther apart only some are near, by when they were looked at.
-        let pressed = near.iter().filter(|own| own.gap < self.distance_of(own.pair.kind));
-        *smallest_gap = pressed.map(|own| own.gap).fold(f64::INFINITY, f64::min);
-        self.let_go(meeting.path, search);
-        old.clear();
-        meeting.spare = old;
-        self.push(places, forces, meeting)
+        // Which pairs beyond the contact distance are in the list depends on when they were measured,
+        // so they must not enter a result.
+        let in_contact = candidates
+            .iter()
+            .filter(|candidate| candidate.gap < self.distance_of(candidate.pair.kind));
+        *smallest_gap = in_contact.map(|candidate| candidate.gap).fold(f64::INFINITY, f64::min);
+        list.release_distant(self, state.path_length);
+        previous.clear();
+        state.scratch = previous;
+        self.add_contact_forces(positions, forces, state)
     }
 
-    /// Contacts of one node with the features nearest to it; `gaps`: distances of its pairs now, m.
-    #[expect(clippy::too_many_arguments, reason = "one pass over what is near")]
-    fn meet_node(
+    /// Adds the contacts of one node to `contacts`. `candidates` are all candidates of this node,
+    /// `gaps` their gaps now, m.
+    fn update_node_contacts(
         &self,
-        places: &Field,
-        mass: &[f64],
-        near: &mut [CandidatePair],
+        update: &Update<'_>,
+        candidates: &mut [CandidatePair],
         gaps: &[f64],
-        found: &mut Vec<Found>,
-        old: &[Contact],
-        meeting: &mut ContactState,
+        hits: &mut Vec<FeatureHit>,
+        contacts: &mut Vec<Contact>,
     ) {
-        let node = near[0].pair.first;
-        found.clear();
-        let far = self.distance + self.adhesion.range;
-        let square = far * far;
-        for (own, gap) in near.iter_mut().zip(gaps) {
-            let before = core::mem::replace(&mut own.gap, *gap);
-            // Their squares may still tell otherwise, by a rounding.
-            if *gap > far * (1.0 + 1e-9) || found.len() == MOST {
-                continue;
-            }
-            let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
-            if closest.squared < square {
-                let [_, a, b, c] = closest.weights;
-                let feature = self.topology.feature(own.pair.second, [a, b, c]);
-                found.push((feature, own.pair, own.gap, before));
-            }
-        }
-        let mine = range_of(old, Kind::NodeTriangle, node);
-        let agreed_on = |feature: Feature| {
-            let agreed = found.iter().filter(|other| other.0 == feature).count();
-            agreed == self.topology.elements_at(feature) as usize
+        let node = candidates[0].pair.first;
+        self.find_features_in_range(update.positions, candidates, gaps, hits);
+        let previous = contacts_of(update.previous, PairKind::NodeElement, node);
+        // Every element that contains the feature must have it as its closest feature.
+        let is_nearest = |feature: Feature| {
+            let agreeing = hits.iter().filter(|hit| hit.feature == feature).count();
+            agreeing == self.mesh.topology.elements_at(feature) as usize
         };
-        for (k, entry) in found.iter().enumerate() {
-            let (feature, pair, gap, before) = *entry;
-            let first = !found[..k].iter().any(|other| other.0 == feature);
-            if !first || !agreed_on(feature) {
+        for (index, hit) in hits.iter().enumerate() {
+            let FeatureHit { feature, pair, gap, previous_gap } = *hit;
+            let is_first = !hits[..index].iter().any(|other| other.feature == feature);
+            if !is_first || !is_nearest(feature) {
                 continue;
             }
-            let left = || {
-                let bordering = mine.iter().filter(|old| {
-                    self.topology.border(old.feature, feature) && !agreed_on(old.feature)
+            let slid_from = || {
+                let neighbours = previous.iter().filter(|old| {
+                    self.mesh.topology.share_node(old.feature, feature) && !is_nearest(old.feature)
                 });
-                bordering.max_by(|a, b| (a.offset - a.gap).total_cmp(&(b.offset - b.gap)))
+                neighbours.max_by(|a, b| (a.offset - a.gap).total_cmp(&(b.offset - b.gap)))
             };
             let (offset, stiffness) =
-                if let Some(own) = mine.iter().find(|old| old.feature == feature) {
-                    (own.offset, own.stiffness)
-                } else if let Some(left) = left() {
-                    // It slid over a border: as deep as it was, so that nothing is gained by it.
-                    (gap + (left.offset - left.gap).max(0.0), left.stiffness)
+                if let Some(same) = previous.iter().find(|old| old.feature == feature) {
+                    (same.offset, same.stiffness)
+                } else if let Some(old) = slid_from() {
+                    // It slid across a border: it keeps its penetration, so that no energy is gained.
+                    (gap + (old.offset - old.gap).max(0.0), old.stiffness)
                 } else {
-                    (self.first_offset(pair.kind, before, gap), self.pair_stiffness(pair, mass))
+                    let offset = self.initial_offset(pair.kind, previous_gap, gap);
+                    (offset, self.pair_stiffness(pair, update.mass))
                 };
             let offset = offset.max(gap.min(self.distance));
-            // Half: where two films lie on each other the nodes of both pull, each for its share of area.
-            let adhesion = 0.5 * self.adhesion.pressure * mass[node as usize] / self.area_density;
+            // The nodes of both films pull where two films touch, each for the film area of the node:
+            // each contributes one half.
+            let adhesion =
+                0.5 * self.adhesion.pressure * update.mass[node as usize] / self.area_density;
             let contact = Contact { pair, feature, offset, stiffness, gap, adhesion, energy: 0.0 };
-            meeting.contacts.push(contact);
+            contacts.push(contact);
         }
     }
 
-    /// The contact of two edges, if they are one.
-    fn meet_edges(
+    /// Updates the gaps of the candidates of one node, and replaces the content of `hits` by the
+    /// closest feature of each of the first [`MAX_HITS_PER_NODE`] elements within range of the node.
+    fn find_features_in_range(
         &self,
-        places: &Field,
-        mass: &[f64],
-        own: &mut CandidatePair,
-        gap: f64,
-        old: &[Contact],
-        meeting: &mut ContactState,
+        positions: &Field,
+        candidates: &mut [CandidatePair],
+        gaps: &[f64],
+        hits: &mut Vec<FeatureHit>,
     ) {
-        let before = core::mem::replace(&mut own.gap, gap);
-        let distance = self.distance_of(Kind::EdgeEdge);
+        hits.clear();
+        let topology = &self.mesh.topology;
+        let range = self.distance + self.adhesion.range;
+        let squared_range = range * range;
+        for (candidate, gap) in candidates.iter_mut().zip(gaps) {
+            let previous_gap = core::mem::replace(&mut candidate.gap, *gap);
+            if *gap > range * (1.0 + RANGE_TOLERANCE) || hits.len() == MAX_HITS_PER_NODE {
+                continue;
+            }
+            let pair = candidate.pair;
+            let closest = pair.closest(&vectors_of(positions, pair.nodes(topology)));
+            if closest.squared < squared_range {
+                let [_, a, b, c] = closest.weights;
+                let feature = topology.feature(pair.second, [a, b, c]);
+                hits.push(FeatureHit { feature, pair, gap: candidate.gap, previous_gap });
+            }
+        }
+    }
+
+    /// Adds the contact of two edges to `contacts` if they are closer than their contact distance and
+    /// their closest points lie inside both.
+    fn update_edge_contact(
+        &self,
+        update: &Update<'_>,
+        candidate: &mut CandidatePair,
+        gap: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        let previous_gap = core::mem::replace(&mut candidate.gap, gap);
+        let distance = self.distance_of(PairKind::EdgeEdge);
         if gap >= distance {
             return;
         }
-        let closest = own.pair.closest(&at(places, own.pair.nodes(&self.topology)));
+        let pair = candidate.pair;
+        let closest = pair.closest(&vectors_of(update.positions, pair.nodes(&self.mesh.topology)));
         let inside = closest.weights.iter().all(|weight| *weight != 0.0);
         if !inside {
             return;
         }
-        let kept = old.binary_search_by_key(&own.pair, |old| old.pair).ok().map(|at| &old[at]);
-        let (offset, stiffness) = kept.map_or_else(
+        let previous = update.previous.binary_search_by_key(&pair, |old| old.pair).ok();
+        let (offset, stiffness) = previous.map(|index| &update.previous[index]).map_or_else(
             || {
-                let kind = Kind::EdgeEdge;
-                (self.first_offset(kind, before, own.gap), self.pair_stiffness(own.pair, mass))
+                let offset = self.initial_offset(PairKind::EdgeEdge, previous_gap, gap);
+                (offset, self.pair_stiffness(pair, update.mass))
             },
-            |kept| (kept.offset, kept.stiffness),
+            |old| (old.offset, old.stiffness),
         );
-        let offset = offset.max(own.gap.min(distance));
-        let (pair, gap) = (own.pair, own.gap);
+        let offset = offset.max(gap.min(distance));
         let contact =
             Contact { pair, feature: 0, offset, stiffness, gap, adhesion: 0.0, energy: 0.0 };
-        meeting.contacts.push(contact);
+        contacts.push(contact);
     }
 
-    /// The offset of a new contact: the whole distance where it came from beyond it, its gap where it
-    /// became one sideways.
-    fn first_offset(&self, kind: Kind, before: f64, gap: f64) -> f64 {
+    /// Offset of a new contact, m: the contact distance if the pair was beyond it before, its gap if it
+    /// was closer and became a contact by sliding sideways.
+    fn initial_offset(&self, kind: PairKind, previous_gap: f64, gap: f64) -> f64 {
         let distance = self.distance_of(kind);
-        if before >= distance { distance } else { gap.min(distance) }
+        if previous_gap >= distance { distance } else { gap.min(distance) }
     }
 
-    /// k of a pair, N/m: from its masses in the middle of its primitives.
+    /// Stiffness k of a pair, N/m: κ ω² times its reduced mass, which is that of closest points in the
+    /// middle of both primitives.
     fn pair_stiffness(&self, pair: Pair, mass: &[f64]) -> f64 {
-        let mass = pair.nodes(&self.topology).map(|node| mass[node as usize]);
+        let mass = pair.nodes(&self.mesh.topology).map(|node| mass[node as usize]);
+        // Inverse of the reduced mass, 1/kg: Σ w²/m with w = 1, ⅓ or ½.
         let mobility = match pair.kind {
-            Kind::NodeTriangle => {
+            PairKind::NodeElement => {
                 1.0 / mass[0] + (1.0 / mass[1] + 1.0 / mass[2] + 1.0 / mass[3]) / 9.0
             }
-            Kind::EdgeEdge => mass.iter().map(|mass| 0.25 / mass).sum(),
+            PairKind::EdgeEdge => mass.iter().map(|mass| 0.25 / mass).sum(),
         };
-        self.stiffness / mobility
+        self.stiffness_per_mass / mobility
     }
 
-    /// Adds the contacts' forces; gives their energy, J.
-    fn push(&self, places: &Field, forces: &mut Field, meeting: &mut ContactState) -> f64 {
+    /// Adds the forces of the contacts (N) to `forces`. Returns their stored energy, J.
+    fn add_contact_forces(
+        &self,
+        positions: &Field,
+        forces: &mut Field,
+        state: &mut ContactState,
+    ) -> f64 {
         let mut energy = 0.0;
-        for contact in &mut meeting.contacts {
-            let nodes = contact.pair.nodes(&self.topology);
-            let Closest { weights, between, squared } = contact.pair.closest(&at(places, nodes));
+        for contact in &mut state.contacts {
+            let nodes = contact.pair.nodes(&self.mesh.topology);
+            let Closest { weights, between, squared } =
+                contact.pair.closest(&vectors_of(positions, nodes));
             let gap = squared.sqrt();
             contact.energy = 0.0;
-            let push = contact.force(gap) - contact.pull(gap, self.adhesion.range);
-            if push != 0.0 && gap > 0.0 {
-                let force: Vector3<f64> = between * (push / gap);
+            let magnitude =
+                contact.repulsive_force(gap) - contact.adhesive_force(gap, self.adhesion.range);
+            if magnitude != 0.0 && gap > 0.0 {
+                let force: Vector3<f64> = between * (magnitude / gap);
                 for (node, weight) in nodes.iter().zip(weights) {
                     let node = *node as usize;
                     forces.set(node, forces.get(node) + force * weight);
                 }
-                contact.energy = contact.stored(gap);
+                contact.energy = contact.stored_energy(gap);
                 energy += contact.energy;
             }
         }
@@ -245,10 +254,10 @@ impl ContactModel {
     }
 }
 
-/// The contacts of one node, or lower edge.
-fn range_of(contacts: &[Contact], kind: Kind, first: u32) -> &[Contact] {
+/// The contacts whose first primitive (node, or lower edge) is `first`. `contacts` are in order.
+fn contacts_of(contacts: &[Contact], kind: PairKind, first: u32) -> &[Contact] {
     let key = |contact: &Contact| (contact.pair.kind, contact.pair.first);
-    let from = contacts.partition_point(|contact| key(contact) < (kind, first));
-    let to = contacts.partition_point(|contact| key(contact) <= (kind, first));
-    &contacts[from..to]
+    let start = contacts.partition_point(|contact| key(contact) < (kind, first));
+    let end = contacts.partition_point(|contact| key(contact) <= (kind, first));
+    &contacts[start..end]
 }

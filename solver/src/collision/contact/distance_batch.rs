@@ -1,62 +1,64 @@
-//! Distances of many pairs at once, eight at a time.
+//! Distances of many pairs, eight at a time.
 //!
-//! The closest points of [`super::distance`], with every region computed and the right one chosen:
-//! the same operations in the same order, so the same bits.
+//! These kernels compute the closest points of [`super::distance`] without branches: every region is
+//! computed, then the right one is selected. They do the same operations in the same order, so the
+//! results are the same bits.
 
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
 
-use super::distance::point_triangle;
-use super::topology::Topology;
+use super::distance::{PARALLEL_TOLERANCE, point_triangle};
 use crate::geometry::field::Field;
+use crate::geometry::topology::Topology;
 use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
 
-/// 0 below 0, 1 above 1.
+/// `value`, at least 0 and at most 1.
 #[inline(always)]
-fn clamped<L: Wide>(value: L) -> L {
+fn clamp<L: Wide>(value: L) -> L {
     let one = L::splat(1.0);
     let low = (-value).if_positive(L::splat(0.0), value);
     (low - one).if_positive(one, low)
 }
 
-/// above/below within 0 and 1; 0 where below is not above 0.
+/// The ratio of two numbers, at least 0 and at most 1; 0 if the denominator is not positive.
 #[inline(always)]
-fn share<L: Wide>(above: L, below: L) -> L {
-    below.if_positive(clamped(above.over(below)), L::splat(0.0))
+fn clamped_ratio<L: Wide>(numerator: L, denominator: L) -> L {
+    denominator.if_positive(clamp(numerator.over(denominator)), L::splat(0.0))
 }
 
-/// Σ w x squared.
+/// Squared length of Σ w x, m².
 #[inline(always)]
-fn squared<L: Wide>(weights: [L; 4], x: [Vectors<L>; 4]) -> L {
+fn squared_sum<L: Wide>(weights: [L; 4], x: [Vectors<L>; 4]) -> L {
     let (a, b) = (x[0].scale(weights[0]), x[1].scale(weights[1]));
     let (c, d) = (x[2].scale(weights[2]), x[3].scale(weights[3]));
     let between = a + b + c + d;
     between.dot(between)
 }
 
-/// Squared distances of segments, m²: [`super::distance::segment_segment`].
+/// Squared distances of segments, m²; see [`super::distance::segment_segment`].
 #[inline(always)]
-fn segments<L: Wide>([a, b, c, d]: [Vectors<L>; 4]) -> L {
-    let (one, none) = (L::splat(1.0), L::splat(0.0));
+fn segment_segment_squared<L: Wide>([a, b, c, d]: [Vectors<L>; 4]) -> L {
+    let (one, zero) = (L::splat(1.0), L::splat(0.0));
     let (u, v, r) = (b - a, d - c, a - c);
     let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
     let (ur, vr) = (u.dot(r), v.dot(r));
     let determinant = uu * vv - uv * uv;
-    let parallel = L::splat(1e-12) * uu * vv;
-    let first = (determinant - parallel).if_positive(share(uv * vr - ur * vv, determinant), none);
-    let free = vv.if_positive((uv * first + vr).over(vv), none);
-    let t = clamped(free);
-    let ends = share(uv * t - ur, uu);
-    // Past either end, or no segment at all.
-    let inside = (-free).if_positive(ends, (free - one).if_positive(ends, first));
-    let s = vv.if_positive(inside, ends);
-    squared([one - s, s, t - one, -t], [a, b, c, d])
+    let parallel = L::splat(PARALLEL_TOLERANCE) * uu * vv;
+    let s_free =
+        (determinant - parallel).if_positive(clamped_ratio(uv * vr - ur * vv, determinant), zero);
+    let t_free = vv.if_positive((uv * s_free + vr).over(vv), zero);
+    let t = clamp(t_free);
+    let s_at_end = clamped_ratio(uv * t - ur, uu);
+    // s changes only if t was clamped, or if the second segment has no length.
+    let s = (-t_free).if_positive(s_at_end, (t_free - one).if_positive(s_at_end, s_free));
+    let s = vv.if_positive(s, s_at_end);
+    squared_sum([one - s, s, t - one, -t], [a, b, c, d])
 }
 
-/// Squared distances of points and triangles, m²: [`point_triangle`]; no number where a triangle has no
+/// Squared distances of points and triangles, m²; see [`point_triangle`]. NaN for a triangle without
 /// area.
 #[inline(always)]
-fn triangles<L: Wide>([p, a, b, c]: [Vectors<L>; 4]) -> L {
-    let (one, none) = (L::splat(1.0), L::splat(0.0));
+fn point_triangle_squared<L: Wide>([p, a, b, c]: [Vectors<L>; 4]) -> L {
+    let (one, zero) = (L::splat(1.0), L::splat(0.0));
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     let bp = p - b;
@@ -68,138 +70,140 @@ fn triangles<L: Wide>([p, a, b, c]: [Vectors<L>; 4]) -> L {
     let va = d3 * d6 - d5 * d4;
     let sum = va + vb + vc;
     let (v, w) = (vb.over(sum), vc.over(sum));
-    let undone = L::splat(f64::NAN);
-    // From the last region to the first: each takes what the ones before it left.
-    let mut own = [one - v - w, v, w];
-    own = choose(sum, own, [undone; 3]);
-    let (along, back) = (d4 - d3, d5 - d6);
-    let w = along.over(along + back);
-    own = choose(va.max(-along).max(-back), own, [none, one - w, w]);
+    let nan = L::splat(f64::NAN);
+    // The branches of `point_triangle` from the last to the first: an earlier branch replaces the
+    // weights of a later one. A region is selected where its conditions are not positive.
+    let mut weights = [one - v - w, v, w];
+    weights = select(sum, weights, [nan; 3]);
+    let (from_b, from_c) = (d4 - d3, d5 - d6);
+    let w = from_b.over(from_b + from_c);
+    weights = select(va.max(-from_b).max(-from_c), weights, [zero, one - w, w]);
     let w = d2.over(d2 - d6);
-    own = choose(vb.max(-d2).max(d6), own, [one - w, none, w]);
-    own = choose((-d6).max(d5 - d6), own, [none, none, one]);
+    weights = select(vb.max(-d2).max(d6), weights, [one - w, zero, w]);
+    weights = select((-d6).max(d5 - d6), weights, [zero, zero, one]);
     let v = d1.over(d1 - d3);
-    own = choose(vc.max(-d1).max(d3), own, [one - v, v, none]);
-    own = choose((-d3).max(d4 - d3), own, [none, one, none]);
-    own = choose(d1.max(d2), own, [one, none, none]);
-    squared([one, -own[0], -own[1], -own[2]], [p, a, b, c])
+    weights = select(vc.max(-d1).max(d3), weights, [one - v, v, zero]);
+    weights = select((-d3).max(d4 - d3), weights, [zero, one, zero]);
+    weights = select(d1.max(d2), weights, [one, zero, zero]);
+    let [u, v, w] = weights;
+    squared_sum([one, -u, -v, -w], [p, a, b, c])
 }
 
-/// `yes` where `positive` is above 0, else `no`.
+/// `yes` where `condition` is positive, else `no`.
 #[inline(always)]
-fn choose<L: Wide>(positive: L, yes: [L; 3], no: [L; 3]) -> [L; 3] {
+fn select<L: Wide>(condition: L, yes: [L; 3], no: [L; 3]) -> [L; 3] {
     [
-        positive.if_positive(yes[0], no[0]),
-        positive.if_positive(yes[1], no[1]),
-        positive.if_positive(yes[2], no[2]),
+        condition.if_positive(yes[0], no[0]),
+        condition.if_positive(yes[1], no[1]),
+        condition.if_positive(yes[2], no[2]),
     ]
 }
 
-/// Eight of the pairs; the last are filled up with the first.
+/// Up to eight pairs, one per lane; lanes without a pair repeat the first.
 #[inline(always)]
-pub(super) fn eight(pairs: &[[u32; 2]]) -> [[u32; 2]; WIDTH] {
-    let mut own = [pairs[0]; WIDTH];
-    own[..pairs.len()].copy_from_slice(pairs);
-    own
+pub(super) fn fill_lanes(pairs: &[[u32; 2]]) -> [[u32; 2]; WIDTH] {
+    let mut lanes = [pairs[0]; WIDTH];
+    lanes[..pairs.len()].copy_from_slice(pairs);
+    lanes
 }
 
-/// Places of one corner of eight primitives.
+/// Positions of node number `corner` of eight primitives, m.
 #[inline(always)]
-pub(super) fn place<L: Wide, const N: usize>(
-    places: &Field,
+pub(super) fn corner_positions<L: Wide, const N: usize>(
+    positions: &Field,
     nodes: &[[u32; N]; WIDTH],
     corner: usize,
 ) -> Vectors<L> {
-    let mut at = [0; WIDTH];
+    let mut indices = [0; WIDTH];
     for lane in 0..WIDTH {
-        at[lane] = nodes[lane][corner];
+        indices[lane] = nodes[lane][corner];
     }
-    vectors_at([&places.x, &places.y, &places.z], &at)
+    vectors_at([&positions.x, &positions.y, &positions.z], &indices)
 }
 
 #[inline(always)]
-fn four<L: Wide>(places: &Field, nodes: &[[u32; 4]; WIDTH]) -> [Vectors<L>; 4] {
+fn four_positions<L: Wide>(positions: &Field, nodes: &[[u32; 4]; WIDTH]) -> [Vectors<L>; 4] {
     [
-        place(places, nodes, 0),
-        place(places, nodes, 1),
-        place(places, nodes, 2),
-        place(places, nodes, 3),
+        corner_positions(positions, nodes, 0),
+        corner_positions(positions, nodes, 1),
+        corner_positions(positions, nodes, 2),
+        corner_positions(positions, nodes, 3),
     ]
 }
 
 #[inline(always)]
-fn edge_kernel<L: Wide>(
+fn edge_edge_kernel<L: Wide>(
     topology: &Topology,
-    places: &Field,
+    positions: &Field,
     pairs: &[[u32; 2]],
-    gaps: &mut Vec<f64>,
+    distances: &mut Vec<f64>,
 ) {
     for chunk in pairs.chunks(WIDTH) {
-        let own = eight(chunk);
+        let lanes = fill_lanes(chunk);
         let mut nodes = [[0; 4]; WIDTH];
         for lane in 0..WIDTH {
-            let [a, b] = topology.edges[own[lane][0] as usize];
-            let [c, d] = topology.edges[own[lane][1] as usize];
+            let [a, b] = topology.edges[lanes[lane][0] as usize];
+            let [c, d] = topology.edges[lanes[lane][1] as usize];
             nodes[lane] = [a, b, c, d];
         }
-        let found = segments::<L>(four(places, &nodes)).sqrt().lanes();
-        gaps.extend_from_slice(&found.0[..chunk.len()]);
+        let values = segment_segment_squared::<L>(four_positions(positions, &nodes)).sqrt().lanes();
+        distances.extend_from_slice(&values.0[..chunk.len()]);
     }
 }
 
 #[inline(always)]
-fn element_kernel<L: Wide>(
+fn node_element_kernel<L: Wide>(
     topology: &Topology,
-    places: &Field,
+    positions: &Field,
     pairs: &[[u32; 2]],
-    gaps: &mut Vec<f64>,
+    distances: &mut Vec<f64>,
 ) {
     for chunk in pairs.chunks(WIDTH) {
-        let own = eight(chunk);
+        let lanes = fill_lanes(chunk);
         let mut nodes = [[0; 4]; WIDTH];
         for lane in 0..WIDTH {
-            let [a, b, c] = topology.triangles[own[lane][1] as usize];
-            nodes[lane] = [own[lane][0], a, b, c];
+            let [a, b, c] = topology.triangles[lanes[lane][1] as usize];
+            nodes[lane] = [lanes[lane][0], a, b, c];
         }
-        let found = triangles::<L>(four(places, &nodes)).sqrt().lanes();
-        gaps.extend_from_slice(&found.0[..chunk.len()]);
+        let values = point_triangle_squared::<L>(four_positions(positions, &nodes)).sqrt().lanes();
+        distances.extend_from_slice(&values.0[..chunk.len()]);
     }
 }
 
 dispatch_wide! {
-    /// Adds the distances (m) of edges and edges at these places (m) to `gaps`.
-    pub fn edge_gaps / edge_kernel(
+    /// Appends the distances (m) of pairs of edges at these positions (m) to `distances`.
+    pub fn edge_edge_distances / edge_edge_kernel(
         topology: &Topology,
-        places: &Field,
+        positions: &Field,
         pairs: &[[u32; 2]],
-        gaps: &mut Vec<f64>,
+        distances: &mut Vec<f64>,
     )
 }
 
 dispatch_wide! {
-    fn element_gaps_of_sound / element_kernel(
+    fn node_element_distances_with_area / node_element_kernel(
         topology: &Topology,
-        places: &Field,
+        positions: &Field,
         pairs: &[[u32; 2]],
-        gaps: &mut Vec<f64>,
+        distances: &mut Vec<f64>,
     )
 }
 
-/// Adds the distances (m) of nodes and elements at these places (m) to `gaps`.
-pub fn element_gaps(
-    path: InstructionSet,
+/// Appends the distances (m) of pairs of a node and an element at these positions (m) to `distances`.
+pub fn node_element_distances(
+    instruction_set: InstructionSet,
     topology: &Topology,
-    places: &Field,
+    positions: &Field,
     pairs: &[[u32; 2]],
-    gaps: &mut Vec<f64>,
+    distances: &mut Vec<f64>,
 ) {
-    let before = gaps.len();
-    element_gaps_of_sound(path, topology, places, pairs, gaps);
-    for (gap, [node, element]) in gaps[before..].iter_mut().zip(pairs) {
-        if gap.is_nan() {
+    let before = distances.len();
+    node_element_distances_with_area(instruction_set, topology, positions, pairs, distances);
+    for (distance, [node, element]) in distances[before..].iter_mut().zip(pairs) {
+        if distance.is_nan() {
             let [a, b, c] = topology.triangles[*element as usize];
-            let x = [*node, a, b, c].map(|node| places.get(node as usize));
-            *gap = point_triangle(&x).squared.sqrt();
+            let x = [*node, a, b, c].map(|node| positions.get(node as usize));
+            *distance = point_triangle(&x).squared.sqrt();
         }
     }
 }
@@ -211,8 +215,8 @@ mod tests {
     use nalgebra::Vector3;
     use proptest::prelude::*;
 
-    /// Places on a coarse grid, so that ends, corners and parallel edges are met often.
-    fn places() -> impl Strategy<Value = Vec<Vector3<f64>>> {
+    /// Points, many of them on a coarse grid, so that ends, corners and parallel edges occur often.
+    fn points() -> impl Strategy<Value = Vec<Vector3<f64>>> {
         let grid = prop::array::uniform3(-3..3_i32).prop_map(|x| Vector3::from(x.map(f64::from)));
         let free = prop::array::uniform3(-1.0..1.0_f64).prop_map(Vector3::from);
         prop::collection::vec(prop_oneof![grid, free], 12)
@@ -220,29 +224,31 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_path_gives_the_bits_of_one_pair_alone(places in places()) {
+        fn batches_give_the_bits_of_single_pairs(points in points()) {
             let topology = Topology::new(12, &[[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]]);
-            let field = Field::of(&places);
+            let field = Field::of(&points);
             let edges: Vec<[u32; 2]> =
                 (0..12).flat_map(|a| (a + 1..12).map(move |b| [a, b])).collect();
             let elements: Vec<[u32; 2]> =
                 (0..12).flat_map(|node| (0..4).map(move |element| [node, element])).collect();
-            let at = |node: u32| places[node as usize];
-            for path in InstructionSet::ALL {
-                let mut gaps = Vec::new();
-                edge_gaps(path, &topology, &field, &edges, &mut gaps);
-                for ([a, b], gap) in edges.iter().zip(&gaps) {
+            let at = |node: u32| points[node as usize];
+            for instruction_set in InstructionSet::ALL {
+                let mut distances = Vec::new();
+                edge_edge_distances(instruction_set, &topology, &field, &edges, &mut distances);
+                for ([a, b], distance) in edges.iter().zip(&distances) {
                     let [p, q] = topology.edges[*a as usize].map(at);
                     let [r, s] = topology.edges[*b as usize].map(at);
-                    let alone = segment_segment(&[p, q, r, s]).squared.sqrt();
-                    prop_assert_eq!(alone.to_bits(), gap.to_bits(), "{} {}", alone, gap);
+                    let single = segment_segment(&[p, q, r, s]).squared.sqrt();
+                    prop_assert_eq!(single.to_bits(), distance.to_bits(), "{} {}", single, distance);
                 }
-                gaps.clear();
-                element_gaps(path, &topology, &field, &elements, &mut gaps);
-                for ([node, element], gap) in elements.iter().zip(&gaps) {
+                distances.clear();
+                node_element_distances(
+                    instruction_set, &topology, &field, &elements, &mut distances,
+                );
+                for ([node, element], distance) in elements.iter().zip(&distances) {
                     let [a, b, c] = topology.triangles[*element as usize].map(at);
-                    let alone = point_triangle(&[at(*node), a, b, c]).squared.sqrt();
-                    prop_assert_eq!(alone.to_bits(), gap.to_bits(), "{} {}", alone, gap);
+                    let single = point_triangle(&[at(*node), a, b, c]).squared.sqrt();
+                    prop_assert_eq!(single.to_bits(), distance.to_bits(), "{} {}", single, distance);
                 }
             }
         }

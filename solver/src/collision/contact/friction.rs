@@ -4,46 +4,43 @@
 //! v_t = Σ w_i v_i without its normal part       J = −min(μ F h, m |v_t|) v_t/|v_t|
 //! ```
 //!
-//! Symbols: F force that presses the pair together, N; h time of the kick, s; m mass of the pair. An
-//! impulse never turns the motion round, so it takes energy whatever the step; what it takes is
-//! its trapezoid, −½ J·(v⁻ + v⁺).
+//! Symbols: `w_i` weights of the closest points, F normal force of the pair, N; h duration of the kick,
+//! s; m reduced mass of the pair, kg. An impulse never reverses the sliding, so friction dissipates
+//! energy at any step. The dissipation is the trapezoid −½ J·(v⁻ + v⁺).
 
+use super::collision_step::CollisionStep;
 use super::distance::Closest;
-use super::{ContactModel, ContactState, at};
-use crate::geometry::field::Field;
-use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::supports::Supports;
+use super::model::ContactModel;
+use super::pair::vectors_of;
+use super::state::ContactState;
 
 impl ContactModel {
-    /// Takes tangential motion out of the velocities (m/s) after a kick over `kick` (s); `before`:
-    /// velocities before it.
-    #[expect(clippy::too_many_arguments, reason = "one pass over what rubs")]
-    pub fn rub(
+    /// Reduces the tangential velocities of contacts after a kick of `kick_length` (s). The dissipated
+    /// energy is added to `state`.
+    pub fn apply_friction(
         &self,
-        model: &FilmModel,
-        supports: &Supports,
-        places: &Field,
-        before: &Field,
-        velocities: &mut Field,
-        kick: f64,
-        meeting: &mut ContactState,
+        step: &mut CollisionStep<'_>,
+        kick_length: f64,
+        state: &mut ContactState,
     ) {
         if self.friction == 0.0 {
             return;
         }
-        let ContactState { contacts, rubbed, .. } = meeting;
+        let (film, before) = (step.film, step.velocities_before_kick);
+        let ContactState { contacts, friction_dissipation, .. } = state;
         for contact in contacts {
-            let nodes = contact.pair.nodes(&self.topology);
-            let Closest { weights, between, squared } = contact.pair.closest(&at(places, nodes));
-            let press = contact.force(squared.sqrt());
-            if press == 0.0 {
+            let nodes = contact.pair.nodes(&self.mesh.topology);
+            let Closest { weights, between, squared } =
+                contact.pair.closest(&vectors_of(step.positions, nodes));
+            let normal_force = contact.repulsive_force(squared.sqrt());
+            if normal_force == 0.0 {
                 continue;
             }
             let normal = between / squared.sqrt();
-            let mobility =
-                |k: usize| weights[k] * weights[k] * model.inverse_mass[nodes[k] as usize];
-            let mobility = (0..4).map(mobility).sum::<f64>();
-            let relative = at(velocities, nodes)
+            let mobility_of =
+                |k: usize| weights[k] * weights[k] * film.inverse_mass[nodes[k] as usize];
+            let mobility = (0..4).map(mobility_of).sum::<f64>();
+            let relative = vectors_of(step.velocities, nodes)
                 .iter()
                 .zip(weights)
                 .map(|(v, w)| v * w)
@@ -53,14 +50,15 @@ impl ContactModel {
             if speed == 0.0 || mobility == 0.0 {
                 continue;
             }
-            let impulse = (self.friction * press * kick).min(speed / mobility);
-            let push = sliding * (-impulse / speed);
+            let magnitude = (self.friction * normal_force * kick_length).min(speed / mobility);
+            let impulse = sliding * (-magnitude / speed);
             for (node, weight) in nodes.iter().zip(weights) {
                 let node = *node as usize;
-                let change = supports.projector(node) * push * (weight * model.inverse_mass[node]);
-                velocities.set(node, velocities.get(node) + change);
-                let mean = before.get(node) + velocities.get(node);
-                *rubbed -= 0.5 * model.mass[node] * change.dot(&mean);
+                let projector = step.supports.projector(node);
+                let change = projector * impulse * (weight * film.inverse_mass[node]);
+                step.velocities.set(node, step.velocities.get(node) + change);
+                let sum = before.get(node) + step.velocities.get(node);
+                *friction_dissipation -= 0.5 * film.mass[node] * change.dot(&sum);
             }
         }
     }

@@ -1,28 +1,34 @@
-//! How often film lies through film: edges that pierce elements, over the whole mesh.
+//! Intersections: edges that pass through elements, over the whole mesh.
 //!
 //! ```text
-//! normal·(p − a) and normal·(q − a) of unlike sign, and where the edge meets the plane lies in the element
+//! n·(p − a) and n·(q − a) have different signs, and the edge crosses the plane inside the element
 //! ```
 //!
-//! A plane that parts edge and element tells most pairs apart ([`super::separating_planes`]), and how long they
-//! need not be looked at again; only of the others the distance is asked.
+//! Symbols: p, q ends of the edge; n normal and a a node of the element.
 
 use nalgebra::Vector3;
 
-use super::distance_batch::{edge_gaps, element_gaps};
-use super::separating_planes::edges_apart;
-use super::topology::Topology;
+use super::distance_batch::{edge_edge_distances, node_element_distances};
+use super::separating_planes::edge_element_separations;
+use crate::collision::broad_phase::collision_mesh::CollisionMesh;
 use crate::collision::broad_phase::kdop::KDops;
-use crate::collision::broad_phase::scheduler::{CandidateScheduler, QueryKind, nearer};
+use crate::collision::broad_phase::query::QueryKind;
+use crate::collision::broad_phase::scheduler::CandidateScheduler;
+use crate::collision::broad_phase::traversal::pairs_within_bounds;
 use crate::geometry::field::Field;
+use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
 
-/// Every edge and element at these places (m) that pierce each other and share no node, in order.
-pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
-    let boxes = KDops::new(&topology.patches, places);
+/// Width of a bin of the scheduler, as a share of the size of the film. Chosen: a pair is looked at
+/// again at the earliest when the film has approached by this much.
+const BIN_WIDTH: f64 = 2e-3;
+
+/// Every edge and element that intersect at these positions (m) and share no node, in order.
+pub fn intersections(mesh: &CollisionMesh, positions: &Field) -> Vec<(u32, u32)> {
+    let kdops = KDops::new(&mesh.hierarchy, positions);
     let mut found = Vec::new();
-    nearer(QueryKind::Intersection, topology, &boxes, 0.0, |_, [edge, element]| {
-        if pierces(topology, places, edge, element) {
+    pairs_within_bounds(QueryKind::Intersection, mesh, &kdops, 0.0, |_, [edge, element]| {
+        if intersects(&mesh.topology, positions, edge, element) {
             found.push((edge, element));
         }
     });
@@ -30,108 +36,121 @@ pub fn intersections(topology: &Topology, places: &Field) -> Vec<(u32, u32)> {
     found
 }
 
-/// Room for pairs no plane parts, and for what they are made of.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Room {
-    unparted: Vec<usize>,
-    ends: Vec<[u32; 2]>,
-    sides: Vec<[u32; 2]>,
-    from_ends: Vec<f64>,
-    from_sides: Vec<f64>,
-}
-
-/// Counts intersections again and again while film moves, looking only at what may have met since.
+/// Counts the intersections of moving film. A pair is tested again only after it may have met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntersectionCounter {
-    lookout: CandidateScheduler,
-    /// Where the film was at the last look, m.
-    last: Field,
-    room: Room,
-    /// Intersections at the last look.
+    scheduler: CandidateScheduler,
+    instruction_set: InstructionSet,
+    /// Positions at the last update, m.
+    positions: Field,
+    scratch: Scratch,
+    /// Number of intersections at the last update.
     pub count: u64,
 }
 
 impl IntersectionCounter {
-    /// Looks for the first time, at these places (m).
-    pub fn new(topology: &Topology, places: &Field) -> Self {
-        let lookout =
-            CandidateScheduler::new(QueryKind::Intersection, topology, BIN * places.size());
-        let mut own = Self { lookout, last: places.clone(), room: Room::default(), count: 0 };
-        own.look(topology, places);
-        own
+    /// Counts the intersections at these positions (m).
+    pub fn new(mesh: &CollisionMesh, positions: &Field, instruction_set: InstructionSet) -> Self {
+        let bin_width = BIN_WIDTH * positions.size();
+        let kind = QueryKind::Intersection;
+        let mut counter = Self {
+            scheduler: CandidateScheduler::new(kind, mesh, bin_width, instruction_set),
+            instruction_set,
+            positions: positions.clone(),
+            scratch: Scratch::default(),
+            count: 0,
+        };
+        counter.update(mesh, positions);
+        counter
     }
 
-    /// Counts the intersections at these places (m).
-    pub fn look(&mut self, topology: &Topology, places: &Field) {
-        self.lookout.travel(topology, &self.last, places);
-        self.last.copy_from(places);
-        let (mut count, room) = (0, &mut self.room);
-        let gaps = |_, pairs: &[[u32; 2]], gaps: &mut Vec<f64>| {
-            edges_apart(InstructionSet::detect(), topology, places, pairs, gaps);
-            room.measure(topology, places, pairs, gaps);
+    /// Counts the intersections at these positions (m).
+    pub fn update(&mut self, mesh: &CollisionMesh, positions: &Field) {
+        self.scheduler.advance(mesh, &self.positions, positions);
+        self.positions.copy_from(positions);
+        let (instruction_set, topology) = (self.instruction_set, &mesh.topology);
+        let (mut count, scratch) = (0, &mut self.scratch);
+        let distances = |_, pairs: &[[u32; 2]], distances: &mut Vec<f64>| {
+            edge_element_separations(instruction_set, topology, positions, pairs, distances);
+            scratch.measure_unseparated(instruction_set, topology, positions, pairs, distances);
         };
-        self.lookout.now(topology, places, gaps, |_, [edge, element]| {
-            // Film that touches is not through.
-            count += u64::from(pierces(topology, places, edge, element));
+        self.scheduler.query_now(mesh, positions, distances, |_, [edge, element]| {
+            // Film that touches without passing through has the distance zero too.
+            count += u64::from(intersects(topology, positions, edge, element));
         });
         self.count = count;
     }
 }
 
-/// Path of a bin, as a share of the film's size.
-const BIN: f64 = 2e-3;
+/// Scratch memory for pairs without a separating plane.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Scratch {
+    /// Index of each such pair.
+    indices: Vec<usize>,
+    /// Ends of the edge, with the element.
+    ends: Vec<[u32; 2]>,
+    /// The edge, with the edges of the element.
+    sides: Vec<[u32; 2]>,
+    /// Distances of [`Self::ends`], m.
+    end_distances: Vec<f64>,
+    /// Distances of [`Self::sides`], m.
+    side_distances: Vec<f64>,
+}
 
-impl Room {
-    /// Puts the distance (m) in place of each gap (m) that is not above 0, or no number: of pairs that do
-    /// not pierce each other the least of those of the edge's ends from the element, and of the edge from
-    /// the element's sides.
-    fn measure(
+impl Scratch {
+    /// Replaces each separation (m) that is not positive, or NaN, by the distance of the pair (m). The
+    /// distance is 0 if the pair intersects; else it is the smallest distance of an end of the edge
+    /// from the element, and of the edge from an edge of the element.
+    fn measure_unseparated(
         &mut self,
+        instruction_set: InstructionSet,
         topology: &Topology,
-        places: &Field,
+        positions: &Field,
         pairs: &[[u32; 2]],
-        gaps: &mut [f64],
+        distances: &mut [f64],
     ) {
-        let Self { unparted, ends, sides, from_ends, from_sides } = self;
-        unparted.clear();
+        let Self { indices, ends, sides, end_distances, side_distances } = self;
+        indices.clear();
         ends.clear();
         sides.clear();
-        from_ends.clear();
-        from_sides.clear();
-        for (at, ([edge, element], gap)) in pairs.iter().zip(&mut *gaps).enumerate() {
-            if *gap > 0.0 {
+        end_distances.clear();
+        side_distances.clear();
+        for (index, ([edge, element], distance)) in pairs.iter().zip(&mut *distances).enumerate() {
+            if *distance > 0.0 {
                 continue;
             }
-            *gap = 0.0;
-            if !pierces(topology, places, *edge, *element) {
-                unparted.push(at);
+            *distance = 0.0;
+            if !intersects(topology, positions, *edge, *element) {
+                indices.push(index);
                 ends.extend(topology.edges[*edge as usize].map(|end| [end, *element]));
-                sides.extend(topology.sides[*element as usize].map(|side| [*edge, side]));
+                let element_edges = topology.element_edges[*element as usize];
+                sides.extend(element_edges.map(|side| [*edge, side]));
             }
         }
-        element_gaps(InstructionSet::detect(), topology, places, ends, from_ends);
-        edge_gaps(InstructionSet::detect(), topology, places, sides, from_sides);
-        let own = from_ends.chunks_exact(2).zip(from_sides.chunks_exact(3));
-        for (at, (ends, sides)) in unparted.iter().zip(own) {
-            gaps[*at] = ends.iter().chain(sides).fold(f64::INFINITY, |least, gap| least.min(*gap));
+        node_element_distances(instruction_set, topology, positions, ends, end_distances);
+        edge_edge_distances(instruction_set, topology, positions, sides, side_distances);
+        let measured = end_distances.chunks_exact(2).zip(side_distances.chunks_exact(3));
+        for (index, (ends, sides)) in indices.iter().zip(measured) {
+            let smallest = ends.iter().chain(sides).fold(f64::INFINITY, |min, d| min.min(*d));
+            distances[*index] = smallest;
         }
     }
 }
 
 /// Whether an edge passes through an element.
-fn pierces(topology: &Topology, places: &Field, edge: u32, element: u32) -> bool {
-    let place = |node: u32| places.get(node as usize);
-    passes(
-        topology.edges[edge as usize].map(place),
-        topology.triangles[element as usize].map(place),
+fn intersects(topology: &Topology, positions: &Field, edge: u32, element: u32) -> bool {
+    let position = |node: u32| positions.get(node as usize);
+    segment_intersects_triangle(
+        topology.edges[edge as usize].map(position),
+        topology.triangles[element as usize].map(position),
     )
 }
 
-/// Whether a segment passes through a triangle.
-fn passes([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+/// Whether a segment passes through a triangle. Segments in the plane of the triangle do not.
+fn segment_intersects_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     let normal = (b - a).cross(&(c - a));
     let (start, end) = (normal.dot(&(p - a)), normal.dot(&(q - a)));
-    // Both on the plane, or both on one side of it.
+    // Both ends on one side of the plane, or both in it.
     if start * end > 0.0 || (start - end).abs() <= 0.0 {
         return false;
     }
@@ -145,10 +164,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tangle_is_seen_and_a_stack_is_not() {
+    fn crossing_triangles_intersect_and_stacked_triangles_do_not() {
         let v = |x: f64, y: f64, z: f64| Vector3::new(x, y, z);
-        let topology = Topology::new(6, &[[0, 1, 2], [3, 4, 5]]);
-        let stack = [
+        let mesh = CollisionMesh::new(6, &[[0, 1, 2], [3, 4, 5]]);
+        let stacked = [
             v(0.0, 0.0, 0.0),
             v(1.0, 0.0, 0.0),
             v(0.0, 1.0, 0.0),
@@ -156,9 +175,9 @@ mod tests {
             v(1.0, 0.0, 0.01),
             v(0.0, 1.0, 0.01),
         ];
-        assert!(intersections(&topology, &Field::of(&stack)).is_empty());
-        let mut tangle = stack;
-        tangle[5] = v(0.2, 0.2, -0.5);
-        assert!(!intersections(&topology, &Field::of(&tangle)).is_empty());
+        assert!(intersections(&mesh, &Field::of(&stacked)).is_empty());
+        let mut crossing = stacked;
+        crossing[5] = v(0.2, 0.2, -0.5);
+        assert!(!intersections(&mesh, &Field::of(&crossing)).is_empty());
     }
 }

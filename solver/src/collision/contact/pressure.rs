@@ -1,44 +1,54 @@
-//! How hard film lies on film.
+//! Interlayer pressure: how strongly films press on each other.
 //!
 //! ```text
-//! interlayer pressure at a node:  Σ |w| F over its contacts / its share of film area
+//! interlayer pressure at a node = Σ |w| F over its contacts / film area of the node
 //! ```
+//!
+//! Symbols: w weight of the node in the closest points of a contact, F repulsive force, N.
 
 use super::distance::Closest;
-use super::{ContactModel, ContactState, at};
+use super::model::ContactModel;
+use super::pair::vectors_of;
+use super::state::ContactState;
 use crate::geometry::field::Field;
 
-/// Contact in numbers.
+/// Interlayer pressure of a whole film.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Interlayer {
+pub struct InterlayerPressure {
     /// Largest interlayer pressure at a node, Pa.
     pub largest: f64,
-    /// Its mean over the area in contact, Pa.
+    /// Mean over the area in contact, Pa.
     pub mean: f64,
-    /// Share of the film's area in contact.
+    /// Share of the film's area that is in contact.
     pub area_fraction: f64,
 }
 
 impl ContactModel {
-    /// Interlayer pressure at these places (m); `areas`: film area of each node, m².
-    pub fn interlayer(&self, places: &Field, areas: &[f64], meeting: &ContactState) -> Interlayer {
-        let mut pressed = vec![0.0; areas.len()];
-        for contact in &meeting.contacts {
-            let nodes = contact.pair.nodes(&self.topology);
-            let Closest { weights, squared, .. } = contact.pair.closest(&at(places, nodes));
-            let force = contact.force(squared.sqrt());
+    /// Interlayer pressure at these positions (m). `areas`: film area of each node, m².
+    pub fn interlayer_pressure(
+        &self,
+        positions: &Field,
+        areas: &[f64],
+        state: &ContactState,
+    ) -> InterlayerPressure {
+        let mut forces = vec![0.0; areas.len()];
+        for contact in &state.contacts {
+            let nodes = contact.pair.nodes(&self.mesh.topology);
+            let Closest { weights, squared, .. } =
+                contact.pair.closest(&vectors_of(positions, nodes));
+            let force = contact.repulsive_force(squared.sqrt());
             for (node, weight) in nodes.iter().zip(weights) {
-                pressed[*node as usize] += weight.abs() * force;
+                forces[*node as usize] += weight.abs() * force;
             }
         }
-        let (mut largest, mut force, mut area) = (0.0_f64, 0.0, 0.0);
-        for (own, share) in pressed.iter().zip(areas).filter(|(own, _)| **own > 0.0) {
-            largest = largest.max(own / share);
-            force += own;
-            area += share;
+        let (mut largest, mut total_force, mut contact_area) = (0.0_f64, 0.0, 0.0);
+        for (force, area) in forces.iter().zip(areas).filter(|(force, _)| **force > 0.0) {
+            largest = largest.max(force / area);
+            total_force += force;
+            contact_area += area;
         }
-        let whole: f64 = areas.iter().sum();
-        let mean = if area > 0.0 { force / area } else { 0.0 };
-        Interlayer { largest, mean, area_fraction: area / whole }
+        let film_area: f64 = areas.iter().sum();
+        let mean = if contact_area > 0.0 { total_force / contact_area } else { 0.0 };
+        InterlayerPressure { largest, mean, area_fraction: contact_area / film_area }
     }
 }

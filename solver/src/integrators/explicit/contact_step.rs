@@ -1,169 +1,235 @@
-//! The step's part that keeps film off film and off plates, and lets the audit see it.
+//! The part of a step that prevents passages of film through film and plates, and the monitor's part.
 
 use super::update::largest_squared_speed;
 use super::{Explicit, State};
-use crate::collision::contact::collision_response::{Impulses, taken};
-use crate::collision::contact::{Kind, Pair};
+use crate::collision::contact::candidates::CandidateList;
+use crate::collision::contact::collision_step::{CollisionStep, Impulses};
+use crate::collision::contact::{ContactModel, ContactState, Pair, PairKind};
 use crate::geometry::field::Field;
 use crate::output::outcome::{Failure, FailureKind};
+use crate::platform::simd::InstructionSet;
 use crate::platform::stopwatch::{Stage, Stopwatch};
 
-/// How often pairs and plates take turns in a step, at most.
-const MOST_TURNS: u32 = 50;
+/// Largest number of alternations between pairs of film and plates in a step. Chosen: a stack that is
+/// pressed between plates needs several, because each plate changes the velocities of the outer
+/// layers; a step that needs more is taken to have no solution.
+const MAX_ALTERNATIONS: u32 = 50;
 
-/// A pair that could not be kept apart, in words.
-fn unkept(pair: Pair) -> String {
-    let [one, other] = match pair.kind {
-        Kind::NodeTriangle => ["node", "element"],
-        Kind::EdgeEdge => ["edge", "edge"],
-    };
-    format!("{one} {} and {other} {} could not be kept apart", pair.first, pair.second)
+/// What could not be separated in a step.
+enum Unresolved {
+    /// A pair of primitives.
+    Pair(Pair),
+    /// Film between plates.
+    Plates,
+}
+
+impl Unresolved {
+    fn message(&self) -> String {
+        match self {
+            Self::Pair(pair) => {
+                let [first, second] = match pair.kind {
+                    PairKind::NodeElement => ["node", "element"],
+                    PairKind::EdgeEdge => ["edge", "edge"],
+                };
+                format!(
+                    "{first} {} and {second} {} could not be kept apart",
+                    pair.first, pair.second
+                )
+            }
+            Self::Plates => "film between plates could not be kept apart".to_owned(),
+        }
+    }
+}
+
+/// Largest speed of any node, m/s. NaN is ignored; the volume shows it.
+fn largest_speed(instruction_set: InstructionSet, velocities: &Field) -> f64 {
+    largest_squared_speed(instruction_set, velocities).sqrt()
+}
+
+/// Changes the velocities of a step until no pair and no plate lets film through.
+///
+/// Pairs and plates alternate until a whole alternation changes nothing. An impulse can make a node
+/// faster than the candidates were collected for; they are collected again then.
+fn resolve_all(
+    contact_model: &ContactModel,
+    step: &mut CollisionStep<'_>,
+    candidates: &mut CandidateList,
+    state: &mut ContactState,
+    displacements: MaxDisplacements,
+    instruction_set: InstructionSet,
+) -> Result<(), Unresolved> {
+    let MaxDisplacements { mut prepared, mut current } = displacements;
+    for alternation in 0..MAX_ALTERNATIONS {
+        contact_model
+            .resolve_collisions(step, &candidates.candidates, current, alternation, state)
+            .map_err(Unresolved::Pair)?;
+        let impulses_before = step.impulses.len();
+        for plate in &contact_model.plates {
+            plate.resolve_collisions(step);
+        }
+        let displacement = largest_speed(instruction_set, step.velocities) * step.length;
+        let exceeds = displacement > prepared;
+        if exceeds {
+            state.path_length -= prepared;
+            candidates.prepare_step(contact_model, step.positions, state, displacement);
+            prepared = displacement;
+            current = displacement;
+        }
+        if !exceeds && step.impulses.len() == impulses_before {
+            return Ok(());
+        }
+    }
+    Err(Unresolved::Plates)
+}
+
+/// Upper bounds of the displacement of any node in a step, m.
+#[derive(Clone, Copy)]
+struct MaxDisplacements {
+    /// The bound that the candidates were collected for.
+    prepared: f64,
+    /// The bound that holds now; friction may have made it larger.
+    current: f64,
 }
 
 impl Explicit {
-    /// The plates of the start.
-    pub(super) fn meet_first(&mut self) {
-        let Some(law) = &self.setting.contact else { return };
-        let places = &self.state.places;
-        self.state.meeting.searches = 1;
-        let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
-        self.state.meeting.plates = start.collect();
+    /// Sets the initial state of contact.
+    pub(super) fn initialise_contact(&mut self) {
+        let Some(contact_model) = &self.setting.contact else { return };
+        let positions = &self.state.places;
+        self.state.meeting.broad_phase_rebuilds = 1;
+        let plates = contact_model.plates.iter();
+        let states = plates.map(|plate| plate.initial_state(positions, contact_model.distance));
+        self.state.meeting.plates = states.collect();
     }
 
-    /// Forces of contact at the places now, which are those of `time` (s).
-    pub(super) fn press(&mut self, time: f64) {
-        let Some(law) = &self.setting.contact else { return };
-        let (places, meeting) = (&self.state.places, &mut self.state.meeting);
-        let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
-        if search.pushed {
+    /// Updates contacts and plates, and the contact forces, at the current positions, which are those
+    /// of `time` (s).
+    pub(super) fn update_contact_forces(&mut self, time: f64) {
+        let Some(contact_model) = &self.setting.contact else { return };
+        let (positions, state) = (&self.state.places, &mut self.state.meeting);
+        let list = self.search.get_or_insert_with(|| {
+            CandidateList::build(contact_model, positions, state.path_length)
+        });
+        if list.contact_active {
             let Field { x, y, z } = &mut self.forces.contact;
             for column in [x, y, z] {
                 column.fill(0.0);
             }
         }
-        law.meet(places, &self.model.mass, &mut self.forces.contact, meeting, search);
-        search.pushed = !meeting.contacts.is_empty() || !law.plates.is_empty();
-        let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
-        for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
-            plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
+        let forces = &mut self.forces.contact;
+        contact_model.update_contacts(positions, &self.model.mass, forces, state, list);
+        list.contact_active = !state.contacts.is_empty() || !contact_model.plates.is_empty();
+        for (plate, state) in contact_model.plates.iter().zip(&mut state.plates) {
+            plate.add_contact_forces(contact_model, &self.model, positions, time, state, forces);
         }
     }
 
-    /// Looks for pairs the drift to come could bring together, and keeps them apart, and off the plates:
-    /// in turn, until neither changes anything and no node is faster than the pairs were looked for.
-    pub(super) fn keep_apart(
+    /// Collects the pairs that the next drift of `length` (s) can bring together, applies friction for
+    /// a kick of `kick_length` (s), and resolves the collisions of these pairs and of plates.
+    pub(super) fn collision_step(
         &mut self,
-        kick: f64,
+        kick_length: f64,
         length: f64,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<(), Failure> {
-        let Some(law) = &self.setting.contact else { return Ok(()) };
-        let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
-        let State { places, velocities, meeting, .. } = &mut self.state;
-        let path = self.setting.path;
-        let fastest = |velocities: &Field| largest_squared_speed(path, velocities).sqrt();
-        let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
-        let speed = fastest(velocities);
-        if speed >= model.wave_speed() {
-            // The step ends the run; nothing is near or far for film that fast.
+        let Some(contact_model) = &self.setting.contact else { return Ok(()) };
+        let instruction_set = self.setting.path;
+        let State { places: positions, velocities, meeting: state, time, .. } = &mut self.state;
+        let list = self.search.get_or_insert_with(|| {
+            CandidateList::build(contact_model, positions, state.path_length)
+        });
+        let speed = largest_speed(instruction_set, velocities);
+        if speed >= self.model.wave_speed() {
+            // The step fails as unstable; candidates for such speeds would be meaningless.
             return Ok(());
         }
-        let mut way = speed * length;
+        let prepared = speed * length;
         stopwatch.begins(Stage::Search);
-        law.prepare(places, meeting, search, way);
+        list.prepare_step(contact_model, positions, state, prepared);
         stopwatch.begins(Stage::Pairs);
-        law.rub(model, supports, places, &self.next, velocities, kick, meeting);
-        // Friction may have made a node faster.
-        let rubbed = if law.friction > 0.0 { fastest(velocities) * length } else { way };
-        let mut own_way = way.max(rubbed);
-        let mut stopped = Impulses::new();
-        for turn in 0..MOST_TURNS {
-            let kept = law.guard(
-                model,
-                supports,
-                places,
-                &self.next,
-                velocities,
-                length,
-                &search.near,
-                own_way,
-                meeting,
-                turn,
-                &mut stopped,
-            );
-            if let Err(pair) = kept {
-                return Err(self.failure(FailureKind::Interpenetrated, &unkept(pair)));
-            }
-            let before = stopped.len();
-            for plate in &law.plates {
-                plate.guard(places, model, supports, velocities, time, length, &mut stopped);
-            }
-            let now = fastest(velocities) * length;
-            let farther = now > way;
-            if farther {
-                meeting.path -= way;
-                law.prepare(places, meeting, search, now);
-                way = now;
-                own_way = now;
-            }
-            if !farther && stopped.len() == before {
-                meeting.taken += taken(&stopped, &self.next, velocities);
-                return Ok(());
-            }
+        let mut step = CollisionStep {
+            film: &self.model,
+            supports: &self.setting.supports,
+            positions,
+            velocities_before_kick: &self.next,
+            velocities,
+            start: *time,
+            length,
+            impulses: Impulses::new(),
+        };
+        contact_model.apply_friction(&mut step, kick_length, state);
+        // Friction can make a node faster.
+        let current = if contact_model.friction > 0.0 {
+            prepared.max(largest_speed(instruction_set, step.velocities) * length)
+        } else {
+            prepared
+        };
+        let bounds = MaxDisplacements { prepared, current };
+        let resolved = resolve_all(contact_model, &mut step, list, state, bounds, instruction_set);
+        if let Err(unresolved) = resolved {
+            return Err(self.failure(FailureKind::Interpenetrated, &unresolved.message()));
         }
-        Err(self
-            .failure(FailureKind::Interpenetrated, "film between plates could not be kept apart"))
+        state.collision_dissipation += step.dissipation();
+        Ok(())
     }
 
-    /// Smallest distance of film that is held apart, m; infinite where none is.
+    /// Smallest gap of the pairs of film that are closer than their contact distance, m; infinite if
+    /// there is none. Pairs beyond the contact distance are not considered.
     pub fn smallest_gap(&self) -> f64 {
-        self.search.as_ref().map_or(f64::INFINITY, |search| search.smallest_gap)
+        self.search.as_ref().map_or(f64::INFINITY, |list| list.smallest_gap)
     }
 
-    /// Intersections of the mesh now, or when it last came to a target.
+    /// Number of intersections of the mesh when the monitor counted them last: at the last target, or
+    /// where a run was paused.
     pub fn intersections(&self) -> u64 {
-        self.watch.as_ref().map_or(0, |watch| watch.piercings.count)
+        self.watch.as_ref().map_or(0, |monitor| monitor.intersection_counter.count)
     }
 
-    /// Whether contact or a plate pushes, or may.
-    pub(super) fn pushed(&self) -> bool {
-        let none = self.setting.contact.is_none();
-        !none && self.search.as_ref().is_none_or(|search| search.pushed)
+    /// Whether contact or a plate may exert a force now.
+    pub(super) fn contact_active(&self) -> bool {
+        let has_contact = self.setting.contact.is_some();
+        has_contact && self.search.as_ref().is_none_or(|list| list.contact_active)
     }
 
-    /// Half a step's work of the plates, by their force now, on the way to `until` (s).
-    pub(super) fn plate_work(&mut self, until: f64) {
-        let Some(law) = &self.setting.contact else { return };
+    /// Adds half a step's work of the plates, with their forces now, for the motion until `until` (s).
+    pub(super) fn add_plate_work(&mut self, until: f64) {
+        let Some(contact_model) = &self.setting.contact else { return };
         let state = &mut self.state;
-        for (plate, pressed) in law.plates.iter().zip(&state.meeting.plates) {
-            let work = 0.5 * pressed.force * plate.way(state.time, until);
+        for (plate, plate_state) in contact_model.plates.iter().zip(&state.meeting.plates) {
+            let work = 0.5 * plate_state.force * plate.displacement(state.time, until);
             state.works.support += work;
             state.works.contact -= work;
         }
     }
 
-    /// Lets the audit see the places after a step.
-    pub(super) fn seen(&mut self) -> Result<(), Failure> {
-        if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
-            watch.step(&law.topology, &self.state.places);
+    /// Gives the monitor the positions after a step.
+    ///
+    /// # Errors
+    /// `interpenetrated` if the monitor has found a passage.
+    pub(super) fn monitor_step(&mut self) -> Result<(), Failure> {
+        if let (Some(monitor), Some(contact_model)) = (&mut self.watch, &self.setting.contact) {
+            monitor.record_step(&contact_model.mesh, &self.state.places);
         }
-        self.nothing_passed()
+        self.check_passages()
     }
 
-    /// Has the audit look at all steps it has seen.
-    pub(super) fn look(&mut self) -> Result<(), Failure> {
-        if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
-            watch.look(&law.topology);
-            watch.piercings.look(&law.topology, &self.state.places);
+    /// Makes the monitor test all steps that it has recorded, and count the intersections.
+    ///
+    /// # Errors
+    /// `interpenetrated` if the monitor has found a passage.
+    pub(super) fn monitor_interval(&mut self) -> Result<(), Failure> {
+        if let (Some(monitor), Some(contact_model)) = (&mut self.watch, &self.setting.contact) {
+            monitor.test_block(&contact_model.mesh);
+            monitor.intersection_counter.update(&contact_model.mesh, &self.state.places);
         }
-        self.nothing_passed()
+        self.check_passages()
     }
 
-    fn nothing_passed(&self) -> Result<(), Failure> {
-        match self.watch.as_ref().and_then(|watch| watch.first) {
+    fn check_passages(&self) -> Result<(), Failure> {
+        match self.watch.as_ref().and_then(|monitor| monitor.first_passage) {
             None => Ok(()),
-            Some((passage, at)) => {
-                let [x, y, z] = [at.x, at.y, at.z];
+            Some((passage, position)) => {
+                let [x, y, z] = [position.x, position.y, position.z];
                 let place = format!("{passage}, near ({x:.4}, {y:.4}, {z:.4}) m");
                 Err(self.failure(FailureKind::Interpenetrated, &place))
             }

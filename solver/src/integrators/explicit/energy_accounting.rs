@@ -28,7 +28,8 @@ impl Explicit {
             viscous_work: works.viscous,
             damping_work: works.damping,
             contact: -works.contact,
-            friction_work: self.state.meeting.rubbed + self.state.meeting.taken,
+            friction_work: self.state.meeting.friction_dissipation
+                + self.state.meeting.collision_dissipation,
         }
     }
 

@@ -46,7 +46,7 @@ impl Explicit {
             weight: self.setting.fault(Term::Gravity),
             keep,
             gain,
-            pressed: self.pushed(),
+            pressed: self.contact_active(),
         };
         let (path, velocities) = (self.setting.path, &self.state.velocities);
         kick_nodes(path, &self.model, &self.forces, &push, &supports.free, velocities, next);

@@ -90,7 +90,7 @@ impl Explicit {
         film.bind_to_planes();
         film.state.past =
             ViscousHistory::in_motion(&film.model, &film.state.places, &film.state.velocities);
-        film.meet_first();
+        film.initialise_contact();
         let sums = film.pass_at(0.0, 0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
         film.state.pressure = match film.setting.interior {
@@ -119,7 +119,7 @@ impl Explicit {
         let next = Field::zeros(model.nodes());
         let watch = setting.watch.zip(setting.contact.as_ref());
         let watch = watch.map(|(how, law)| {
-            TunnellingMonitor::new(how, &law.topology, &state.places, state.steps)
+            TunnellingMonitor::new(how, &law.mesh, &state.places, state.steps, setting.path)
         });
         let crew = Crew::default();
         Self { model, setting, state, forces, watch, search: None, next, crew }
@@ -172,7 +172,7 @@ impl Explicit {
             if *steps == 0 {
                 self.state.stretch = Some(stretch);
                 stopwatch.begins(Stage::Audit);
-                self.look()?;
+                self.monitor_interval()?;
                 return Ok(false);
             }
             if self.state.steps >= self.setting.step_limit {
@@ -194,7 +194,7 @@ impl Explicit {
             }
         }
         stopwatch.begins(Stage::Audit);
-        self.look()?;
+        self.monitor_interval()?;
         Ok(true)
     }
 
@@ -222,7 +222,9 @@ impl Explicit {
         let alone = cfl * share / (film * film + gas).sqrt();
         match self.setting.contact.as_ref().filter(|_| pressed) {
             // Contact counts for stability only: what is well below its limit resolves it too.
-            Some(law) => alone.min(share / (film * film + gas + law.frequency_squared()).sqrt()),
+            Some(law) => {
+                alone.min(share / (film * film + gas + law.added_frequency_squared()).sqrt())
+            }
             None => alone,
         }
     }
@@ -243,19 +245,19 @@ impl Explicit {
     ) -> Result<(), Failure> {
         stopwatch.begins(Stage::Update);
         self.kick(0.5 * (self.state.last_step + length), length, until);
-        self.keep_apart(0.5 * (self.state.last_step + length), length, stopwatch)?;
+        self.collision_step(0.5 * (self.state.last_step + length), length, stopwatch)?;
         stopwatch.begins(Stage::Update);
         self.share_work(length);
         let way = length * self.setting.fault(Term::Drift);
         let state = &mut self.state;
         let path = self.setting.path;
         let fastest = drift_nodes(path, &state.velocities, way, &mut state.places);
-        self.plate_work(until);
+        self.add_plate_work(until);
         // Rounding of a strain over next to no time would be a rate: such a step leaves viscosity as it is.
         let sliver = length * self.model.largest_frequency() < SLIVER;
         let sums = self.pass_at(until, if sliver { 0.0 } else { length }, stopwatch);
         stopwatch.begins(Stage::Gas);
-        self.plate_work(until);
+        self.add_plate_work(until);
         let volume = sums.six_volumes / 6.0;
         // No NaN passes either of these.
         let sound = fastest < self.model.wave_speed() * self.model.wave_speed();
@@ -272,14 +274,14 @@ impl Explicit {
         self.share_work(length);
         self.state.last_step = length;
         stopwatch.begins(Stage::Audit);
-        self.seen()
+        self.monitor_step()
     }
 
     /// Half a step's work of what acts at the nodes now along the velocities now: on moving supports,
     /// and of an overpressure on the film.
     fn share_work(&mut self, length: f64) {
         let half = 0.5 * length;
-        if self.pushed() {
+        if self.contact_active() {
             let (contact, velocities) = (&self.forces.contact, &self.state.velocities);
             self.state.works.contact += half * sparse_power(self.setting.path, contact, velocities);
         }
@@ -344,7 +346,7 @@ impl Explicit {
             self.suffer(&mut sums);
         }
         stopwatch.begins(Stage::Pairs);
-        self.press(time);
+        self.update_contact_forces(time);
         sums
     }
 

@@ -117,13 +117,13 @@ mod tests {
     use nalgebra::{Vector2, Vector3};
 
     use super::*;
-    use crate::collision::contact::contacts::Contact;
-    use crate::collision::contact::topology::Topology;
-    use crate::collision::contact::{ContactModel, Kind, Pair};
+    use crate::collision::broad_phase::collision_mesh::CollisionMesh;
+    use crate::collision::contact::{Contact, ContactModel, Pair, PairKind};
     use crate::geometry::field::Field;
     use crate::integrators::explicit::{Parameters, PressureLoad};
     use crate::mechanics::film_model::FilmModel;
     use crate::mechanics::gas::GasState;
+    use crate::platform::simd::InstructionSet;
     use crate::scene::Film;
     use crate::scene::inflow::Inflow;
     use crate::scene::plate::Plate;
@@ -137,7 +137,8 @@ mod tests {
         let place = |height: f64| flat.map(|x| Vector3::new(x.x, x.y, height));
         let places = Field::of(&[place(0.0), place(0.1)].concat());
         let omega = model.largest_frequency();
-        let law = ContactModel::new(Topology::new(6, &triangles), 1e-3, omega, 0.1);
+        let mesh = CollisionMesh::new(6, &triangles);
+        let law = ContactModel::new(mesh, 1e-3, omega, 0.1, InstructionSet::detect());
         let setting = Parameters {
             contact: Some(law),
             viscosity: 0.1,
@@ -165,7 +166,7 @@ mod tests {
     }
 
     fn contact() -> Contact {
-        let pair = Pair { kind: Kind::NodeTriangle, first: 0, second: 1 };
+        let pair = Pair { kind: PairKind::NodeElement, first: 0, second: 1 };
         Contact {
             pair,
             feature: 0,

@@ -34,7 +34,8 @@ pub fn imperfect(mesh: &mut Mesh, film: &Film, seed: u64) -> Result<(), SceneErr
     let model = FilmModel::of_shell(film, &Shell::of_mesh(mesh)).map_err(|error| {
         SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
     })?;
-    let gap = ContactModel::of_film(&model, &places, None).distance / contact::OF_GAP;
+    let gap = ContactModel::of_film(&model, &places, None, InstructionSet::detect()).distance
+        / contact::DISTANCE_PER_GAP;
     imperfection::imperfect(&mut mesh.positions, seed, IMPERFECTION * gap);
     Ok(())
 }
@@ -160,9 +161,8 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
 /// The law of a scene's contact; until its release the film lies packed between base and lid.
 fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> ContactModel {
     let contact = scene.contact.clone().unwrap_or_default();
-    let mut law = ContactModel::of_film(model, places, contact.distance);
+    let mut law = ContactModel::of_film(model, places, contact.distance, scene.solver.path);
     law.soften(scene.solver.cfl);
-    law.path = scene.solver.path;
     law.friction = contact.friction;
     if contact.adhesion > 0.0 {
         let range = contact.adhesion_range.unwrap_or(law.distance);

@@ -67,15 +67,15 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
     if let Some(law) = &run.film.setting.contact {
         let meeting = &state.meeting;
         let areas: Vec<f64> = model.mass.iter().map(|mass| mass / law.area_density).collect();
-        let pressed = law.interlayer(&state.places, &areas, meeting);
+        let pressed = law.interlayer_pressure(&state.places, &areas, meeting);
         values.extend([
             pressed.largest,
             pressed.mean,
             pressed.area_fraction,
             run.film.smallest_gap().min(law.distance),
             meeting.contacts.len() as f64,
-            meeting.searches as f64,
-            meeting.impulses as f64,
+            meeting.broad_phase_rebuilds as f64,
+            meeting.collision_impulses as f64,
         ]);
         values.extend(meeting.plates.iter().map(|plate| plate.force));
     }

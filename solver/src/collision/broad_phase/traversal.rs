@@ -1,0 +1,37 @@
+//! Visits all candidates within a radius in one traversal of the hierarchy, without any history.
+
+use super::collision_mesh::CollisionMesh;
+use super::hierarchy::push_child_pairs;
+use super::kdop::KDops;
+use super::query::{CandidateKind, Candidates, QueryKind, push_candidates};
+
+/// Calls `visit` with every candidate whose leaves have k-DOPs no farther apart than `radius` (m).
+/// Candidates that are farther apart than `radius` may be among them; none within it is missing.
+pub fn pairs_within_bounds(
+    kind: QueryKind,
+    mesh: &CollisionMesh,
+    kdops: &KDops,
+    radius: f64,
+    mut visit: impl FnMut(CandidateKind, [u32; 2]),
+) {
+    let first_leaf = mesh.hierarchy.first_leaf();
+    let mut stack = vec![[1_u32, 1]];
+    let mut candidates = Candidates::default();
+    while let Some(pair) = stack.pop() {
+        let [a, b] = pair.map(|index| index as usize);
+        if a != b && kdops.separation(a, b) > radius {
+            continue;
+        }
+        if a < first_leaf {
+            push_child_pairs(pair, &mut stack);
+            continue;
+        }
+        push_candidates(kind, &mesh.hierarchy, a, b, &mut candidates);
+        for (kind, pairs) in kind.candidate_kinds().into_iter().zip(&mut candidates) {
+            let Some(kind) = kind else { continue };
+            for pair in pairs.drain(..) {
+                visit(kind, pair);
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The parameters of contact, and the distances that they lead to.
+
+use super::distance_batch::{edge_edge_distances, node_element_distances};
+use super::pair::{Pair, PairKind, vectors_of};
+use crate::collision::broad_phase::collision_mesh::CollisionMesh;
+use crate::collision::broad_phase::kdop::KDops;
+use crate::collision::broad_phase::query::{CandidateKind, QueryKind};
+use crate::collision::broad_phase::traversal::pairs_within_bounds;
+use crate::geometry::field::Field;
+use crate::mechanics::film_model::FilmModel;
+use crate::platform::simd::InstructionSet;
+use crate::scene::plate::Plate;
+
+/// Parameters of contact; constant during a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactModel {
+    /// The mesh of the film.
+    pub mesh: CollisionMesh,
+    /// Contact distance: the largest offset of a node and a feature, m.
+    pub distance: f64,
+    /// Stiffness k over the mass of the pair: κ ω², 1/s².
+    pub stiffness_per_mass: f64,
+    /// Mean edge length, m.
+    pub edge_length: f64,
+    /// Rigid plates.
+    pub plates: Vec<Plate>,
+    /// Coulomb friction coefficient μ.
+    pub friction: f64,
+    /// Adhesion.
+    pub adhesion: Adhesion,
+    /// Mass of the film per area, kg/m².
+    pub area_density: f64,
+    /// Whether edges can be in contact with edges. It is `false` only in tests of the monitor.
+    pub edge_contacts: bool,
+    /// Factor on all bounds of how far a pair is from contact. It is 1 except in tests of the monitor.
+    pub bound_factor: f64,
+    /// Instruction set of the distance kernels. Results are the same bits with each.
+    pub instruction_set: InstructionSet,
+}
+
+/// Adhesion between films: an attraction that grows from zero at the offset to the pull-off pressure
+/// in the middle of its range, and falls to zero at the end of the range.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Adhesion {
+    /// Pull-off pressure, Pa.
+    pub pressure: f64,
+    /// Range beyond the offset, m.
+    pub range: f64,
+}
+
+/// Largest κ = k/(ω² m). Chosen: with [`MAX_ACTIVE_PAIRS`] it leaves steps up to the CFL number
+/// 1/√(1 + 3 · 0.8) = 0.54 stable.
+const MAX_STIFFNESS_RATIO: f64 = 0.8;
+
+/// Share of a step at a larger CFL number that must stay stable: contact is softened to reach it.
+/// Chosen: contact then shortens a step by at most a fifth.
+const MIN_STEP_SHARE: f64 = 0.8;
+
+/// Largest number of fully compressed pairs that are assumed to act on one mode at the same time.
+/// Chosen: a few, because a pair has its full stiffness only at zero gap.
+const MAX_ACTIVE_PAIRS: f64 = 3.0;
+
+/// Default contact distance over the smallest gap of a node and an element at the start. Chosen:
+/// well below 1, so that no pair is in contact at the start.
+pub const DISTANCE_PER_GAP: f64 = 0.4;
+
+/// Largest default contact distance over the mean edge length. Chosen: in unfolded film the smallest
+/// gap is the height of an element, which is far too large for a contact distance.
+const MAX_DISTANCE_PER_EDGE: f64 = 0.02;
+
+impl ContactModel {
+    /// Contact of a film at `positions` (m), without plates, friction and adhesion.
+    ///
+    /// `distance` (m) is the contact distance. The default is 0.4 of the smallest gap of a node and
+    /// an element, but at most 0.02 of the mean edge length.
+    pub fn of_film(
+        film: &FilmModel,
+        positions: &Field,
+        distance: Option<f64>,
+        instruction_set: InstructionSet,
+    ) -> Self {
+        let mesh = CollisionMesh::new(film.nodes(), &film.triangles);
+        let edges = &mesh.topology.edges;
+        let length =
+            |[a, b]: &[u32; 2]| (positions.get(*a as usize) - positions.get(*b as usize)).norm();
+        let edge_length = edges.iter().map(length).sum::<f64>() / edges.len() as f64;
+        let max_distance = MAX_DISTANCE_PER_EDGE * edge_length;
+        let frequency = film.largest_frequency();
+        let mut model = Self::new(mesh, max_distance, frequency, edge_length, instruction_set);
+        let area: f64 = film.volume.iter().sum::<f64>() / film.thickness;
+        model.area_density = film.mass.iter().sum::<f64>() / area;
+        let distance = distance.unwrap_or_else(|| {
+            let mut smallest_gap = f64::INFINITY;
+            model.pairs_within(positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
+                if pair.kind == PairKind::NodeElement {
+                    smallest_gap = smallest_gap.min(gap);
+                }
+            });
+            (DISTANCE_PER_GAP * smallest_gap).min(max_distance)
+        });
+        model.distance = distance;
+        model
+    }
+
+    /// Contact at this contact distance (m) of a film with this highest natural frequency ω (rad/s)
+    /// and this mean edge length (m), without plates, friction and adhesion.
+    pub fn new(
+        mesh: CollisionMesh,
+        distance: f64,
+        frequency: f64,
+        edge_length: f64,
+        instruction_set: InstructionSet,
+    ) -> Self {
+        Self {
+            mesh,
+            distance,
+            stiffness_per_mass: MAX_STIFFNESS_RATIO * frequency * frequency,
+            edge_length,
+            plates: Vec::new(),
+            friction: 0.0,
+            adhesion: Adhesion::default(),
+            area_density: 1.0,
+            edge_contacts: true,
+            bound_factor: 1.0,
+            instruction_set,
+        }
+    }
+
+    /// Upper bound of what contact adds to the square of a natural frequency, rad²/s², if at most three
+    /// fully compressed pairs act on a mode.
+    pub fn added_frequency_squared(&self) -> f64 {
+        MAX_ACTIVE_PAIRS * self.stiffness_per_mass
+    }
+
+    /// Reduces the stiffness until contact shortens a step of this CFL number by at most a fifth.
+    pub fn soften(&mut self, cfl: f64) {
+        let step_ratio = 1.0 / (MIN_STEP_SHARE * cfl);
+        let allowed = (step_ratio * step_ratio - 1.0) / MAX_ACTIVE_PAIRS;
+        self.stiffness_per_mass *= (allowed / MAX_STIFFNESS_RATIO).min(1.0);
+    }
+
+    /// Contact distance of a kind of pair, m.
+    pub fn distance_of(&self, kind: PairKind) -> f64 {
+        match kind {
+            PairKind::NodeElement => self.distance,
+            PairKind::EdgeEdge => 0.5 * self.distance,
+        }
+    }
+
+    /// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
+    pub fn pairs_within(&self, positions: &Field, radius: f64, mut visit: impl FnMut(Pair, f64)) {
+        let kdops = KDops::new(&self.mesh.hierarchy, positions);
+        let kind = QueryKind::Collision;
+        pairs_within_bounds(kind, &self.mesh, &kdops, radius, |kind, [first, second]| {
+            let pair = Pair { kind: pair_kind(kind), first, second };
+            let nodes = pair.nodes(&self.mesh.topology);
+            let gap = pair.closest(&vectors_of(positions, nodes)).squared.sqrt();
+            if gap < radius && (self.edge_contacts || pair.kind == PairKind::NodeElement) {
+                visit(pair, gap);
+            }
+        });
+    }
+
+    /// Appends the gaps (m) of pairs of one kind at these positions (m) to `gaps`. If edges cannot be
+    /// in contact, their gaps are infinite.
+    pub(super) fn append_gaps(
+        &self,
+        positions: &Field,
+        kind: PairKind,
+        pairs: &[[u32; 2]],
+        gaps: &mut Vec<f64>,
+    ) {
+        let (instruction_set, topology) = (self.instruction_set, &self.mesh.topology);
+        match kind {
+            PairKind::NodeElement => {
+                node_element_distances(instruction_set, topology, positions, pairs, gaps);
+            }
+            PairKind::EdgeEdge if self.edge_contacts => {
+                edge_edge_distances(instruction_set, topology, positions, pairs, gaps);
+            }
+            PairKind::EdgeEdge => gaps.resize(gaps.len() + pairs.len(), f64::INFINITY),
+        }
+    }
+}
+
+/// The kind of pair that a candidate of a collision query is.
+pub(super) fn pair_kind(kind: CandidateKind) -> PairKind {
+    if kind == CandidateKind::EdgeEdge { PairKind::EdgeEdge } else { PairKind::NodeElement }
+}
