@@ -26,21 +26,20 @@ use crate::collision::monitor::TunnellingMonitor;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
-use crate::mechanics::forces::membrane::{NodeForces, Sums, ViscousHistory, viscous_forces};
+use crate::mechanics::forces::membrane::{
+    NodeForces, Sums, ViscousHistory, assemble_membrane, viscous_forces,
+};
 use crate::mechanics::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::mechanics::gas::GasState;
 use crate::output::outcome::{Failure, FailureKind};
 use crate::platform::fault_injection::Term;
 use crate::platform::stopwatch::{Stage, Stopwatch, Untimed};
-use crate::platform::workers::Workers;
 use crate::scene::inflow::Inflow;
 use crate::scene::timeline::Phase;
 
-use crew::Crew;
 use update::{drift_nodes, sparse_power};
 
 mod contact_step;
-mod crew;
 mod energy_accounting;
 mod kick;
 mod parameters;
@@ -72,7 +71,6 @@ pub struct Explicit {
     /// What is near: a function of the state, made when first asked for.
     search: Option<CandidateList>,
     next: Field,
-    crew: Crew,
 }
 
 impl Explicit {
@@ -121,14 +119,7 @@ impl Explicit {
         let watch = watch.map(|(how, law)| {
             TunnellingMonitor::new(how, &law.topology, &state.places, state.steps)
         });
-        let crew = Crew::default();
-        Self { model, setting, state, forces, watch, search: None, next, crew }
-    }
-
-    /// Has these workers take the steps from now on; until then, and in a copy, the caller takes them
-    /// alone. No bit depends on it.
-    pub fn share_with(&mut self, workers: Workers) {
-        self.crew = Crew::new(workers, &self.model);
+        Self { model, setting, state, forces, watch, search: None, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -337,8 +328,7 @@ impl Explicit {
         stopwatch.begins(Stage::Membrane);
         let (model, path) = (&self.model, self.setting.path);
         let State { places, past, .. } = &mut self.state;
-        let mut sums =
-            self.crew.assemble_membrane(path, model, places, step, past, &mut self.forces);
+        let mut sums = assemble_membrane(path, model, places, step, past, &mut self.forces);
         sums.six_volumes += add_closure(model, places, &mut self.forces);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);

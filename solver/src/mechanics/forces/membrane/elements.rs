@@ -16,23 +16,9 @@ use super::ViscousHistory;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::{ElementBlock, FilmModel};
 use crate::mechanics::material::{Circle, Material, Response};
-use crate::platform::simd::{Columns, Corners, Lanes, NodeSum, Vectors, Wide, dispatch_wide};
+use crate::platform::simd::{Columns, Lanes, NodeSum, Vectors, Wide, dispatch_wide};
 
-/// Blocks that follow each other, and where what they give goes.
-pub(super) struct Share<'a> {
-    /// The first of them.
-    pub first: usize,
-    /// Where their corners add to.
-    pub targets: &'a Corners,
-    /// What is remembered of them.
-    pub past: &'a mut [[ViscousHistory; 2]],
-    /// Forces and normals, begun anew.
-    pub sums: &'a mut [NodeSum],
-    /// Volumes and works of each block, where they are kept; else empty.
-    pub terms: &'a mut [[Lanes; 2]],
-}
-
-/// Sums over the elements of a share, lane by lane.
+/// Sums over all elements, lane by lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LaneSums {
     /// Six times the volumes, m³.
@@ -150,26 +136,27 @@ fn told<L: Wide>(
 }
 
 #[inline(always)]
-fn element_kernel<L: Wide, const KEPT: bool>(
+fn element_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
     step: Step<L>,
-    share: Share<'_>,
+    past: &mut [[ViscousHistory; 2]],
+    sums: &mut [NodeSum],
 ) -> LaneSums {
     let material = model.material;
     let half = L::splat(0.5);
     let (mut volumes, mut works, mut largest) = (L::splat(0.0), L::splat(0.0), L::splat(0.0));
-    let Share { first, targets, past, sums, terms } = share;
+    let targets = &model.blocks;
     let mut begun = 0;
     if targets.blocks() == 0 {
         sums.fill(NodeSum::default());
     }
-    let end = first + targets.blocks();
-    let (constants, past) = (&model.constants[first..end], &mut past[..end - first]);
+    let blocks = targets.blocks();
+    let (constants, past) = (&model.constants[..blocks], &mut past[..blocks]);
     let places = Columns::new(&model.blocks, [&positions.x, &positions.y, &positions.z]);
-    for own in 0..end - first {
+    for own in 0..blocks {
         let ([first_block, second_block], [early, later]) = (&constants[own], &mut past[own]);
-        let corners = places.corners::<L>(first + own);
+        let corners = places.corners::<L>(own);
         let [p, d, q] = edges(corners);
         let (first_normal, second_normal) = (p.cross(d), d.cross(q));
         let normal = first_normal + second_normal;
@@ -183,12 +170,8 @@ fn element_kernel<L: Wide, const KEPT: bool>(
 
         let taken = one.taken + other.taken;
         largest = largest.max(one.largest).max(other.largest);
-        if KEPT {
-            terms[own] = [enclosed.lanes(), taken.lanes()];
-        } else {
-            works = works + taken;
-            volumes = volumes + enclosed;
-        }
+        works = works + taken;
+        volumes = volumes + enclosed;
         let (r, s) = (one.pull, other.pull);
         let at_a = p.scale(r[0]) + d.scale(r[1]);
         let at_t = p.scale(r[1]) + d.scale(r[2] + s[0]) + q.scale(s[1]);
@@ -202,56 +185,28 @@ fn element_kernel<L: Wide, const KEPT: bool>(
 
 /// Which kernel a step of this length (s) asks for is known before the first element.
 #[inline(always)]
-fn any_kernel<L: Wide, const KEPT: bool>(
+fn any_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
     step: f64,
-    share: Share<'_>,
+    past: &mut [[ViscousHistory; 2]],
+    sums: &mut [NodeSum],
 ) -> LaneSums {
     if step > 0.0 {
         let step = Step::Inverse(L::splat(1.0 / step));
-        element_kernel::<L, KEPT>(model, positions, step, share)
+        element_kernel::<L>(model, positions, step, past, sums)
     } else {
-        element_kernel::<L, KEPT>(model, positions, Step::None, share)
+        element_kernel::<L>(model, positions, Step::None, past, sums)
     }
 }
 
-#[inline(always)]
-fn summed_kernel<L: Wide>(
-    model: &FilmModel,
-    positions: &Field,
-    step: f64,
-    share: Share<'_>,
-) -> LaneSums {
-    any_kernel::<L, false>(model, positions, step, share)
-}
-
-#[inline(always)]
-fn kept_kernel<L: Wide>(
-    model: &FilmModel,
-    positions: &Field,
-    step: f64,
-    share: Share<'_>,
-) -> LaneSums {
-    any_kernel::<L, true>(model, positions, step, share)
-}
-
 dispatch_wide! {
-    /// Adds forces and normals of the elements of a share to where they go, and gives their sums.
-    pub(super) fn element_pass / summed_kernel(
+    /// Adds forces and normals of all elements to their nodes, and gives their sums.
+    pub(super) fn element_pass / any_kernel(
         model: &FilmModel,
         positions: &Field,
         step: f64,
-        share: Share<'_>,
-    ) -> LaneSums
-}
-
-dispatch_wide! {
-    /// The same; volumes and works are kept a block in `terms` and are none in the sums.
-    pub(super) fn element_pass_kept / kept_kernel(
-        model: &FilmModel,
-        positions: &Field,
-        step: f64,
-        share: Share<'_>,
+        past: &mut [[ViscousHistory; 2]],
+        sums: &mut [NodeSum],
     ) -> LaneSums
 }

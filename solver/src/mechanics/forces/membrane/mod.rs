@@ -17,13 +17,11 @@ use crate::mechanics::material::PlaneTensor;
 use crate::platform::simd::{InstructionSet, NodeSum};
 
 mod elements;
-mod halves;
 mod viscous_history;
 
-pub use halves::Halves;
 pub use viscous_history::{ViscousHistory, viscous_forces};
 
-use elements::{LaneSums, Share, element_pass, element_pass_kept};
+use elements::{LaneSums, element_pass};
 
 /// Sums over all elements of one pass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -56,9 +54,7 @@ pub fn assemble_membrane(
     past: &mut [[ViscousHistory; 2]],
     out: &mut NodeForces,
 ) -> Sums {
-    let whole =
-        Share { first: 0, targets: &model.blocks, past, sums: &mut out.sums, terms: &mut [] };
-    element_pass(path, model, positions, step, whole).sums()
+    element_pass(path, model, positions, step, past, &mut out.sums).sums()
 }
 
 /// F of an element by columns.
