@@ -45,7 +45,7 @@ fn a_step_allocates_nothing() {
     scene.gas.leak_area = 1e-4;
     let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
     let mut run = FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(reference)).unwrap();
-    let inflow = Inflow { mass: 0.005, mass_temperature: 0.005 * 293.0 };
+    let inflow = Inflow { mass_flow_rate: 0.005, temperature_flow: 0.005 * 293.0 };
     for packed in [true, false] {
         let before = count();
         let until = run.film.state.time + 2e-3;

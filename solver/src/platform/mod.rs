@@ -1,5 +1,5 @@
-//! What the solver takes from the machine and from its tests: vector instructions, a
-//! stopwatch the caller may hold, work of known size, faults injected on purpose.
+//! Vector instructions, a stopwatch interface, a floating-point throughput probe, and fault injection.
+//! Nothing here knows the physics.
 
 pub mod fault_injection;
 pub mod probe;

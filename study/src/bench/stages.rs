@@ -132,7 +132,7 @@ pub fn take(
     mut steps: u64,
     stopwatch: &mut dyn Stopwatch,
 ) -> Result<()> {
-    let breaks = course.breaks();
+    let breaks = course.breakpoints();
     let mut time = film.state.time;
     loop {
         let to = landing(course, &breaks, time);

@@ -35,7 +35,7 @@ pub struct Pressed {
 impl Plate {
     /// Where its point is at `time` (s), m.
     fn place(&self, time: f64) -> Vector3<f64> {
-        self.motion.map_or(self.point, |motion| motion.place(self.point, time))
+        self.motion.map_or(self.point, |motion| motion.position(self.point, time))
     }
 
     /// n·x of the plate at `time` (s), m.
@@ -69,7 +69,7 @@ impl Plate {
         forces: &mut Field,
     ) {
         (pressed.force, pressed.energy) = (0.0, 0.0);
-        if time >= self.until {
+        if time >= self.removal_time {
             return;
         }
         let height = self.height(time);
@@ -101,7 +101,7 @@ impl Plate {
         length: f64,
         stopped: &mut Impulses,
     ) {
-        if time >= self.until {
+        if time >= self.removal_time {
             return;
         }
         let (height, after) = (self.height(time), self.height(time + length));

@@ -79,7 +79,7 @@ impl TunnellingMonitor {
         if steps == 0 {
             return;
         }
-        let found = if self.how.closely(self.start) {
+        let found = if self.how.is_dense_block(self.start) {
             self.lookout.travel(topology, &self.frames[0], &self.frames[steps]);
             passages_step_by_step(topology, &self.frames[..=steps])
         } else {
@@ -123,7 +123,7 @@ fn gaps_at<'a>(
 ) -> impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>) + 'a {
     |couple, pairs, gaps| match couple {
         CandidateKind::EdgeEdge => {
-            edge_gaps(InstructionSet::detect(), topology, places, pairs, gaps)
+            edge_gaps(InstructionSet::detect(), topology, places, pairs, gaps);
         }
         _ => element_gaps(InstructionSet::detect(), topology, places, pairs, gaps),
     }
@@ -138,7 +138,7 @@ fn passages_step_by_step(topology: &Topology, frames: &[Field]) -> Vec<Passage> 
     let mut boxes = KDops::new(&topology.patches, first);
     for frame in &frames[1..] {
         boxes.hold(&topology.patches, frame);
-        way = way.max(first.largest_way(frame));
+        way = way.max(first.largest_displacement(frame));
     }
     let mut found = Vec::new();
     nearer(QueryKind::Collision, topology, &boxes, 0.0, |couple, pair| {
@@ -212,12 +212,9 @@ mod tests {
             watch.passages
         };
         assert_eq!(count(MonitorSettings::EVERY_STEP), 2);
-        assert_eq!(
-            count(MonitorSettings { every_step_of_one_in: 1, ..MonitorSettings::FRAMES }),
-            2
-        );
+        assert_eq!(count(MonitorSettings { dense_block_period: 1, ..MonitorSettings::FRAMES }), 2);
         let mut watch = TunnellingMonitor::new(MonitorSettings::FRAMES, &topology, &from, 0);
-        assert!(!MonitorSettings::FRAMES.closely(0));
+        assert!(!MonitorSettings::FRAMES.is_dense_block(0));
         watch.step(&topology, &to);
         watch.look(&topology);
         assert_eq!(watch.passages, 1);
@@ -226,7 +223,8 @@ mod tests {
 
     #[test]
     fn about_one_block_in_a_hundred_is_looked_at_closely() {
-        let close = (0..100_000).filter(|block| MonitorSettings::FRAMES.closely(*block)).count();
+        let close =
+            (0..100_000).filter(|block| MonitorSettings::FRAMES.is_dense_block(*block)).count();
         assert!((900..1100).contains(&close), "{close}");
     }
 
@@ -246,7 +244,7 @@ mod tests {
             let topology = Topology::new(18, &triangles);
             let mut x: Vec<Vector3<f64>> = places.into_iter().map(Vector3::from).collect();
             // No block is ever looked at step by step.
-            let how = MonitorSettings { block: 1, every_step_of_one_in: u64::MAX, seed: 1 };
+            let how = MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
             let mut watch = TunnellingMonitor::new(how, &topology, &Field::of(&x), 0);
             let mut counted = 0;
             for way in ways {

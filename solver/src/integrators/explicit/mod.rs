@@ -27,7 +27,7 @@ use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
 use crate::mechanics::forces::membrane::{
-    NodeForces, Sums, ViscousHistory, assemble_membrane, viscous_forces,
+    MembraneSums, NodeForces, ViscousHistory, assemble_membrane, viscous_forces,
 };
 use crate::mechanics::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::mechanics::gas::GasState;
@@ -289,7 +289,7 @@ impl Explicit {
         if let PressureLoad::Gas(gas) = self.setting.interior {
             let mut step = gas.step(state.gas, state.volume, volume, length, inflow);
             if let Some(mutation) = self.setting.mutation {
-                step.suffer(&gas, volume, inflow.mass * length, mutation);
+                step.inject_fault(&gas, volume, inflow.mass_flow_rate * length, mutation);
             }
             state.gas = step.state;
             state.pressure = step.pressure;
@@ -324,7 +324,7 @@ impl Explicit {
     }
 
     /// Forces at the places now, which are those of `time` (s), `step` (s) after they were last asked for.
-    fn pass_at(&mut self, time: f64, step: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
+    fn pass_at(&mut self, time: f64, step: f64, stopwatch: &mut dyn Stopwatch) -> MembraneSums {
         stopwatch.begins(Stage::Membrane);
         let (model, path) = (&self.model, self.setting.path);
         let State { places, past, .. } = &mut self.state;
@@ -339,7 +339,7 @@ impl Explicit {
     }
 
     /// Faults of the forces: tests only.
-    fn suffer(&mut self, sums: &mut Sums) {
+    fn suffer(&mut self, sums: &mut MembraneSums) {
         let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
             .map(|term| self.setting.fault(term));
         let drags = viscous_forces(&self.model, &self.state.places, &self.state.past);
