@@ -19,13 +19,16 @@ thread_local! {
 struct Counting;
 
 #[expect(unsafe_code, reason = "an allocator is unsafe by nature; it only counts and passes on")]
+// SAFETY: every call goes to `System` unchanged, which is an allocator; the counter allocates nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System`.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: `pointer` comes from `alloc` above, so from `System`, with the same layout.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
