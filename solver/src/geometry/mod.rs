@@ -1,5 +1,5 @@
-//! Shapes without physics: the fold pattern and its states, meshes, shells, fields of nodes, and the
-//! texts they are read from and written to.
+//! Shapes without physics: the fold pattern and its states, meshes, shells, vector fields over nodes,
+//! and the text formats they are read from and written to.
 
 pub mod field;
 pub mod fold;
