@@ -145,7 +145,11 @@ fn what_is_wrong_is_said_once_and_where() {
         ("/mesh/positions", json!("none.obj"), &["no faces"]),
         ("/mesh/positions", json!("gone.obj"), &["gone.obj", "mesh.positions", "next: paths"]),
         ("/mesh/positions", json!("nan.obj"), &["nan.obj", "line 3", "not a finite number"]),
-        ("/mesh/positions", json!("wild.obj"), &["wild.obj", "line 18", "vertex 99 of 9"]),
+        (
+            "/mesh/positions",
+            json!("wild.obj"),
+            &["wild.obj", "line 18", "vertex 99 does not exist"],
+        ),
         ("/mesh/positions", json!("line.obj"), &["line 5", "no area"]),
         ("/mesh/positions", json!(null), &["mesh.positions: missing", "next: give it", "bag.obj"]),
         ("/mesh/closure", json!(["lids"]), &["\"lids\"", "box, lid"]),

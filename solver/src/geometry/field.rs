@@ -43,7 +43,7 @@ impl Field {
         self.x.len()
     }
 
-    /// Whether there are none.
+    /// Whether the field is empty.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }

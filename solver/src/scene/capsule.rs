@@ -21,8 +21,8 @@ pub struct Scene {
     pub contact: Contact,
     /// Acceleration along z, m/s²: 0 in orbit, −9.80665 upright on the ground.
     pub gravity: f64,
-    /// Time at which the packing lid releases the capsule, s. Until then the lid holds the stowed height,
-    /// and gas presses on it. The run starts at time 0, so 0 releases at once.
+    /// Time at which the packing lid releases the capsule, s. Until then the lid limits the capsule to its
+    /// stowed height, and gas presses on the lid. The run starts at time 0, so 0 releases at once.
     pub release_time: f64,
     /// Model and solution parameters.
     pub solver: Solver,

@@ -28,7 +28,8 @@ pub struct FilmScene {
     pub contact: Option<FilmContact>,
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
-    /// Until this time every node is held at its initial position, s; only the gas evolves.
+    /// End of packing, s. Until this time, film with contact is between two fixed plates above and below
+    /// it; film without contact is fixed at its initial position, and only the gas evolves.
     pub release_time: f64,
     /// Solution parameters.
     pub solver: FilmSolver,

@@ -7,7 +7,7 @@ use crate::scene::{Scene, Thresholds};
 /// External conditions, constant between two breakpoints of a timeline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Phase {
-    /// Whether the packing lid holds the stowed height.
+    /// Whether the packing lid limits the capsule to its stowed height.
     pub packed: bool,
     /// Inflow.
     pub inflow: Inflow,

@@ -49,14 +49,14 @@ impl PanelAngles {
     /// 0 < ϕ < π/2 − π/N and |φh| < π/2.
     pub fn closing(panels: u32, phi: f64, half_angle: f64) -> Self {
         let s = libm::sin(half_angle);
-        let turn = PI / f64::from(panels);
-        let theta1 = 2.0 * turn * s;
-        let alpha1 = FRAC_PI_2 - turn - phi;
-        let beta1 = turn - 0.5 * theta1;
-        let beta2 = turn + 0.5 * theta1;
+        let half_panel = PI / f64::from(panels);
+        let theta1 = 2.0 * half_panel * s;
+        let alpha1 = FRAC_PI_2 - half_panel - phi;
+        let beta1 = half_panel - 0.5 * theta1;
+        let beta2 = half_panel + 0.5 * theta1;
 
         let q = 1.0 / libm::tan(phi + beta1);
-        let sine1 = sine_over(2.0 * turn, s);
+        let sine1 = sine_over(2.0 * half_panel, s);
         let tan_phi = libm::tan(phi);
         // tan θ2/sin φh; numerator and denominator are multiplied by tan ϕ to stay finite for ϕ → 0.
         let g = sine1 * (q - libm::tan(0.5 * theta1)) * tan_phi
@@ -67,7 +67,7 @@ impl PanelAngles {
             / (libm::cos(0.5 * theta2) * libm::sin(phi + theta2));
         let ring_ratio = 1.0 - s * unit_slant;
 
-        let ab = 2.0 * sine_over(turn, s);
+        let ab = 2.0 * sine_over(half_panel, s);
         let sine12 = sine1 * libm::cos(theta2) + libm::cos(theta1) * sine2;
         let unit_lengths = Lengths {
             ab,
@@ -96,9 +96,10 @@ impl PanelAngles {
     /// is tallest: slant = k ρ, ρ = 1/(1 + k sin φh), k = (sin θ1/sin φh)(cot β1 − tan(θ1/2)).
     pub fn tallest(panels: u32, half_angle: f64) -> (f64, f64) {
         let s = libm::sin(half_angle);
-        let turn = PI / f64::from(panels);
-        let beta1 = turn * (1.0 - s);
-        let k = sine_over(2.0 * turn, s) * (1.0 / libm::tan(beta1) - libm::tan(turn * s));
+        let half_panel = PI / f64::from(panels);
+        let beta1 = half_panel * (1.0 - s);
+        let k =
+            sine_over(2.0 * half_panel, s) * (1.0 / libm::tan(beta1) - libm::tan(half_panel * s));
         (k / (1.0 + k * s), 1.0 / (1.0 + k * s))
     }
 

@@ -6,7 +6,7 @@
 //! rotation of the inner ring relative to the outer one.
 //!
 //! ```text
-//!        D ───────── E          inner ring, radius ρ R, turned by θ2
+//!        D ───────── E          inner ring, radius ρ R, rotated by θ2
 //!         \  α2.·'    \
 //!       AD \ .·'AE     \ BE     ϕ  = between the radial line at A and AD
 //!          .·' α1       \       β1 = ∠DAE,  α1 = ∠EAB

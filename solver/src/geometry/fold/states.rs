@@ -197,14 +197,14 @@ impl FoldPattern {
 /// See [`FoldPattern::closure_defect`].
 pub(super) fn closure_defect(angles: &PanelAngles, panels: u32) -> f64 {
     let Lengths { ab, ad, ae, .. } = angles.unit_lengths;
-    let at = |length: f64, angle: f64| {
+    let polar = |length: f64, angle: f64| {
         let (sin, cos) = libm::sincos(angle);
         Vector2::new(length * cos, length * sin)
     };
     let b = Vector2::new(ab, 0.0);
-    let e = at(ae, angles.alpha1);
+    let e = polar(ae, angles.alpha1);
     // Folded along AE, D is on the same side of AE as B.
-    let d = at(ad, angles.alpha1 - angles.beta1);
+    let d = polar(ad, angles.alpha1 - angles.beta1);
     // The motion z → w z + b maps A to B; w rotates AD to BE.
     let (from, to) = (d, e - b);
     let w = Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared();

@@ -1,4 +1,4 @@
-//! Damping of the film: in-plane viscosity, and mass damping for relaxation to static equilibrium.
+//! Damping of the film: in-plane viscosity, and mass damping.
 //!
 //! ```text
 //! S_v = (2ζ/ω_e) C:Ė      power = A t S_v:Ė ≥ 0      E = (FᵀF − 1)/2,  Ėⁿ = (Eⁿ − Eⁿ⁻¹)/Δt
