@@ -1,23 +1,27 @@
-//! The film's own work of a step, on every instruction set and as plain loops: `cargo bench`.
+//! Time of one step of the film without contact, on every instruction set and by plain loops:
+//! `cargo bench` in this folder.
 //!
-//! The paper's capsule at n 5, 8 and 16, stowed and set in motion; an element a step is the unit.
+//! The paper's capsule with n = 5, 8 and 16 subdivisions, stowed, under 100 Pa. The unit of work is one
+//! element and step.
 
 use std::hint::black_box;
 
-use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
-use billow_solver::integrators::explicit::reference_step::{Moving, fast_step, plain_step};
-use billow_solver::integrators::explicit::update::Push;
-use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::scene::Film;
-use billow_solver::geometry::shell::Shell;
-use billow_solver::platform::simd::InstructionSet;
 use billow_solver::geometry::field::Field;
-use billow_solver::mechanics::supports::Free;
+use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::reference_step::{
+    FilmMotion, reference_step, vector_step,
+};
+use billow_solver::integrators::explicit::update::KickParameters;
+use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::supports::FreeComponents;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::Film;
 use criterion::{Criterion, Throughput};
 use nalgebra::Vector3;
 
-/// The paper's capsule, stowed, of film at rest.
+/// The paper's capsule, stowed: its film and the positions of its nodes (m).
 fn capsule(subdivisions: u32) -> (FilmModel, Field) {
     let design = FoldDesign {
         fit: Fit::Cone,
@@ -49,32 +53,39 @@ fn capsule(subdivisions: u32) -> (FilmModel, Field) {
     (model, Field::of(&shell.positions))
 }
 
+/// Step length over that of the stability limit 2/ω_max. Chosen: well inside it.
+const STEP_OVER_STABLE_STEP: f64 = 0.2;
+
 fn steps(criterion: &mut Criterion) {
     for subdivisions in [5, 8, 16] {
-        let (model, places) = capsule(subdivisions);
+        let (model, positions) = capsule(subdivisions);
         let nodes = model.nodes();
-        let free = Free::all(nodes);
-        let length = 0.4 / model.largest_frequency();
-        let push = Push {
+        let free = FreeComponents::all(nodes);
+        let length = STEP_OVER_STABLE_STEP * 2.0 / model.largest_frequency();
+        let parameters = KickParameters {
             overpressure: 100.0,
             gravity: Vector3::zeros(),
-            weight: 1.0,
-            keep: 1.0,
-            gain: length,
-            pressed: false,
+            weight_factor: 1.0,
+            velocity_factor: 1.0,
+            acceleration_factor: length,
+            contact_active: false,
         };
-        let start = Moving::new(InstructionSet::detect(), &model, places, Field::zeros(nodes));
+        let at_rest = Field::zeros(nodes);
+        let start = FilmMotion::new(InstructionSet::detect(), &model, positions, at_rest);
         let mut group = criterion.benchmark_group(format!("film n {subdivisions}"));
         group.throughput(Throughput::Elements(model.elements() as u64));
         let mut film = start.clone();
         group.bench_function("plain loops", |bencher| {
-            bencher.iter(|| black_box(plain_step(&model, &push, &free, length, &mut film)));
+            bencher.iter(|| {
+                black_box(reference_step(&model, &parameters, &free, length, &mut film))
+            });
         });
-        for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
+        for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
             let mut film = start.clone();
-            group.bench_function(path.name(), |bencher| {
-                bencher
-                    .iter(|| black_box(fast_step(path, &model, &push, &free, length, &mut film)));
+            group.bench_function(set.name(), |bencher| {
+                bencher.iter(|| {
+                    black_box(vector_step(set, &model, &parameters, &free, length, &mut film))
+                });
             });
         }
         group.finish();

@@ -1,1 +1,1 @@
-//! Nothing: the measurements are in `kernels.rs`.
+//! Empty: the measurements are in `kernels.rs`.

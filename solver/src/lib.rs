@@ -2,7 +2,8 @@
 //!
 //! A [`Scene`](scene::Scene) holds everything one run needs; [`solve`](models::solve) turns it
 //! into a [`Deployment`](deployment::Deployment) of history, measures and audit. Nothing here
-//! knows of studies, files, clocks or terminals; [`workers`] alone knows of threads.
+//! knows of studies, files, clocks, threads or
+//! terminals.
 //!
 //! **Units.** SI throughout, `f64`, angles in radians.
 //!

@@ -19,13 +19,16 @@ thread_local! {
 struct Counting;
 
 #[expect(unsafe_code, reason = "an allocator is unsafe by nature; it only counts and passes on")]
+// SAFETY: every call goes to `System` unchanged, which is an allocator; the counter allocates nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System`.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: `pointer` comes from `alloc` above, so from `System`, with the same layout.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -45,7 +48,7 @@ fn a_step_allocates_nothing() {
     scene.gas.leak_area = 1e-4;
     let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
     let mut run = FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(reference)).unwrap();
-    let inflow = Inflow { mass: 0.005, mass_temperature: 0.005 * 293.0 };
+    let inflow = Inflow { mass_flow_rate: 0.005, temperature_flow: 0.005 * 293.0 };
     for packed in [true, false] {
         let before = count();
         let until = run.film.state.time + 2e-3;

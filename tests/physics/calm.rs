@@ -11,8 +11,10 @@ use nalgebra::Vector3;
 use crate::geometry::paper_design;
 use crate::rig::paper_scene;
 
-const INFLOW: Phase =
-    Phase { packed: false, inflow: Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 } };
+const INFLOW: Phase = Phase {
+    packed: false,
+    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
+};
 
 /// The paper's capsule at n 3, stowed.
 fn stowed() -> Explicit {

@@ -8,7 +8,7 @@ use billow_solver::models::{self, piston::PistonRun};
 use billow_solver::output::measures::Verdict;
 use billow_solver::output::outcome::{FailureKind, Stop};
 use billow_solver::scene::error::SceneError;
-use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportPlace};
+use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportLocation};
 
 use crate::geometry::{paper_height, solved};
 use crate::rig::{PAPER_FILM, paper_scene, run, window};
@@ -193,7 +193,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
     };
     refused(&|s| s.supports.clear(), "supports");
     refused(
-        &|s| s.supports.push(Support { on: SupportPlace::TopRing, fix: "z".to_owned() }),
+        &|s| s.supports.push(Support { on: SupportLocation::TopRing, fix: "z".to_owned() }),
         "supports[1].fix",
     );
     refused(&|s| s.supports[0].fix = "zx".to_owned(), "supports[0].fix");
@@ -205,7 +205,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
     refused(&|s| s.gas.species.cp = 200.0, "gas.species.cp");
     refused(&|s| s.gas.initial_mass = -1.0, "gas.initial_mass");
     refused(&|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to");
-    refused(&|s| s.gas.windows[0].rate = -1.0, "gas.windows[0].rate");
+    refused(&|s| s.gas.windows[0].mass_flow_rate = -1.0, "gas.windows[0].rate");
     refused(&|s| s.gas.windows[0].temperature = 0.0, "gas.windows[0].temperature");
     refused(
         &|s| s.gas.heat_transfer = HeatTransfer::Coefficient(-1.0),

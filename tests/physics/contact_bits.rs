@@ -10,8 +10,10 @@ use billow_solver::scene::timeline::Phase;
 use crate::geometry::paper_design;
 use crate::rig::paper_scene;
 
-const INFLOW: Phase =
-    Phase { packed: false, inflow: Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 } };
+const INFLOW: Phase = Phase {
+    packed: false,
+    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
+};
 
 /// The paper's capsule of film that bears compression, stowed.
 fn stowed() -> Explicit {

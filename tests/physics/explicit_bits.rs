@@ -18,12 +18,14 @@ fn film(path: InstructionSet) -> Explicit {
     scene.gravity = -9.8;
     let stowed = Shape::Stowed(paper_design().stowed_height);
     let (mut film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
-    film.solver.path = path;
+    film.solver.instruction_set = path;
     capsule::start(&film).unwrap()
 }
 
-const INFLOW: Phase =
-    Phase { packed: false, inflow: Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 } };
+const INFLOW: Phase = Phase {
+    packed: false,
+    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
+};
 
 fn bits(state: &State) -> String {
     serde_json::to_string(state).unwrap()

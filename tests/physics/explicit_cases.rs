@@ -29,7 +29,7 @@ fn a_moving_support_does_the_work_it_should() {
         to: 1e-3,
         profile: Profile::Linear,
         translation: Vector3::new(2e-3, 0.5e-3, 1e-3),
-        turn: None,
+        rotation: None,
     };
     let hold = Hold::Components([true; 3]);
     let [left, right] = [(left, None), (right, Some(motion))].map(|(nodes, motion)| FilmSupport {

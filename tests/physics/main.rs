@@ -27,6 +27,5 @@ mod membrane_cases;
 mod piston_cases;
 mod rig;
 mod rigid_planes;
-mod shared_steps;
 mod shells;
 mod statics;

@@ -12,11 +12,11 @@ fn what_is_no_film_is_refused() {
     let model = |piece: &Piece, nodes| {
         FilmModel::new(&ELASTIC, nodes, &piece.triangles, &piece.reference).unwrap_err()
     };
-    assert_eq!(model(&piece, 10), FilmError::Loose { node: 9 });
-    assert!(matches!(model(&piece, 8), FilmError::Unknown { nodes: 8, .. }));
+    assert_eq!(model(&piece, 10), FilmError::LooseNode { node: 9 });
+    assert!(matches!(model(&piece, 8), FilmError::UnknownNode { nodes: 8, .. }));
     let mut turned = piece.clone();
     turned.reference[3].swap(0, 1);
-    assert!(matches!(model(&turned, 9), FilmError::Degenerate { element: 3, .. }));
+    assert!(matches!(model(&turned, 9), FilmError::DegenerateElement { element: 3, .. }));
 }
 
 #[test]

@@ -13,7 +13,10 @@ use crate::rig::{adaptive, fixed, number, supply, tube};
 fn injection() -> Phase {
     let rate = number("injected_piston/rate");
     let temperature = number("injected_piston/inflow_temperature");
-    Phase { packed: false, inflow: Inflow { mass: rate, mass_temperature: rate * temperature } }
+    Phase {
+        packed: false,
+        inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * temperature },
+    }
 }
 
 /// Position at 50 ms of the piston in vacuum, from the closed form at 1 ms on.

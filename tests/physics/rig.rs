@@ -10,7 +10,7 @@ use billow_solver::models::run::Unobserved;
 use billow_solver::output::outcome::Deployment;
 use billow_solver::scene::{
     Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
-    Species, Stepping, Support, SupportPlace, Thresholds,
+    Species, Stepping, Support, SupportLocation, Thresholds,
 };
 use serde_json::Value;
 
@@ -69,7 +69,7 @@ pub const PAPER_FILM: Film = Film {
 };
 
 pub fn window(from: f64, to: f64, rate: f64) -> InflowWindow {
-    InflowWindow { from, to, rate, temperature: 293.0 }
+    InflowWindow { from, to, mass_flow_rate: rate, temperature: 293.0 }
 }
 
 /// The paper's capsule, bottom ring fixed, in orbit, no gas; half a second at 0.5 ms.
@@ -78,7 +78,7 @@ pub fn paper_scene() -> Scene {
         design: paper_design(),
         film: PAPER_FILM,
         gas: GasSupply { heat_transfer: HeatTransfer::Coefficient(0.3), ..supply() },
-        supports: vec![Support { on: SupportPlace::BottomRing, fix: "xyz".to_owned() }],
+        supports: vec![Support { on: SupportLocation::BottomRing, fix: "xyz".to_owned() }],
         contact: Contact { distance: None, friction: 0.0, adhesion: 0.0 },
         gravity: 0.0,
         release_time: 0.0,

@@ -188,7 +188,7 @@ fn scene(shell: Shell, pressure: f64, supports: Vec<FilmSupport>) -> FilmScene {
             statics: true,
             mass_damping: 0.0,
             step_limit: 0,
-            path: InstructionSet::detect(),
+            instruction_set: InstructionSet::detect(),
         },
         outputs: FilmOutputs {
             sample_interval: 1.0,
@@ -260,7 +260,7 @@ fn what_is_moved_is_moved_and_bears() {
         to: 1.0,
         profile: Profile::Smooth,
         translation: Vector3::new(3e-3, 0.0, 0.0),
-        turn: None,
+        rotation: None,
     };
     let all = Hold::Components([true, true, true]);
     let mut moved = on("jaw", ends(6), all);

@@ -12,7 +12,7 @@ use billow_solver::output::history::COLUMNS;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::motion::{Motion, Profile, Turn};
+use billow_solver::scene::motion::{Motion, Profile, Rotation};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer, InflowWindow, Scene};
 use billow_study::cases::Rig;
@@ -62,7 +62,7 @@ fn end_state(film: &Explicit) -> String {
 }
 
 fn window(from: f64, to: f64, rate: f64) -> InflowWindow {
-    InflowWindow { from, to, rate, temperature: 293.0 }
+    InflowWindow { from, to, mass_flow_rate: rate, temperature: 293.0 }
 }
 
 /// 5 g/s from the start, with heat exchange and a leak.
@@ -86,7 +86,7 @@ fn preinflated() -> String {
 fn capsule() -> String {
     let contact = FilmContact::default();
     let mut run = stowed(&paper_capsule(2, 0.02), contact).expect("a capsule");
-    let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
+    let inflow = Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 };
     let phase = Phase { packed: false, inflow };
     run.advance(0.02, &phase).expect("it runs");
     assert!(run.film.state.meeting.path_length > 0.1 && run.film.state.works.contact != 0.0);
@@ -133,13 +133,13 @@ fn falling_sheet() -> String {
 /// A tube whose upper end is moved and turned, the lower one held.
 fn turned_tube() -> String {
     let (around, along) = (8, 4);
-    let turn = Turn { axis: Vector3::z(), centre: Vector3::zeros(), angle: 0.02 };
+    let turn = Rotation { axis: Vector3::z(), centre: Vector3::zeros(), angle: 0.02 };
     let motion = Motion {
         from: 0.0,
         to: 2e-3,
         profile: Profile::Smooth,
         translation: Vector3::new(0.0, 1e-3, 1e-3),
-        turn: Some(turn),
+        rotation: Some(turn),
     };
     let upper = FilmSupport {
         name: "upper".to_owned(),

@@ -255,8 +255,12 @@ fn strategies_resolve_to_windows() {
     study["grid"] = json!({"residual_gas": ["burst", "stored"]});
     let generation = plan(&study, &[]);
     let burst = &generation.points[0].job.scene;
-    let windows: Vec<[f64; 3]> =
-        burst.gas.windows.iter().map(|window| [window.from, window.to, window.rate]).collect();
+    let windows: Vec<[f64; 3]> = burst
+        .gas
+        .windows
+        .iter()
+        .map(|window| [window.from, window.to, window.mass_flow_rate])
+        .collect();
     assert_eq!(windows.len(), 2);
     assert_eq!(windows[0][0], 0.1);
     assert!((windows[0][1] - 0.11).abs() < 1e-15 && windows[0][2] == 0.005);

@@ -141,11 +141,15 @@ fn what_is_wrong_is_said_once_and_where() {
     let cases: Vec<(&str, Value, &[&str])> = vec![
         ("/mesh/positions", json!("inward.obj"), &["mesh.positions", "wound inward", "flip"]),
         ("/mesh/positions", json!("twisted.obj"), &["wind against each other", "vertices"]),
-        ("/mesh/positions", json!("stl.obj"), &["stl.obj", "line 1", "no keyword"]),
+        ("/mesh/positions", json!("stl.obj"), &["stl.obj", "line 1", "not an OBJ keyword"]),
         ("/mesh/positions", json!("none.obj"), &["no faces"]),
         ("/mesh/positions", json!("gone.obj"), &["gone.obj", "mesh.positions", "next: paths"]),
-        ("/mesh/positions", json!("nan.obj"), &["nan.obj", "line 3", "no finite number"]),
-        ("/mesh/positions", json!("wild.obj"), &["wild.obj", "line 18", "vertex 99 of 9"]),
+        ("/mesh/positions", json!("nan.obj"), &["nan.obj", "line 3", "not a finite number"]),
+        (
+            "/mesh/positions",
+            json!("wild.obj"),
+            &["wild.obj", "line 18", "vertex 99 does not exist"],
+        ),
         ("/mesh/positions", json!("line.obj"), &["line 5", "no area"]),
         ("/mesh/positions", json!(null), &["mesh.positions: missing", "next: give it", "bag.obj"]),
         ("/mesh/closure", json!(["lids"]), &["\"lids\"", "box, lid"]),

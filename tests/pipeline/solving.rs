@@ -77,26 +77,6 @@ pub(crate) fn capsule() -> Value {
 }
 
 #[test]
-fn one_job_on_two_threads_leaves_the_bytes_of_one() {
-    let mut scene = capsule();
-    scene["design"]["subdivisions"] = json!(11);
-    scene["solver"]["end_time"] = json!("8 ms");
-    let desk = desk(&scene, &[]);
-    let left = ["1", "2"].map(|threads| {
-        let out = format!("{threads}.h5");
-        let shape = format!("{threads}.obj");
-        let arguments =
-            ["scene.json", "--threads", threads, "--out", &out, "--shape", &shape, "--quiet"];
-        let summary = done(desk.path(), &arguments, "");
-        let read = |name: &str| fs::read(desk.path().join(name)).unwrap();
-        (summary, read(&out), read(&shape))
-    });
-    assert!(left[0] == left[1]);
-    let steps = number(&left[0].0, "/steps");
-    assert!(steps > 500.0, "{steps}");
-}
-
-#[test]
 fn every_scene_that_ships_is_sound_by_the_schema_and_listed() {
     let schema = scene_schema();
     jsonschema::meta::validate(&schema).unwrap();
@@ -184,7 +164,7 @@ fn the_papers_capsule_keeps_its_energy() {
     );
 }
 
-/// The same bits whatever the instruction set, the threads, and where it was paused.
+/// The same bits on every instruction set, and wherever the run was paused.
 fn same_bits(scene: &Value, pauses: &[&str]) {
     let folder = desk(scene, &[]);
     let run = |out: &str, more: &[&str], simd: &str| {
@@ -192,10 +172,7 @@ fn same_bits(scene: &Value, pauses: &[&str]) {
         let summary = done(folder.path(), &arguments, simd);
         (summary, fs::read(folder.path().join(out)).unwrap())
     };
-    let whole = run("whole.h5", &["--threads", "1"], "");
-    let (summary, file) = run("threads.h5", &["--threads", "2"], "");
-    assert_eq!(summary, whole.0);
-    assert!(file == whole.1, "the files differ");
+    let whole = run("whole.h5", &["--threads", "2"], "");
     for path in billow_solver::platform::simd::InstructionSet::ALL
         .into_iter()
         .filter(|path| path.available())

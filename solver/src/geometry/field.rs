@@ -1,11 +1,11 @@
-//! What changes while film moves.
+//! Vector fields over nodes.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::platform::simd::Column;
 
-/// One vector a node (or corner), a column a component.
+/// One vector for each node (or corner), stored as one column for each component.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Field {
@@ -23,13 +23,13 @@ impl Field {
         Self::repeat(0.0, length)
     }
 
-    /// `length` vectors of this component.
+    /// `length` vectors with all components equal to `component`.
     pub fn repeat(component: f64, length: usize) -> Self {
         let column = Column::repeat(component, length);
         Self { x: column.clone(), y: column.clone(), z: column }
     }
 
-    /// The field of these vectors.
+    /// The field with these vectors.
     pub fn of(vectors: &[Vector3<f64>]) -> Self {
         Self {
             x: vectors.iter().map(|v| v.x).collect(),
@@ -43,7 +43,7 @@ impl Field {
         self.x.len()
     }
 
-    /// Whether there are none.
+    /// Whether the field is empty.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
@@ -64,23 +64,23 @@ impl Field {
         self.z[index] = vector.z;
     }
 
-    /// Takes the vectors of a field of the same length.
+    /// Copies the vectors of a field of the same length.
     pub fn copy_from(&mut self, other: &Self) {
         self.x.copy_from_slice(&other.x);
         self.y.copy_from_slice(&other.y);
         self.z.copy_from_slice(&other.z);
     }
 
-    /// The largest length of a vector; 1 where there is none, or none that is a number.
+    /// The largest norm of a vector; 1 where that is zero or not finite. NaN vectors are ignored.
     pub fn size(&self) -> f64 {
         let size = self.iter().map(|x| x.norm()).fold(0.0, f64::max);
         if size > 0.0 && size < f64::INFINITY { size } else { 1.0 }
     }
 
-    /// The largest distance of a vector here from its own in another field.
-    pub fn largest_way(&self, other: &Self) -> f64 {
-        let way = |(a, b): (Vector3<f64>, Vector3<f64>)| (b - a).norm_squared();
-        self.iter().zip(other.iter()).map(way).fold(0.0, f64::max).sqrt()
+    /// The largest distance between the vectors of the same index in two fields.
+    pub fn largest_displacement(&self, other: &Self) -> f64 {
+        let squared = |(a, b): (Vector3<f64>, Vector3<f64>)| (b - a).norm_squared();
+        self.iter().zip(other.iter()).map(squared).fold(0.0, f64::max).sqrt()
     }
 
     /// All vectors.

@@ -1,14 +1,15 @@
-//! Film of any shape: nodes, triangles, their stress-free reference, and the faces that close its
-//! volume without being film.
+//! Film of any shape: nodes, triangles, their stress-free reference, and the closing faces, which close
+//! the volume and are not film.
 //!
 //! ```text
 //! V = Σ x0·(x1 × x2)/6     over film and closing faces, wound outward
 //! ```
 //!
-//! A closed shell needs no closing faces. An open one is closed by those of its own (the walls of
-//! a cylinder behind a piston), or by a fan over each free boundary loop: about the loop's mean where
-//! the loop lies in a plane that misses the origin, else about the origin. That is exact wherever the missing surface is
-//! plane, or made of symmetry planes through the origin.
+//! A closed shell needs no closing faces. An open one has given closing faces (the walls of a cylinder
+//! behind a piston), or a fan of closing faces for each free boundary loop. The fan has its apex at the
+//! mean of the loop where the loop is in a plane that does not contain the origin, otherwise at the
+//! origin. The volume is then exact where the missing surface is plane, or consists of symmetry planes
+//! through the origin.
 
 use std::collections::BTreeMap;
 
@@ -19,30 +20,30 @@ use crate::geometry::mesh::Mesh;
 /// Film of any shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Shell {
-    /// Where the nodes are at the start, m.
+    /// Initial positions of the nodes, m.
     pub positions: Vec<Vector3<f64>>,
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Flat coordinates of each element's nodes where it is free of stress, m; counter-clockwise.
+    /// Stress-free flat coordinates of each element's nodes, m; counter-clockwise.
     pub reference: Vec<[Vector2<f64>; 3]>,
-    /// Faces that close the volume and are no film; pressure on them passes to their nodes.
+    /// Nodes of the closing faces; the pressure on a closing face acts on its nodes.
     pub closure: Vec<[u32; 3]>,
 }
 
-/// Why a shell is none.
+/// Why nodes and faces do not form a shell.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ShellError {
-    /// A face names a node that is not there, or one twice.
+    /// A face names a node that does not exist, or names a node twice.
     #[error("face {face} names node {node}; allowed: three different nodes, 0 to {last}")]
     Node {
-        /// Face: elements first, closing faces after them.
+        /// Face: elements first, then closing faces.
         face: usize,
         /// Node.
         node: u32,
-        /// Largest node there is.
+        /// Largest valid node.
         last: usize,
     },
-    /// Two faces that share an edge run along it the same way, or more than two share it.
+    /// Two faces contain an edge in the same direction, or more than two faces share it.
     #[error(
         "nodes {} and {} are the edge of more than two faces, or of two that wind against each other",
         edge[0], edge[1]
@@ -53,11 +54,12 @@ pub enum ShellError {
     },
 }
 
-/// Share of a loop's size within which it counts as plane.
-const PLANE: f64 = 1e-9;
+/// Largest distance from its plane, over its size, at which a loop counts as plane. Chosen: above
+/// rounding.
+const MAX_PLANE_DEVIATION: f64 = 1e-9;
 
 impl Shell {
-    /// Film that is free of stress where it is, each element laid flat by itself.
+    /// Film that is free of stress in its initial shape: each element is its own flat reference.
     pub fn relaxed(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Self {
         let reference = triangles.iter().map(|t| flat(t.map(|n| positions[n as usize]))).collect();
         Self { positions, triangles, reference, closure: Vec::new() }
@@ -73,16 +75,16 @@ impl Shell {
         }
     }
 
-    /// Takes its stress-free reference from other places (m) of the same nodes, each element laid
-    /// flat by itself.
+    /// The same film with the stress-free reference of other positions (m) of its nodes, each element
+    /// flat.
     #[must_use]
-    pub fn with_reference(mut self, places: &[Vector3<f64>]) -> Self {
+    pub fn with_reference(mut self, positions: &[Vector3<f64>]) -> Self {
         self.reference =
-            self.triangles.iter().map(|t| flat(t.map(|n| places[n as usize]))).collect();
+            self.triangles.iter().map(|t| flat(t.map(|n| positions[n as usize]))).collect();
         self
     }
 
-    /// Area of the film where it is free of stress, m².
+    /// Stress-free area of the film, m².
     pub fn reference_area(&self) -> f64 {
         self.reference.iter().map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum()
     }
@@ -91,21 +93,21 @@ impl Shell {
         self.triangles.iter().chain(&self.closure)
     }
 
-    /// Checks nodes, and that every edge has at most two faces which run along it opposite ways.
+    /// Checks that all nodes exist, and that every edge has at most two faces, with opposite directions.
     ///
     /// # Errors
     /// [`ShellError`].
     pub fn check(&self) -> Result<(), ShellError> {
         let last = self.positions.len().saturating_sub(1);
-        let mut runs = BTreeMap::new();
+        let mut directed_edges = BTreeMap::new();
         for (face, &[a, b, c]) in self.faces().enumerate() {
-            let stray = [a, b, c].into_iter().find(|node| *node as usize > last);
-            let twice = if a == b || a == c { Some(a) } else { (b == c).then_some(b) };
-            if let Some(node) = stray.or(twice) {
+            let unknown = [a, b, c].into_iter().find(|node| *node as usize > last);
+            let repeated = if a == b || a == c { Some(a) } else { (b == c).then_some(b) };
+            if let Some(node) = unknown.or(repeated) {
                 return Err(ShellError::Node { face, node, last });
             }
             for edge in [[a, b], [b, c], [c, a]] {
-                if runs.insert(edge, face).is_some() {
+                if directed_edges.insert(edge, face).is_some() {
                     return Err(ShellError::Edge { edge });
                 }
             }
@@ -113,25 +115,26 @@ impl Shell {
         Ok(())
     }
 
-    /// Boundary loops, each in the order its closing faces run along it; none where closed.
+    /// Boundary loops, each in the direction of a closing face along it; empty for a closed shell.
     pub fn boundary(&self) -> Vec<Vec<u32>> {
-        let mut runs = std::collections::BTreeSet::new();
+        let mut directed_edges = std::collections::BTreeSet::new();
         for &[a, b, c] in self.faces() {
-            runs.extend([[a, b], [b, c], [c, a]]);
+            directed_edges.extend([[a, b], [b, c], [c, a]]);
         }
-        // A face beyond the edge runs along it the other way.
+        // The face on the other side of an edge contains it in the opposite direction.
         let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for &[a, b] in runs.iter().filter(|[a, b]| !runs.contains(&[*b, *a])) {
+        let free = |edge: &&[u32; 2]| !directed_edges.contains(&[edge[1], edge[0]]);
+        for &[a, b] in directed_edges.iter().filter(free) {
             next.entry(b).or_default().push(a);
         }
         let mut loops = Vec::new();
         while let Some((&first, _)) = next.iter().find(|(_, to)| !to.is_empty()) {
-            let (mut path, mut node) = (Vec::new(), first);
+            let (mut nodes, mut node) = (Vec::new(), first);
             while let Some(to) = next.get_mut(&node).and_then(Vec::pop) {
-                path.push(node);
+                nodes.push(node);
                 node = to;
             }
-            loops.push(path);
+            loops.push(nodes);
         }
         loops
     }
@@ -141,60 +144,63 @@ impl Shell {
         self.boundary().is_empty()
     }
 
-    /// The point each boundary loop's fan is spun about, with the loop.
+    /// The apex (m) of the fan that closes each boundary loop, with the nodes of the loop.
     pub fn fans(&self) -> Vec<(Vector3<f64>, Vec<u32>)> {
-        let apex = |path: &Vec<u32>| {
-            let places = || path.iter().map(|node| self.positions[*node as usize]);
-            let mean = places().sum::<Vector3<f64>>() / path.len() as f64;
-            let size = places().map(|x| (x - mean).norm()).fold(0.0, f64::max);
-            // The loop's own normal: twice its vector area.
+        let apex = |nodes: &Vec<u32>| {
+            let positions = || nodes.iter().map(|node| self.positions[*node as usize]);
+            let mean = positions().sum::<Vector3<f64>>() / nodes.len() as f64;
+            let size = positions().map(|x| (x - mean).norm()).fold(0.0, f64::max);
+            // Twice the vector area of the loop.
             let mut normal = Vector3::zeros();
-            for (k, node) in path.iter().enumerate() {
+            for (k, node) in nodes.iter().enumerate() {
                 let [a, b] =
-                    [*node, path[(k + 1) % path.len()]].map(|n| self.positions[n as usize]);
+                    [*node, nodes[(k + 1) % nodes.len()]].map(|n| self.positions[n as usize]);
                 normal += (a - mean).cross(&(b - mean));
             }
-            let off = places().map(|x| (x - mean).dot(&normal).abs()).fold(0.0, f64::max);
-            let slack = PLANE * size * normal.norm();
-            // A plane through the origin closes about it: film that starts flat between symmetry
-            // planes lies in one, and leaves it.
-            if off <= slack && mean.dot(&normal).abs() > slack { mean } else { Vector3::zeros() }
+            let deviation = positions().map(|x| (x - mean).dot(&normal).abs()).fold(0.0, f64::max);
+            let tolerance = MAX_PLANE_DEVIATION * size * normal.norm();
+            // A loop in a plane through the origin closes about the origin: film that starts flat
+            // between symmetry planes is in such a plane, and moves out of it.
+            let plane = deviation <= tolerance;
+            let misses_origin = mean.dot(&normal).abs() > tolerance;
+            if plane && misses_origin { mean } else { Vector3::zeros() }
         };
-        self.boundary().into_iter().map(|path| (apex(&path), path)).collect()
+        self.boundary().into_iter().map(|nodes| (apex(&nodes), nodes)).collect()
     }
 
-    /// Closes every boundary loop by a fan of closing faces; gives the nodes added for their tips,
-    /// which bear no film and must be held.
+    /// Closes every boundary loop by a fan of closing faces. Returns the new nodes at the apexes, which
+    /// have no mass and must be held.
     ///
     /// # Panics
     /// At 2³² nodes.
     pub fn close(&mut self) -> Vec<u32> {
-        let mut tips = Vec::new();
-        for (apex, path) in self.fans() {
-            let tip = u32::try_from(self.positions.len()).expect("under 2^32 nodes");
+        let mut apexes = Vec::new();
+        for (apex, nodes) in self.fans() {
+            let new_node = u32::try_from(self.positions.len()).expect("under 2^32 nodes");
             self.positions.push(apex);
-            tips.push(tip);
-            for (k, node) in path.iter().enumerate() {
-                self.closure.push([*node, path[(k + 1) % path.len()], tip]);
+            apexes.push(new_node);
+            for (k, node) in nodes.iter().enumerate() {
+                self.closure.push([*node, nodes[(k + 1) % nodes.len()], new_node]);
             }
         }
-        tips
+        apexes
     }
 
-    /// Enclosed volume, m³, with these places of the nodes (m), boundary loops closed by their fans
-    /// at the start.
-    pub fn volume(&self, place: impl Fn(u32) -> Vector3<f64>) -> f64 {
+    /// Enclosed volume, m³, at these node positions (m). Boundary loops are closed by their fans, with
+    /// the apexes of the initial shape.
+    pub fn volume(&self, position: impl Fn(u32) -> Vector3<f64>) -> f64 {
         let six = |[a, b, c]: [Vector3<f64>; 3]| a.dot(&b.cross(&c));
-        let own: f64 = self.faces().map(|face| six(face.map(&place))).sum();
-        let fan = |(apex, path): &(Vector3<f64>, Vec<u32>)| -> f64 {
-            let edge = |k: usize| [place(path[k]), place(path[(k + 1) % path.len()]), *apex];
-            (0..path.len()).map(|k| six(edge(k))).sum()
+        let faces: f64 = self.faces().map(|face| six(face.map(&position))).sum();
+        let fan = |(apex, nodes): &(Vector3<f64>, Vec<u32>)| -> f64 {
+            let edge =
+                |k: usize| [position(nodes[k]), position(nodes[(k + 1) % nodes.len()]), *apex];
+            (0..nodes.len()).map(|k| six(edge(k))).sum()
         };
-        (own + self.fans().iter().map(fan).sum::<f64>()) / 6.0
+        (faces + self.fans().iter().map(fan).sum::<f64>()) / 6.0
     }
 }
 
-/// A triangle laid flat, its first edge along x.
+/// Flat coordinates of a triangle with its first edge along x.
 pub fn flat([a, b, c]: [Vector3<f64>; 3]) -> [Vector2<f64>; 3] {
     let (p, q) = (b - a, c - a);
     let length = p.norm();
@@ -207,7 +213,7 @@ pub fn flat([a, b, c]: [Vector3<f64>; 3]) -> [Vector2<f64>; 3] {
 mod tests {
     use super::*;
 
-    /// A unit cube without its top, and without two sides.
+    /// These faces of a unit cube.
     fn cube(faces: &[[u32; 4]]) -> Shell {
         let corner =
             |k: u32| Vector3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2 & 1));
@@ -220,25 +226,25 @@ mod tests {
     const SIDES: [[u32; 4]; 4] = [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
 
     #[test]
-    fn plane_holes_close_about_their_middle() {
+    fn plane_holes_close_about_their_mean() {
         for open in [&SIDES[..], &[SIDES[0], SIDES[1], SIDES[2], SIDES[3], BOTTOM][..]] {
             let mut shell = cube(open);
             shell.check().unwrap();
             let start = shell.positions.clone();
             let volume = shell.volume(|node| start[node as usize]);
             assert!((volume - 1.0).abs() < 1e-15, "{volume}");
-            let tips = shell.close();
-            assert_eq!(tips.len(), if open.len() == 4 { 2 } else { 1 });
+            let apexes = shell.close();
+            assert_eq!(apexes.len(), if open.len() == 4 { 2 } else { 1 });
             assert!(shell.is_closed());
             shell.check().unwrap();
-            let places = shell.positions.clone();
-            assert!((shell.volume(|node| places[node as usize]) - 1.0).abs() < 1e-15);
+            let positions = shell.positions.clone();
+            assert!((shell.volume(|node| positions[node as usize]) - 1.0).abs() < 1e-15);
         }
     }
 
     #[test]
     fn symmetry_planes_through_the_origin_close_about_it() {
-        // Three faces round the corner (1, 1, 1): what is missing lies in x = 0, y = 0, z = 0.
+        // Three faces at the corner (1, 1, 1): the missing ones are in x = 0, y = 0, z = 0.
         let shell = cube(&[TOP, SIDES[1], SIDES[2]]);
         assert_eq!(shell.boundary().len(), 1);
         let volume = shell.volume(|node| shell.positions[node as usize]);
@@ -246,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_surface_is_refused() {
+    fn invalid_faces_are_refused() {
         let mut shell = cube(&[BOTTOM, TOP]);
         shell.triangles[0][1] = 99;
         assert!(matches!(shell.check(), Err(ShellError::Node { face: 0, node: 99, .. })));
@@ -255,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn laying_flat_keeps_the_triangle() {
+    fn flat_coordinates_keep_the_edge_lengths() {
         let corners =
             [Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.0, 1.0, 5.0), Vector3::new(4.0, 4.0, 4.0)];
         let [a, b, c] = flat(corners);

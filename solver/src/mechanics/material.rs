@@ -11,11 +11,11 @@
 //! Symbols: e Green strain, e1 ≥ e2 its principal values; W energy per reference volume, J/m³;
 //! S second Piola-Kirchhoff stress, Pa; E, ν, c of [`crate::scene::Film`]. The relaxed energy is
 //! that of A. C. Pipkin, "The relaxed energy density for isotropic elastic membranes" (1986), for
-//! this material. It is continuously differentiable: stress has no jump between regimes.
+//! this material. It is continuously differentiable: stress is continuous between regimes.
 //!
 //! Principal values are m ± r with m = (exx + eyy)/2, r² = ((exx − eyy)/2)² + exy². Where e1 = e2
-//! no direction is needed: the film is then taut or slack, and both stresses are isotropic forms.
-//! Every S is coaxial with e, so two numbers tell it: its mean and its secant shear modulus.
+//! the film is taut or slack, both stresses are isotropic, and no principal direction is needed. S is
+//! always coaxial with e, so two values define it: its mean and a secant shear modulus.
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
@@ -25,7 +25,7 @@ use crate::platform::fault_injection::{Fault, Term};
 use crate::platform::simd::{Lanes, Wide};
 use crate::scene::Film;
 
-/// A symmetric tensor in the developed plane.
+/// A symmetric tensor in the plane of the developed film.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlaneTensor {
     /// First diagonal entry.
@@ -37,28 +37,28 @@ pub struct PlaneTensor {
 }
 
 impl PlaneTensor {
-    /// Mean and half the difference of the principal values.
-    fn circle(self) -> (f64, f64) {
+    /// Centre and radius of Mohr's circle: mean and half the difference of the principal values.
+    fn mohr_circle(self) -> (f64, f64) {
         let half = 0.5 * (self.xx - self.yy);
         (0.5 * (self.xx + self.yy), (half * half + self.xy * self.xy).sqrt())
     }
 
     /// Principal values, the larger first.
     pub fn principal(self) -> (f64, f64) {
-        let (mean, radius) = self.circle();
+        let (mean, radius) = self.mohr_circle();
         (mean + radius, mean - radius)
     }
 }
 
-/// What the film does at a strain.
+/// State of the film at a strain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
-    /// Stretched both ways.
+    /// In tension in both principal directions.
     Taut,
-    /// Stretched one way, folded up in wrinkles the other.
+    /// In tension in one principal direction, wrinkled across it.
     Wrinkled,
-    /// Not stretched at all.
+    /// Free of stress.
     Slack,
 }
 
@@ -67,18 +67,25 @@ pub enum Regime {
 pub struct Stress {
     /// S, Pa.
     pub tensor: PlaneTensor,
-    /// Its larger principal value, Pa.
+    /// S1, its larger principal value, Pa.
     pub largest: f64,
 }
 
-/// Constants of the film.
+/// The constitutive law of the film: energy density W (J/m³) and second Piola-Kirchhoff stress S (Pa).
+///
+/// ```text
+/// W_full     = E/(2(1−ν²)) (e1² + e2² + 2ν e1 e2)        W = W_relaxed + c (W_full − W_relaxed)
+/// W_relaxed  = W_full | E/2 e1² | 0                       taut | wrinkled | slack
+/// S_full     = E/(1−ν²) ((1−ν) e + ν tr(e) 1)             S = S_relaxed + c (S_full − S_relaxed)
+/// S_relaxed  = S_full | E e1 n1⊗n1 | 0                    taut | wrinkled | slack
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// E, Pa.
     pub youngs_modulus: f64,
     /// ν.
     pub poisson_ratio: f64,
-    /// c.
+    /// c, compression fraction, 0 to 1.
     pub compression: f64,
     /// E/(1−ν²), Pa.
     plane_modulus: f64,
@@ -95,8 +102,8 @@ impl Material {
         }
     }
 
-    /// A fault of one constant, the others as they were: tests only.
-    pub(crate) fn suffer(&mut self, fault: Fault) {
+    /// Injects a fault into one constant, for tests only.
+    pub(crate) fn inject_fault(&mut self, fault: Fault) {
         match fault.term {
             Term::PlaneModulus => self.plane_modulus *= fault.factor,
             Term::WrinkledModulus => self.youngs_modulus *= fault.factor,
@@ -135,7 +142,7 @@ impl Material {
         relaxed + self.compression * (full - relaxed)
     }
 
-    /// C:e, Pa: the stress of the film if it bore compression as it bears tension.
+    /// `S_full` = C:e, Pa: the stress without relaxation.
     pub fn full_stress(&self, strain: PlaneTensor) -> PlaneTensor {
         let (k, nu) = (self.plane_modulus, self.poisson_ratio);
         PlaneTensor {
@@ -145,82 +152,91 @@ impl Material {
         }
     }
 
-    /// S of eight elements at their strains, told by its own circle.
+    /// S of eight elements at their strains.
+    ///
+    /// ```text
+    /// taut       mean = E/(2(1−ν)) (e1 + e2)       G = E/(2(1+ν))
+    /// wrinkled   mean = E e1/2                     G = E e1/(2 (e1 − e2))
+    /// ```
+    ///
+    /// E e1 n1⊗n1 = E e1 (1 + (e − mean(e) 1)/r)/2 with r = (e1 − e2)/2. Wrinkled film has e1 > e2, so
+    /// the division is valid wherever its result is selected.
     #[inline(always)]
-    pub fn response<L: Wide>(&self, strain: Circle<L>) -> Response<L> {
-        let Circle { sum, diameter, .. } = strain;
+    pub fn response<L: Wide>(&self, strain: MohrCircle<L>) -> StressResponse<L> {
+        let MohrCircle { sum, diameter, .. } = strain;
         let (k, nu) = (self.plane_modulus, self.poisson_ratio);
-        // E e1 n⊗n with n⊗n = (1 + deviator/r)/2; wrinkled film has e2 < e1, so r > 0 where this is
-        // taken.
-        let twice = sum + diameter;
-        let tension = twice * (0.25 * self.youngs_modulus);
+        let twice_e1 = sum + diameter;
+        let wrinkled_mean = twice_e1 * (0.25 * self.youngs_modulus);
+        // 2 (e2 + ν e1).
         let taut = sum * (1.0 + nu) - diameter * (1.0 - nu);
         let c = self.compression;
-        // No closure: one is not inlined into another instruction set.
-        let mean = relaxed(taut, twice, tension, sum * (0.5 * k * (1.0 + nu)), c);
-        let shear_modulus = tension.over(diameter);
-        let shear_modulus = relaxed(taut, twice, shear_modulus, L::splat(0.5 * k * (1.0 - nu)), c);
-        Response { mean, shear_modulus, largest: mean + shear_modulus * diameter }
+        // A function, not a closure: a closure is not inlined into another target feature.
+        let mean = select_regime(taut, twice_e1, wrinkled_mean, sum * (0.5 * k * (1.0 + nu)), c);
+        let wrinkled_modulus = wrinkled_mean.over(diameter);
+        let full_modulus = L::splat(0.5 * k * (1.0 - nu));
+        let shear_modulus = select_regime(taut, twice_e1, wrinkled_modulus, full_modulus, c);
+        StressResponse { mean, shear_modulus, largest: mean + shear_modulus * diameter }
     }
 
     /// S of one element: one lane of [`Self::response`].
     pub fn stress(&self, strain: PlaneTensor) -> Stress {
         let PlaneTensor { xx, yy, xy } = strain;
-        let circle = Circle::of(Lanes::splat(xx), Lanes::splat(yy), Lanes::splat(2.0 * xy));
-        let Response { mean, shear_modulus, largest } = self.response(circle);
+        let strain = MohrCircle::of(Lanes::splat(xx), Lanes::splat(yy), Lanes::splat(2.0 * xy));
+        let StressResponse { mean, shear_modulus, largest } = self.response(strain);
         let (mean, shear_modulus) = (mean.0[0], shear_modulus.0[0]);
-        let (half, shear) = (shear_modulus * (xx - yy), shear_modulus * (2.0 * xy));
-        let tensor = PlaneTensor { xx: mean + half, yy: mean - half, xy: shear };
+        let (half_difference, shear) = (shear_modulus * (xx - yy), shear_modulus * (2.0 * xy));
+        let tensor =
+            PlaneTensor { xx: mean + half_difference, yy: mean - half_difference, xy: shear };
         Stress { tensor, largest: largest.0[0] }
     }
 }
 
-/// Mohr's circles of eight strains, all twice their size.
+/// Mohr's circles of eight strains, every quantity doubled.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Circle<L> {
-    /// exx + eyy.
+pub struct MohrCircle<L> {
+    /// exx + eyy: twice the centre.
     pub sum: L,
     /// exx − eyy.
     pub difference: L,
     /// 2 exy.
     pub shear: L,
-    /// e1 − e2.
+    /// e1 − e2: twice the radius.
     pub diameter: L,
 }
 
-impl<L: Wide> Circle<L> {
-    /// Of exx, eyy and 2 exy.
+impl<L: Wide> MohrCircle<L> {
+    /// From exx, eyy and 2 exy.
     #[inline(always)]
     pub fn of(xx: L, yy: L, shear: L) -> Self {
-        Self::told(xx + yy, xx - yy, shear)
+        Self::of_difference(xx + yy, xx - yy, shear)
     }
 
-    /// Of their sum, their difference and 2 exy.
+    /// From exx + eyy, exx − eyy and 2 exy.
     #[inline(always)]
-    pub fn told(sum: L, difference: L, shear: L) -> Self {
+    pub fn of_difference(sum: L, difference: L, shear: L) -> Self {
         let diameter = (difference * difference + shear * shear).sqrt();
         Self { sum, difference, shear, diameter }
     }
 }
 
-/// Stresses of eight elements, coaxial with their strains: Sxx and Syy are mean ± G (exx − eyy), Sxy is
-/// G 2 exy; Pa.
+/// Stresses of eight elements, coaxial with their strains:
+/// Sxx, Syy = mean ± G (exx − eyy), Sxy = G 2 exy.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Response<L> {
-    /// (Sxx + Syy)/2.
+pub struct StressResponse<L> {
+    /// (Sxx + Syy)/2, Pa.
     pub mean: L,
-    /// G, secant: (S1 − S2)/2 over e1 − e2.
+    /// G, secant shear modulus (S1 − S2)/(2 (e1 − e2)), Pa.
     pub shear_modulus: L,
-    /// S1.
+    /// S1, Pa.
     pub largest: L,
 }
 
-/// What taut film has where `taut` is above 0, else what wrinkled film has where `e1` is, else nought;
-/// the last two with a share of the first.
+/// Selects `full` where `taut` > 0; elsewhere `wrinkled` where `e1` > 0, or 0, blended with `full` by
+/// the compression fraction.
 #[inline(always)]
-fn relaxed<L: Wide>(taut: L, e1: L, wrinkled: L, full: L, compression: f64) -> L {
+fn select_regime<L: Wide>(taut: L, e1: L, wrinkled: L, full: L, compression: f64) -> L {
     let relaxed = e1.if_positive(wrinkled, L::splat(0.0));
-    // A share of nought is nothing, whatever its sign.
+    // Without compression the blend is skipped: 0 times `full` adds nothing.
     let blend = if compression > 0.0 { relaxed + (full - relaxed) * compression } else { relaxed };
     taut.if_positive(full, blend)
 }
@@ -234,7 +250,8 @@ mod tests {
         Material::new(&Film { compression, viscosity: 0.0, ..Film::PAPER })
     }
 
-    fn turned(e1: f64, e2: f64, angle: f64) -> PlaneTensor {
+    /// The strain with these principal values, the first at `angle` (rad) to x.
+    fn rotated(e1: f64, e2: f64, angle: f64) -> PlaneTensor {
         let (sin, cos) = libm::sincos(angle);
         PlaneTensor {
             xx: e1 * cos * cos + e2 * sin * sin,
@@ -258,24 +275,24 @@ mod tests {
             let material = material(c);
             for (e1, e2, regime) in STRAINS {
                 for angle in [0.0, 0.4, 2.0] {
-                    let strain = turned(e1, e2, angle);
+                    let strain = rotated(e1, e2, angle);
                     assert_eq!(material.regime(strain), regime);
                     let stress = material.stress(strain).tensor;
                     let h = 1e-7;
                     let slope = |dxx: f64, dyy: f64, dxy: f64| {
-                        let at = |s: f64| {
+                        let energy = |s: f64| {
                             material.energy_density(PlaneTensor {
                                 xx: strain.xx + s * dxx,
                                 yy: strain.yy + s * dyy,
                                 xy: strain.xy + s * dxy,
                             })
                         };
-                        (at(h) - at(-h)) / (2.0 * h)
+                        (energy(h) - energy(-h)) / (2.0 * h)
                     };
                     let scale = 1e-6 * material.youngs_modulus * 2e-3;
                     assert!((stress.xx - slope(1.0, 0.0, 0.0)).abs() < scale, "{strain:?} {c}");
                     assert!((stress.yy - slope(0.0, 1.0, 0.0)).abs() < scale, "{strain:?} {c}");
-                    // Both off-diagonal entries move together.
+                    // xy and yx change together.
                     assert!((2.0 * stress.xy - slope(0.0, 0.0, 1.0)).abs() < scale, "{strain:?}");
                 }
             }
@@ -283,24 +300,24 @@ mod tests {
     }
 
     #[test]
-    fn stress_has_no_jump_between_regimes() {
+    fn stress_is_continuous_between_regimes() {
         let material = material(0.0);
-        let near = |a: PlaneTensor, b: PlaneTensor| {
+        let assert_equal = |a: PlaneTensor, b: PlaneTensor| {
             let [a, b] = [a, b].map(|e| material.stress(e).tensor);
             let gap = (a.xx - b.xx).abs() + (a.yy - b.yy).abs() + (a.xy - b.xy).abs();
             assert!(gap < 1e-9 * material.youngs_modulus, "{a:?} {b:?}");
         };
         let small = 1e-11;
-        near(turned(1e-3, -0.3e-3 + small, 0.7), turned(1e-3, -0.3e-3 - small, 0.7));
-        near(turned(small, -1e-3, 0.7), turned(-small, -1e-3, 0.7));
-        near(turned(small, small, 0.7), turned(-small, -small, 0.7));
+        assert_equal(rotated(1e-3, -0.3e-3 + small, 0.7), rotated(1e-3, -0.3e-3 - small, 0.7));
+        assert_equal(rotated(small, -1e-3, 0.7), rotated(-small, -1e-3, 0.7));
+        assert_equal(rotated(small, small, 0.7), rotated(-small, -small, 0.7));
     }
 
     #[test]
-    fn full_compression_is_linear() {
+    fn stress_is_linear_at_full_compression() {
         let material = material(1.0);
         for (e1, e2, _) in STRAINS {
-            let strain = turned(e1, e2, 1.0);
+            let strain = rotated(e1, e2, 1.0);
             let stress = material.stress(strain);
             let full = material.full_stress(strain);
             let scale = material.youngs_modulus * 1e-15;
@@ -311,9 +328,9 @@ mod tests {
     }
 
     #[test]
-    fn slack_and_unstrained_film_bear_nothing() {
+    fn slack_and_unstrained_film_are_free_of_stress() {
         let material = material(0.0);
-        for strain in [PlaneTensor::default(), turned(-1e-3, -1e-3, 0.0)] {
+        for strain in [PlaneTensor::default(), rotated(-1e-3, -1e-3, 0.0)] {
             assert_eq!(material.stress(strain).tensor, PlaneTensor::default());
             assert_eq!(material.stress(strain).largest, 0.0);
             assert_eq!(material.energy_density(strain), 0.0);
@@ -321,13 +338,13 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_stress_is_the_tensors_own() {
+    fn largest_stress_is_the_principal_value_of_the_tensor() {
         for c in [0.0, 0.2] {
             let material = material(c);
             for (e1, e2, _) in STRAINS {
-                let stress = material.stress(turned(e1, e2, 0.3));
-                let own = stress.tensor.principal().0;
-                assert!((stress.largest - own).abs() < 1e-9 * material.youngs_modulus);
+                let stress = material.stress(rotated(e1, e2, 0.3));
+                let (s1, _) = stress.tensor.principal();
+                assert!((stress.largest - s1).abs() < 1e-9 * material.youngs_modulus);
             }
         }
     }

@@ -1,13 +1,13 @@
-//! What holds film: components of nodes that stand, move as prescribed, or move with a rigid plane.
+//! Supports of the film: node components that are fixed, move as prescribed, or move with a rigid plane.
 //!
 //! ```text
-//! v⁺ = v⁻ + P a h            P: onto the directions nobody holds
-//! n·v⁺ = V,  V⁺ = V⁻ + h (F + Σ n·f_i)/(M + Σ m_i)            a plane of mass M as a free body
-//! v⁺ = (path(t + Δt) − x)/Δt                                    prescribed, in what is held
+//! v⁺ = v⁻ + P a h                                               P: projector onto free directions
+//! n·v⁺ = V,  V⁺ = V⁻ + h (F + Σ n·f_i)/(M + Σ m_i)              rigid plane of mass M as a free body
+//! v⁺ = (x(t + Δt) − x)/Δt                                       prescribed, in the held directions
 //! ```
 //!
-//! A held component takes no part in the balance of momentum: the support bears whatever force acts
-//! on it. A support that stands does no work; what moves does, and the ledger counts it.
+//! A held component is not part of the momentum balance: the support takes the force on it. A fixed
+//! support does no work. The work of a moving support is in the energy ledger.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,95 +17,96 @@ use crate::platform::simd::WIDTH;
 use crate::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use crate::scene::motion::Motion;
 
-/// Which components of which nodes are held, and by what.
+/// All supports of a film.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Supports {
-    /// What is free along the axes.
-    pub free: Free,
-    /// Nodes held along directions that are no axes, in ascending order, with P.
+    /// Free components along the axes.
+    pub free: FreeComponents,
+    /// Nodes held along directions that are not axes, in ascending order, with P.
     pub oblique: Vec<(u32, Matrix3<f64>)>,
-    /// What moves as prescribed.
-    pub movers: Vec<Mover>,
+    /// Nodes that move as prescribed.
+    pub movers: Vec<PrescribedNodes>,
     /// Rigid planes that move as free bodies.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<RigidPlane>,
 }
 
-/// What is free along the axes: 1 where a component of a node is, 0 where it is held.
+/// Free components of each node along the axes: 1 for a free component, 0 for a held one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Free {
+pub struct FreeComponents {
     field: Field,
-    /// Whether any of eight nodes is held, from the first on: most are free, and need not be asked.
+    /// For each block of eight nodes, whether any component is held. Most blocks are free, and the
+    /// kernels skip their factors.
     held: Vec<bool>,
 }
 
-impl Free {
-    /// All of this many nodes.
+impl FreeComponents {
+    /// All components of `nodes` nodes are free.
     pub fn all(nodes: usize) -> Self {
         Self { field: Field::repeat(1.0, nodes), held: vec![false; nodes.div_ceil(WIDTH)] }
     }
 
-    /// Of a node.
+    /// Components of a node, each 1 or 0.
     pub fn get(&self, node: usize) -> Vector3<f64> {
         self.field.get(node)
     }
 
-    /// Says what is free of a node: components 1 or 0.
+    /// Sets the components of a node, each 1 or 0.
     pub fn set(&mut self, node: usize, free: Vector3<f64>) {
         self.field.set(node, free);
         let first = node / WIDTH * WIDTH;
         let end = self.field.len().min(first + WIDTH);
-        let whole = Vector3::repeat(1.0);
-        self.held[node / WIDTH] = (first..end).any(|own| self.field.get(own) != whole);
+        let all_free = Vector3::repeat(1.0);
+        self.held[node / WIDTH] = (first..end).any(|node| self.field.get(node) != all_free);
     }
 
-    /// Of all nodes.
+    /// Components of all nodes.
     pub fn field(&self) -> &Field {
         &self.field
     }
 
-    /// Whether anything is held of the nodes from `first` to seven after it; `first` a multiple of eight.
+    /// Whether any component is held of the eight nodes from `first` on; `first` is a multiple of eight.
     #[inline]
     pub fn any_held(&self, first: usize) -> bool {
         self.held[first / WIDTH]
     }
 }
 
-/// Nodes that move as prescribed, in what is held of them.
+/// Nodes that move as prescribed in their held directions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mover {
+pub struct PrescribedNodes {
     /// Nodes.
     pub nodes: Vec<u32>,
-    /// Where they start, m.
+    /// Their initial positions, m.
     pub start: Vec<Vector3<f64>>,
-    /// Onto what is held.
+    /// Projector onto the held directions.
     pub held: Matrix3<f64>,
-    /// Their common path.
+    /// Motion of all nodes.
     pub motion: Motion,
-    /// What each goes beside, growing as the motion does, m.
-    pub beside: Vec<Vector3<f64>>,
+    /// Additional displacement of each node at the end of the motion, m; it grows with the motion.
+    pub displacements: Vec<Vector3<f64>>,
 }
 
-impl Mover {
-    /// Each node and where it has to be at `time` (s), m.
-    pub fn places(&self, time: f64) -> impl Iterator<Item = (u32, Vector3<f64>)> + '_ {
-        let part = self.motion.part(time);
-        let ways = self.nodes.iter().zip(self.start.iter().zip(&self.beside));
-        ways.map(move |(node, (start, beside))| {
-            (*node, self.motion.place(*start, time) + beside * part)
+impl PrescribedNodes {
+    /// Each node with its prescribed position at `time` (s), m.
+    pub fn positions(&self, time: f64) -> impl Iterator<Item = (u32, Vector3<f64>)> + '_ {
+        let fraction = self.motion.fraction(time);
+        let nodes = self.nodes.iter().zip(self.start.iter().zip(&self.displacements));
+        nodes.map(move |(node, (start, displacement))| {
+            (*node, self.motion.position(*start, time) + displacement * fraction)
         })
     }
 }
 
 /// A rigid plane and the nodes bound to it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Body {
+pub struct RigidPlane {
     /// Nodes.
     pub nodes: Vec<u32>,
-    /// The plane.
+    /// Normal, mass, initial velocity and force of the plane.
     pub plane: PlaneBody,
 }
 
-impl Body {
+impl RigidPlane {
     /// Mass of the plane and of the film bound to it, kg.
     pub fn mass(&self, model: &FilmModel) -> f64 {
         self.plane.mass + self.nodes.iter().map(|node| model.mass[*node as usize]).sum::<f64>()
@@ -113,7 +114,7 @@ impl Body {
 }
 
 impl Hold {
-    /// Onto what is held.
+    /// Projector onto the held directions.
     pub fn projector(&self) -> Matrix3<f64> {
         match self {
             Self::Components(held) => {
@@ -125,7 +126,7 @@ impl Hold {
         }
     }
 
-    /// Unit directions held.
+    /// The held directions, as unit vectors.
     fn directions(&self) -> Vec<Vector3<f64>> {
         match self {
             Self::Components(held) => {
@@ -137,40 +138,46 @@ impl Hold {
     }
 }
 
-/// How little of a direction must be left over those held already for it to hold anything more.
-const PARALLEL: f64 = 1e-9;
+/// Smallest length of a unit direction, after the part along other held directions is removed, at which
+/// it counts as a new direction. Chosen: above rounding, below any intended angle (rad).
+const MIN_INDEPENDENT_LENGTH: f64 = 1e-9;
 
 impl Supports {
-    /// No supports for this many nodes.
+    /// No supports, for `nodes` nodes.
     pub fn none(nodes: usize) -> Self {
-        Self { free: Free::all(nodes), oblique: Vec::new(), movers: Vec::new(), bodies: Vec::new() }
+        Self {
+            free: FreeComponents::all(nodes),
+            oblique: Vec::new(),
+            movers: Vec::new(),
+            bodies: Vec::new(),
+        }
     }
 
-    /// These supports on nodes that start at these places (m).
-    pub fn new(supports: &[FilmSupport], places: &Field) -> Self {
-        let mut all = Self::none(places.len());
-        let mut directions: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); places.len()];
+    /// The supports of nodes with these initial positions (m). Supports on the same node add up.
+    pub fn new(supports: &[FilmSupport], positions: &Field) -> Self {
+        let mut all = Self::none(positions.len());
+        let mut directions: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); positions.len()];
         for support in supports {
             for node in &support.nodes {
                 for mut direction in support.hold.directions() {
                     let held = &mut directions[*node as usize];
-                    for other in held.iter() {
-                        direction -= other * other.dot(&direction);
+                    for known in held.iter() {
+                        direction -= known * known.dot(&direction);
                     }
-                    if direction.norm() > PARALLEL {
+                    if direction.norm() > MIN_INDEPENDENT_LENGTH {
                         held.push(direction.normalize());
                     }
                 }
             }
             if let Hold::Body(plane) = support.hold {
-                all.bodies.push(Body { nodes: support.nodes.clone(), plane });
+                all.bodies.push(RigidPlane { nodes: support.nodes.clone(), plane });
             } else if let Some(motion) = support.motion {
-                all.movers.push(Mover {
+                all.movers.push(PrescribedNodes {
                     nodes: support.nodes.clone(),
-                    start: support.nodes.iter().map(|node| places.get(*node as usize)).collect(),
+                    start: support.nodes.iter().map(|node| positions.get(*node as usize)).collect(),
                     held: support.hold.projector(),
                     motion,
-                    beside: vec![Vector3::zeros(); support.nodes.len()],
+                    displacements: vec![Vector3::zeros(); support.nodes.len()],
                 });
             }
         }
@@ -179,14 +186,14 @@ impl Supports {
             for direction in held {
                 projector -= direction * direction.transpose();
             }
-            let axes = (0..3).all(|k| {
+            let axis_aligned = (0..3).all(|k| {
                 let row: Vec<f64> = (0..3).map(|l| projector[(k, l)]).collect();
-                // Exactly 0, or 1 on the diagonal: anything else is oblique.
+                // Exactly 0, or exactly 1 on the diagonal; otherwise the node is oblique.
                 row.iter()
                     .enumerate()
                     .all(|(l, p)| p.abs() <= 0.0 || (l == k && (p - 1.0).abs() <= 0.0))
             });
-            if axes {
+            if axis_aligned {
                 all.free.set(node as usize, projector.diagonal());
             } else if held.len() == 3 {
                 all.free.set(node as usize, Vector3::zeros());
@@ -197,7 +204,7 @@ impl Supports {
         all
     }
 
-    /// Holds the components of these nodes that `fix` names: letters of "xyz".
+    /// Holds the components of these nodes that `fix` names with letters of "xyz".
     pub fn hold(&mut self, nodes: &[u32], fix: &str) {
         for node in nodes {
             let node = *node as usize;
@@ -214,10 +221,10 @@ impl Supports {
         }
     }
 
-    /// P of a node: onto the directions nobody holds.
+    /// P of a node: projector onto its free directions.
     pub fn projector(&self, node: usize) -> Matrix3<f64> {
-        match self.oblique.binary_search_by_key(&node, |(own, _)| *own as usize) {
-            Ok(at) => self.oblique[at].1,
+        match self.oblique.binary_search_by_key(&node, |(node, _)| *node as usize) {
+            Ok(index) => self.oblique[index].1,
             Err(_) => Matrix3::from_diagonal(&self.free.get(node)),
         }
     }
@@ -243,7 +250,7 @@ mod tests {
         let free = |node: usize, v: [f64; 3]| all.projector(node) * Vector3::from(v);
         assert!((free(0, [1.0, -1.0, 5.0]) - Vector3::new(1.0, -1.0, 5.0)).norm() < 1e-15);
         assert!(free(0, [1.0, 1.0, 0.0]).norm() < 1e-15);
-        // A slanted plane and x leave z alone.
+        // A slanted plane and x hold all but z.
         assert!((free(1, [1.0, 2.0, 3.0]) - Vector3::new(0.0, 0.0, 3.0)).norm() < 1e-15);
         assert_eq!(free(2, [1.0, 2.0, 3.0]), Vector3::zeros());
         assert_eq!(free(3, [1.0, 2.0, 3.0]), Vector3::new(1.0, 2.0, 0.0));

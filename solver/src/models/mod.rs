@@ -7,7 +7,6 @@
 use crate::models::run::Observer;
 use crate::output::measures::Reference;
 use crate::output::outcome::Deployment;
-use crate::platform::workers::Workers;
 use crate::scene::error::SceneError;
 use crate::scene::{ModelKind, Scene};
 
@@ -78,21 +77,8 @@ pub fn solve(
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    solve_with(Workers::alone(), scene, reference, observer)
-}
-
-/// The same by these workers, where the model has use for them: the same bits.
-///
-/// # Errors
-/// As [`solve`].
-pub fn solve_with(
-    workers: Workers,
-    scene: &Scene,
-    reference: Option<Reference>,
-    observer: &mut dyn Observer,
-) -> Result<Deployment, SceneError> {
     match scene.solver.model {
         ModelKind::Piston => piston::solve(scene, observer),
-        ModelKind::Film => film::solve_scene(workers, scene, reference, observer),
+        ModelKind::Film => film::solve_scene(scene, reference, observer),
     }
 }

@@ -1,61 +1,61 @@
-//! Deliberate faults, for the tests that ask whether the ledger or a case would notice one.
+//! Fault injection, for tests only: a term of the equations is multiplied by a wrong factor, and a test
+//! asks whether the energy ledger or a validation case notices.
 //!
-//! A fault multiplies one term of the equations by a factor: 1.01, or −1 for a lost sign. Nothing but
-//! tests sets one; without it no term is touched.
+//! Factors are, for example, 1.01, or −1 for a wrong sign. Without a fault no term changes.
 
 /// One fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fault {
-    /// Which term.
+    /// The term that is wrong.
     pub term: Term,
-    /// What it is multiplied by.
+    /// Factor on that term.
     pub factor: f64,
 }
 
-/// The terms a fault can touch.
+/// The terms a fault can change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Term {
     /// Elastic force of the film.
     Elastic,
     /// Viscous force of the film.
     Viscous,
-    /// Work the viscosity takes, as the ledger hears of it.
+    /// Viscous work in the energy ledger.
     ViscousWork,
-    /// ∂V/∂x: the force of pressure on the film.
+    /// ∂V/∂x: force of the pressure on the film.
     PressureForce,
-    /// The enclosed volume.
+    /// Enclosed volume.
     Volume,
     /// Weight.
     Gravity,
     /// Force of the ambient pressure.
     Ambient,
-    /// What a force gives to a velocity.
+    /// Velocity change by the forces.
     Kick,
-    /// What a velocity gives to a place.
+    /// Position change by the velocity.
     Drift,
     /// Mass damping.
     MassDamping,
     /// Force on a rigid plane.
     PlaneForce,
-    /// The film's stiffness E/(1−ν²), in stress and energy alike.
+    /// E/(1−ν²), in stress and energy alike.
     PlaneModulus,
-    /// Young's modulus where film is wrinkled, in stress and energy alike.
+    /// Young's modulus of wrinkled film, in stress and energy alike.
     WrinkledModulus,
-    /// Poisson's coupling of the two principal directions.
+    /// Poisson's ratio.
     PoissonRatio,
     /// Mass of the film.
     Mass,
-    /// Work the gas does, in its own balance.
+    /// Work of the gas in the gas balance.
     GasWork,
-    /// Heat from the film, in the gas's balance.
+    /// Heat from the film in the gas balance.
     GasHeat,
-    /// Mass let in.
+    /// Inflow mass.
     GasMassIn,
-    /// Enthalpy let in.
+    /// Inflow enthalpy.
     GasEnthalpyIn,
-    /// Mass leaked.
+    /// Leak mass.
     GasMassOut,
-    /// Enthalpy leaked.
+    /// Leak enthalpy.
     GasEnthalpyOut,
     /// p = (γ − 1) U/V.
     GasPressure,

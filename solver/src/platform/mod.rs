@@ -1,8 +1,7 @@
-//! What the solver takes from the machine and from its tests: vector instructions, threads, a
-//! stopwatch the caller may hold, work of known size, faults injected on purpose.
+//! Vector instructions, a stopwatch interface, a floating-point throughput probe, and fault injection.
+//! Nothing here knows the physics.
 
 pub mod fault_injection;
 pub mod probe;
 pub mod simd;
 pub mod stopwatch;
-pub mod workers;

@@ -1,22 +1,22 @@
-//! What a step is made of, for whoever measures what each part costs.
+//! The stages of a step, and an interface to time them.
 //!
-//! The solver reads no clock: it says which stage begins, and a [`Stopwatch`] that has a clock does
-//! the rest. Nothing it does reaches a result.
+//! The solver reads no clock. It reports which stage begins; a [`Stopwatch`] that owns a clock measures
+//! the time. No result depends on it.
 
 /// A stage of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// Strains, stresses, forces of the film on its nodes, oriented areas.
+    /// Strains, stresses, membrane forces on the nodes, and ∂V/∂x.
     Membrane,
-    /// Volume to pressure, the gas and its books.
+    /// Volume, pressure, and the gas balance.
     Gas,
-    /// Which pairs of film have come near.
+    /// Broad phase: finds the candidate pairs of contact.
     Search,
-    /// Distances of near pairs, contacts and their forces, what keeps them apart.
+    /// Distances of candidate pairs, contact forces, and collision impulses.
     Pairs,
-    /// Velocities, places, works.
+    /// Velocities, positions, and works.
     Update,
-    /// Whether film went through film.
+    /// Tunnelling monitor: whether film passed through film.
     Audit,
 }
 
@@ -38,13 +38,13 @@ impl Stage {
     }
 }
 
-/// Told what a step does next.
+/// Receives the stages of a step in order.
 pub trait Stopwatch {
-    /// A stage begins; the one before has ended.
+    /// A stage begins; the previous one has ended.
     fn begins(&mut self, stage: Stage);
 }
 
-/// Looks at no clock.
+/// Measures nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Untimed;
 

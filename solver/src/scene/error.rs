@@ -1,15 +1,15 @@
-//! Why a scene cannot be run.
+//! Errors of a scene.
 
 use crate::geometry::fold::FoldError;
 
-/// Why a scene cannot be run at all (a run that stops short is no error: see
-/// [`crate::output::outcome::Stop`]).
+/// Why a scene cannot run. A run that stops early is not an error; see
+/// [`crate::output::outcome::Stop`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// The fold design is invalid or infeasible.
     #[error(transparent)]
     Fold(#[from] FoldError),
-    /// A key of the scene is out of range, or asks for what the model cannot do.
+    /// A key of the scene is out of range, or the model does not support its value.
     #[error("{key}: {problem}")]
     Invalid {
         /// Dotted key, as in the scene's JSON.

@@ -1,76 +1,76 @@
-//! What a run of film needs, of any shape: a capsule's scene becomes one, and so does any mesh.
+//! The scene of a film of any shape. The scene of a capsule is converted to one, and so is a mesh.
 //!
-//! Plain data, resolved: nodes by number, SI, nothing called "auto". [`crate::models::film`] runs
-//! it.
+//! Plain data: nodes by index, SI units, no value is "auto". [`crate::models::film`] runs it.
 
 use nalgebra::Vector3;
 
 use super::film_support::FilmSupport;
 use super::monitor_settings::MonitorSettings;
 use super::plate::Plate;
+use super::{Contact, Film, GasSupply};
 use crate::geometry::shell::Shell;
 use crate::platform::simd::InstructionSet;
-use crate::scene::{Contact, Film, GasSupply};
 
 /// Everything one run of film needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmScene {
-    /// The film: where it starts, where it is free of stress.
+    /// Initial shape and stress-free reference of the film.
     pub shell: Shell,
-    /// Velocity of each node at the start, m/s; none for a start at rest.
+    /// Initial velocity of each node, m/s; empty for a start at rest.
     pub velocities: Vec<Vector3<f64>>,
     /// Material.
     pub film: Film,
-    /// What presses from inside.
+    /// Pressure load or gas.
     pub filling: Filling,
-    /// What holds the film, or moves it.
+    /// Supports of the film.
     pub supports: Vec<FilmSupport>,
-    /// Film against film; `None` lets film pass through film.
+    /// Contact of film with film; `None` lets film pass through film.
     pub contact: Option<FilmContact>,
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
-    /// Until when every node is held where it starts and only the gas goes on, s.
+    /// End of packing, s. Until this time, film with contact is between two fixed plates above and below
+    /// it; film without contact is fixed at its initial position, and only the gas evolves.
     pub release_time: f64,
-    /// How it is computed.
+    /// Solution parameters.
     pub solver: FilmSolver,
-    /// What is followed.
+    /// What is recorded.
     pub outputs: FilmOutputs,
 }
 
-/// What presses from inside.
+/// Load on the inside of the film.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Filling {
-    /// This overpressure, Pa, whatever the volume; the film may be open.
+    /// Constant overpressure, Pa, independent of the volume; the film may be open.
     Pressure(f64),
     /// Gas in the closed volume.
     Gas {
-        /// The gas, and what enters and leaves it.
+        /// The gas, its inflow and its leak.
         supply: GasSupply,
-        /// Its temperature at the start, K.
+        /// Initial temperature of the gas, K.
         initial_temperature: f64,
     },
 }
 
-/// How film meets film.
+/// Contact of film with film and with plates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmContact {
-    /// Contact distance, m; `None`: 0.4 of the smallest gap at the start
+    /// Contact distance, m; `None` for 0.4 times the smallest initial gap
     /// ([`crate::collision::contact::ContactModel::of_film`]).
     pub distance: Option<f64>,
     /// Coulomb friction coefficient.
     pub friction: f64,
     /// Pull-off pressure of adhesion, Pa.
     pub adhesion: f64,
-    /// Its range beyond the contact distance, m; `None`: the contact distance.
+    /// Range of adhesion beyond the contact distance, m; `None` for the contact distance.
     pub adhesion_range: Option<f64>,
-    /// Rigid plates the film lies against.
+    /// Rigid plates that touch the film.
     pub plates: Vec<Plate>,
-    /// How closely passages are watched for.
-    pub watch: MonitorSettings,
+    /// Settings of the tunnelling monitor.
+    pub monitor: MonitorSettings,
 }
 
 impl FilmContact {
-    /// The contact a capsule's scene names.
+    /// The contact of a capsule's scene.
     pub fn of(contact: &Contact) -> Self {
         let Contact { distance, friction, adhesion } = *contact;
         Self { distance, friction, adhesion, ..Self::default() }
@@ -85,37 +85,38 @@ impl Default for FilmContact {
             adhesion: 0.0,
             adhesion_range: None,
             plates: Vec::new(),
-            watch: MonitorSettings::FRAMES,
+            monitor: MonitorSettings::FRAMES,
         }
     }
 }
 
-/// How film is computed.
+/// Solution parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmSolver {
-    /// Share of the stable step, above 0, at most 1.
+    /// Fraction of the stable step (CFL number), above 0, at most 1.
     pub cfl: f64,
-    /// Simulated time, s; no meaning for statics.
+    /// Simulated time, s; statics ignores it.
     pub end_time: f64,
-    /// Look for the state of rest under the pressure instead of moving; needs [`Filling::Pressure`].
+    /// Whether to compute the static equilibrium instead of the motion; requires
+    /// [`Filling::Pressure`].
     pub statics: bool,
     /// Mass damping c, 1/s.
     pub mass_damping: f64,
-    /// Accepted steps after which a run stops with `step_limit`.
+    /// Maximum number of accepted steps; a run that reaches it stops with `step_limit`.
     pub step_limit: u64,
-    /// Instruction set; the bits are the same on each.
-    pub path: InstructionSet,
+    /// Instruction set; each gives the same bits.
+    pub instruction_set: InstructionSet,
 }
 
-/// What is followed of a run.
+/// What is recorded of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmOutputs {
     /// Time between samples, s.
     pub sample_interval: f64,
-    /// Nodes whose places are followed.
+    /// Nodes whose positions are recorded.
     pub nodes: Vec<u32>,
-    /// Elements whose stress resultants are followed.
+    /// Elements whose membrane forces are recorded.
     pub elements: Vec<u32>,
-    /// Shapes kept ([`crate::output::frames`]); 0 for none.
+    /// Number of frames (shapes) to keep ([`crate::output::frames`]); 0 for none.
     pub frames: u32,
 }

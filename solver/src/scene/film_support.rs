@@ -1,4 +1,4 @@
-//! What holds film, as plain data.
+//! Supports of a film of any shape.
 
 use nalgebra::Vector3;
 
@@ -7,24 +7,24 @@ use super::motion::Motion;
 /// One support.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmSupport {
-    /// Name, as reactions are told by.
+    /// Name, used for its reaction.
     pub name: String,
     /// Nodes, in ascending order.
     pub nodes: Vec<u32>,
-    /// What is held.
+    /// Directions held.
     pub hold: Hold,
-    /// How what is held moves; `None` stands.
+    /// Prescribed motion in the held directions; `None` for a fixed support.
     pub motion: Option<Motion>,
 }
 
-/// What a support holds of its nodes.
+/// The directions in which a support holds its nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Hold {
     /// These displacement components: x, y, z.
     Components([bool; 3]),
-    /// The component along this unit normal: a rigid plane that stands.
+    /// The component along this unit normal: a fixed rigid plane.
     Plane(Vector3<f64>),
-    /// The component along a rigid plane's normal; the plane moves along it as a free body.
+    /// The component along the normal of a rigid plane that moves along it as a free body.
     Body(PlaneBody),
 }
 
@@ -33,10 +33,10 @@ pub enum Hold {
 pub struct PlaneBody {
     /// Unit normal.
     pub normal: Vector3<f64>,
-    /// Its mass without the film bound to it, kg.
+    /// Mass without that of the film bound to it, kg.
     pub mass: f64,
-    /// Its velocity along the normal at the start, m/s.
+    /// Initial velocity along the normal, m/s.
     pub velocity: f64,
-    /// A constant force on it along the normal, N (weight included, where there is any).
+    /// Constant force along the normal, N, including any weight.
     pub force: f64,
 }

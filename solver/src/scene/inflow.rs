@@ -1,51 +1,52 @@
-//! The inflow schedule: windows of constant rate and temperature that add where they overlap.
+//! The inflow schedule: windows of constant mass flow rate and temperature; overlapping windows add up.
 
 use super::InflowWindow;
 
-/// Gas let in at one moment.
+/// Total inflow of all open windows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inflow {
-    /// ṁ, kg/s.
-    pub mass: f64,
-    /// Σ ṁ `T_in`, kg K/s: times cp, the enthalpy let in.
-    pub mass_temperature: f64,
+    /// Mass flow rate Σ ṁ, kg/s.
+    pub mass_flow_rate: f64,
+    /// Σ ṁ `T_in`, kg K/s; times cp, the enthalpy flow in W.
+    pub temperature_flow: f64,
 }
 
-/// All inflow windows of a run.
+/// The inflow windows of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     windows: Vec<InflowWindow>,
-    edges: Vec<f64>,
+    change_times: Vec<f64>,
 }
 
 impl Schedule {
-    /// A schedule of these windows.
+    /// The schedule of these windows.
     pub fn new(windows: &[InflowWindow]) -> Self {
-        let mut edges: Vec<f64> = windows.iter().flat_map(|w| [w.from, w.to]).collect();
-        edges.sort_by(f64::total_cmp);
-        edges.dedup();
-        Self { windows: windows.to_vec(), edges }
+        let mut change_times: Vec<f64> = windows.iter().flat_map(|w| [w.from, w.to]).collect();
+        change_times.sort_by(f64::total_cmp);
+        change_times.dedup();
+        Self { windows: windows.to_vec(), change_times }
     }
 
-    /// Times at which the inflow changes, rising, s.
-    pub fn edges(&self) -> &[f64] {
-        &self.edges
+    /// Times at which a window opens or closes, in ascending order, s.
+    pub fn change_times(&self) -> &[f64] {
+        &self.change_times
     }
 
-    /// The inflow between two times (s) that have no edge between them.
+    /// The inflow between two times (s) without a change time between them.
     pub fn between(&self, from: f64, to: f64) -> Inflow {
         let middle = 0.5 * (from + to);
         let open = self.windows.iter().filter(|w| w.from <= middle && middle < w.to);
         open.fold(Inflow::default(), |sum, window| Inflow {
-            mass: sum.mass + window.rate,
-            mass_temperature: sum.mass_temperature + window.rate * window.temperature,
+            mass_flow_rate: sum.mass_flow_rate + window.mass_flow_rate,
+            temperature_flow: sum.temperature_flow + window.mass_flow_rate * window.temperature,
         })
     }
 
-    /// Mass let in from time 0 to `time` (s), kg: the closed form integration is checked against.
+    /// Inflow mass from time 0 to `time` (s), kg, in closed form. Tests compare the integration with it.
     pub fn mass_until(&self, time: f64) -> f64 {
-        let let_in = |w: &InflowWindow| w.rate * (time.min(w.to) - w.from.max(0.0)).max(0.0);
-        self.windows.iter().map(let_in).sum()
+        let inflow =
+            |w: &InflowWindow| w.mass_flow_rate * (time.min(w.to) - w.from.max(0.0)).max(0.0);
+        self.windows.iter().map(inflow).sum()
     }
 }
 
@@ -54,25 +55,25 @@ impl Schedule {
 mod tests {
     use super::*;
 
-    fn window(from: f64, to: f64, rate: f64, temperature: f64) -> InflowWindow {
-        InflowWindow { from, to, rate, temperature }
+    fn window(from: f64, to: f64, mass_flow_rate: f64, temperature: f64) -> InflowWindow {
+        InflowWindow { from, to, mass_flow_rate, temperature }
     }
 
     #[test]
-    fn overlapping_windows_add() {
+    fn overlapping_windows_add_up() {
         let schedule = Schedule::new(&[window(0.0, 2.0, 1.0, 300.0), window(1.0, 3.0, 2.0, 200.0)]);
-        assert_eq!(schedule.edges(), [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(schedule.change_times(), [0.0, 1.0, 2.0, 3.0]);
         let both = schedule.between(1.0, 2.0);
-        assert_eq!((both.mass, both.mass_temperature), (3.0, 700.0));
+        assert_eq!((both.mass_flow_rate, both.temperature_flow), (3.0, 700.0));
         assert_eq!(schedule.between(3.0, 4.0), Inflow::default());
         assert_eq!(schedule.mass_until(1.5), 1.5 + 1.0);
         assert_eq!(schedule.mass_until(9.0), 2.0 + 4.0);
     }
 
     #[test]
-    fn no_windows_no_gas() {
+    fn a_schedule_without_windows_has_no_inflow() {
         let schedule = Schedule::new(&[]);
-        assert!(schedule.edges().is_empty());
+        assert!(schedule.change_times().is_empty());
         assert_eq!(schedule.between(0.0, 1.0), Inflow::default());
         assert_eq!(schedule.mass_until(1.0), 0.0);
     }

@@ -1,23 +1,31 @@
 //! Prescribed motion of supports and plates.
+//!
+//! ```text
+//! x(t) = c + R(s α) (x0 − c) + s u          s = profile(τ),  τ = (t − from)/(to − from) in [0, 1]
+//! ```
+//!
+//! Symbols: x0 initial position, u translation, R rotation about an axis through the centre c by the
+//! angle α.
 
 use nalgebra::Vector3;
 
-/// A prescribed motion: translation and turn, growing from nothing at `from` to the whole at `to`.
+/// A prescribed motion: a rotation and a translation that grow from zero at `from` to their full size
+/// at `to`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// Start, s.
     pub from: f64,
     /// End, s.
     pub to: f64,
-    /// How it grows in between.
+    /// Growth between start and end.
     pub profile: Profile,
     /// Translation, m.
     pub translation: Vector3<f64>,
-    /// Turn about an axis.
-    pub turn: Option<Turn>,
+    /// Rotation about an axis.
+    pub rotation: Option<Rotation>,
 }
 
-/// How a prescribed motion grows, τ = (t − from)/(to − from).
+/// Growth of a prescribed motion, s(τ).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Profile {
     /// τ: constant velocity.
@@ -26,9 +34,9 @@ pub enum Profile {
     Smooth,
 }
 
-/// A turn about an axis.
+/// A rotation about an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct Rotation {
     /// Unit axis.
     pub axis: Vector3<f64>,
     /// A point on it, m.
@@ -38,28 +46,28 @@ pub struct Turn {
 }
 
 impl Motion {
-    /// How much of the motion is done at `time` (s), 0 to 1.
-    pub fn part(&self, time: f64) -> f64 {
-        let part = ((time - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
+    /// s, the completed fraction of the motion at `time` (s), 0 to 1.
+    pub fn fraction(&self, time: f64) -> f64 {
+        let tau = ((time - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
         match self.profile {
-            Profile::Linear => part,
-            Profile::Smooth => part * part * (3.0 - 2.0 * part),
+            Profile::Linear => tau,
+            Profile::Smooth => tau * tau * (3.0 - 2.0 * tau),
         }
     }
 
-    /// Where a point that starts at `place` (m) is at `time` (s).
-    pub fn place(&self, place: Vector3<f64>, time: f64) -> Vector3<f64> {
-        let part = self.part(time);
-        let turned = self.turn.map_or(place, |turn| turn.by(part, place));
-        turned + self.translation * part
+    /// Position (m) at `time` (s) of a point with this initial position (m).
+    pub fn position(&self, initial: Vector3<f64>, time: f64) -> Vector3<f64> {
+        let fraction = self.fraction(time);
+        let rotated = self.rotation.map_or(initial, |rotation| rotation.apply(fraction, initial));
+        rotated + self.translation * fraction
     }
 }
 
-impl Turn {
-    /// A point (m) turned by this part of the angle (Rodrigues' formula).
-    fn by(&self, part: f64, place: Vector3<f64>) -> Vector3<f64> {
-        let (sin, cos) = libm::sincos(part * self.angle);
-        let arm = place - self.centre;
+impl Rotation {
+    /// A point (m) rotated by this fraction of the angle (Rodrigues' formula).
+    fn apply(&self, fraction: f64, point: Vector3<f64>) -> Vector3<f64> {
+        let (sin, cos) = libm::sincos(fraction * self.angle);
+        let arm = point - self.centre;
         let along = self.axis * self.axis.dot(&arm);
         let across = arm - along;
         self.centre + along + across * cos + self.axis.cross(&across) * sin
@@ -71,8 +79,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_motion_ends_where_it_says() {
-        let turn = Turn {
+    fn a_motion_ends_at_its_full_rotation_and_translation() {
+        let rotation = Rotation {
             axis: Vector3::z(),
             centre: Vector3::new(1.0, 0.0, 0.0),
             angle: core::f64::consts::FRAC_PI_2,
@@ -82,13 +90,13 @@ mod tests {
             to: 3.0,
             profile: Profile::Smooth,
             translation: Vector3::new(0.0, 0.0, 2.0),
-            turn: Some(turn),
+            rotation: Some(rotation),
         };
         let start = Vector3::new(2.0, 0.0, 5.0);
-        assert!((motion.place(start, 0.5) - start).norm() < 1e-15);
-        let half = motion.place(start, 2.0);
+        assert!((motion.position(start, 0.5) - start).norm() < 1e-15);
+        let half = motion.position(start, 2.0);
         let cos = 0.5_f64.sqrt();
         assert!((half - Vector3::new(1.0 + cos, cos, 6.0)).norm() < 1e-15, "{half}");
-        assert!((motion.place(start, 9.0) - Vector3::new(1.0, 1.0, 7.0)).norm() < 1e-15);
+        assert!((motion.position(start, 9.0) - Vector3::new(1.0, 1.0, 7.0)).norm() < 1e-15);
     }
 }

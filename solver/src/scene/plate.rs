@@ -1,4 +1,4 @@
-//! Rigid plates the film lies against, as plain data.
+//! Rigid plates that touch the film.
 
 use nalgebra::Vector3;
 
@@ -7,14 +7,14 @@ use super::motion::Motion;
 /// A rigid plate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plate {
-    /// Name, as its force is told by.
+    /// Name, used for its force.
     pub name: String,
-    /// A point of it at the start, m.
+    /// A point of its surface at time 0, m.
     pub point: Vector3<f64>,
     /// Unit normal, towards the film.
     pub normal: Vector3<f64>,
-    /// How it moves; `None` stands. A plate does not turn.
+    /// Prescribed translation; `None` for a fixed plate. A plate does not rotate.
     pub motion: Option<Motion>,
-    /// When it is gone, s; infinite for never.
-    pub until: f64,
+    /// Time at which it is removed, s; infinite for never.
+    pub removal_time: f64,
 }

@@ -1,39 +1,43 @@
-//! What happens when: the part of a scene that is no model's own.
+//! Times and external conditions of a run: the part of a scene that every model shares.
 
 use crate::scene::film_scene::{Filling, FilmScene};
 use crate::scene::inflow::{Inflow, Schedule};
 use crate::scene::{Scene, Thresholds};
 
-/// What acts from outside, constant between two breaks of a course.
+/// External conditions, constant between two breakpoints of a timeline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Phase {
-    /// Held at its stowed height by the packing lid.
+    /// Whether the packing lid limits the capsule to its stowed height.
     pub packed: bool,
-    /// Gas let in.
+    /// Inflow.
     pub inflow: Inflow,
 }
 
-/// What happens when, and what is looked at: the part of a scene that is no model's own.
+/// Shortest last interval over the sample interval: a sample closer to the end time becomes the last.
+/// Chosen: far above rounding of k times the interval.
+const MIN_LAST_INTERVAL: f64 = 1e-6;
+
+/// Times, inflow, and sampling of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timeline {
     /// Simulated time, s.
     pub end_time: f64,
     /// Time between samples, s.
     pub sample_interval: f64,
-    /// Until when the lid holds, s.
+    /// Time at which the lid releases the capsule, s.
     pub release_time: f64,
-    /// Gas let in.
+    /// Inflow schedule.
     pub schedule: Schedule,
     /// Pressure outside, Pa.
     pub ambient_pressure: f64,
-    /// Frames to keep.
+    /// Number of frames to keep.
     pub frames: u32,
     /// Thresholds of the verdict.
     pub thresholds: Thresholds,
 }
 
 impl Timeline {
-    /// The course of a scene.
+    /// The timeline of a capsule's scene.
     pub fn new(scene: &Scene) -> Self {
         Self {
             end_time: scene.solver.end_time,
@@ -46,7 +50,7 @@ impl Timeline {
         }
     }
 
-    /// The course of a film's scene; it has no verdict and so the usual thresholds.
+    /// The timeline of a film's scene. It has no verdict; the thresholds are the defaults.
     pub fn of_film(scene: &FilmScene) -> Self {
         let (schedule, ambient_pressure) = match &scene.filling {
             Filling::Pressure(_) => (Schedule::new(&[]), 0.0),
@@ -65,25 +69,28 @@ impl Timeline {
         }
     }
 
-    /// Times at which the phase changes, rising, s.
-    pub fn breaks(&self) -> Vec<f64> {
-        let mut breaks = self.schedule.edges().to_vec();
-        breaks.push(self.release_time);
-        breaks.sort_by(f64::total_cmp);
-        breaks.dedup();
-        breaks
+    /// Times at which the phase changes, in ascending order, s.
+    pub fn breakpoints(&self) -> Vec<f64> {
+        let mut breakpoints = self.schedule.change_times().to_vec();
+        breakpoints.push(self.release_time);
+        breakpoints.sort_by(f64::total_cmp);
+        breakpoints.dedup();
+        breakpoints
     }
 
-    /// The phase between two times (s) without a break between them.
+    /// The phase between two times (s) without a breakpoint between them.
     pub fn phase(&self, from: f64, to: f64) -> Phase {
         let packed = 0.5 * (from + to) < self.release_time;
         Phase { packed, inflow: self.schedule.between(from, to) }
     }
 
-    /// Time of sample `index`, s; the last is the end.
+    /// Time of sample `index`, s; the last sample is at the end time.
     pub fn sample_time(&self, index: u64) -> f64 {
         let time = index as f64 * self.sample_interval;
-        // A sample this near to the end is the end.
-        if time > self.end_time - 1e-6 * self.sample_interval { self.end_time } else { time }
+        if time > self.end_time - MIN_LAST_INTERVAL * self.sample_interval {
+            self.end_time
+        } else {
+            time
+        }
     }
 }

@@ -1,15 +1,16 @@
-//! What a scene must be before any model may run it.
+//! Range checks of a scene, before any model runs it.
 
-use super::{HeatTransfer, Scene, Stepping, Support};
+use super::{HeatTransfer, MAX_SAMPLES, Scene, Stepping, Support};
 use crate::scene::error::SceneError;
 
-/// Samples a history may hold; more do not fit a table, a file or a machine.
-const MOST_SAMPLES: f64 = 1e7;
-/// Frames a run may keep in memory.
-const MOST_FRAMES: u32 = 10_000;
+/// Maximum number of frames, all kept in memory. Chosen: keeps them in memory for large meshes.
+const MAX_FRAMES: u32 = 10_000;
+/// Range of the relative tolerance a step. Chosen: above rounding, and small enough to converge.
+const TOLERANCE_RANGE: core::ops::RangeInclusive<f64> = 1e-14..=0.1;
 
 impl Scene {
-    /// Checks every key but those of the design, which [`crate::geometry::fold::FoldPattern::new`] checks.
+    /// Checks every key except those of the design: [`crate::geometry::fold::FoldPattern::new`] checks
+    /// those.
     ///
     /// # Errors
     /// [`SceneError::Invalid`] with the dotted key of the first value out of range.
@@ -34,8 +35,8 @@ impl Scene {
         number("film.poisson_ratio", film.poisson_ratio, poisson, "above -1, at most 0.5")?;
         positive("film.density", film.density, "kg/m³")?;
         positive("film.thickness", film.thickness, "m")?;
-        let share = |value: f64| (0.0..=1.0).contains(&value);
-        number("film.compression", film.compression, share, "from 0 to 1")?;
+        let fraction = |value: f64| (0.0..=1.0).contains(&value);
+        number("film.compression", film.compression, fraction, "from 0 to 1")?;
         not_negative("film.viscosity", film.viscosity, "a damping ratio")?;
         positive("film.temperature", film.temperature, "K")
     }
@@ -43,8 +44,8 @@ impl Scene {
     fn validate_gas(&self) -> Result<(), SceneError> {
         let gas = &self.gas;
         positive("gas.species.gas_constant", gas.species.gas_constant, "J/(kg K)")?;
-        let least = gas.species.gas_constant;
-        let above = |cp: f64| cp > least && cp.is_finite();
+        let gas_constant = gas.species.gas_constant;
+        let above = |cp: f64| cp > gas_constant && cp.is_finite();
         number("gas.species.cp", gas.species.cp, above, "above gas_constant: cv = cp - R > 0")?;
         not_negative("gas.initial_mass", gas.initial_mass, "kg")?;
         for (index, window) in gas.windows.iter().enumerate() {
@@ -52,7 +53,7 @@ impl Scene {
             not_negative(&key("from"), window.from, "s")?;
             let later = |to: f64| to > window.from && to.is_finite();
             number(&key("to"), window.to, later, "later than `from`")?;
-            not_negative(&key("rate"), window.rate, "kg/s")?;
+            not_negative(&key("rate"), window.mass_flow_rate, "kg/s")?;
             positive(&key("temperature"), window.temperature, "K")?;
         }
         not_negative("gas.ambient_pressure", gas.ambient_pressure, "Pa")?;
@@ -81,13 +82,13 @@ impl Scene {
         }
         match solver.stepping {
             Stepping::Adaptive(tolerance) => {
-                let sound = |value: f64| (1e-14..=0.1).contains(&value);
-                number("solver.stepping.adaptive", tolerance, sound, "from 1e-14 to 0.1")
+                let allowed = |value: f64| TOLERANCE_RANGE.contains(&value);
+                number("solver.stepping.adaptive", tolerance, allowed, "from 1e-14 to 0.1")
             }
             Stepping::Fixed(step) => positive("solver.stepping.fixed", step, "s"),
-            Stepping::Stable(share) => {
-                let sound = |value: f64| value > 0.0 && value <= 1.0;
-                number("solver.cfl", share, sound, "above 0, at most 1")
+            Stepping::Stable(fraction) => {
+                let allowed = |value: f64| value > 0.0 && value <= 1.0;
+                number("solver.cfl", fraction, allowed, "above 0, at most 1")
             }
         }
     }
@@ -96,17 +97,17 @@ impl Scene {
         let key = "outputs.sample_interval";
         let interval = self.outputs.sample_interval;
         positive(key, interval, "s")?;
-        let few = |interval: f64| self.solver.end_time / interval <= MOST_SAMPLES;
-        number(key, interval, few, "at least a ten-millionth of solver.end_time")?;
-        if self.outputs.frames > MOST_FRAMES {
-            let problem = format!("{} is not allowed; at most {MOST_FRAMES}", self.outputs.frames);
+        let few = |interval: f64| self.solver.end_time / interval <= MAX_SAMPLES;
+        number(key, interval, few, "at least 1e-6 of solver.end_time")?;
+        if self.outputs.frames > MAX_FRAMES {
+            let problem = format!("{} is not allowed; at most {MAX_FRAMES}", self.outputs.frames);
             return Err(invalid("outputs.frames", problem));
         }
         let thresholds = &self.outputs.thresholds;
         positive("outputs.thresholds.deployed_volume", thresholds.deployed_volume, "a ratio")?;
         positive("outputs.thresholds.deployed_height", thresholds.deployed_height, "a ratio")?;
         positive("outputs.thresholds.stalled_volume", thresholds.stalled_volume, "a ratio")?;
-        not_negative("outputs.thresholds.close_margin", thresholds.close_margin, "a ratio")
+        not_negative("outputs.thresholds.close_margin", thresholds.near_threshold_margin, "a ratio")
     }
 }
 
@@ -116,29 +117,29 @@ fn validate_support(index: usize, support: &Support) -> Result<(), SceneError> {
         return Ok(());
     }
     let problem = format!(
-        "{:?} names no displacement components; allowed: letters of \"xyz\" in that order",
+        "{:?} is not a list of displacement components; allowed: letters of \"xyz\" in that order",
         support.fix
     );
     Err(invalid(&format!("supports[{index}].fix"), problem))
 }
 
 fn positive(key: &str, value: f64, unit: &str) -> Result<(), SceneError> {
-    let sound = |value: f64| value > 0.0 && value.is_finite();
-    number(key, value, sound, &format!("a number above 0 ({unit})"))
+    let valid = |value: f64| value > 0.0 && value.is_finite();
+    number(key, value, valid, &format!("a number above 0 ({unit})"))
 }
 
 fn not_negative(key: &str, value: f64, unit: &str) -> Result<(), SceneError> {
-    let sound = |value: f64| value >= 0.0 && value.is_finite();
-    number(key, value, sound, &format!("0 or a number above it ({unit})"))
+    let valid = |value: f64| value >= 0.0 && value.is_finite();
+    number(key, value, valid, &format!("a number of at least 0 ({unit})"))
 }
 
 fn number(
     key: &str,
     value: f64,
-    sound: impl Fn(f64) -> bool,
+    valid: impl Fn(f64) -> bool,
     allowed: &str,
 ) -> Result<(), SceneError> {
-    if sound(value) {
+    if valid(value) {
         return Ok(());
     }
     Err(invalid(key, format!("{value} is not allowed; {allowed}")))

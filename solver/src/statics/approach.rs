@@ -198,7 +198,7 @@ fn move_held(supports: &Supports, places: &mut Field, share: f64) {
     for mover in &supports.movers {
         let start = mover.motion.from;
         let time = start + (mover.motion.to - start) * share;
-        for (node, place) in mover.places(time) {
+        for (node, place) in mover.positions(time) {
             let node = node as usize;
             let own = places.get(node);
             places.set(node, own + mover.held * (place - own));

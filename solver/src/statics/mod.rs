@@ -121,7 +121,7 @@ pub fn solve_from(
         supports: &supports,
         overpressure,
         gravity: scene.gravity,
-        path: scene.solver.path,
+        path: scene.solver.instruction_set,
     };
     let (places, from) = known.map_or((&start, None), |(state, at)| (&state.places, Some(at)));
     let rest = settle(&loaded, places, from, &Settling::default(), watch)?;

@@ -94,8 +94,6 @@ pub struct Case {
     pub subdivisions: u32,
     /// Simulated time, s.
     pub end_time: f64,
-    /// Threads of the run.
-    pub threads: u32,
     /// Elements.
     pub elements: usize,
     /// Steps.
@@ -130,7 +128,6 @@ impl Case {
         vec![
             ("subdivisions", Value::Integer(self.subdivisions.into())),
             ("end_time", Value::Number(self.end_time)),
-            ("threads", Value::Integer(self.threads.into())),
             ("elements", count(self.elements as u64)),
             ("steps", count(self.steps)),
             ("wall_seconds", Value::Number(self.wall_seconds)),
@@ -192,7 +189,6 @@ pub fn travel(capsule: &Capsule, marks: &[Mark], stop: &Stop) -> Result<(Vec<Sta
             cases.push(Case {
                 subdivisions: capsule.subdivisions,
                 end_time: mark.time,
-                threads: 1,
                 elements: model.elements(),
                 steps: model.steps(),
                 wall_seconds,

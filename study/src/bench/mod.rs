@@ -275,9 +275,7 @@ fn capsule_of(
     }
     for state in &states {
         tell(&format!("stages, n {subdivisions}, {}", state.name));
-        for threads in stages::THREADS {
-            report.stages.push(stages::measure(&capsule, state, threads, plan.effort, stop)?);
-        }
+        report.stages.push(stages::measure(&capsule, state, plan.effort, stop)?);
     }
     Ok(())
 }

@@ -9,7 +9,6 @@ use std::time::Instant;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::models::run::Model;
 use billow_solver::platform::stopwatch::{Stage, Stopwatch, Untimed};
-use billow_solver::platform::workers::Workers;
 use billow_solver::scene::timeline::Timeline;
 
 use super::capsule::{Capsule, State};
@@ -18,9 +17,6 @@ use super::{Effort, Line, interrupted, machine};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::stop::Stop;
-
-/// Threads inside one run it is timed on.
-pub const THREADS: [u32; 2] = [1, 2];
 
 /// Steps between two looks of the audit: what is timed is a whole number of them.
 const BLOCK: u64 = 50;
@@ -36,8 +32,6 @@ pub struct StageRow {
     pub time: f64,
     /// Elements.
     pub elements: usize,
-    /// Threads of the run.
-    pub threads: u32,
     /// Length of a step, s.
     pub step: f64,
     /// Each stage, in the order of [`Stage::ALL`], ns.
@@ -59,7 +53,6 @@ impl StageRow {
             ("state", Value::Text(self.state.to_owned())),
             ("time", Value::Number(self.time)),
             ("elements", Value::Integer(i64::try_from(self.elements).unwrap_or(i64::MAX))),
-            ("threads", Value::Integer(self.threads.into())),
         ];
         let stages = Stage::ALL.into_iter().zip(self.stages);
         line.extend(stages.map(|(stage, cost)| (stage.name(), Value::Number(cost))));
@@ -77,20 +70,14 @@ impl StageRow {
 ///
 /// # Errors
 /// A run that stops short; a signal.
-pub fn measure(
-    capsule: &Capsule,
-    state: &State,
-    threads: u32,
-    effort: Effort,
-    stop: &Stop,
-) -> Result<StageRow> {
+pub fn measure(capsule: &Capsule, state: &State, effort: Effort, stop: &Stop) -> Result<StageRow> {
     let elements = state.run.elements();
     let (steps, repeats) = (steps(effort, elements), effort.repeats());
     let share = 1e9 / (steps as f64 * elements as f64);
     let mut least = [f64::INFINITY; Stage::ALL.len()];
     let (mut whole, mut core_share, mut step) = (f64::INFINITY, None, f64::NAN);
     for _ in 0..repeats {
-        let mut film = on_threads(&state.run.film, threads);
+        let mut film = state.run.film.clone();
         let (start, core) = (Instant::now(), machine::core_seconds());
         take(&mut film, &capsule.course, steps, &mut Untimed)?;
         let wall = start.elapsed().as_secs_f64();
@@ -102,7 +89,7 @@ pub fn measure(
         step = (film.state.time - state.run.film.state.time) / steps as f64;
         interrupted(stop)?;
 
-        let (mut film, mut clock) = (on_threads(&state.run.film, threads), Clock::default());
+        let (mut film, mut clock) = (state.run.film.clone(), Clock::default());
         take(&mut film, &capsule.course, steps, &mut clock)?;
         clock.stop();
         for (least, stage) in least.iter_mut().zip(Stage::ALL) {
@@ -117,7 +104,6 @@ pub fn measure(
         state: state.name,
         time: state.time,
         elements,
-        threads,
         step,
         stages: least,
         output,
@@ -136,13 +122,6 @@ fn steps(effort: Effort, elements: usize) -> u64 {
     blocks * BLOCK
 }
 
-/// The film in its state, to be run on so many threads; small film takes one whatever is asked for.
-fn on_threads(film: &Explicit, threads: u32) -> Explicit {
-    let mut film = film.clone();
-    film.share_with(Workers::of(threads as usize));
-    film
-}
-
 /// Takes so many steps along a course, landing where a run lands.
 ///
 /// # Errors
@@ -153,7 +132,7 @@ pub fn take(
     mut steps: u64,
     stopwatch: &mut dyn Stopwatch,
 ) -> Result<()> {
-    let breaks = course.breaks();
+    let breaks = course.breakpoints();
     let mut time = film.state.time;
     loop {
         let to = landing(course, &breaks, time);

@@ -18,7 +18,7 @@ use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::timeline::{Phase, Timeline};
 use billow_solver::scene::{
     Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
-    Stepping, Support, SupportPlace, Thresholds,
+    Stepping, Support, SupportLocation, Thresholds,
 };
 use nalgebra::Vector3;
 
@@ -48,10 +48,15 @@ pub fn paper_capsule(subdivisions: u32, end_time: f64) -> Scene {
         film: Film { viscosity: 0.1, ..film() },
         gas: GasSupply {
             heat_transfer: HeatTransfer::Coefficient(0.3),
-            windows: vec![InflowWindow { from: 0.0, to: 1.5, rate: 5e-3, temperature: 293.0 }],
+            windows: vec![InflowWindow {
+                from: 0.0,
+                to: 1.5,
+                mass_flow_rate: 5e-3,
+                temperature: 293.0,
+            }],
             ..nitrogen()
         },
-        supports: vec![Support { on: SupportPlace::BottomRing, fix: "xyz".to_owned() }],
+        supports: vec![Support { on: SupportLocation::BottomRing, fix: "xyz".to_owned() }],
         contact: Contact { distance: None, friction: 0.0, adhesion: 0.0 },
         gravity: 0.0,
         release_time: 0.0,
@@ -112,14 +117,14 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     scene.solver.mass_damping = 5.0;
     scene.solver.cfl = 0.2;
     let mut film = rig.start(&scene)?;
-    let inflow = Inflow { mass: 1.0, mass_temperature: 400.0 };
+    let inflow = Inflow { mass_flow_rate: 1.0, temperature_flow: 400.0 };
     let phase = Phase { packed: false, inflow };
     let (mut ledgers, mut books) = (vec![film.ledger()], vec![film.books()]);
     for sample in 1..=40 {
         let time = f64::from(sample) * 1e-3;
         advance(&mut film, time, &phase)?;
         ledgers.push(film.ledger());
-        books.push(GasBalance { mass_in: inflow.mass * time, ..film.books() });
+        books.push(GasBalance { mass_in: inflow.mass_flow_rate * time, ..film.books() });
     }
     let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
     Ok(vec![

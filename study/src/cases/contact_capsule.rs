@@ -82,7 +82,7 @@ pub(super) fn capsule_every_step(rig: &Rig) -> Outcome {
             let mut scene = paper_capsule(2, 0.1);
             scene.film.compression = compression;
             scene.design.chirality = chirality;
-            let contact = FilmContact { watch, ..FilmContact::default() };
+            let contact = FilmContact { monitor: watch, ..FilmContact::default() };
             let (run, deployment) = deploy(rig, &scene, contact)?;
             let name = format!("c {compression}, {name} chirality: ");
             judged.extend(sound(&run, &deployment, &name, number(&format!("contact/{key}"))));

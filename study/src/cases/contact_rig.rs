@@ -25,7 +25,7 @@ use super::row::worse;
 pub fn watched(distance: f64) -> FilmContact {
     FilmContact {
         distance: Some(distance),
-        watch: MonitorSettings::EVERY_STEP,
+        monitor: MonitorSettings::EVERY_STEP,
         ..FilmContact::default()
     }
 }
@@ -63,10 +63,10 @@ pub fn plate(
         to,
         profile: Profile::Smooth,
         translation,
-        turn: None,
+        rotation: None,
     };
     let name = "plate".to_owned();
-    Plate { name, point, normal, motion: motion.map(moves), until: f64::INFINITY }
+    Plate { name, point, normal, motion: motion.map(moves), removal_time: f64::INFINITY }
 }
 
 /// What was seen of a run.

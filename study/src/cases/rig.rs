@@ -35,7 +35,7 @@ impl Rig {
     pub fn faulty(&self, film: Explicit) -> Explicit {
         let Some(mutation) = self.mutation else { return film };
         let Explicit { mut model, mut setting, state, .. } = film;
-        model.suffer(mutation);
+        model.inject_fault(mutation);
         setting.mutation = Some(mutation);
         Explicit::new(model, setting, state.places, state.velocities, state.gas)
     }
@@ -86,7 +86,7 @@ pub fn scene(shell: Shell, film: Film) -> FilmScene {
             statics: false,
             mass_damping: 0.0,
             step_limit: u64::MAX,
-            path: InstructionSet::detect(),
+            instruction_set: InstructionSet::detect(),
         },
         outputs: FilmOutputs {
             sample_interval: 1e-3,
@@ -106,7 +106,10 @@ pub fn held(nodes: Vec<u32>, fix: &str) -> FilmSupport {
 
 /// Gas let in at this rate (kg/s) and temperature (K), nothing packed.
 pub fn inflow(rate: f64, temperature: f64) -> Phase {
-    Phase { packed: false, inflow: Inflow { mass: rate, mass_temperature: rate * temperature } }
+    Phase {
+        packed: false,
+        inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * temperature },
+    }
 }
 
 /// Advances film to a time, s.

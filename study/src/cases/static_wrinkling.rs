@@ -13,7 +13,7 @@ use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::motion::{Motion, Profile, Turn};
+use billow_solver::scene::motion::{Motion, Profile, Rotation};
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};
@@ -106,7 +106,7 @@ fn twist(rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
         to: 1.0,
         profile: Profile::Linear,
         translation: Vector3::zeros(),
-        turn: Some(Turn { axis: Vector3::z(), centre: Vector3::zeros(), angle }),
+        rotation: Some(Rotation { axis: Vector3::z(), centre: Vector3::zeros(), angle }),
     };
     let all: Vec<u32> = (0..(rings + 1) * around).collect();
     let hub = FilmSupport { motion: Some(motion), ..held(ring(0, around), "xyz") };

@@ -51,7 +51,7 @@ pub struct Global {
     /// Folder of the results [default: `results/STUDY` under the current folder].
     #[arg(long, global = true, value_name = "DIR")]
     pub results: Option<PathBuf>,
-    /// Threads [default: one a core]. Jobs run at once, one a thread; one alone takes two. No result
+    /// Threads [default: one a core]. Each runs one job at a time; `solve` uses one. No result
     /// depends on them.
     #[arg(long, global = true, value_name = "N")]
     pub threads: Option<usize>,

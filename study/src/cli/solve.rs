@@ -1,9 +1,7 @@
 //! `billow solve`: one scene by itself.
 
 use std::io::Write;
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use billow_solver::geometry::mesh_io::obj;
@@ -51,8 +49,8 @@ pub struct Args {
 /// # Errors
 /// A scene that is none, a file that cannot be read or written, a run that stopped short.
 pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let threads = super::run::threads(global)?.or_else(|| available_parallelism().ok());
-    let threads = threads.map_or(1, NonZero::get);
+    // One scene runs on one thread; the option is still checked.
+    super::run::threads(global)?;
     let scene = SceneFile::load(&args.scene, &global.set, instruction_set()?)?;
     check_files(args, &scene)?;
     if !global.quiet {
@@ -68,7 +66,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         resume: args.resume.clone(),
     };
     let mut last = Instant::now();
-    let solved = solve::solve(&scene, &pauses, threads, &Disk, &stop, &mut |progress| {
+    let solved = solve::solve(&scene, &pauses, &Disk, &stop, &mut |progress| {
         if !global.quiet && last.elapsed() >= Duration::from_secs(5) {
             last = Instant::now();
             eprintln!(

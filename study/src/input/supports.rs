@@ -1,6 +1,6 @@
 //! Supports: where the capsule is held, in one order whatever the file's.
 
-use billow_solver::scene::{Support, SupportPlace};
+use billow_solver::scene::{Support, SupportLocation};
 
 use crate::input::settings::list;
 use crate::input::source::Source;
@@ -8,14 +8,14 @@ use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
 /// Names of the places a support acts on.
-pub(crate) const PLACES: [(&str, SupportPlace); 4] = [
-    ("bottom_ring", SupportPlace::BottomRing),
-    ("top_ring", SupportPlace::TopRing),
-    ("bottom_cap", SupportPlace::BottomCap),
-    ("top_cap", SupportPlace::TopCap),
+pub(crate) const PLACES: [(&str, SupportLocation); 4] = [
+    ("bottom_ring", SupportLocation::BottomRing),
+    ("top_ring", SupportLocation::TopRing),
+    ("bottom_cap", SupportLocation::BottomCap),
+    ("top_cap", SupportLocation::TopCap),
 ];
 
-pub(crate) fn place_name(place: SupportPlace) -> &'static str {
+pub(crate) fn place_name(place: SupportLocation) -> &'static str {
     PLACES.iter().find(|(_, known)| *known == place).map_or("", |(name, _)| name)
 }
 
@@ -23,7 +23,7 @@ pub(crate) fn place_name(place: SupportPlace) -> &'static str {
 /// supports are the same job.
 pub(crate) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<Support>, InputError> {
     let Some(json) = json else {
-        return Ok(vec![Support { on: SupportPlace::BottomRing, fix: "xyz".to_owned() }]);
+        return Ok(vec![Support { on: SupportLocation::BottomRing, fix: "xyz".to_owned() }]);
     };
     let allowed = "a list of {\"on\": \"bottom_ring\", \"fix\": \"xyz\"}";
     let mut fixed = [""; 4].map(str::to_owned);
@@ -72,7 +72,7 @@ pub(crate) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<Support>,
             (_, None) => return Err(source.error(&key, &item.brief(), "has no `fix`", allowed)),
         }
     }
-    let support = |(&(_, on), axes): (&(&str, SupportPlace), String)| {
+    let support = |(&(_, on), axes): (&(&str, SupportLocation), String)| {
         let fix: String = "xyz".chars().filter(|c| axes.contains(*c)).collect();
         (!fix.is_empty()).then_some(Support { on, fix })
     };

@@ -9,7 +9,6 @@ use billow_solver::models::run::{Observer, Progress};
 use billow_solver::models::{self};
 use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::{Deployment, Stop};
-use billow_solver::platform::workers::Workers;
 use billow_solver::scene::error::SceneError;
 
 use crate::job::references::References;
@@ -28,9 +27,8 @@ pub trait Executor: Sync {
     }
 
     /// Runs a batch: one outcome a job, in the order of `jobs`. `watch` is told the position in
-    /// the batch and where that job stands; when it says `false` the job is to end as cancelled. A
-    /// job may take so many `threads`, which change no bit of it.
-    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome>;
+    /// the batch and where that job stands; when it says `false` the job is to end as cancelled.
+    fn execute(&self, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome>;
 }
 
 /// Sees the samples of running jobs, and may end them.
@@ -68,7 +66,7 @@ impl Executor for Solver {
         self.references.take_fresh()
     }
 
-    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome> {
+    fn execute(&self, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome> {
         let run = |(position, job): (usize, &&Job)| {
             let end_time = job.scene.solver.end_time;
             let start = Progress {
@@ -80,8 +78,8 @@ impl Executor for Solver {
             let goes_on = &mut || watch(position, start);
             let (reference, note) = self.references.of(&job.scene, goes_on);
             let start = Instant::now();
-            let (workers, mut watcher) = (Workers::of(threads), Watcher { position, watch });
-            match models::solve_with(workers, &job.scene, reference, &mut watcher) {
+            let mut watcher = Watcher { position, watch };
+            match models::solve(&job.scene, reference, &mut watcher) {
                 Ok(deployment) if deployment.stop == Stop::Cancelled => Outcome::Cancelled,
                 Ok(deployment) => Outcome::Ran {
                     deployment: Box::new(deployment),
@@ -108,13 +106,8 @@ impl Observer for Watcher<'_> {
 
 /// Runs a batch so that no panic leaves it. When a batch of several panics its jobs are run one by
 /// one, and only those that panic again are lost to it.
-pub fn execute_guarded(
-    executor: &dyn Executor,
-    jobs: &[&Job],
-    threads: usize,
-    watch: &Watch<'_>,
-) -> Vec<Outcome> {
-    match guarded(|| executor.execute(jobs, threads, watch)) {
+pub fn execute_guarded(executor: &dyn Executor, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome> {
+    match guarded(|| executor.execute(jobs, watch)) {
         Ok(outcomes) if outcomes.len() == jobs.len() => outcomes,
         Ok(outcomes) => {
             let message =
@@ -125,7 +118,7 @@ pub fn execute_guarded(
         Err(_) => {
             let alone = |(position, job): (usize, &&Job)| {
                 let watch = |_: usize, progress| watch(position, progress);
-                execute_guarded(executor, &[*job], threads, &watch)
+                execute_guarded(executor, &[*job], &watch)
             };
             jobs.iter().enumerate().flat_map(alone).collect()
         }
@@ -160,10 +153,5 @@ fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     MESSAGE.set(Some(String::new()));
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     let message = MESSAGE.take().unwrap_or_default();
-    result.map_err(|panic| {
-        // A panic carried over from a job's second thread has left its message there.
-        let text = || panic.downcast_ref::<String>().map(String::as_str);
-        let carried = panic.downcast_ref::<&str>().copied().or_else(text);
-        if message.is_empty() { carried.unwrap_or("no message").to_owned() } else { message }
-    })
+    result.map_err(|_| if message.is_empty() { "no message".to_owned() } else { message })
 }

@@ -162,14 +162,12 @@ pub struct Scripted<S> {
     pub asked: AtomicUsize,
     /// Size of a batch.
     pub batch: usize,
-    /// Threads the last job was given.
-    pub threads: AtomicUsize,
 }
 
 impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
     /// Of one job a batch.
     pub fn new(script: S) -> Self {
-        Self { script, asked: AtomicUsize::new(0), batch: 1, threads: AtomicUsize::new(0) }
+        Self { script, asked: AtomicUsize::new(0), batch: 1 }
     }
 }
 
@@ -183,8 +181,7 @@ impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
         self.batch
     }
 
-    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome> {
-        self.threads.store(threads, Ordering::SeqCst);
+    fn execute(&self, jobs: &[&Job], watch: &Watch<'_>) -> Vec<Outcome> {
         let run = |(position, job): (usize, &&Job)| {
             self.asked.fetch_add(1, Ordering::SeqCst);
             let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };

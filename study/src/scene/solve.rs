@@ -8,7 +8,6 @@ use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{Model, Observer, Progress, Run};
 use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
 use billow_solver::output::outcome::{Deployment, FailureKind, Stop as End};
-use billow_solver::platform::workers::Workers;
 use billow_solver::scene::timeline::Timeline;
 use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolution};
 
@@ -56,7 +55,7 @@ pub enum Ended {
 /// Steps after which a run looks whether it is to stop.
 const LOOK: u64 = 2_000;
 
-/// Solves a scene on so many threads, which change no bit. A signal ends it, after a checkpoint where
+/// Solves a scene. A signal ends it, after a checkpoint where
 /// one is asked for.
 ///
 /// # Errors
@@ -64,7 +63,6 @@ const LOOK: u64 = 2_000;
 pub fn solve(
     scene: &SceneFile,
     pauses: &Pauses,
-    threads: usize,
     files: &dyn Files,
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
@@ -73,7 +71,7 @@ pub fn solve(
     let (status, end) = if scene.film.solver.statics {
         rest(scene, stop)?
     } else {
-        motion(scene, pauses, threads, files, stop, report)?
+        motion(scene, pauses, files, stop, report)?
     };
     Ok(Solved { status, end, wall_seconds: start.elapsed().as_secs_f64() })
 }
@@ -124,14 +122,12 @@ impl Observer for Reporting<'_> {
 fn motion(
     scene: &SceneFile,
     pauses: &Pauses,
-    threads: usize,
     files: &dyn Files,
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
 ) -> Result<(&'static str, Ended)> {
     let course = Timeline::of_film(&scene.film);
     let (mut model, mut run) = begin(scene, pauses, files)?;
-    model.film.share_with(Workers::of(threads));
     let first = model.steps();
     let mut observer = Reporting(report);
     let mut stored = first;

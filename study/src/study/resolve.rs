@@ -61,7 +61,7 @@ pub(super) fn design_key(design: &FoldDesign) -> DesignKey {
 }
 
 /// Most samples of one run: more would be a slip of the unit.
-const MOST_SAMPLES: f64 = 1e6;
+const MOST_SAMPLES: f64 = billow_solver::scene::MAX_SAMPLES;
 
 /// The scene of a point.
 pub(super) fn scene(
@@ -148,7 +148,7 @@ pub(super) fn scene(
                 deployed_volume: get("outputs.thresholds.deployed_volume")?,
                 deployed_height: get("outputs.thresholds.deployed_height")?,
                 stalled_volume: get("outputs.thresholds.stalled_volume")?,
-                close_margin: get("outputs.thresholds.close_margin")?,
+                near_threshold_margin: get("outputs.thresholds.close_margin")?,
             },
         },
         seed: unsigned(settings, "seed", source)?,
@@ -182,7 +182,7 @@ fn windows(
         windows.push(InflowWindow {
             from: release_time,
             to: release_time + burst_mass / rate,
-            rate,
+            mass_flow_rate: rate,
             temperature: inflow_temperature,
         });
     }
@@ -211,19 +211,19 @@ fn windows(
         windows.push(InflowWindow {
             from,
             to,
-            rate,
+            mass_flow_rate: rate,
             temperature: get("temperature").unwrap_or(inflow_temperature),
         });
     }
     for window in &mut windows {
         window.to = window.to.min(end_time);
     }
-    windows.retain(|window| window.rate > 0.0 && window.from < window.to);
+    windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
     windows.sort_by(|a, b| {
         a.from
             .total_cmp(&b.from)
             .then(a.to.total_cmp(&b.to))
-            .then(a.rate.total_cmp(&b.rate))
+            .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
             .then(a.temperature.total_cmp(&b.temperature))
     });
     Ok(windows)

@@ -28,7 +28,7 @@ const KEPT_GAP_TOLERANCE: f64 = 1e-9;
 impl Plate {
     /// Position of the plate's point at `time` (s), m.
     fn position(&self, time: f64) -> Vector3<f64> {
-        self.motion.map_or(self.point, |motion| motion.place(self.point, time))
+        self.motion.map_or(self.point, |motion| motion.position(self.point, time))
     }
 
     /// n·p at `time` (s), m.
@@ -65,7 +65,7 @@ impl Plate {
         forces: &mut Field,
     ) {
         (state.force, state.energy) = (0.0, 0.0);
-        if time >= self.until {
+        if time >= self.removal_time {
             return;
         }
         let ContactModel { distance, stiffness_per_mass, .. } = *contact_model;
@@ -90,7 +90,7 @@ impl Plate {
     /// plate in the drift.
     pub fn resolve_collisions(&self, step: &mut CollisionStep<'_>) {
         let (start, end) = (step.start, step.start + step.length);
-        if start >= self.until {
+        if start >= self.removal_time {
             return;
         }
         let (height_at_start, height_at_end) = (self.height(start), self.height(end));

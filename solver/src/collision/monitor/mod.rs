@@ -96,7 +96,7 @@ impl TunnellingMonitor {
         if steps == 0 {
             return;
         }
-        let found = if self.settings.closely(self.block_start) {
+        let found = if self.settings.is_dense_block(self.block_start) {
             self.scheduler.advance(mesh, &self.frames[0], &self.frames[steps]);
             passages_step_by_step(mesh, &self.frames[..=steps])
         } else {
@@ -160,7 +160,7 @@ fn passages_step_by_step(mesh: &CollisionMesh, frames: &[Field]) -> Vec<Passage>
     let mut kdops = KDops::new(&mesh.hierarchy, first);
     for frame in &frames[1..] {
         kdops.extend(&mesh.hierarchy, frame);
-        max_displacement = max_displacement.max(first.largest_way(frame));
+        max_displacement = max_displacement.max(first.largest_displacement(frame));
     }
     let mut found = Vec::new();
     pairs_within_bounds(QueryKind::Collision, mesh, &kdops, 0.0, |kind, pair| {
@@ -238,12 +238,9 @@ mod tests {
             monitor.passages
         };
         assert_eq!(count(MonitorSettings::EVERY_STEP), 2);
-        assert_eq!(
-            count(MonitorSettings { every_step_of_one_in: 1, ..MonitorSettings::FRAMES }),
-            2
-        );
+        assert_eq!(count(MonitorSettings { dense_block_period: 1, ..MonitorSettings::FRAMES }), 2);
         let mut monitor = start(MonitorSettings::FRAMES);
-        assert!(!MonitorSettings::FRAMES.closely(0));
+        assert!(!MonitorSettings::FRAMES.is_dense_block(0));
         monitor.record_step(&mesh, &to);
         monitor.test_block(&mesh);
         assert_eq!(monitor.passages, 1);
@@ -252,7 +249,8 @@ mod tests {
 
     #[test]
     fn about_one_block_in_a_hundred_is_tested_step_by_step() {
-        let close = (0..100_000).filter(|block| MonitorSettings::FRAMES.closely(*block)).count();
+        let close =
+            (0..100_000).filter(|block| MonitorSettings::FRAMES.is_dense_block(*block)).count();
         assert!((900..1100).contains(&close), "{close}");
     }
 
@@ -272,7 +270,7 @@ mod tests {
             let mesh = CollisionMesh::new(18, &triangles);
             let mut x: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
             // No block is tested step by step.
-            let settings = MonitorSettings { block: 1, every_step_of_one_in: u64::MAX, seed: 1 };
+            let settings = MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
             let start = Field::of(&x);
             let mut monitor =
                 TunnellingMonitor::new(settings, &mesh, &start, 0, InstructionSet::detect());

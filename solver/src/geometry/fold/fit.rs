@@ -1,12 +1,12 @@
-//! The three fits: which ϕ and half angle meet a design.
+//! The three fits: solves ϕ and the half angle φh of a design.
 //!
-//! All of them stand on one function, the height of M storeys over a bottom ring of radius r2,
+//! All of them use one function, the height of M storeys on a bottom ring of radius r2,
 //!
 //! ```text
 //! H(ϕ, φh) = r2 cos φh · u(ϕ, φh) · (1 + ρ + … + ρ^(M−1)),    u = (1 − ρ)/sin φh
 //! ```
 //!
-//! which falls as ϕ grows (from its tallest at ϕ → 0 to 0 at α1 → 0) and as φh grows.
+//! which decreases with ϕ (from its maximum at ϕ → 0 to 0 at α1 → 0) and with φh.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,12 +18,12 @@ pub(super) struct Solved {
     pub(super) half_angle: f64,
 }
 
-/// Solves a design that [`check`] has passed and that has no [`obstacle`].
+/// Solves a design that passed [`check`] and has no [`infeasibility`].
 pub(super) fn solve(design: &FoldDesign) -> Solved {
     match design.fit {
         Fit::Cone => {
             let (half_angle, height) = nominal_cone(design);
-            let phi = falling_root(0.0, widest_phi(design), |phi| {
+            let phi = decreasing_root(0.0, max_phi(design), |phi| {
                 storeys_height(design, phi, half_angle) - height
             });
             Solved { phi, half_angle }
@@ -33,9 +33,9 @@ pub(super) fn solve(design: &FoldDesign) -> Solved {
             let phi = phi_of_ratio(design);
             let height = given(design.height);
             let half_angle = if storeys_height(design, phi, 0.0) <= height {
-                0.0 // `obstacle` has refused less than equal
+                0.0 // a smaller height is an `infeasibility`
             } else {
-                falling_root(0.0, FRAC_PI_2, |half_angle| {
+                decreasing_root(0.0, FRAC_PI_2, |half_angle| {
                     storeys_height(design, phi, half_angle) - height
                 })
             };
@@ -44,9 +44,9 @@ pub(super) fn solve(design: &FoldDesign) -> Solved {
     }
 }
 
-/// Why no pattern meets a design, or `None` when one does. Costs no root search.
-pub(super) fn obstacle(design: &FoldDesign) -> Option<String> {
-    let (tallest, height) = shortfall(design)?;
+/// Why no pattern fits a design; `None` where one does. Needs no root search.
+pub(super) fn infeasibility(design: &FoldDesign) -> Option<String> {
+    let (tallest, height) = height_shortfall(design)?;
     let storeys = if design.storeys == 1 { "storey" } else { "storeys" };
     let stack = format!("{} {storeys} of {} panels", design.storeys, design.panels);
     Some(match design.fit {
@@ -56,13 +56,14 @@ pub(super) fn obstacle(design: &FoldDesign) -> Option<String> {
         ),
         Fit::Angles | Fit::Height => format!(
             "{stack} at this alpha1_over_phi reach at most {tallest:.4} m (as a cylinder), \
-             {height:.4} m are asked for: no half angle of 0 or more closes"
+             {height:.4} m is requested: no half angle of 0 or more closes"
         ),
     })
 }
 
-/// The greatest height a design can have and the height it should have, m, where that is too great.
-pub(super) fn shortfall(design: &FoldDesign) -> Option<(f64, f64)> {
+/// The maximum height a design can reach and its requested height, m; `None` where the design reaches
+/// it.
+pub(super) fn height_shortfall(design: &FoldDesign) -> Option<(f64, f64)> {
     match design.fit {
         Fit::Cone => {
             let (half_angle, height) = nominal_cone(design);
@@ -79,17 +80,23 @@ pub(super) fn shortfall(design: &FoldDesign) -> Option<(f64, f64)> {
     }
 }
 
-/// Checks that a request is one: every value in range, given where its fit needs it and only there.
+/// Checks that every value is in range, and that exactly the values of the fit are given.
 pub(super) fn check(design: &FoldDesign) -> Result<(), FoldError> {
     let invalid = |key, problem: String| Err(FoldError::Invalid { key, problem });
-    if !(4..=MOST).contains(&design.panels) {
-        return invalid("N", format!("{} panels; allowed: 4 to {MOST}", design.panels));
+    if !(MIN_PANELS..=MAX_COUNT).contains(&design.panels) {
+        return invalid(
+            "N",
+            format!("{} panels; allowed: {MIN_PANELS} to {MAX_COUNT}", design.panels),
+        );
     }
-    if !(1..=MOST).contains(&design.storeys) {
-        return invalid("M", format!("{} storeys; allowed: 1 to {MOST}", design.storeys));
+    if !(1..=MAX_COUNT).contains(&design.storeys) {
+        return invalid("M", format!("{} storeys; allowed: 1 to {MAX_COUNT}", design.storeys));
     }
-    if !(1..=MOST).contains(&design.subdivisions) {
-        return invalid("subdivisions", format!("{}; allowed: 1 to {MOST}", design.subdivisions));
+    if !(1..=MAX_COUNT).contains(&design.subdivisions) {
+        return invalid(
+            "subdivisions",
+            format!("{}; allowed: 1 to {MAX_COUNT}", design.subdivisions),
+        );
     }
     for (key, value) in [
         ("bottom_radius", Some(design.bottom_radius)),
@@ -101,12 +108,12 @@ pub(super) fn check(design: &FoldDesign) -> Result<(), FoldError> {
         if let Some(value) = value
             && !(value.is_finite() && value > 0.0)
         {
-            let point = if key == "top_radius" && value == 0.0 {
-                " (a cone that ends in a point has no top ring to fold)"
+            let hint = if key == "top_radius" && value == 0.0 {
+                " (a pointed cone has no top ring to fold)"
             } else {
                 ""
             };
-            return invalid(key, format!("{value} is not a positive number{point}"));
+            return invalid(key, format!("{value} is not a positive number{hint}"));
         }
     }
     if let Some(half_angle) = design.half_angle
@@ -117,8 +124,12 @@ pub(super) fn check(design: &FoldDesign) -> Result<(), FoldError> {
     check_given(design)
 }
 
-/// Largest number of panels, storeys and subdivisions: beyond any capsule, below any overflow.
-const MOST: u32 = 1000;
+/// Maximum number of panels, storeys and subdivisions. Chosen: above any capsule, and small enough that
+/// no number of nodes or elements overflows.
+const MAX_COUNT: u32 = 1000;
+
+/// Minimum number of panels. Chosen: the pattern is tested from four panels on.
+const MIN_PANELS: u32 = 4;
 
 fn check_given(design: &FoldDesign) -> Result<(), FoldError> {
     let given = [
@@ -128,7 +139,7 @@ fn check_given(design: &FoldDesign) -> Result<(), FoldError> {
         ("alpha1_over_phi", design.alpha1_over_phi.is_some()),
     ];
     let nominal = design.half_angle.is_none();
-    // In the order of `given`: whether the fit needs the key; what it does not need it refuses.
+    // In the order of `given`: whether the fit needs the key. A key it does not need is refused.
     let (name, needed, why) = match design.fit {
         Fit::Cone => (
             "cone",
@@ -163,8 +174,8 @@ fn check_given(design: &FoldDesign) -> Result<(), FoldError> {
     Ok(())
 }
 
-/// Half angle and height of the cone a `cone` or `angles` design names; the height is meaningless
-/// (and unused) where `angles` gives the half angle itself.
+/// Half angle (rad) and height (m) of the cone of a `cone` or `angles` design. The height is NaN, and
+/// unused, where `angles` gives the half angle itself.
 fn nominal_cone(design: &FoldDesign) -> (f64, f64) {
     if let Some(half_angle) = design.half_angle {
         return (half_angle, f64::NAN);
@@ -173,18 +184,18 @@ fn nominal_cone(design: &FoldDesign) -> (f64, f64) {
     (libm::atan2(design.bottom_radius - given(design.top_radius), height), height)
 }
 
-/// A value that [`check`] has seen.
+/// A value that [`check`] requires to be given.
 fn given(value: Option<f64>) -> f64 {
     value.unwrap_or(f64::NAN)
 }
 
-/// π/2 − π/N: the sum of α1 and ϕ (Eq. 14).
-fn widest_phi(design: &FoldDesign) -> f64 {
+/// Upper bound of ϕ, rad: π/2 − π/N = α1 + ϕ (Eq. 14).
+fn max_phi(design: &FoldDesign) -> f64 {
     FRAC_PI_2 - PI / f64::from(design.panels)
 }
 
 fn phi_of_ratio(design: &FoldDesign) -> f64 {
-    widest_phi(design) / (1.0 + given(design.alpha1_over_phi))
+    max_phi(design) / (1.0 + given(design.alpha1_over_phi))
 }
 
 fn storeys_height(design: &FoldDesign, phi: f64, half_angle: f64) -> f64 {
@@ -201,8 +212,9 @@ pub(super) fn geometric_sum(ratio: f64, terms: u32) -> f64 {
     (0..terms).fold(0.0, |sum, _| 1.0 + ratio * sum)
 }
 
-/// The root of a function that is positive at `low` and negative at `high`, to the last bit.
-fn falling_root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+/// The root of a function that is positive at `low` and negative at `high`, by bisection to the last
+/// bit.
+fn decreasing_root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {

@@ -1,12 +1,12 @@
-//! The six-fold-line pattern of a conical shell (paper, section 2): which design, which angles.
+//! The six-fold-line pattern of a conical shell (paper, section 2).
 //!
 //! A cone of bottom radius r2, top radius r1 and height H has the half top angle φh,
 //! tan φh = (r2 − r1)/H. Developed, it is a sector whose ring of radius r lies at R = r / sin φh
-//! (Eq. 2). N panels round, M storeys; θ1 = 2π sin φh / N is a panel's share of the sector, θ2 the
-//! turn of the inner ring against the outer.
+//! (Eq. 2). N panels in a ring, M storeys; θ1 = 2π sin φh/N is the sector angle of a panel, θ2 the
+//! rotation of the inner ring relative to the outer one.
 //!
 //! ```text
-//!        D ───────── E          inner ring, radius ρ R, turned by θ2
+//!        D ───────── E          inner ring, radius ρ R, rotated by θ2
 //!         \  α2.·'    \
 //!       AD \ .·'AE     \ BE     ϕ  = between the radial line at A and AD
 //!          .·' α1       \       β1 = ∠DAE,  α1 = ∠EAB
@@ -18,8 +18,9 @@
 //!   α1 + ϕ = π/2 − π/N           (closure, Eq. 14)
 //! ```
 //!
-//! With closure, N, ϕ and φh fix the ring ratio ρ = `R_inner`/`R_outer`, the same in every storey,
-//! so M storeys end at r2 ρ^M and α1/ϕ is no free axis of a fixed cone. Hence three [`Fit`]s.
+//! With closure, N, ϕ and φh determine the ring ratio ρ = `R_inner`/`R_outer`, the same in every storey.
+//! The top radius of M storeys is r2 ρ^M, so α1/ϕ cannot be varied on a given cone. A design therefore
+//! chooses one of three [`Fit`]s.
 
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +38,7 @@ pub use creases::{Assignment, Crease};
 pub use pattern::{FoldPattern, Lengths};
 pub use states::{Corner, Facet, Polygon};
 
-/// Which of the coupled quantities are given, and which follow.
+/// Which of the coupled quantities are given; the others follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fit {
@@ -49,13 +50,13 @@ pub enum Fit {
     Height,
 }
 
-/// Turn of successive storeys.
+/// Twist directions of successive storeys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Chirality {
-    /// All storeys turn the same way.
+    /// All storeys twist in the same direction.
     Same,
-    /// Storeys turn in alternate directions.
+    /// Storeys twist in alternate directions.
     Alternate,
 }
 
@@ -63,23 +64,23 @@ pub enum Chirality {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Caps {
-    /// Flat N-gons sewn to the ring fold lines.
+    /// Flat N-gons joined to the ring fold lines.
     Polygon,
-    /// Circular discs: erected shape only, since a disc cannot be sewn to a flat-folded N-gon
+    /// Circular discs, for the erected shape only: a disc cannot be joined to a flat-folded N-gon
     /// without strain.
     Circular,
 }
 
-/// A fold design as asked for.
+/// A requested fold design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FoldDesign {
     /// Which quantities are given.
     pub fit: Fit,
-    /// N, panels round a ring, at least 4.
+    /// N, number of panels in a ring, at least 4.
     #[serde(rename = "N")]
     pub panels: u32,
-    /// M, storeys, at least 1.
+    /// M, number of storeys, at least 1.
     #[serde(rename = "M")]
     pub storeys: u32,
     /// r2, radius of the bottom ring, m.
@@ -88,29 +89,29 @@ pub struct FoldDesign {
     pub top_radius: Option<f64>,
     /// H, height of the erected cone, m: given for `cone` and `height`, nominal for `angles`.
     pub height: Option<f64>,
-    /// Half top angle, rad: `angles` only, in place of `top_radius` and `height`.
+    /// φh, half top angle, rad: `angles` only, instead of `top_radius` and `height`.
     pub half_angle: Option<f64>,
     /// α1/ϕ: given for `angles` and `height`.
     pub alpha1_over_phi: Option<f64>,
-    /// Turn of successive storeys.
+    /// Twist directions of successive storeys.
     pub chirality: Chirality,
     /// Height of the stowed stack, m.
     pub stowed_height: f64,
-    /// n, mesh subdivisions of every facet edge.
+    /// n, number of mesh subdivisions of every facet edge.
     pub subdivisions: u32,
     /// Shape of the caps.
     pub caps: Caps,
 }
 
 impl FoldDesign {
-    /// Elements of its mesh, 2 N (M + 1) n².
+    /// Number of elements of its mesh, 2 N (M + 1) n².
     pub fn elements(&self) -> u64 {
         let [panels, storeys, n] = [self.panels, self.storeys, self.subdivisions].map(u64::from);
         2 * panels * (storeys + 1) * n * n
     }
 }
 
-/// A single change that makes an infeasible design feasible.
+/// A change of one key that makes an infeasible design feasible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// Key of [`crate::geometry::fold::FoldDesign`], as in JSON.
@@ -122,7 +123,7 @@ pub struct Nearest {
 /// Why a design has no pattern.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FoldError {
-    /// The request itself is not one: a value out of range, missing, or contradicting another.
+    /// A value is out of range, missing, or contradicts another.
     #[error("{key}: {problem}")]
     Invalid {
         /// Key of [`FoldDesign`], as in JSON.
@@ -130,12 +131,12 @@ pub enum FoldError {
         /// What is wrong and what is allowed.
         problem: String,
     },
-    /// A sound request that no pattern meets. An answer, not a mistake.
+    /// The request is valid, but no pattern fits it. This is a result, not an input error.
     #[error("infeasible: {reason}")]
     Infeasible {
         /// Why.
         reason: String,
-        /// Nearest feasible values, each for a change of that key alone.
+        /// Nearest feasible values, each for a change of its key alone.
         nearest: Vec<Nearest>,
     },
 }
@@ -144,12 +145,15 @@ impl FoldPattern {
     /// Solves a design.
     ///
     /// # Errors
-    /// [`FoldError::Invalid`] for a request out of range or contradicting itself,
-    /// [`FoldError::Infeasible`] for one no pattern meets.
+    /// [`FoldError::Invalid`] for a value out of range or a contradiction,
+    /// [`FoldError::Infeasible`] where no pattern fits.
     pub fn new(design: &FoldDesign) -> Result<Self, FoldError> {
         fit::check(design)?;
-        if let Some(reason) = fit::obstacle(design) {
-            return Err(FoldError::Infeasible { reason, nearest: nearest::search(design) });
+        if let Some(reason) = fit::infeasibility(design) {
+            return Err(FoldError::Infeasible {
+                reason,
+                nearest: nearest::feasible_values(design),
+            });
         }
         Self::close(design)
     }

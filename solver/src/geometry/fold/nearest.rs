@@ -1,44 +1,50 @@
-//! The nearest feasible value of a key, when a design is infeasible.
+//! Nearest feasible values of an infeasible design, one for each key that can help.
 
-use super::scan::{BOTH_WAYS, real, whole};
+use super::scan::{BOTH, nearest_real, nearest_whole};
 use super::{Fit, FoldDesign, FoldPattern, Nearest, fit};
 
-/// A key that can be changed, and how.
-struct Knob {
+/// A key of a design that the search may change.
+struct AdjustableKey {
     key: &'static str,
+    /// Whether its value is a whole number.
     whole: bool,
     get: fn(&FoldDesign) -> Option<f64>,
     set: fn(&mut FoldDesign, f64),
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, 1 to 1000")]
-const KNOBS: [Knob; 6] = [
-    Knob {
+const ADJUSTABLE_KEYS: [AdjustableKey; 6] = [
+    AdjustableKey {
         key: "M",
         whole: true,
         get: |d| Some(f64::from(d.storeys)),
         set: |d, value| d.storeys = value as u32,
     },
-    Knob {
+    AdjustableKey {
         key: "N",
         whole: true,
         get: |d| Some(f64::from(d.panels)),
         set: |d, value| d.panels = value as u32,
     },
-    Knob { key: "height", whole: false, get: |d| d.height, set: |d, value| d.height = Some(value) },
-    Knob {
+    AdjustableKey {
+        key: "height",
+        whole: false,
+        get: |d| d.height,
+        set: |d, value| d.height = Some(value),
+    },
+    AdjustableKey {
         key: "top_radius",
         whole: false,
         get: |d| d.top_radius,
         set: |d, value| d.top_radius = Some(value),
     },
-    Knob {
+    AdjustableKey {
         key: "bottom_radius",
         whole: false,
         get: |d| Some(d.bottom_radius),
         set: |d, value| d.bottom_radius = value,
     },
-    Knob {
+    AdjustableKey {
         key: "alpha1_over_phi",
         whole: false,
         get: |d| d.alpha1_over_phi,
@@ -46,31 +52,33 @@ const KNOBS: [Knob; 6] = [
     },
 ];
 
-/// Nearest feasible values of an infeasible design, one a key, each for a change of that key alone;
-/// a key no change of which helps (whole numbers to 64, others within a factor of a million) is left
-/// out.
-pub(super) fn search(design: &FoldDesign) -> Vec<Nearest> {
-    KNOBS
+/// Nearest feasible values of an infeasible design, at most one for each key, each for a change of that
+/// key alone. A key without a feasible value in the range of [`super::scan`] is omitted.
+pub(super) fn feasible_values(design: &FoldDesign) -> Vec<Nearest> {
+    ADJUSTABLE_KEYS
         .iter()
-        // A cone of another bottom radius is another capsule; for `height` it is the size itself.
-        .filter(|knob| design.fit == Fit::Height || knob.key != "bottom_radius")
-        .filter_map(|knob| {
-            let start = (knob.get)(design)?;
+        // Another bottom radius means another cone, so it helps only where the fit solves the cone.
+        .filter(|adjustable| design.fit == Fit::Height || adjustable.key != "bottom_radius")
+        .filter_map(|adjustable| {
+            let start = (adjustable.get)(design)?;
             let feasible = |value: f64| {
                 let mut changed = design.clone();
-                (knob.set)(&mut changed, value);
-                fit::check(&changed).is_ok() && fit::shortfall(&changed).is_none()
+                (adjustable.set)(&mut changed, value);
+                fit::check(&changed).is_ok() && fit::height_shortfall(&changed).is_none()
             };
-            let value =
-                if knob.whole { whole(start, feasible) } else { real(start, &BOTH_WAYS, feasible) };
-            value.map(|value| (knob, Nearest { key: knob.key, value }))
+            let value = if adjustable.whole {
+                nearest_whole(start, feasible)
+            } else {
+                nearest_real(start, &BOTH, feasible)
+            };
+            value.map(|value| (adjustable, Nearest { key: adjustable.key, value }))
         })
-        // A pattern that closes may still not pack to the stowed height asked for.
-        .filter(|(knob, near)| {
+        // A pattern that closes may still not fold to the requested stowed height.
+        .filter(|(adjustable, nearest)| {
             let mut changed = design.clone();
-            (knob.set)(&mut changed, near.value);
+            (adjustable.set)(&mut changed, nearest.value);
             FoldPattern::close(&changed).is_ok()
         })
-        .map(|(_, near)| near)
+        .map(|(_, nearest)| nearest)
         .collect()
 }

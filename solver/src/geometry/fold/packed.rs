@@ -1,28 +1,37 @@
-//! A storey packed to a low rise: how much it turns.
+//! Twist of a storey that is packed to a low rise.
 //!
-//! The N-gons keep their size, so the folded edges AD and AE strain a little; the twist τ is the one
-//! that keeps their lengths best. With P the outer circumradius, h the rise of the storey and the
-//! squared distances
+//! The N-gons keep their size, so the folded edges AD and AE strain slightly. The twist τ minimises their
+//! strain. With P the outer circumradius, h the rise of the storey, L the length of an edge in the
+//! pattern, and the squared distances
 //!
 //! ```text
 //! d²(τ) = P² (1 + ρ² − 2 ρ cos τ) + h²        AD at τ, AE at τ + 2π/N
 //! ```
 //!
-//! the sum of squared Green strains (d² − L²)/(2 L²) is least. Storeys are alike but for their size:
-//! everything here is in units of P.
+//! the sum of the squared Green strains (d² − L²)/(2 L²) of AD and AE is least. Storeys are similar, so
+//! all lengths here are in units of P.
 
 use core::f64::consts::PI;
 
 use super::FoldPattern;
 
+/// Longest stride of the bracketing search over its range, from the flat twist to −π/N. Chosen: a
+/// thousandth, shorter than the distance between roots.
+const MAX_STRIDE: f64 = 1e-3;
+
+/// First stride over the longest one. Chosen: strides double, so a thousandth adds 10 strides at most.
+const FIRST_STRIDE: f64 = 1e-3;
+
 /// A storey whose outer N-gon has circumradius 1.
 pub(super) struct PackedStorey {
     ring_ratio: f64,
-    /// AD² and AE².
+    /// L² of AD and AE.
     squared: [f64; 2],
     /// Sine and cosine of 2π/N.
     panel: (f64, f64),
+    /// π/N, rad.
     half_panel: f64,
+    /// Twist at h = 0, rad.
     flat_twist: f64,
 }
 
@@ -41,22 +50,22 @@ impl PackedStorey {
         }
     }
 
-    /// Twist at a rise (over P), rad: the root, next below the flat twist, of the derivative of the
-    /// summed squared strains.
+    /// Twist at a rise (over P), rad: the largest root not above the flat twist of the derivative of the
+    /// sum of squared strains.
     pub(super) fn twist(&self, rise: f64) -> f64 {
         let slope = |twist| -> f64 {
-            self.strains(rise, twist).iter().map(|(strain, by)| strain * by).sum()
+            self.strains(rise, twist).iter().map(|(strain, derivative)| strain * derivative).sum()
         };
         let (mut low, mut high) = (self.flat_twist, self.flat_twist);
-        // Edges are too long at the flat twist, so less twist shortens them; half a panel's turn
-        // backwards AD and AE would be alike, and no rise gets there. Strides start small, so that a
-        // low rise is quick, and stay small enough not to step over a root.
-        let longest = 1e-3 * (self.flat_twist + self.half_panel);
-        let mut stride = 1e-3 * longest;
+        // The edges are too long at the flat twist, and less twist shortens them. At a twist of −π/N,
+        // AD and AE would be equal; no rise leads there. The strides are short at first, so that a low
+        // rise needs few, and stay short enough not to skip a root.
+        let max_stride = MAX_STRIDE * (self.flat_twist + self.half_panel);
+        let mut stride = FIRST_STRIDE * max_stride;
         while slope(low) > 0.0 && low > -self.half_panel {
             high = low;
             low -= stride;
-            stride = longest.min(2.0 * stride);
+            stride = max_stride.min(2.0 * stride);
         }
         loop {
             let middle = 0.5 * (low + high);
@@ -67,22 +76,24 @@ impl PackedStorey {
         }
     }
 
-    /// Largest Green strain of the folded edges at a rise (over P), in magnitude.
+    /// Largest magnitude of the Green strain of the folded edges at a rise (over P).
     pub(super) fn strain(&self, rise: f64) -> f64 {
         self.strains(rise, self.twist(rise))
             .iter()
             .fold(0.0, |largest: f64, (strain, _)| largest.max(strain.abs()))
     }
 
-    /// Green strain of AD and AE, and its derivative by the twist.
+    /// Green strain of AD and of AE, each with its derivative by the twist.
     fn strains(&self, rise: f64, twist: f64) -> [(f64, f64); 2] {
         let ratio = self.ring_ratio;
         let (sin, cos) = libm::sincos(twist);
-        let turned =
+        let next_corner =
             (sin * self.panel.1 + cos * self.panel.0, cos * self.panel.1 - sin * self.panel.0);
-        [((sin, cos), self.squared[0]), (turned, self.squared[1])].map(|((sin, cos), squared)| {
-            let distance_squared = 1.0 + ratio * ratio - 2.0 * ratio * cos + rise * rise;
-            ((distance_squared - squared) / (2.0 * squared), ratio * sin / squared)
-        })
+        [((sin, cos), self.squared[0]), (next_corner, self.squared[1])].map(
+            |((sin, cos), squared)| {
+                let distance_squared = 1.0 + ratio * ratio - 2.0 * ratio * cos + rise * rise;
+                ((distance_squared - squared) / (2.0 * squared), ratio * sin / squared)
+            },
+        )
     }
 }

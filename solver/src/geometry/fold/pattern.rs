@@ -1,16 +1,16 @@
-//! A solved fold pattern: the design with every angle and length.
+//! A solved fold pattern: every angle, length and area of a design.
 
 use core::f64::consts::PI;
 
 use super::fit::{self, geometric_sum};
 use super::{FoldDesign, FoldError, Nearest, PanelAngles, scan, states};
 
-/// A fold design that closes: every angle and length of it.
+/// A solved fold design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoldPattern {
-    /// The design asked for.
+    /// The requested design.
     pub design: FoldDesign,
-    /// Half top angle φh, rad; negative for a capsule that widens upward.
+    /// φh, half top angle, rad; negative for a capsule that widens upward.
     pub half_angle: f64,
     /// Angles of a panel.
     pub angles: PanelAngles,
@@ -35,11 +35,12 @@ pub struct Lengths {
     pub ae: f64,
 }
 
-/// Largest strain of a folded edge that a stowed height may ask for.
-const STOWED_STRAIN: f64 = 0.01;
+/// Maximum Green strain of a folded edge at the stowed height. Chosen: 1 %,
+/// far above the 3.5e-5 of the paper's capsule.
+const MAX_STOWED_STRAIN: f64 = 0.01;
 
 impl FoldPattern {
-    /// Solves a design that [`fit::check`] and [`fit::obstacle`] have passed.
+    /// Solves a design that passed [`fit::check`] and [`fit::infeasibility`].
     pub(super) fn close(design: &FoldDesign) -> Result<Self, FoldError> {
         let fit::Solved { phi, half_angle } = fit::solve(design);
         let angles = PanelAngles::closing(design.panels, phi, half_angle);
@@ -53,11 +54,11 @@ impl FoldPattern {
             });
         }
         let slant = angles.unit_slant * geometric_sum(angles.ring_ratio, design.storeys);
-        let follows = (
+        let computed = (
             design.bottom_radius * power(angles.ring_ratio, design.storeys),
             design.bottom_radius * libm::cos(half_angle) * slant,
         );
-        // What a fit is given it keeps to the digit; only what follows is computed.
+        // A given radius or height is kept exactly; the others are computed.
         let (top_radius, height) = match design.fit {
             super::Fit::Cone => (design.top_radius, design.height),
             super::Fit::Angles => (None, None),
@@ -68,54 +69,54 @@ impl FoldPattern {
             half_angle,
             angles,
             bottom_radius: design.bottom_radius,
-            top_radius: top_radius.unwrap_or(follows.0),
-            height: height.unwrap_or(follows.1),
+            top_radius: top_radius.unwrap_or(computed.0),
+            height: height.unwrap_or(computed.1),
         };
         pattern.check_stowed_height()?;
         Ok(pattern)
     }
 
-    /// A stack that this pattern cannot be packed to is infeasible, as is a pattern that does not
-    /// close; the nearest that can is lower.
+    /// Refuses a stowed height that the pattern cannot be packed to. Lower stacks strain less, so the
+    /// nearest feasible height is below.
     fn check_stowed_height(&self) -> Result<(), FoldError> {
         let stowed = self.design.stowed_height;
         let strain = self.stowed_strain(stowed);
         let reason = if stowed >= self.height {
             format!("stowed_height: {stowed} m is not below the height of {} m", self.height)
-        } else if strain > STOWED_STRAIN {
+        } else if strain > MAX_STOWED_STRAIN {
             format!(
-                "stowed_height: {stowed} m strains folded edges by {:.2} %; allowed: up to {} %, so \
-                 a lower stack",
+                "stowed_height: {stowed} m strains folded edges by {:.2} %; allowed: up to {} %; \
+                 choose a lower height",
                 100.0 * strain,
-                100.0 * STOWED_STRAIN
+                100.0 * MAX_STOWED_STRAIN
             )
         } else {
             return Ok(());
         };
-        let packs = |height| {
+        let feasible = |height| {
             height < self.height
-                // One storey first: most heights tried fall to it.
-                && self.smallest_storey_strain(height) <= STOWED_STRAIN
-                && self.stowed_strain(height) <= STOWED_STRAIN
+                // The check of one storey is cheap and refuses most heights.
+                && self.smallest_storey_strain(height) <= MAX_STOWED_STRAIN
+                && self.stowed_strain(height) <= MAX_STOWED_STRAIN
         };
-        let nearest = scan::below(stowed, packs);
+        let nearest = scan::nearest_below(stowed, feasible);
         let nearest = nearest.map(|value| Nearest { key: "stowed_height", value });
         Err(FoldError::Infeasible { reason, nearest: nearest.into_iter().collect() })
     }
 
-    /// Radius of ring `ring` of the cone, m (0 is the bottom ring, M the top ring).
+    /// Radius of ring `ring` of the cone, m; 0 is the bottom ring, M the top ring.
     pub fn ring_radius(&self, ring: u32) -> f64 {
         self.bottom_radius * power(self.angles.ring_ratio, ring)
     }
 
-    /// Circumradius of ring `ring` folded to its regular N-gon, m: the perimeter is kept, so it is
-    /// larger than the cone's radius.
+    /// Circumradius of ring `ring` folded to its regular N-gon, m. Folding keeps the perimeter, so it is
+    /// larger than the radius of the cone.
     pub fn polygon_radius(&self, ring: u32) -> f64 {
         0.5 * self.ring_radius(ring) * self.angles.unit_lengths.ab
             / libm::sin(PI / f64::from(self.design.panels))
     }
 
-    /// Edge lengths of the panels of storey `storey` (0 is the lowest).
+    /// Edge lengths of the panels of storey `storey`, m; 0 is the lowest.
     pub fn lengths(&self, storey: u32) -> Lengths {
         let radius = self.ring_radius(storey);
         let unit = &self.angles.unit_lengths;
@@ -127,22 +128,22 @@ impl FoldPattern {
         }
     }
 
-    /// How far the flat-folded storey misses closing on itself, relative to |AB|: the two facets of a
-    /// panel are laid out from α1, β1 and their lengths and folded over AE; the motion that carries
-    /// (A, D) to (B, E), done N times, must be the identity (Eq. 14 says the same in angles).
+    /// Closure error of a flat-folded storey, relative to |AB|. The two facets of a panel are placed from
+    /// α1, β1 and their lengths and folded along AE. The rigid motion from (A, D) to (B, E), applied N
+    /// times, must be the identity (Eq. 14 is the same condition in angles).
     pub fn closure_defect(&self) -> f64 {
         states::closure_defect(&self.angles, self.design.panels)
     }
 
-    /// Fraction of the capsule's height at which ring `ring` sits when erected: 0 at the bottom
-    /// ring, 1 at the top ring.
+    /// Height of ring `ring` when erected over that of the capsule: 0 for the bottom ring, 1 for the top
+    /// ring.
     pub fn height_fraction(&self, ring: u32) -> f64 {
         let ratio = self.angles.ring_ratio;
         geometric_sum(ratio, ring) / geometric_sum(ratio, self.design.storeys)
     }
 
-    /// Turn of ring `storey + 1` against ring `storey` when flat folded, rad, counter-clockwise in a
-    /// storey of the first chirality.
+    /// Twist of a flat-folded storey: rotation of its upper ring relative to its lower one, rad,
+    /// counter-clockwise in the lowest storey.
     pub fn flat_twist(&self) -> f64 {
         let angles = &self.angles;
         let outer = 0.5 * angles.unit_lengths.ab / libm::sin(PI / f64::from(self.design.panels));
@@ -151,13 +152,13 @@ impl FoldPattern {
         libm::atan2(side * libm::sin(at_a), outer - side * libm::cos(at_a))
     }
 
-    /// The same, erected.
+    /// Twist of an erected storey, rad.
     pub fn erected_twist(&self) -> f64 {
         self.angles.erected_twist
     }
 
-    /// Radius of the clear opening of a flat-folded storey, m: the distance of the diagonals from
-    /// the axis, or the inner corners where the foot of that distance lies beyond E.
+    /// Radius of the clear opening of a flat-folded storey, m: the distance of the diagonals AE from the
+    /// axis, or that of the inner corners where the perpendicular foot lies beyond E.
     pub fn opening_radius(&self, storey: u32) -> f64 {
         let radius = self.polygon_radius(storey);
         let foot = radius * libm::cos(self.angles.phi);
@@ -168,7 +169,7 @@ impl FoldPattern {
         }
     }
 
-    /// Area of the two facets (ABE, AED) of one panel of a storey, m².
+    /// Areas of the two facets (ABE, AED) of one panel of a storey, m².
     pub fn facet_areas(&self, storey: u32) -> [f64; 2] {
         let Lengths { ab, ad, ae, .. } = self.lengths(storey);
         [
@@ -180,7 +181,7 @@ impl FoldPattern {
     /// Developed area of the lateral film, m².
     pub fn lateral_area(&self) -> f64 {
         if self.design.caps == super::Caps::Circular {
-            // The full sector between the arcs, not the N-gons inscribed.
+            // The sector between the arcs, not between the chords.
             let slant = self.slant(self.design.storeys);
             return PI * (self.ring_radius(0) + self.ring_radius(self.design.storeys)) * slant;
         }
@@ -192,8 +193,7 @@ impl FoldPattern {
             .sum()
     }
 
-    /// Area of the cap on ring `ring`, m²: its N-gon, or the disc of its cone radius for circular
-    /// caps.
+    /// Area of the cap on ring `ring`, m²: its N-gon, or a disc with the radius of the cone.
     pub fn cap_area(&self, ring: u32) -> f64 {
         match self.design.caps {
             super::Caps::Polygon => self.polygon_area(ring),
@@ -210,7 +210,7 @@ impl FoldPattern {
         0.5 * n * radius * radius * libm::sin(2.0 * PI / n)
     }
 
-    /// Area of all the film, m²: lateral film and both caps.
+    /// Area of the film, m²: lateral film and both caps.
     pub fn film_area(&self) -> f64 {
         self.lateral_area() + self.cap_area(0) + self.cap_area(self.design.storeys)
     }
@@ -222,7 +222,7 @@ impl FoldPattern {
     }
 }
 
-/// x^exponent by multiplication.
+/// x^exponent by repeated multiplication.
 pub(super) fn power(x: f64, exponent: u32) -> f64 {
     (0..exponent).fold(1.0, |product, _| product * x)
 }

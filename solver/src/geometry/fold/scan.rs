@@ -1,53 +1,98 @@
-//! Looking outward from an infeasible value for the nearest feasible one.
+//! Search for the feasible value nearest to an infeasible one.
+//!
+//! Feasibility is known only by evaluation. The search therefore steps away from the start, and refines
+//! the first feasible step by bisection.
 
-/// The feasible whole number nearest to one that is not, within 63.
-pub(super) fn whole(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
-    (1..64).find_map(|step| {
+/// Largest distance of a whole number from the start. Chosen: covers every practical number of panels
+/// or storeys.
+const MAX_WHOLE_DISTANCE: u32 = 63;
+
+/// Factor up to which a real number is searched, upward and downward. Chosen: a million, which covers
+/// every practical change of a length or ratio.
+const MAX_FACTOR: f64 = 1e6;
+
+/// Growth of the factor in a step near the start. Chosen: 2 %, so that no narrow feasible range is
+/// missed.
+const NEAR_STEP: f64 = 1.02;
+
+/// Growth of the factor in a step beyond [`FAR_FACTOR`]. Chosen: coarse, only an edge is searched there.
+const FAR_STEP: f64 = 1.5;
+
+/// Factor beyond which steps are coarse.
+const FAR_FACTOR: f64 = 50.0;
+
+/// Bisections of the step in which the value becomes feasible. Chosen: 2⁻⁴⁰ of a step, far below the
+/// digits shown.
+const BISECTIONS: u32 = 40;
+
+/// Numbers of significant digits tried for a rounded value, fewest first.
+const SIGNIFICANT_DIGITS: core::ops::Range<u8> = 3..9;
+
+/// Direction of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Direction {
+    Up,
+    Down,
+}
+
+/// Both directions; at equal factors the larger value is tried first.
+pub(super) const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
+
+/// The feasible whole number nearest to an infeasible one; `None` beyond [`MAX_WHOLE_DISTANCE`].
+pub(super) fn nearest_whole(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
+    (1..=MAX_WHOLE_DISTANCE).find_map(|step| {
         let step = f64::from(step);
         [start + step, start - step].into_iter().find(|value| *value > 0.0 && feasible(*value))
     })
 }
 
-/// The largest feasible value below one that is not; `None` if there is none within a factor of a
-/// million.
-pub(super) fn below(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
-    real(start, &[false], feasible)
+/// The largest feasible value below an infeasible one; `None` beyond [`MAX_FACTOR`].
+pub(super) fn nearest_below(start: f64, feasible: impl Fn(f64) -> bool) -> Option<f64> {
+    nearest_real(start, &[Direction::Down], feasible)
 }
 
-/// Upward first.
-pub(super) const BOTH_WAYS: [bool; 2] = [true, false];
-
-/// The feasible value nearest to one that is not, in the ways given (up is `true`), by factors up to a
-/// million; rounded into the feasible range.
-pub(super) fn real(start: f64, ways: &[bool], feasible: impl Fn(f64) -> bool) -> Option<f64> {
+/// The feasible value nearest to an infeasible one in these directions, rounded into the feasible
+/// range; `None` beyond [`MAX_FACTOR`].
+pub(super) fn nearest_real(
+    start: f64,
+    directions: &[Direction],
+    feasible: impl Fn(f64) -> bool,
+) -> Option<f64> {
     let mut factor = 1.0;
-    while factor < 1e6 {
+    while factor < MAX_FACTOR {
         let previous = factor;
-        // Near, a narrow range must not be stepped over; far off the edge alone is looked for.
-        factor *= if factor < 50.0 { 1.02 } else { 1.5 };
-        for up in ways.iter().copied() {
-            let at = |factor: f64| if up { start * factor } else { start / factor };
-            if !feasible(at(factor)) {
+        factor *= if factor < FAR_FACTOR { NEAR_STEP } else { FAR_STEP };
+        for direction in directions.iter().copied() {
+            let value = |factor: f64| match direction {
+                Direction::Up => start * factor,
+                Direction::Down => start / factor,
+            };
+            if !feasible(value(factor)) {
                 continue;
             }
             let (mut outside, mut inside) = (previous, factor);
-            for _ in 0..40 {
+            for _ in 0..BISECTIONS {
                 let middle = 0.5 * (outside + inside);
-                if feasible(at(middle)) { inside = middle } else { outside = middle }
+                if feasible(value(middle)) { inside = middle } else { outside = middle }
             }
-            return Some(rounded(at(inside), up, &feasible).unwrap_or_else(|| at(inside)));
+            let edge = value(inside);
+            return Some(rounded(edge, direction, &feasible).unwrap_or(edge));
         }
     }
     None
 }
 
-/// The edge of the feasible range rounded into it, to the fewest digits (3 or more) that stay near.
-fn rounded(edge: f64, up: bool, feasible: impl Fn(f64) -> bool) -> Option<f64> {
+/// The edge of the feasible range rounded into it, with the fewest significant digits that remain
+/// feasible.
+fn rounded(edge: f64, direction: Direction, feasible: impl Fn(f64) -> bool) -> Option<f64> {
     let magnitude = libm::floor(libm::log10(edge));
-    (3_u8..9).find_map(|digits| {
+    SIGNIFICANT_DIGITS.clone().find_map(|digits| {
         let unit = libm::pow(10.0, magnitude - f64::from(digits - 1));
-        let whole = if up { libm::ceil(edge / unit) } else { libm::floor(edge / unit) };
-        // Through text, so that the value prints with those digits.
+        let whole = match direction {
+            Direction::Up => libm::ceil(edge / unit),
+            Direction::Down => libm::floor(edge / unit),
+        };
+        // Through text, so that the value prints with exactly these digits.
         let value: f64 = format!("{:.*e}", usize::from(digits - 1), whole * unit).parse().ok()?;
         feasible(value).then_some(value)
     })

@@ -1,9 +1,9 @@
-//! Nodes and triangles of a fold pattern: welded, closed, wound outward.
+//! Triangle mesh of a fold pattern: nodes shared between facets, closed, wound outward.
 //!
 //! Every facet of the lateral film and every wedge of a cap (centre and two ring corners) is cut
-//! into n² triangles. A node is known by its barycentric weights on the corners of the pattern, so
-//! facets that share an edge share its nodes exactly. Each triangle carries its own flat
-//! coordinates in the developed film: the stress-free reference.
+//! into n² triangles. Barycentric weights on the corners of the pattern identify a node, so facets that
+//! share an edge share its nodes exactly. Each triangle has flat coordinates in the developed film: the
+//! stress-free reference.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -11,15 +11,15 @@ use crate::geometry::fold::{FoldError, FoldPattern};
 
 mod build;
 
-/// Which state of the pattern the nodes are placed in.
+/// The state of the pattern that defines the node positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// Flat folded, all at z = 0.
+    /// Flat-folded, all at z = 0.
     Flat,
     /// Stowed at this stack height, m.
     Stowed(f64),
-    /// Rolled onto its cone, folds open. The ring lines are chords of the developed sector, so on
-    /// the cone they rise between their corners; N-gon caps follow them.
+    /// Rolled onto its cone, folds open. The ring lines are chords of the developed sector, so on the
+    /// cone they rise between their corners. N-gon caps follow them.
     Erected,
 }
 
@@ -45,9 +45,9 @@ pub struct Mesh {
     pub reference: Vec<[Vector2<f64>; 3]>,
     /// Piece of film of each element.
     pub parts: Vec<Part>,
-    /// Nodes of the bottom ring, in order round it.
+    /// Nodes of the bottom ring, counter-clockwise seen from above.
     pub bottom_ring: Vec<u32>,
-    /// Nodes of the top ring, in order round it.
+    /// Nodes of the top ring, counter-clockwise seen from above.
     pub top_ring: Vec<u32>,
     /// Centre node of the bottom cap.
     pub bottom_centre: u32,
@@ -56,11 +56,11 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Meshes a pattern with `subdivisions` parts an edge, in the given shape: 2 N (M + 1) n²
+    /// Meshes a pattern in the given shape with n = `subdivisions` parts a facet edge: 2 N (M + 1) n²
     /// elements.
     ///
     /// # Errors
-    /// [`FoldError::Invalid`] for circular caps on a folded shape, which only strain could sew on.
+    /// [`FoldError::Invalid`] for circular caps on a folded shape: they cannot be joined without strain.
     pub fn new(pattern: &FoldPattern, subdivisions: u32, shape: Shape) -> Result<Self, FoldError> {
         build::mesh(pattern, subdivisions, shape)
     }
@@ -75,7 +75,7 @@ impl Mesh {
         self.reference.iter().map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum()
     }
 
-    /// Undirected edges, each once, lower node first, in ascending order.
+    /// Every undirected edge once, lower node first, in ascending order.
     pub fn edges(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<[u32; 2]> = self
             .triangles

@@ -1,6 +1,6 @@
 //! The FOLD format, specification 1.2 (Demaine, Ku, Lang: "A New File Standard to Represent Folded
-//! Structures"): the crease pattern of the lateral film as key frame, the stowed shape as a second
-//! frame. Caps are not part of it: they have no creases.
+//! Structures"). The key frame is the crease pattern of the lateral film, the second frame its stowed
+//! shape. Caps are omitted: they have no creases.
 
 use core::f64::consts::PI;
 use std::collections::HashMap;
@@ -11,12 +11,12 @@ use serde_json::{Value, json};
 use crate::geometry::fold::{Assignment, Corner, Facet, FoldPattern};
 use crate::geometry::mesh_io::obj::Sheet;
 
-/// A pattern as FOLD text. Lengths in m; the sheet is seen from outside, faces counter-clockwise, so
-/// mountains (`M`, −180°) point towards the reader and outward.
-#[expect(clippy::missing_panics_doc, reason = "a JSON value of finite numbers always prints")]
+/// A pattern as FOLD text, lengths in m. The sheet is seen from outside, faces counter-clockwise, so
+/// mountains (`M`, −180°) point outward, towards the viewer.
+#[expect(clippy::missing_panics_doc, reason = "a JSON value of finite numbers is always printable")]
 pub fn crease_pattern(pattern: &FoldPattern, title: &str) -> String {
-    let across = pattern.design.panels + 1;
-    let index = |c: Corner| c.ring * across + c.corner;
+    let per_ring = pattern.design.panels + 1;
+    let index = |c: Corner| c.ring * per_ring + c.corner;
     let creases = pattern.creases();
     let letters: Vec<&str> = creases
         .iter()
@@ -38,7 +38,7 @@ pub fn crease_pattern(pattern: &FoldPattern, title: &str) -> String {
     let faces: Vec<[u32; 3]> =
         pattern.facets().iter().map(|facet| facet.corners.map(index)).collect();
     let sheet: Vec<[f64; 2]> =
-        Sheet::new(pattern).corners.iter().map(|place| [place.x, place.y]).collect();
+        Sheet::new(pattern).corners.iter().map(|corner| [corner.x, corner.y]).collect();
     let text = json!({
         "file_spec": 1.2,
         "file_creator": concat!("billow ", env!("CARGO_PKG_VERSION")),
@@ -60,17 +60,18 @@ pub fn crease_pattern(pattern: &FoldPattern, title: &str) -> String {
     text
 }
 
-/// The stowed shape: the same vertices in space; both edges of the seam lie on one another.
+/// The stowed shape: the same vertices in space. Both edges of the seam coincide.
 fn stowed(pattern: &FoldPattern) -> Value {
     let panels = pattern.design.panels;
     let polygons = pattern.stowed_polygons(pattern.design.stowed_height);
-    let places: Vec<[f64; 3]> = polygons
+    let positions: Vec<[f64; 3]> = polygons
         .iter()
         .flat_map(|polygon| (0..=panels).map(|corner| polygon.corner(corner % panels, panels)))
         .map(Into::into)
         .collect();
-    let place = |c: Corner| Vector3::from(places[(c.ring * (panels + 1) + c.corner) as usize]);
-    let normals = left_normals(pattern, place);
+    let position =
+        |c: Corner| Vector3::from(positions[(c.ring * (panels + 1) + c.corner) as usize]);
+    let normals = left_normals(pattern, position);
     let angles: Vec<Value> = pattern
         .creases()
         .iter()
@@ -78,9 +79,9 @@ fn stowed(pattern: &FoldPattern) -> Value {
             let [from, to] = crease.ends;
             match (normals.get(&[from, to]), normals.get(&[to, from])) {
                 (Some(left), Some(right)) => {
-                    json!(fold_angle(left, right, &(place(to) - place(from))))
+                    json!(fold_angle(left, right, &(position(to) - position(from))))
                 }
-                // Only one facet: the edge of the sheet.
+                // One facet only: the boundary of the sheet.
                 _ => Value::Null,
             }
         })
@@ -92,7 +93,7 @@ fn stowed(pattern: &FoldPattern) -> Value {
         "frame_unit": "m",
         "frame_parent": 0,
         "frame_inherit": true,
-        "vertices_coords": places,
+        "vertices_coords": positions,
         "edges_foldAngle": angles,
     })
 }
@@ -100,18 +101,18 @@ fn stowed(pattern: &FoldPattern) -> Value {
 /// The normal of the facet to the left of every directed edge.
 fn left_normals(
     pattern: &FoldPattern,
-    place: impl Fn(Corner) -> Vector3<f64>,
+    position: impl Fn(Corner) -> Vector3<f64>,
 ) -> HashMap<[Corner; 2], Vector3<f64>> {
     let mut normals = HashMap::new();
     for Facet { corners: [a, b, c], .. } in pattern.facets() {
-        let normal = (place(b) - place(a)).cross(&(place(c) - place(a))).normalize();
+        let normal = (position(b) - position(a)).cross(&(position(c) - position(a))).normalize();
         normals.extend([[a, b], [b, c], [c, a]].map(|edge| (edge, normal)));
     }
     normals
 }
 
-/// Angle between the normals of the facets left and right of an edge along `along`, degrees,
-/// negative for a mountain: over a crest the normal turns forward, from left to right.
+/// Fold angle at an edge with direction `along`, degrees: the angle between the normals of the facets
+/// left and right of it, negative for a mountain.
 fn fold_angle(left: &Vector3<f64>, right: &Vector3<f64>, along: &Vector3<f64>) -> f64 {
     180.0 / PI * libm::atan2(right.cross(left).dot(&along.normalize()), left.dot(right))
 }

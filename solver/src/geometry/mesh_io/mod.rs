@@ -1,4 +1,4 @@
-//! Shapes and patterns as text other programs read. Strings in memory: no files here.
+//! Meshes and patterns as text, for other programs. Text in memory: this module opens no files.
 
 pub mod fold;
 pub mod obj;

@@ -1,5 +1,5 @@
-//! Wavefront OBJ: vertices in m, faces counter-clockwise seen from outside, one group a piece of
-//! film.
+//! Writes Wavefront OBJ: vertices in m, faces counter-clockwise seen from outside, one group for each
+//! piece of film.
 
 use std::fmt::Write;
 
@@ -26,11 +26,11 @@ pub fn mesh(mesh: &Mesh, title: &str) -> String {
     text
 }
 
-/// A surface as OBJ, its vertices at these places (m), in its own numbers.
-pub fn surface(surface: &Surface, places: &[Vector3<f64>], title: &str) -> String {
+/// A surface as OBJ with these vertex positions (m), in the order of its vertices.
+pub fn surface(surface: &Surface, positions: &[Vector3<f64>], title: &str) -> String {
     let mut text = header(title);
-    for place in places {
-        vertex(&mut text, *place);
+    for position in positions {
+        vertex(&mut text, *position);
     }
     let mut group = None;
     for Face { corners, names, .. } in &surface.faces {
@@ -43,24 +43,24 @@ pub fn surface(surface: &Surface, places: &[Vector3<f64>], title: &str) -> Strin
     text
 }
 
-/// The developed film as OBJ: the lateral sheet in the plane z = 0, cut open along its seam and seen
-/// from outside, the caps beside it.
+/// The developed film as OBJ, in the plane z = 0 and seen from outside: the lateral sheet, cut open along
+/// its seam, and the caps next to it.
 pub fn developed(pattern: &FoldPattern, title: &str) -> String {
     let sheet = Sheet::new(pattern);
     let mut text = header(title);
-    for place in sheet.corners.iter().chain(&sheet.caps[0]).chain(&sheet.caps[1]) {
-        vertex(&mut text, Vector3::new(place.x, place.y, 0.0));
+    for corner in sheet.corners.iter().chain(&sheet.caps[0]).chain(&sheet.caps[1]) {
+        vertex(&mut text, Vector3::new(corner.x, corner.y, 0.0));
     }
-    let across = pattern.design.panels + 1;
+    let per_ring = pattern.design.panels + 1;
     let mut storey = None;
     for facet in pattern.facets() {
         if storey != Some(facet.storey) {
             storey = Some(facet.storey);
             let _ = writeln!(text, "g {}", name(Part::Storey(facet.storey)));
         }
-        face(&mut text, &facet.corners.map(|c| c.ring * across + c.corner));
+        face(&mut text, &facet.corners.map(|c| c.ring * per_ring + c.corner));
     }
-    let mut first = across * (pattern.design.storeys + 1);
+    let mut first = per_ring * (pattern.design.storeys + 1);
     for part in [Part::BottomCap, Part::TopCap] {
         let _ = writeln!(text, "g {}", name(part));
         let corners: Vec<u32> = (first..first + pattern.design.panels).collect();
@@ -70,17 +70,20 @@ pub fn developed(pattern: &FoldPattern, title: &str) -> String {
     text
 }
 
-/// The flat pieces of film, laid out side by side, seen from outside, m.
+/// Gap between the pieces of a layout over the circumradius of the bottom cap. Chosen: easy to see.
+const GAP_OVER_RADIUS: f64 = 0.2;
+
+/// Layout of the flat pieces of film, seen from outside, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
-    /// Corners of the lateral film, ring by ring, N + 1 a ring.
+    /// Corners of the lateral film, ring by ring, N + 1 for each ring.
     pub corners: Vec<Vector2<f64>>,
     /// Corners of the bottom and the top cap, counter-clockwise.
     pub caps: [Vec<Vector2<f64>>; 2],
 }
 
 impl Sheet {
-    /// Lays a pattern out: the lateral film upright, the caps to its right, one above the other.
+    /// The layout of a pattern: the lateral film upright, the caps to its right, one above the other.
     pub fn new(pattern: &FoldPattern) -> Self {
         let (panels, storeys) = (pattern.design.panels, pattern.design.storeys);
         let middle = pattern.sheet_middle();
@@ -93,13 +96,13 @@ impl Sheet {
         let mut centre = Vector2::new(0.0, low);
         let caps = [0, storeys].map(|ring| {
             let radius = pattern.polygon_radius(ring);
-            let gap = 0.2 * pattern.polygon_radius(0);
+            let gap = GAP_OVER_RADIUS * pattern.polygon_radius(0);
             centre.x = right + pattern.polygon_radius(0) + gap;
             centre.y += radius;
             let polygon = (0..panels)
                 .map(|corner| {
-                    let turn = 2.0 * core::f64::consts::PI * f64::from(corner) / f64::from(panels);
-                    let (sin, cos) = libm::sincos(turn);
+                    let angle = 2.0 * core::f64::consts::PI * f64::from(corner) / f64::from(panels);
+                    let (sin, cos) = libm::sincos(angle);
                     centre + radius * Vector2::new(cos, sin)
                 })
                 .collect();
@@ -114,8 +117,8 @@ fn header(title: &str) -> String {
     format!("# {}\n# vertices in m\n", title.replace('\n', " "))
 }
 
-fn vertex(text: &mut String, place: Vector3<f64>) {
-    let _ = writeln!(text, "v {} {} {}", place.x, place.y, place.z);
+fn vertex(text: &mut String, position: Vector3<f64>) {
+    let _ = writeln!(text, "v {} {} {}", position.x, position.y, position.z);
 }
 
 fn face(text: &mut String, nodes: &[u32]) {
@@ -126,7 +129,7 @@ fn face(text: &mut String, nodes: &[u32]) {
     text.push('\n');
 }
 
-/// Name of the group of a piece of film.
+/// Group name of a piece of film.
 pub fn name(part: Part) -> String {
     match part {
         Part::Storey(storey) => format!("storey_{storey}"),

@@ -1,44 +1,44 @@
-//! Reading Wavefront OBJ: vertices and faces, whatever program wrote them.
+//! Reads vertices and faces of Wavefront OBJ.
 //!
-//! Read: `v x y z` (a weight or a colour after them is ignored), `f` of three or more corners written
-//! `7`, `7/1`, `7//2` or `7/1/2`, 1-based or negative (counted back from the last vertex so far), `g`
-//! and `o` names, comments, lines that go on after a `\`, any line end. Texture, normals, materials,
-//! lines and points are passed over. A polygon is cut into a fan from its first corner.
+//! Accepted: `v x y z` (a weight or colour after them is ignored); `f` with three or more corners written
+//! `7`, `7/1`, `7//2` or `7/1/2`, 1-based or negative (counted back from the last vertex so far); names
+//! of `g` and `o`; comments; lines continued after a `\`; any line ending. Textures, normals,
+//! materials, lines and points are ignored. A polygon becomes a triangle fan from its first corner.
 
 use std::borrow::Cow;
 
 use nalgebra::Vector3;
 
-/// What an OBJ file says of a surface.
+/// Surface of an OBJ file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Surface {
-    /// Vertices, in the file's units.
+    /// Vertices, in the units of the file.
     pub vertices: Vec<Vector3<f64>>,
     /// Faces, in the order of the file.
     pub faces: Vec<Face>,
-    /// Lists of group and object names in force at a face.
+    /// Distinct lists of group and object names that apply to faces.
     pub names: Vec<Vec<String>>,
 }
 
-/// A face as written.
+/// A face as in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Face {
     /// Its vertices in order, 0-based.
     pub corners: Vec<u32>,
-    /// Names in force, a position in [`Surface::names`].
+    /// Its names, as an index into [`Surface::names`].
     pub names: usize,
     /// Line of the file, 1-based.
     pub line: usize,
 }
 
 impl Face {
-    /// The triangles of its fan, as positions in [`Self::corners`].
+    /// The triangles of its fan, as indices into [`Self::corners`].
     pub fn fan(&self) -> impl Iterator<Item = [usize; 3]> {
         (1..self.corners.len() - 1).map(|corner| [0, corner, corner + 1])
     }
 }
 
-/// Why a text is no surface.
+/// Why a text is not a valid surface.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {problem}; allowed: {allowed}")]
 pub struct ObjError {
@@ -50,8 +50,8 @@ pub struct ObjError {
     pub allowed: &'static str,
 }
 
-/// Keywords that say nothing of the surface.
-const PASSED_OVER: [&str; 36] = [
+/// OBJ keywords that do not define the surface.
+const IGNORED_KEYWORDS: [&str; 36] = [
     "vt",
     "vn",
     "vp",
@@ -94,49 +94,49 @@ const VERTEX: &str = "v and three finite numbers, as in `v 0.1 2e-3 -4`";
 const FACE: &str = "three or more different vertices by number, 1 for the first or -1 for the last so \
                     far, as in `f 1 2 3` or `f 1/4 2/5 -1/6`";
 
-/// Reads a surface. Where the text has no vertices of its own, its faces are over `given` ones.
+/// Reads a surface. Where the text contains no vertices, its faces refer to `given` external ones.
 ///
 /// # Errors
-/// [`ObjError`] at the first line that is none.
+/// [`ObjError`] at the first invalid line.
 pub fn read(text: &str, given: usize) -> Result<Surface, ObjError> {
     let mut surface = Surface::default();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_vertex = |line: &str| line.split_whitespace().next() == Some("v");
-    let own = lines(text).filter(|(_, line)| is_vertex(line)).count();
-    let known = if own > 0 { own } else { given };
+    let vertices = lines(text).filter(|(_, line)| is_vertex(line)).count();
+    let known = if vertices > 0 { vertices } else { given };
     let (mut groups, mut object) = (Vec::new(), Vec::new());
     for (line, content) in lines(text) {
         let mut words = content.split_whitespace();
         let Some(keyword) = words.next() else { continue };
         match keyword {
             "v" => {
-                let place =
+                let position =
                     vertex(words).map_err(|problem| ObjError { line, problem, allowed: VERTEX })?;
-                surface.vertices.push(place);
+                surface.vertices.push(position);
             }
             "f" => {
-                let so_far = if own > 0 { surface.vertices.len() } else { given };
+                let so_far = if vertices > 0 { surface.vertices.len() } else { given };
                 let corners = face(words, known, so_far).map_err(|problem| ObjError {
                     line,
                     problem,
                     allowed: FACE,
                 })?;
-                let in_force: Vec<String> = [&groups[..], &object[..]].concat();
-                if surface.names.last() != Some(&in_force) {
-                    surface.names.push(in_force);
+                let names: Vec<String> = [&groups[..], &object[..]].concat();
+                if surface.names.last() != Some(&names) {
+                    surface.names.push(names);
                 }
                 surface.faces.push(Face { corners, names: surface.names.len() - 1, line });
             }
             "g" => groups = words.map(str::to_owned).collect(),
-            // An object's name may hold blanks.
+            // An object name may contain spaces.
             "o" => object = vec![words.collect::<Vec<_>>().join(" ")],
-            other if PASSED_OVER.contains(&other) => {}
+            other if IGNORED_KEYWORDS.contains(&other) => {}
             other => {
                 let shown: String = other.chars().take(20).collect();
                 return Err(ObjError {
                     line,
-                    problem: format!("{shown:?} is no keyword of an OBJ file"),
-                    allowed: "v, f, g, o, # and what other programs put beside them",
+                    problem: format!("{shown:?} is not an OBJ keyword"),
+                    allowed: "v, f, g, o, # and the other keywords of the OBJ format",
                 });
             }
         }
@@ -144,14 +144,14 @@ pub fn read(text: &str, given: usize) -> Result<Surface, ObjError> {
     Ok(surface)
 }
 
-/// Lines with their numbers, those that go on after a `\` as one, without comments.
+/// Lines with their numbers, without comments; a line and its continuations after `\` are one.
 fn lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut rest = (1..).zip(text.lines());
     std::iter::from_fn(move || {
         let (number, first) = rest.next()?;
-        let mut line = Cow::Borrowed(bare(first));
+        let mut line = Cow::Borrowed(without_comment(first));
         while let Some(part) = line.trim_end().strip_suffix('\\') {
-            let next = rest.next().map_or("", |(_, next)| bare(next));
+            let next = rest.next().map_or("", |(_, next)| without_comment(next));
             line = Cow::Owned(format!("{part} {next}"));
         }
         Some((number, line))
@@ -159,25 +159,25 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
 }
 
 /// A line without its comment.
-fn bare(line: &str) -> &str {
+fn without_comment(line: &str) -> &str {
     line.split('#').next().unwrap_or_default()
 }
 
 fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Vector3<f64>, String> {
-    let mut place = [0.0; 3];
-    for part in &mut place {
-        let word = words.next().ok_or("a vertex of fewer than three numbers")?;
+    let mut position = [0.0; 3];
+    for entry in &mut position {
+        let word = words.next().ok_or("a vertex with fewer than three numbers")?;
         let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
-        *part = number.ok_or_else(|| format!("{:?} is no finite number", brief(word)))?;
+        *entry = number.ok_or_else(|| format!("{:?} is not a finite number", shortened(word)))?;
     }
-    Ok(place.into())
+    Ok(position.into())
 }
 
-fn brief(word: &str) -> String {
+fn shortened(word: &str) -> String {
     word.chars().take(20).collect()
 }
 
-/// Corners of a face: `known` vertices in the file, `so_far` of them above it.
+/// Corners of a face. `known` is the number of vertices in all, `so_far` that above this line.
 fn face<'a>(
     words: impl Iterator<Item = &'a str>,
     known: usize,
@@ -186,21 +186,23 @@ fn face<'a>(
     let mut corners = Vec::new();
     for word in words {
         let number = word.split('/').next().and_then(|number| number.parse::<i64>().ok());
-        let number = number.ok_or_else(|| format!("{:?} is no corner", brief(word)))?;
+        let number =
+            number.ok_or_else(|| format!("{:?} is not a vertex number", shortened(word)))?;
         let index = match number {
-            0 => return Err("vertex 0: vertices are counted from 1".to_owned()),
+            0 => return Err("vertex 0: the first vertex is 1".to_owned()),
             1.. => usize::try_from(number - 1).ok().filter(|index| *index < known),
             _ => usize::try_from(number.unsigned_abs()).ok().and_then(|n| so_far.checked_sub(n)),
         };
         let index = index.and_then(|index| u32::try_from(index).ok());
-        let index = index.ok_or_else(|| format!("vertex {number} of {known}"))?;
+        let index =
+            index.ok_or_else(|| format!("vertex {number} does not exist: there are {known}"))?;
         if corners.contains(&index) {
             return Err(format!("names vertex {number} twice"));
         }
         corners.push(index);
     }
     if corners.len() < 3 {
-        return Err(format!("a face of {} corners", corners.len()));
+        return Err(format!("a face with {} corners", corners.len()));
     }
     Ok(corners)
 }
@@ -212,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_programs_write_is_read() {
+    fn common_obj_syntax_is_read() {
         let text = "\u{feff}# a comment\r\nmtllib x.mtl\r\no Bag one\r\nv 0 0 0 1.0\r\nv 1e0 0 \\\r\n 0 \
                     0.2 0.3 0.4 # colour\r\nv +1 1. -.5\r\nvt 0 0\r\nvn 0 0 1\r\n\r\nusemtl \
                     skin\r\ns off\r\nf 1/1/1 2/2/1 3/3/1\r\ng lid top\r\nf -3//1 -1//1 4//1\r\nv 0 1 \
@@ -232,24 +234,27 @@ mod tests {
     }
 
     #[test]
-    fn faces_over_given_vertices_need_none_of_their_own() {
+    fn faces_may_refer_to_external_vertices() {
         assert_eq!(read("f 1 2 -1\n", 7).unwrap().faces[0].corners, [0, 1, 6]);
-        assert_eq!(read("f 1 2 8\n", 7).unwrap_err().problem, "vertex 8 of 7");
+        assert_eq!(
+            read("f 1 2 8\n", 7).unwrap_err().problem,
+            "vertex 8 does not exist: there are 7"
+        );
     }
 
     #[test]
-    fn errors_name_their_line() {
+    fn errors_name_line_and_problem() {
         for (text, line, problem) in [
             ("v 0 0\n", 1, "fewer than three"),
-            ("\nv 0 0 x\n", 2, "\"x\" is no finite number"),
-            ("v 0 0 nan\n", 1, "no finite number"),
+            ("\nv 0 0 x\n", 2, "\"x\" is not a finite number"),
+            ("v 0 0 nan\n", 1, "not a finite number"),
             ("v 0 0 0\nf 1 1 1\n", 2, "twice"),
-            ("v 0 0 0\nf 1 2 3\n", 2, "vertex 2 of 1"),
-            ("v 0 0 0\nf 0 2 3\n", 2, "counted from 1"),
-            ("v 0 0 0\nf -2 2 3\n", 2, "vertex -2 of 1"),
-            ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "a face of 2 corners"),
-            ("v 0 0 0\nf a b c\n", 2, "\"a\" is no corner"),
-            ("solid ascii\n", 1, "\"solid\" is no keyword"),
+            ("v 0 0 0\nf 1 2 3\n", 2, "vertex 2 does not exist"),
+            ("v 0 0 0\nf 0 2 3\n", 2, "the first vertex is 1"),
+            ("v 0 0 0\nf -2 2 3\n", 2, "vertex -2 does not exist"),
+            ("v 0 0 0\nv 1 0 0\nf 1 2\n", 3, "a face with 2 corners"),
+            ("v 0 0 0\nf a b c\n", 2, "\"a\" is not a vertex number"),
+            ("solid ascii\n", 1, "\"solid\" is not an OBJ keyword"),
         ] {
             let error = read(text, 0).unwrap_err();
             assert_eq!(error.line, line, "{text:?}");
@@ -259,12 +264,16 @@ mod tests {
 
     proptest! {
         #[test]
-        fn garbage_never_panics(text in "\\PC{0,200}") {
-            let _ = read(&text, 3);
+        /// A text is refused at one of its lines, or it is a surface of existing vertices.
+        fn random_text_is_refused_at_a_line_or_read(text in "\\PC{0,200}") {
+            match read(&text, 3) {
+                Ok(surface) => prop_assert!(surface.names.len() <= surface.faces.len()),
+                Err(error) => prop_assert!((1..=text.lines().count()).contains(&error.line)),
+            }
         }
 
         #[test]
-        fn near_garbage_never_panics(
+        fn faces_of_random_obj_text_refer_to_existing_vertices(
             text in "((v|f|g|o|#|vn|\\\\)[ \t]?(-?[0-9]{0,20}[/.e]?){0,5}[ \\\\\r]?\n?){0,20}"
         ) {
             if let Ok(surface) = read(&text, 3) {

@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::Explicit;
-use super::update::{Push, kick_nodes};
+use super::update::{KickParameters, kick_nodes};
 use crate::geometry::field::Field;
 use crate::mechanics::forces::damping::kick_factors;
-use crate::mechanics::supports::{Body, Mover};
+use crate::mechanics::supports::{PrescribedNodes, RigidPlane};
 use crate::platform::fault_injection::Term;
 
 impl Explicit {
@@ -40,16 +40,16 @@ impl Explicit {
             let push = self.force(node) * (gain * self.model.inverse_mass[node]);
             velocity * (keep - 1.0) + push
         };
-        let push = Push {
+        let parameters = KickParameters {
             overpressure: self.overpressure(),
             gravity: self.setting.gravity,
-            weight: self.setting.fault(Term::Gravity),
-            keep,
-            gain,
-            pressed: self.contact_active(),
+            weight_factor: self.setting.fault(Term::Gravity),
+            velocity_factor: keep,
+            acceleration_factor: gain,
+            contact_active: self.contact_active(),
         };
         let (path, velocities) = (self.setting.path, &self.state.velocities);
-        kick_nodes(path, &self.model, &self.forces, &push, &supports.free, velocities, next);
+        kick_nodes(path, &self.model, &self.forces, &parameters, &supports.free, velocities, next);
         for (node, projector) in &supports.oblique {
             let node = *node as usize;
             next.set(node, self.state.velocities.get(node) + projector * change(node));
@@ -63,7 +63,7 @@ impl Explicit {
     }
 
     /// Force of the film on a rigid plane along its normal, N.
-    pub fn force_on(&self, body: &Body) -> f64 {
+    pub fn force_on(&self, body: &RigidPlane) -> f64 {
         body.nodes.iter().map(|node| self.force(*node as usize).dot(&body.plane.normal)).sum()
     }
 
@@ -101,9 +101,9 @@ impl Explicit {
     }
 
     /// Gives what is prescribed the velocity that brings it to its path; the work of doing so, J.
-    fn prescribe(&self, mover: &Mover, next: &mut Field, length: f64, until: f64) -> f64 {
+    fn prescribe(&self, mover: &PrescribedNodes, next: &mut Field, length: f64, until: f64) -> f64 {
         let mut work = 0.0;
-        for (node, place) in mover.places(until) {
+        for (node, place) in mover.positions(until) {
             let node = node as usize;
             let way = place - self.state.places.get(node);
             let held = mover.held * (way / length);
@@ -169,7 +169,7 @@ impl Explicit {
 }
 
 /// Gives the nodes of a rigid plane its velocity along its normal.
-fn bind(body: &Body, velocity: f64, velocities: &mut Field) {
+fn bind(body: &RigidPlane, velocity: f64, velocities: &mut Field) {
     for node in &body.nodes {
         let node = *node as usize;
         let own = velocities.get(node);

@@ -26,21 +26,20 @@ use crate::collision::monitor::TunnellingMonitor;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
-use crate::mechanics::forces::membrane::{NodeForces, Sums, ViscousHistory, viscous_forces};
+use crate::mechanics::forces::membrane::{
+    MembraneSums, NodeForces, ViscousHistory, assemble_membrane, viscous_forces,
+};
 use crate::mechanics::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::mechanics::gas::GasState;
 use crate::output::outcome::{Failure, FailureKind};
 use crate::platform::fault_injection::Term;
 use crate::platform::stopwatch::{Stage, Stopwatch, Untimed};
-use crate::platform::workers::Workers;
 use crate::scene::inflow::Inflow;
 use crate::scene::timeline::Phase;
 
-use crew::Crew;
 use update::{drift_nodes, sparse_power};
 
 mod contact_step;
-mod crew;
 mod energy_accounting;
 mod kick;
 mod parameters;
@@ -72,7 +71,6 @@ pub struct Explicit {
     /// What is near: a function of the state, made when first asked for.
     search: Option<CandidateList>,
     next: Field,
-    crew: Crew,
 }
 
 impl Explicit {
@@ -121,14 +119,7 @@ impl Explicit {
         let watch = watch.map(|(how, law)| {
             TunnellingMonitor::new(how, &law.mesh, &state.places, state.steps, setting.path)
         });
-        let crew = Crew::default();
-        Self { model, setting, state, forces, watch, search: None, next, crew }
-    }
-
-    /// Has these workers take the steps from now on; until then, and in a copy, the caller takes them
-    /// alone. No bit depends on it.
-    pub fn share_with(&mut self, workers: Workers) {
-        self.crew = Crew::new(workers, &self.model);
+        Self { model, setting, state, forces, watch, search: None, next }
     }
 
     /// Advances to `target` (s) exactly, under a phase.
@@ -300,7 +291,7 @@ impl Explicit {
         if let PressureLoad::Gas(gas) = self.setting.interior {
             let mut step = gas.step(state.gas, state.volume, volume, length, inflow);
             if let Some(mutation) = self.setting.mutation {
-                step.suffer(&gas, volume, inflow.mass * length, mutation);
+                step.inject_fault(&gas, volume, inflow.mass_flow_rate * length, mutation);
             }
             state.gas = step.state;
             state.pressure = step.pressure;
@@ -335,12 +326,11 @@ impl Explicit {
     }
 
     /// Forces at the places now, which are those of `time` (s), `step` (s) after they were last asked for.
-    fn pass_at(&mut self, time: f64, step: f64, stopwatch: &mut dyn Stopwatch) -> Sums {
+    fn pass_at(&mut self, time: f64, step: f64, stopwatch: &mut dyn Stopwatch) -> MembraneSums {
         stopwatch.begins(Stage::Membrane);
         let (model, path) = (&self.model, self.setting.path);
         let State { places, past, .. } = &mut self.state;
-        let mut sums =
-            self.crew.assemble_membrane(path, model, places, step, past, &mut self.forces);
+        let mut sums = assemble_membrane(path, model, places, step, past, &mut self.forces);
         sums.six_volumes += add_closure(model, places, &mut self.forces);
         if self.setting.mutation.is_some() {
             self.suffer(&mut sums);
@@ -351,7 +341,7 @@ impl Explicit {
     }
 
     /// Faults of the forces: tests only.
-    fn suffer(&mut self, sums: &mut Sums) {
+    fn suffer(&mut self, sums: &mut MembraneSums) {
         let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
             .map(|term| self.setting.fault(term));
         let drags = viscous_forces(&self.model, &self.state.places, &self.state.past);

@@ -48,7 +48,7 @@ impl Explicit {
     /// step would not advance time.
     pub(super) fn way_to(&mut self, target: f64, phase: &Phase) -> Option<StepInterval> {
         let (time, calm) = (self.state.time, &mut self.state.calm);
-        let rate = phase.inflow.mass;
+        let rate = phase.inflow.mass_flow_rate;
         if calm.packed != phase.packed || calm.mass_flow_rate.to_bits() != rate.to_bits() {
             (calm.packed, calm.mass_flow_rate, calm.lively) = (phase.packed, rate, time);
         }
@@ -88,7 +88,7 @@ impl Explicit {
     /// Whether film presses on film, or a plate is there to.
     fn in_contact(&self) -> bool {
         let Some(law) = &self.setting.contact else { return false };
-        let plates = law.plates.iter().any(|plate| self.state.time < plate.until);
+        let plates = law.plates.iter().any(|plate| self.state.time < plate.removal_time);
         plates || !self.state.meeting.contacts.is_empty()
     }
 
@@ -162,7 +162,7 @@ mod tests {
 
     fn plate(until: f64) -> Plate {
         let normal = Vector3::new(0.0, 0.0, 1.0);
-        Plate { name: "base".to_owned(), point: -normal, normal, motion: None, until }
+        Plate { name: "base".to_owned(), point: -normal, normal, motion: None, removal_time: until }
     }
 
     fn contact() -> Contact {
@@ -198,7 +198,7 @@ mod tests {
         assert!(!with(&|film| plates(film, 0.2)));
         assert!(with(&|film| plates(film, 0.04)));
         assert!(!with(&|film| film.setting.contact = None));
-        let inflow = Inflow { mass: 1e-3, mass_temperature: 0.3 };
+        let inflow = Inflow { mass_flow_rate: 1e-3, temperature_flow: 0.3 };
         assert!(!is_calm(calm(), &Phase { packed: false, inflow }));
         assert!(!is_calm(calm(), &Phase { packed: true, ..still }));
     }

@@ -1,74 +1,87 @@
-//! Elements two by two: kites, whose halves share an edge.
+//! Kites: pairs of elements that share an edge.
 //!
 //! ```text
-//!        b                first  = (s, a, t)      corners of a kite: s, a, t, b
-//!      /   \              second = (s, t, b)
+//!        b                first element  = (s, a, t)      corners of a kite: s, a, t, b
+//!      /   \              second element = (s, t, b)
 //!    s ----- t            both counter-clockwise seen from outside
 //!      \   /
 //!        a
 //! ```
 //!
-//! A kite has four corners where two elements have six, so a third of what is fetched from nodes and of
-//! what is added to them is saved. An element that finds no other is a kite whose second half has no
-//! area: b is s once more.
+//! A kite has four corners where two elements have six, which saves a third of the gathers from nodes
+//! and of the additions to nodes. An element without a partner is a kite whose second element has zero
+//! area: b = s.
 
 use std::collections::BTreeMap;
 
-/// Two elements that share an edge, or one.
+/// An element, and the one of its corners that its edges are counted from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ElementCorner {
+    /// Element.
+    pub element: usize,
+    /// Corner, 0 to 2.
+    pub corner: usize,
+}
+
+/// Two elements that share an edge, or one element alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kite {
     /// Nodes s, a, t, b.
     pub corners: [u32; 4],
-    /// The first half: the element, and which of its corners is s.
-    pub first: (usize, usize),
-    /// The second half, likewise; none where the first is alone.
-    pub second: Option<(usize, usize)>,
+    /// The first element, at its corner s.
+    pub first: ElementCorner,
+    /// The second element, at its corner s; `None` where the first is alone.
+    pub second: Option<ElementCorner>,
 }
 
-/// Every element in one kite. The order is that of the elements, each of which takes the neighbour that
-/// has the fewest others left, the first of several.
-pub fn kites(triangles: &[[u32; 3]]) -> Vec<Kite> {
-    // The element that goes along an edge this way, and the corner it begins at.
-    let mut ways = BTreeMap::new();
+/// Pairs elements so that every element is in exactly one kite.
+///
+/// Elements are visited in their order. Each takes the free neighbour that has the fewest free
+/// neighbours itself; of several, the one with the lowest number.
+pub fn pair_elements(triangles: &[[u32; 3]]) -> Vec<Kite> {
+    // For each directed edge, the element that contains it and the corner it starts at.
+    let mut directed_edges = BTreeMap::new();
     for (element, nodes) in triangles.iter().enumerate() {
         for corner in 0..3 {
-            let way = (nodes[corner], nodes[(corner + 1) % 3]);
-            ways.entry(way).or_insert((element, corner));
+            let edge = (nodes[corner], nodes[(corner + 1) % 3]);
+            directed_edges.entry(edge).or_insert(ElementCorner { element, corner });
         }
     }
-    // Across an element's edge: who goes the other way.
-    let across = |element: usize, corner: usize| -> Option<(usize, usize)> {
+    // The neighbour across an element's edge contains it in the opposite direction.
+    let neighbour = |element: usize, corner: usize| -> Option<ElementCorner> {
         let nodes = triangles[element];
-        let other = ways.get(&(nodes[(corner + 1) % 3], nodes[corner])).copied();
-        other.filter(|(other, _)| *other != element)
+        let opposite = directed_edges.get(&(nodes[(corner + 1) % 3], nodes[corner])).copied();
+        opposite.filter(|neighbour| neighbour.element != element)
     };
-    let mut taken = vec![false; triangles.len()];
+    let mut paired = vec![false; triangles.len()];
     let mut kites = Vec::with_capacity(triangles.len() / 2 + 1);
     for element in 0..triangles.len() {
-        if taken[element] {
+        if paired[element] {
             continue;
         }
-        taken[element] = true;
-        let free = |other: usize| {
+        paired[element] = true;
+        let free_neighbours = |element: usize| {
             (0..3)
-                .filter_map(|corner| across(other, corner))
-                .filter(|(own, _)| !taken[*own])
+                .filter_map(|corner| neighbour(element, corner))
+                .filter(|neighbour| !paired[neighbour.element])
                 .count()
         };
-        let found = (0..3)
-            .filter_map(|corner| Some((corner, across(element, corner)?)))
-            .filter(|(_, (other, _))| !taken[*other])
-            .min_by_key(|(_, (other, _))| (free(*other), *other));
-        // The shared edge goes from t to s in the first half, from s to t in the second.
-        let kite = if let Some((corner, (other, begin))) = found {
-            taken[other] = true;
-            let own = triangles[element];
-            let (t, s, a) = (own[corner], own[(corner + 1) % 3], own[(corner + 2) % 3]);
-            let corners = [s, a, t, triangles[other][(begin + 2) % 3]];
-            Kite { corners, first: (element, (corner + 1) % 3), second: Some((other, begin)) }
+        let partner = (0..3)
+            .filter_map(|corner| Some((corner, neighbour(element, corner)?)))
+            .filter(|(_, partner)| !paired[partner.element])
+            .min_by_key(|(_, partner)| (free_neighbours(partner.element), partner.element));
+        // The shared edge goes from t to s in the first element, from s to t in the second.
+        let kite = if let Some((corner, partner)) = partner {
+            paired[partner.element] = true;
+            let nodes = triangles[element];
+            let (t, s, a) = (nodes[corner], nodes[(corner + 1) % 3], nodes[(corner + 2) % 3]);
+            let b = triangles[partner.element][(partner.corner + 2) % 3];
+            let first = ElementCorner { element, corner: (corner + 1) % 3 };
+            Kite { corners: [s, a, t, b], first, second: Some(partner) }
         } else {
             let [s, a, t] = triangles[element];
-            Kite { corners: [s, a, t, s], first: (element, 0), second: None }
+            let first = ElementCorner { element, corner: 0 };
+            Kite { corners: [s, a, t, s], first, second: None }
         };
         kites.push(kite);
     }
@@ -81,26 +94,30 @@ mod tests {
 
     use super::*;
 
-    fn turned(nodes: [u32; 3], by: usize) -> [u32; 3] {
-        [nodes[by], nodes[(by + 1) % 3], nodes[(by + 2) % 3]]
+    fn nodes_from(
+        triangles: &[[u32; 3]],
+        ElementCorner { element, corner }: ElementCorner,
+    ) -> [u32; 3] {
+        [0, 1, 2].map(|step| triangles[element][(corner + step) % 3])
     }
 
-    /// Every element once, its corners as the kite says, the halves across one edge.
+    /// Asserts that every element is in one kite and has the nodes of its half. Returns the number of
+    /// kites.
     fn check(triangles: &[[u32; 3]]) -> usize {
-        let kites = kites(triangles);
-        let mut met = vec![0; triangles.len()];
+        let kites = pair_elements(triangles);
+        let mut uses = vec![0; triangles.len()];
         for Kite { corners: [s, a, t, b], first, second } in &kites {
-            met[first.0] += 1;
-            assert_eq!(turned(triangles[first.0], first.1), [*s, *a, *t]);
+            uses[first.element] += 1;
+            assert_eq!(nodes_from(triangles, *first), [*s, *a, *t]);
             match second {
                 Some(second) => {
-                    met[second.0] += 1;
-                    assert_eq!(turned(triangles[second.0], second.1), [*s, *t, *b]);
+                    uses[second.element] += 1;
+                    assert_eq!(nodes_from(triangles, *second), [*s, *t, *b]);
                 }
                 None => assert_eq!(b, s),
             }
         }
-        assert!(met.iter().all(|times| *times == 1), "{met:?}");
+        assert!(uses.iter().all(|number| *number == 1), "{uses:?}");
         kites.len()
     }
 
@@ -114,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_and_a_ball_pair_up() {
+    fn a_sheet_and_a_tetrahedron_pair_completely() {
         let mut sheet = Vec::new();
         for j in 0..6 {
             for i in 0..7 {

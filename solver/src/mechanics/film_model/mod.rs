@@ -1,13 +1,12 @@
-//! What is constant while film moves: elements, masses.
+//! Constants of the film during a run: elements, lumped masses, frequencies.
 //!
 //! ```text
 //! Dm = [X1 − X0, X2 − X0]      A = det Dm/2      F = [x1 − x0, x2 − x0] Dm⁻¹
-//! m_i = Σ_e ρ t A_e/3          ω_e: largest in-plane frequency of the lumped element
+//! m_i = Σ_e ρ t A_e/3          ω_e: largest in-plane frequency of the element with lumped mass
 //! ```
 //!
-//! Symbols: X flat reference, x current places of an element's corners, m; F deformation gradient
-//! (3×2); A reference area, m²; m lumped mass, kg. One `Vec` a quantity; element quantities are
-//! indexed by element, node quantities by node, those of the pass over elements by kite.
+//! Symbols: X flat reference positions and x current positions of an element's corners, m; F
+//! deformation gradient (3×2); A reference area, m²; m lumped mass, kg.
 
 use std::collections::BTreeSet;
 
@@ -26,14 +25,14 @@ mod kites;
 pub use blocks::ElementBlock;
 pub use frequency::largest_frequency;
 
-/// Why nodes and triangles are no film.
+/// Why nodes and triangles do not form a film.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilmError {
-    /// An element's reference has no area, or is turned over.
+    /// The reference area of an element is zero, negative or not finite.
     #[error(
         "element {element}: reference area {area} m²; allowed: above 0, corners counter-clockwise"
     )]
-    Degenerate {
+    DegenerateElement {
         /// Element.
         element: usize,
         /// Its signed area, m².
@@ -41,21 +40,31 @@ pub enum FilmError {
     },
     /// A node belongs to no element and so has no mass.
     #[error("node {node} belongs to no element; allowed: nodes of the film only")]
-    Loose {
+    LooseNode {
         /// Node.
         node: usize,
     },
-    /// An element names a node that is not there.
-    #[error("element {element} names a node that is not there; there are {nodes} nodes")]
-    Unknown {
+    /// An element names a node that does not exist.
+    #[error("element {element} names a node that does not exist; allowed: below {nodes}")]
+    UnknownNode {
         /// Element.
         element: usize,
-        /// Nodes there are.
+        /// Number of nodes.
         nodes: usize,
     },
 }
 
-/// Film of triangles: constant data of a run.
+/// The film as constant-strain triangles: constant data of a run.
+///
+/// ```text
+/// energy      Π = Σ_e A_e t W(E_e)                        E = (FᵀF − 1)/2
+/// W_full      = E/(2(1−ν²)) (e1² + e2² + 2ν e1 e2)        e1 ≥ e2 principal values of E
+/// W           = W_relaxed + c (W_full − W_relaxed)        W_relaxed: see [`Material`]
+/// stress      S = ∂W/∂E        [f1, f2] = −A t F (S + S_v) Dm⁻ᵀ,  f0 = −(f1 + f2)
+/// ```
+///
+/// Sizes: `N_e` elements, `N_n` nodes, `N_k` kites (pairs of elements that share an edge), `N_b` blocks
+/// of eight kites.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmModel {
     /// Material.
@@ -64,34 +73,34 @@ pub struct FilmModel {
     pub density: f64,
     /// t, m.
     pub thickness: f64,
-    /// Nodes of each element, counter-clockwise seen from outside.
+    /// Nodes of each element, counter-clockwise seen from outside; `N_e` × 3.
     pub triangles: Vec<[u32; 3]>,
-    /// The corners of elements two by two, in the order in which forces are added up.
+    /// Nodes s, a, t, b of each kite, in the order in which forces are summed; `N_k` × 4.
     pub kites: Vec<[u32; 4]>,
-    /// The same by corner, eight kites a block; the last is filled up with kites of no volume.
-    pub blocks: Corners,
-    /// What else is constant of those blocks: of first halves and of second.
+    /// The same nodes by corner and lane; `N_b` blocks. Free lanes of the last block have zero volume.
+    pub corners: Corners,
+    /// Constants of the first and of the second element of each kite; `N_b` × 2 × 8.
     pub constants: Vec<[ElementBlock; 2]>,
-    /// Faces that close the volume and are no film.
+    /// Nodes of the faces that close the volume and are not film; number of closing faces × 3.
     pub closure: Vec<[u32; 3]>,
-    /// Dm⁻¹ of each element, row by row, 1/m.
+    /// Dm⁻¹ of each element, row by row, 1/m; 4 × `N_e`.
     pub inverse_shape: [Vec<f64>; 4],
-    /// A t of each element, m³.
+    /// A t of each element, m³; `N_e`.
     pub volume: Vec<f64>,
-    /// `ω_e` of each element, rad/s.
+    /// `ω_e` of each element, rad/s; `N_e`.
     pub frequency: Vec<f64>,
-    /// The largest of them, which every step asks for.
+    /// Largest entry of `frequency`, rad/s; kept because every step reads it.
     largest_frequency: f64,
-    /// `2ζ/ω_e` of each element, s.
+    /// `2ζ/ω_e` of each element, s; `N_e`.
     pub viscous_time: Vec<f64>,
-    /// m of each node, kg; 0 where only closing faces meet.
+    /// m of each node, kg; `N_n`. Zero for a node of closing faces only.
     pub mass: Vec<f64>,
-    /// 1/m of each node, 1/kg; 0 where it has no mass, so that no force moves it.
+    /// 1/m of each node, 1/kg; `N_n`. Zero for a node without mass, so that no force moves it.
     pub inverse_mass: Column,
 }
 
 impl FilmModel {
-    /// Film of these triangles with their flat references (m), over `nodes` nodes.
+    /// Film of these triangles with their flat reference positions (m), over `nodes` nodes.
     ///
     /// # Errors
     /// [`FilmError`].
@@ -101,7 +110,7 @@ impl FilmModel {
         triangles: &[[u32; 3]],
         reference: &[[Vector2<f64>; 3]],
     ) -> Result<Self, FilmError> {
-        Self::closed_by(film, nodes, triangles, reference, &[])
+        Self::build(film, nodes, triangles, reference, &[])
     }
 
     /// The film of a shell, with its closing faces.
@@ -110,10 +119,10 @@ impl FilmModel {
     /// [`FilmError`].
     pub fn of_shell(film: &Film, shell: &Shell) -> Result<Self, FilmError> {
         let nodes = shell.positions.len();
-        Self::closed_by(film, nodes, &shell.triangles, &shell.reference, &shell.closure)
+        Self::build(film, nodes, &shell.triangles, &shell.reference, &shell.closure)
     }
 
-    fn closed_by(
+    fn build(
         film: &Film,
         nodes: usize,
         triangles: &[[u32; 3]],
@@ -126,8 +135,8 @@ impl FilmModel {
             density: film.density,
             thickness: film.thickness,
             triangles: triangles.to_vec(),
-            blocks: Corners::new(&[], nodes),
             kites: Vec::new(),
+            corners: Corners::new(&[], nodes),
             constants: Vec::new(),
             closure: closure.to_vec(),
             inverse_shape: core::array::from_fn(|_| Vec::with_capacity(triangles.len())),
@@ -140,14 +149,14 @@ impl FilmModel {
         };
         for (element, (triangle, [a, b, c])) in triangles.iter().zip(reference).enumerate() {
             if triangle.iter().any(|node| *node as usize >= nodes) {
-                return Err(FilmError::Unknown { element, nodes });
+                return Err(FilmError::UnknownNode { element, nodes });
             }
             let (p, q) = (b - a, c - a);
             let determinant = p.perp(&q);
-            // Written so that a reference that is no number is refused too.
-            let sound = determinant > 0.0 && determinant.is_finite();
-            if !sound {
-                return Err(FilmError::Degenerate { element, area: 0.5 * determinant });
+            // Written so that NaN is refused too.
+            let positive = determinant > 0.0 && determinant.is_finite();
+            if !positive {
+                return Err(FilmError::DegenerateElement { element, area: 0.5 * determinant });
             }
             let inverse = [q.y, -q.x, -p.y, p.x].map(|entry| entry / determinant);
             for (column, entry) in model.inverse_shape.iter_mut().zip(inverse) {
@@ -163,28 +172,28 @@ impl FilmModel {
                 model.mass[*node as usize] += film.density * volume / 3.0;
             }
         }
-        let closing: BTreeSet<u32> = closure.iter().flatten().copied().collect();
+        let closure_nodes: BTreeSet<u32> = closure.iter().flatten().copied().collect();
         let loose = (0_u32..)
             .zip(&model.mass)
-            .find(|(node, mass)| **mass == 0.0 && !closing.contains(node));
+            .find(|(node, mass)| **mass == 0.0 && !closure_nodes.contains(node));
         if let Some((node, _)) = loose {
-            return Err(FilmError::Loose { node: node as usize });
+            return Err(FilmError::LooseNode { node: node as usize });
         }
         let inverse = |mass: &f64| if *mass > 0.0 { 1.0 / mass } else { 0.0 };
         model.inverse_mass = model.mass.iter().map(inverse).collect();
-        let kites = kites::kites(triangles);
+        let kites = kites::pair_elements(triangles);
         model.kites = kites.iter().map(|kite| kite.corners).collect();
-        model.blocks = Corners::new(&model.kites, nodes);
+        model.corners = Corners::new(&model.kites, nodes);
         model.constants = ElementBlock::all(&model, &kites);
         Ok(model)
     }
 
-    /// A fault of the constants: tests only. Step and viscous times stay those of the sound film.
-    pub fn suffer(&mut self, fault: Fault) {
-        self.material.suffer(fault);
+    /// Injects a fault into the constants, for tests only. Frequencies and viscous times stay correct.
+    pub fn inject_fault(&mut self, fault: Fault) {
+        self.material.inject_fault(fault);
         if fault.term == Term::PlaneModulus {
             for block in self.constants.iter_mut().flatten() {
-                block.drag.0.iter_mut().for_each(|drag| *drag *= fault.factor);
+                block.minus_viscosity.0.iter_mut().for_each(|entry| *entry *= fault.factor);
             }
         }
         if fault.term == Term::Mass {
@@ -203,8 +212,8 @@ impl FilmModel {
         self.triangles.len()
     }
 
-    /// `ω_max` bound: the largest `ω_e`, rad/s. No frequency of the assembled film at rest is above it
-    /// (Rayleigh quotient: element stiffnesses and element masses add up alike).
+    /// The largest `ω_e`, rad/s: an upper bound of all frequencies of the assembled film at rest
+    /// (Rayleigh quotient: stiffness and mass of the film are sums over the elements).
     pub fn largest_frequency(&self) -> f64 {
         self.largest_frequency
     }

@@ -1,7 +1,7 @@
-//! Forces on film, each with its energy or its power beside it.
+//! Forces on the film, each with its energy or its power.
 //!
-//! One pass over the elements adds what each gives to its nodes, in the order of elements, so the same
-//! state gives the same bits. Nothing is allocated in it.
+//! One loop over the elements adds their forces to the nodes, in the order of the elements: the same
+//! state gives the same bits. The loop allocates nothing.
 
 pub mod damping;
 pub mod membrane;

@@ -1,14 +1,15 @@
-//! Pressure on closed film: volume and its exact gradient.
+//! Pressure on closed film: enclosed volume and its exact gradient.
 //!
 //! ```text
 //! V = Σ_e x0·(x1 × x2)/6            f_i = (p − p_ambient) ∂V/∂x_i
 //! ∂V/∂x_i = Σ_e (x1 − x0) × (x2 − x0)/6      over the elements e at node i
 //! ```
 //!
-//! Divergence theorem over the closed surface. The gradient is written by oriented areas, which do
-//! not depend on the origin; round the closed fan of a node they add up to the derivative of V.
-//! Whatever the gas does through V and the film through f is thus the same p dV. The areas of film
-//! come from [`super::membrane::assemble_membrane`]; those of closing faces are added here.
+//! Divergence theorem over the closed surface. The gradient uses oriented areas, which do not depend on
+//! the origin; over the closed fan of elements at a node they sum to the derivative of V. The work of
+//! the gas through V and that of the film through f are therefore the same p dV.
+//! [`super::membrane::assemble_membrane`] computes the part of the film, [`add_closure`] that of the
+//! closing faces.
 
 use nalgebra::Vector3;
 
@@ -31,8 +32,8 @@ pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
     six / 6.0
 }
 
-/// Adds the oriented areas of the closing faces to those of the film; gives six times their share of
-/// the volume, m³.
+/// Adds the normals of the closing faces to those of the film. Returns six times their part of the
+/// volume, m³.
 pub fn add_closure(model: &FilmModel, positions: &Field, forces: &mut NodeForces) -> f64 {
     let mut six = 0.0;
     for face in &model.closure {
@@ -46,8 +47,11 @@ pub fn add_closure(model: &FilmModel, positions: &Field, forces: &mut NodeForces
     six
 }
 
-/// ω² of the gas as a spring (rad²/s²): `γ p/V Σ |P ∂V/∂x_i|²/m_i`, an upper bound of what gas of
-/// bulk stiffness γ p (Pa) adds to any mode; a rigid plane counts as one node of its mass.
+/// ω² of the gas as a spring, rad²/s²: `γ p/V Σ |P ∂V/∂x_i|²/m_i`.
+///
+/// `stiffness` is the bulk stiffness γ p (Pa), `volume` is V (m³), P projects onto the free directions.
+/// An upper bound of what the gas adds to ω² of any mode. A rigid plane counts as one node with the
+/// mass of the plane and its film.
 pub fn gas_frequency_squared(
     model: &FilmModel,
     supports: &Supports,
@@ -55,20 +59,23 @@ pub fn gas_frequency_squared(
     stiffness: f64,
     volume: f64,
 ) -> f64 {
-    let node = |node: usize, area: Vector3<f64>| area.norm_squared() * model.inverse_mass[node];
+    let node_mobility =
+        |node: usize, area: Vector3<f64>| area.norm_squared() * model.inverse_mass[node];
     let mut mobility = 0.0;
-    for own in 0..model.nodes() {
-        mobility += node(own, forces.area(own).component_mul(&supports.free.get(own)));
+    for node in 0..model.nodes() {
+        mobility += node_mobility(node, forces.area(node).component_mul(&supports.free.get(node)));
     }
-    for (own, projector) in &supports.oblique {
-        let own = *own as usize;
-        let all = forces.area(own).component_mul(&supports.free.get(own));
-        mobility += node(own, projector * forces.area(own)) - node(own, all);
+    // An oblique node was counted with its axis-aligned part: replace that by its projection.
+    for (node, projector) in &supports.oblique {
+        let node = *node as usize;
+        let axis_aligned = forces.area(node).component_mul(&supports.free.get(node));
+        mobility +=
+            node_mobility(node, projector * forces.area(node)) - node_mobility(node, axis_aligned);
     }
     for body in &supports.bodies {
-        let push: f64 =
-            body.nodes.iter().map(|own| forces.area(*own as usize).dot(&body.plane.normal)).sum();
-        mobility += push * push / body.mass(model);
+        let area: f64 =
+            body.nodes.iter().map(|node| forces.area(*node as usize).dot(&body.plane.normal)).sum();
+        mobility += area * area / body.mass(model);
     }
     stiffness / volume * mobility
 }

@@ -1,12 +1,20 @@
-//! The leak orifice: isentropic outflow, choked or subsonic.
+//! Mass flow through the leak orifice: isentropic outflow, choked or subsonic.
+//!
+//! ```text
+//! ṁ = C_d A √(p ρ) √γ (2/(γ+1))^((γ+1)/(2(γ−1)))          choked,   r ≤ (2/(γ+1))^(γ/(γ−1))
+//! ṁ = C_d A √(p ρ) √(2γ/(γ−1) (r^(2/γ) − r^((γ+1)/γ)))    subsonic, r = p_ambient/p < 1
+//! ```
+//!
+//! This is the form of [`super`] with p √(1/(R T)) = √(p ρ), which is finite for T → 0.
 
-/// An orifice for one gas.
+/// Leak orifice for one gas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Orifice {
+    /// γ = cp/cv.
     gamma: f64,
     /// `C_d` A, m².
     effective_area: f64,
-    /// (2/(γ+1))^(γ/(γ−1)): `p_ambient`/p at and below which the flow is choked.
+    /// (2/(γ+1))^(γ/(γ−1)): the flow is choked at `p_ambient`/p up to this ratio.
     critical_ratio: f64,
     /// √γ (2/(γ+1))^((γ+1)/(2(γ−1))).
     choked_factor: f64,
@@ -24,11 +32,11 @@ impl Orifice {
         }
     }
 
-    /// Mass flow out, kg/s, of gas at pressure p (Pa) and density ρ (kg/m³) into `ambient` (Pa);
-    /// 0 where p does not exceed it. p √(1/(R T)) is written √(p ρ), which is sound at T → 0.
+    /// Outflow, kg/s, of gas at pressure p (Pa) and density ρ (kg/m³) to the pressure `ambient` (Pa);
+    /// 0 where p is not above `ambient`.
     pub(super) fn mass_flow(self, pressure: f64, density: f64, ambient: f64) -> f64 {
-        let drives = self.effective_area > 0.0 && pressure > ambient && density > 0.0;
-        if !drives {
+        let flows = self.effective_area > 0.0 && pressure > ambient && density > 0.0;
+        if !flows {
             return 0.0;
         }
         let flux = (pressure * density).sqrt();
@@ -37,10 +45,10 @@ impl Orifice {
             return self.effective_area * self.choked_factor * flux;
         }
         let gamma = self.gamma;
-        // r^(2/γ) − r^((γ+1)/γ) = r^(2/γ) (1 − r^((γ−1)/γ)): no cancellation as r → 1.
+        // r^(2/γ) − r^((γ+1)/γ) = r^(2/γ) (1 − r^((γ−1)/γ)), which avoids cancellation for r → 1.
         let expansion = -libm::expm1((gamma - 1.0) / gamma * libm::log(ratio));
-        let shape = 2.0 * gamma / (gamma - 1.0) * libm::pow(ratio, 2.0 / gamma) * expansion;
-        self.effective_area * flux * shape.max(0.0).sqrt()
+        let flow_function = 2.0 * gamma / (gamma - 1.0) * libm::pow(ratio, 2.0 / gamma) * expansion;
+        self.effective_area * flux * flow_function.max(0.0).sqrt()
     }
 }
 
@@ -50,26 +58,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn choked_and_subsonic_meet_at_the_critical_ratio() {
+    fn flow_is_continuous_at_the_critical_ratio() {
         let orifice = Orifice::new(1.4, 1e-4);
         assert!((orifice.critical_ratio - 0.528_281_787_717_174).abs() < 1e-14);
         let p = 1e5;
-        let at = |ratio: f64| orifice.mass_flow(p, 1.2, ratio * p);
-        let below = at(orifice.critical_ratio * (1.0 - 1e-9));
-        let above = at(orifice.critical_ratio * (1.0 + 1e-9));
+        let flow = |ratio: f64| orifice.mass_flow(p, 1.2, ratio * p);
+        let below = flow(orifice.critical_ratio * (1.0 - 1e-9));
+        let above = flow(orifice.critical_ratio * (1.0 + 1e-9));
         assert!((above / below - 1.0).abs() < 1e-12);
-        assert!(below > 0.0 && (at(0.0) - below).abs() < 1e-18);
+        assert!(below > 0.0 && (flow(0.0) - below).abs() < 1e-18);
     }
 
     #[test]
-    fn nothing_flows_back() {
+    fn there_is_no_inflow_from_ambient() {
         let orifice = Orifice::new(1.4, 1e-4);
         assert_eq!(orifice.mass_flow(1e4, 0.1, 1e5), 0.0);
         assert_eq!(orifice.mass_flow(1e5, 1.2, 1e5), 0.0);
     }
 
     #[test]
-    fn slow_outflow_is_bernoullis() {
+    fn slow_outflow_follows_bernoulli() {
         let (p, density) = (100_000.01_f64, 1.2_f64);
         let orifice = Orifice::new(1.4, 1e-4);
         let bernoulli = 1e-4 * (2.0 * density * (p - 1e5)).sqrt();

@@ -1,4 +1,4 @@
-//! The gas: one control volume of an ideal gas, uniform in pressure and temperature.
+//! One control volume of an ideal gas with uniform pressure and temperature.
 //!
 //! ```text
 //! dm/dt = ṁ_in − ṁ_out
@@ -13,17 +13,15 @@
 //!
 //! Symbols: m mass, kg; U internal energy, J; T temperature, K; p pressure, Pa; V volume, m³;
 //! h heat transfer coefficient, W/(m² K); A film area, m²; `C_d` discharge coefficient. The orifice
-//! laws are those of one-dimensional isentropic flow (any text on gas dynamics).
+//! equations are those of one-dimensional isentropic flow (any text on gas dynamics).
 //!
-//! - Without gas p = 0, and the temperature shown is that of the film.
-//! - The leak lets gas out only: at p ≤ `p_ambient` nothing passes it, as through a flap valve. A
-//!   capsule under ambient pressure does not breathe air in.
-//! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat is what the balance asks for.
-//! - With h > 0 the gas warms at the rate h A/(m cv), but never faster than in
-//!   1 µs: a nearly empty volume (first gas, a leak that has emptied the capsule)
-//!   costs small steps, not ever smaller ones.
+//! - Without gas p = 0, and the temperature is reported as that of the film.
+//! - The leak is one-way: at p ≤ `p_ambient` nothing flows. Ambient air does not enter the capsule.
+//! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat follows from the balance.
+//! - With h > 0 the gas approaches film temperature at the rate h A/(m cv), limited to 1/µs
+//!   (`MIN_EXCHANGE_TIME`). Without that limit a nearly empty volume would need ever smaller steps.
 //!
-//! Every model gets its gas from here; it brings V, dV/dt and its own work of p on the film.
+//! Every model uses this gas. The model supplies V and dV/dt, and computes the work of p on its film.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +34,7 @@ mod step;
 use leak::Orifice;
 pub use step::GasStep;
 
-/// What the gas is at one moment.
+/// State of the gas.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GasState {
@@ -46,31 +44,30 @@ pub struct GasState {
     pub internal_energy: f64,
 }
 
-/// What changes the gas: its two balances, term by term.
+/// Mass balance and energy balance of the gas, term by term.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GasRates {
     /// dm/dt, kg/s.
     pub mass: f64,
     /// dU/dt, W.
     pub internal_energy: f64,
-    /// Mass leaking out, kg/s.
+    /// `ṁ_out`, mass flow rate of the leak, kg/s.
     pub mass_out: f64,
-    /// Enthalpy let in, W.
+    /// `ṁ_in` cp `T_in`, enthalpy flow of the inflow, W.
     pub enthalpy_in: f64,
-    /// Enthalpy leaking out, W.
+    /// `ṁ_out` cp T, enthalpy flow of the leak, W.
     pub enthalpy_out: f64,
-    /// Heat the film gives to the gas, W.
+    /// Q̇, heat flow from the film to the gas, W.
     pub heat: f64,
-    /// Work the gas does on the film, p dV/dt, W.
+    /// p dV/dt, power of the gas on the film, W.
     pub work: f64,
 }
 
-/// Shortest time, s, in which gas takes on film temperature. h A/(m cv) grows without bound as the
-/// gas runs out; beyond this it would stiffen the equations and say nothing: no film motion is as
-/// fast.
-const FASTEST_EXCHANGE: f64 = 1e-6;
+/// Smallest time constant m cv/(h A) of the heat exchange, s. Without this limit it tends to zero with
+/// the mass of the gas and makes the equations stiff. Chosen: shorter than any motion of the film.
+const MIN_EXCHANGE_TIME: f64 = 1e-6;
 
-/// The laws of one control volume: constant during a run.
+/// Constants of the control volume during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gas {
     /// cp, J/(kg K).
@@ -83,13 +80,13 @@ pub struct Gas {
     pub film_temperature: f64,
     /// Heat exchange with the film.
     pub heat_transfer: HeatTransfer,
-    /// Film area the gas exchanges heat with, m².
+    /// Film area of the heat exchange, m².
     pub film_area: f64,
     orifice: Orifice,
 }
 
 impl Gas {
-    /// The laws of a supply, around film of the given temperature (K) and area (m²).
+    /// The control volume of a gas supply, inside film of this temperature (K) and area (m²).
     pub fn new(supply: &GasSupply, film_temperature: f64, film_area: f64) -> Self {
         let cp = supply.species.cp;
         let cv = cp - supply.species.gas_constant;
@@ -109,19 +106,19 @@ impl Gas {
         self.cp / self.cv
     }
 
-    /// Gas of the given mass (kg) at the given temperature (K).
+    /// State of gas with this mass (kg) and temperature (K).
     pub fn at_temperature(&self, mass: f64, temperature: f64) -> GasState {
         GasState { mass, internal_energy: mass * self.cv * temperature }
     }
 
-    /// T, K; that of the film where there is no gas.
+    /// T, K; the film temperature where there is no gas.
     pub fn temperature(&self, state: GasState) -> f64 {
         match self.heat_transfer {
             HeatTransfer::Isothermal => self.film_temperature,
             HeatTransfer::Coefficient(_) => {
                 let temperature = state.internal_energy / (state.mass * self.cv);
-                let any_gas = state.mass > 0.0 && temperature.is_finite() && temperature >= 0.0;
-                if any_gas { temperature } else { self.film_temperature }
+                let valid = state.mass > 0.0 && temperature.is_finite() && temperature >= 0.0;
+                if valid { temperature } else { self.film_temperature }
             }
         }
     }
@@ -135,19 +132,19 @@ impl Gas {
         (self.gamma() - 1.0) * internal_energy / volume
     }
 
-    /// T, K, of the first gas to enter an empty volume, the limit of both balances for m → 0, so
-    /// that the rates are continuous there: m cv T = ṁ cp `T_in` t with m = ṁ t gives T = γ `T_in`
-    /// (the film's share vanishes with m, see `FASTEST_EXCHANGE`).
+    /// T, K, of gas that enters an empty volume: the limit of both balances for m → 0. m cv T =
+    /// ṁ cp `T_in` t with m = ṁ t gives T = γ `T_in`; the heat vanishes with m (`MIN_EXCHANGE_TIME`). With
+    /// this value the rates are continuous at m = 0.
     fn first_temperature(&self, inflow: Inflow) -> f64 {
         match self.heat_transfer {
-            HeatTransfer::Coefficient(_) if inflow.mass > 0.0 => {
-                self.gamma() * inflow.mass_temperature / inflow.mass
+            HeatTransfer::Coefficient(_) if inflow.mass_flow_rate > 0.0 => {
+                self.gamma() * inflow.temperature_flow / inflow.mass_flow_rate
             }
             _ => self.film_temperature,
         }
     }
 
-    /// Both balances, for the volume V (m³) growing at dV/dt (m³/s).
+    /// Both balances at the volume V (m³) that changes at dV/dt (m³/s).
     pub fn rates(
         &self,
         state: GasState,
@@ -160,14 +157,14 @@ impl Gas {
         let pressure = self.pressure(state, volume);
         let mass_out = self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
         let enthalpy_out = mass_out * self.cp * temperature;
-        let enthalpy_in = self.cp * inflow.mass_temperature;
+        let enthalpy_in = self.cp * inflow.temperature_flow;
         let work = pressure * volume_rate;
-        let mass = inflow.mass - mass_out;
+        let mass = inflow.mass_flow_rate - mass_out;
         let without_heat = enthalpy_in - enthalpy_out - work;
         let (internal_energy, heat) = match self.heat_transfer {
             HeatTransfer::Coefficient(coefficient) => {
                 let exchange = coefficient * self.film_area;
-                let exchange = exchange.min(state.mass * self.cv / FASTEST_EXCHANGE);
+                let exchange = exchange.min(state.mass * self.cv / MIN_EXCHANGE_TIME);
                 let heat = exchange * (self.film_temperature - temperature);
                 (without_heat + heat, heat)
             }
@@ -202,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn ideal_gas_law_holds() {
+    fn pressure_follows_the_ideal_gas_law() {
         let gas = gas(HeatTransfer::Coefficient(0.0), 0.0);
         let state = gas.at_temperature(0.003, 250.0);
         let expected = 0.003 * NITROGEN.gas_constant * 250.0 / 0.2;
@@ -211,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn no_gas_has_no_pressure_and_film_temperature() {
+    fn empty_volume_has_zero_pressure_and_film_temperature() {
         for heat in [HeatTransfer::Coefficient(5.0), HeatTransfer::Isothermal] {
             let gas = gas(heat, 1e-4);
             let rates = gas.rates(GasState::default(), 0.01, 1.0, Inflow::default());
@@ -222,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn nearly_no_gas_is_finite() {
+    fn rates_of_nearly_no_gas_are_finite() {
         let gas = gas(HeatTransfer::Coefficient(0.3), 1e-4);
         for mass in [f64::MIN_POSITIVE, 1e-320, 1e-200, 1e-30] {
             for internal_energy in [0.0, 1e-310, 1e-30] {
@@ -234,10 +231,10 @@ mod tests {
     }
 
     #[test]
-    fn isothermal_heat_closes_the_balance() {
+    fn isothermal_heat_closes_the_energy_balance() {
         let gas = gas(HeatTransfer::Isothermal, 1e-4);
         let state = gas.at_temperature(0.002, 293.0);
-        let inflow = Inflow { mass: 0.01, mass_temperature: 0.01 * 350.0 };
+        let inflow = Inflow { mass_flow_rate: 0.01, temperature_flow: 0.01 * 350.0 };
         let rates = gas.rates(state, 0.1, 0.7, inflow);
         let balance = rates.enthalpy_in - rates.enthalpy_out - rates.work + rates.heat;
         assert!((balance - rates.internal_energy).abs() < 1e-12 * rates.enthalpy_in);

@@ -1,52 +1,52 @@
-//! One step of the gas whose volume went from one value to another: conservative, second order.
+//! One step of the gas while its volume changes from V0 to V1: conservative and second order.
 //!
 //! ```text
-//! p dV:   ½ (p0 + p1) (V1 − V0)                        implicit in p1
+//! work:   ½ (p0 + p1) (V1 − V0)                        implicit in p1
 //! heat:   h A Δt (T_film − (1 − θ) T0 − θ T1)          θ = 1/(1 − e^−z) − 1/z, z = h A Δt/(m cv)
-//! leak:   ½ (ṁ0 + ṁ1) Δt                               ṁ1 of a first pass (Heun)
+//! leak:   ½ (ṁ0 + ṁ1) Δt                               ṁ1 from a predictor step (Heun)
 //! inflow: exact
 //! ```
 //!
-//! T and p are linear in U, so U1 has a closed form. θ is ½ for slow exchange and makes a volume of
-//! constant mass relax exactly as e^−z, however fast. What the balance loses the books gain: mass
-//! and energy are kept to rounding. The work is the film's own entry too, with the same dV.
+//! T and p are linear in U, so U1 has a closed form. θ is ½ for slow exchange; for a volume of constant
+//! mass it reproduces the decay e^−z exactly, for any z. The step reports every term of its balance, so
+//! mass and energy are conserved to rounding. The energy accounting of the film uses the same dV.
 
-use super::{FASTEST_EXCHANGE, Gas, GasState};
+use super::{Gas, GasState, MIN_EXCHANGE_TIME};
 use crate::platform::fault_injection::{Fault, Term};
 use crate::scene::HeatTransfer;
 use crate::scene::inflow::Inflow;
 
-/// What one step did.
+/// Result of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GasStep {
     /// The gas after it.
     pub state: GasState,
     /// Pressure after it, Pa.
     pub pressure: f64,
-    /// Mass leaked, kg.
+    /// Leak mass, kg.
     pub mass_out: f64,
-    /// Enthalpy let in, J.
+    /// Inflow enthalpy, J.
     pub enthalpy_in: f64,
-    /// Enthalpy leaked, J.
+    /// Leak enthalpy, J.
     pub enthalpy_out: f64,
-    /// Heat given by the film, J.
+    /// Heat from the film, J.
     pub heat: f64,
-    /// Work done by the gas, J.
+    /// Work of the gas, J.
     pub work: f64,
 }
 
-/// Leak during a step: rates averaged over it.
+/// Flow rates of the leak.
 #[derive(Clone, Copy, Default)]
 struct Leak {
-    /// kg/s.
+    /// Mass flow rate, kg/s.
     mass: f64,
-    /// W.
+    /// Enthalpy flow rate, W.
     enthalpy: f64,
 }
 
 impl GasStep {
-    /// A fault of the balances, so that the books still tell what should have been: tests only.
-    pub(crate) fn suffer(&mut self, gas: &Gas, volume: f64, mass_in: f64, fault: Fault) {
+    /// Injects a fault into the state, for tests only. The reported terms keep their correct values.
+    pub(crate) fn inject_fault(&mut self, gas: &Gas, volume: f64, mass_in: f64, fault: Fault) {
         let excess = fault.factor - 1.0;
         let (mass, energy) = (&mut self.state.mass, &mut self.state.internal_energy);
         match fault.term {
@@ -64,17 +64,17 @@ impl GasStep {
 }
 
 impl Gas {
-    /// Steps the gas by `time` (s) while its volume goes `from` one value `to` another (m³).
+    /// Advances the gas by `time` (s) while its volume changes from `from` to `to` (m³).
     pub fn step(&self, state: GasState, from: f64, to: f64, time: f64, inflow: Inflow) -> GasStep {
-        let at_start = self.leak(state, from, inflow);
-        let first = self.step_with(at_start, state, from, to, time, inflow);
-        if at_start.mass == 0.0 && self.leak(first.state, to, inflow).mass == 0.0 {
-            return first;
+        let leak_before = self.leak(state, from, inflow);
+        let predictor = self.step_with(leak_before, state, from, to, time, inflow);
+        if leak_before.mass == 0.0 && self.leak(predictor.state, to, inflow).mass == 0.0 {
+            return predictor;
         }
-        let at_end = self.leak(first.state, to, inflow);
+        let leak_after = self.leak(predictor.state, to, inflow);
         let mean = Leak {
-            mass: 0.5 * (at_start.mass + at_end.mass),
-            enthalpy: 0.5 * (at_start.enthalpy + at_end.enthalpy),
+            mass: 0.5 * (leak_before.mass + leak_after.mass),
+            enthalpy: 0.5 * (leak_before.enthalpy + leak_after.enthalpy),
         };
         self.step_with(mean, state, from, to, time, inflow)
     }
@@ -94,42 +94,45 @@ impl Gas {
         inflow: Inflow,
     ) -> GasStep {
         let mass_out = leak.mass * time;
-        let mass = state.mass + inflow.mass * time - mass_out;
-        let enthalpy_in = self.cp * inflow.mass_temperature * time;
+        let mass = state.mass + inflow.mass_flow_rate * time - mass_out;
+        let enthalpy_in = self.cp * inflow.temperature_flow * time;
         let enthalpy_out = leak.enthalpy * time;
-        let before = self.pressure(state, from);
+        let pressure_before = self.pressure(state, from);
         let growth = to - from;
         let (internal_energy, heat, work);
         match self.heat_transfer {
             HeatTransfer::Isothermal => {
                 internal_energy = mass * self.cv * self.film_temperature;
-                let after = self.pressure(GasState { mass, internal_energy }, to);
-                work = 0.5 * (before + after) * growth;
-                let start = state.mass * self.cv * self.film_temperature;
-                heat = internal_energy - start - enthalpy_in + enthalpy_out + work;
+                let pressure_after = self.pressure(GasState { mass, internal_energy }, to);
+                work = 0.5 * (pressure_before + pressure_after) * growth;
+                let energy_before = state.mass * self.cv * self.film_temperature;
+                heat = internal_energy - energy_before - enthalpy_in + enthalpy_out + work;
             }
             HeatTransfer::Coefficient(coefficient) => {
-                let started = state.mass > 0.0;
+                let any_gas = state.mass > 0.0;
                 let temperature =
-                    if started { self.temperature(state) } else { self.first_temperature(inflow) };
-                // Heat capacity of the gas in the middle of the step and after it.
+                    if any_gas { self.temperature(state) } else { self.first_temperature(inflow) };
+                // m cv in the middle of the step, J/K.
                 let capacity = 0.5 * (state.mass + mass) * self.cv;
-                let rate = (coefficient * self.film_area).min(capacity / FASTEST_EXCHANGE);
+                let rate = (coefficient * self.film_area).min(capacity / MIN_EXCHANGE_TIME);
                 let exchange = rate * time;
-                let late = if exchange > 0.0 && capacity > 0.0 {
-                    late_share(exchange / capacity)
+                let theta = if exchange > 0.0 && capacity > 0.0 {
+                    implicit_share(exchange / capacity)
                 } else {
                     0.5
                 };
-                let per_energy = if mass > 0.0 { exchange * late / (mass * self.cv) } else { 0.0 };
-                let given = exchange * (self.film_temperature - (1.0 - late) * temperature);
-                let push = 0.5 * (self.gamma() - 1.0) * growth / to;
-                let known =
-                    state.internal_energy + enthalpy_in - enthalpy_out - 0.5 * before * growth
-                        + if mass > 0.0 { given } else { 0.0 };
-                internal_energy = known / (1.0 + push + per_energy);
-                work = 0.5 * before * growth + push * internal_energy;
-                heat = if mass > 0.0 { given - per_energy * internal_energy } else { 0.0 };
+                // Heat = explicit_heat − per_energy U1, work = ½ p0 ΔV + per_work U1.
+                let per_energy = if mass > 0.0 { exchange * theta / (mass * self.cv) } else { 0.0 };
+                let explicit_heat =
+                    exchange * (self.film_temperature - (1.0 - theta) * temperature);
+                let per_work = 0.5 * (self.gamma() - 1.0) * growth / to;
+                let known = state.internal_energy + enthalpy_in
+                    - enthalpy_out
+                    - 0.5 * pressure_before * growth
+                    + if mass > 0.0 { explicit_heat } else { 0.0 };
+                internal_energy = known / (1.0 + per_work + per_energy);
+                work = 0.5 * pressure_before * growth + per_work * internal_energy;
+                heat = if mass > 0.0 { explicit_heat - per_energy * internal_energy } else { 0.0 };
             }
         }
         let state = GasState { mass, internal_energy };
@@ -138,10 +141,13 @@ impl Gas {
     }
 }
 
-/// θ(z) = 1/(1 − e^−z) − 1/z, from ½ at 0 to 1.
-fn late_share(z: f64) -> f64 {
-    if z < 1e-3 {
-        // The terms of its series that matter here; the closed form would cancel.
+/// Below this z, θ uses its series: the closed form cancels there. Chosen: the first omitted term,
+/// z⁵/30240, is below rounding.
+const MAX_SERIES_Z: f64 = 1e-3;
+
+/// θ(z) = 1/(1 − e^−z) − 1/z, which rises from ½ at z = 0 to 1.
+fn implicit_share(z: f64) -> f64 {
+    if z < MAX_SERIES_Z {
         return 0.5 + z / 12.0 - z * z * z / 720.0;
     }
     -1.0 / libm::expm1(-z) - 1.0 / z
@@ -166,14 +172,14 @@ mod tests {
     }
 
     #[test]
-    fn late_share_is_smooth_where_its_forms_meet() {
-        let (below, above) = (late_share(1e-3 * (1.0 - 1e-12)), late_share(1e-3));
+    fn implicit_share_is_continuous_between_series_and_closed_form() {
+        let (below, above) = (implicit_share(1e-3 * (1.0 - 1e-12)), implicit_share(1e-3));
         assert!((below - above).abs() < 1e-12, "{below} {above}");
-        assert!((late_share(50.0) - 0.98).abs() < 1e-12);
+        assert!((implicit_share(50.0) - 0.98).abs() < 1e-12);
     }
 
     #[test]
-    fn cooling_is_exact_whatever_the_step() {
+    fn cooling_is_exact_for_every_step_length() {
         let gas = gas(HeatTransfer::Coefficient(3.0), 0.0);
         let start = gas.at_temperature(0.002, 400.0);
         for time in [1e-4, 0.1, 3.0] {
@@ -200,8 +206,8 @@ mod tests {
     }
 
     #[test]
-    fn steps_agree_with_the_rates_to_second_order() {
-        let inflow = Inflow { mass: 0.004, mass_temperature: 0.004 * 320.0 };
+    fn steps_converge_to_second_order() {
+        let inflow = Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0 };
         for heat in [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal] {
             let gas = gas(heat, 2e-5);
             let run = |steps: u32| {
@@ -221,8 +227,8 @@ mod tests {
     }
 
     #[test]
-    fn the_books_balance() {
-        let inflow = Inflow { mass: 0.004, mass_temperature: 0.004 * 320.0 };
+    fn mass_and_energy_are_conserved() {
+        let inflow = Inflow { mass_flow_rate: 0.004, temperature_flow: 0.004 * 320.0 };
         for heat in [HeatTransfer::Coefficient(3.0), HeatTransfer::Isothermal] {
             for mass in [0.0, 1e-12, 1e-3] {
                 let gas = gas(heat, 2e-5);

@@ -17,7 +17,7 @@ use crate::scene::error::SceneError;
 use crate::scene::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver};
 use crate::scene::film_support::{FilmSupport, Hold};
 use crate::scene::plate::Plate;
-use crate::scene::{Film, Scene, Support, SupportPlace};
+use crate::scene::{Film, Scene, Support, SupportLocation};
 
 /// Amplitude of the imperfection of a stowed capsule, as a share of its smallest gap.
 const IMPERFECTION: f64 = 0.1;
@@ -74,7 +74,7 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
             statics: false,
             mass_damping: 0.0,
             step_limit: scene.solver.step_limit,
-            path: InstructionSet::detect(),
+            instruction_set: InstructionSet::detect(),
         },
         outputs: FilmOutputs {
             sample_interval: scene.outputs.sample_interval,
@@ -88,10 +88,10 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
 
 fn on_capsule(support: &Support, mesh: &Mesh) -> FilmSupport {
     let (name, nodes) = match support.on {
-        SupportPlace::BottomRing => ("bottom_ring", sorted(mesh.bottom_ring.clone())),
-        SupportPlace::TopRing => ("top_ring", sorted(mesh.top_ring.clone())),
-        SupportPlace::BottomCap => ("bottom_cap", part_nodes(mesh, Part::BottomCap)),
-        SupportPlace::TopCap => ("top_cap", part_nodes(mesh, Part::TopCap)),
+        SupportLocation::BottomRing => ("bottom_ring", sorted(mesh.bottom_ring.clone())),
+        SupportLocation::TopRing => ("top_ring", sorted(mesh.top_ring.clone())),
+        SupportLocation::BottomCap => ("bottom_cap", part_nodes(mesh, Part::BottomCap)),
+        SupportLocation::TopCap => ("top_cap", part_nodes(mesh, Part::TopCap)),
     };
     let held = ['x', 'y', 'z'].map(|axis| support.fix.contains(axis));
     FilmSupport { name: name.to_owned(), nodes, hold: Hold::Components(held), motion: None }
@@ -150,9 +150,9 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
         mass_damping: solver.mass_damping,
         cfl: solver.cfl,
         step_limit: solver.step_limit,
-        path: solver.path,
+        path: solver.instruction_set,
         contact: scene.contact.as_ref().map(|_| law(scene, &model, &places)),
-        watch: scene.contact.as_ref().map(|contact| contact.watch),
+        watch: scene.contact.as_ref().map(|contact| contact.monitor),
         mutation: None,
     };
     Ok((model, setting, gas))
@@ -161,7 +161,8 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
 /// The law of a scene's contact; until its release the film lies packed between base and lid.
 fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> ContactModel {
     let contact = scene.contact.clone().unwrap_or_default();
-    let mut law = ContactModel::of_film(model, places, contact.distance, scene.solver.path);
+    let mut law =
+        ContactModel::of_film(model, places, contact.distance, scene.solver.instruction_set);
     law.soften(scene.solver.cfl);
     law.friction = contact.friction;
     if contact.adhesion > 0.0 {
@@ -179,7 +180,7 @@ fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> ContactModel {
             point: Vector3::new(0.0, 0.0, z),
             normal,
             motion: None,
-            until: scene.release_time,
+            removal_time: scene.release_time,
         };
         law.plates.push(plate(BASE, low - law.distance, Vector3::z()));
         law.plates.push(plate(LID, high + law.distance, -Vector3::z()));

@@ -24,7 +24,6 @@ use crate::output::frames::Frame;
 use crate::output::history::{Sample, Track};
 use crate::output::measures::Reference;
 use crate::output::outcome::{Deployment, Failure};
-use crate::platform::workers::Workers;
 use crate::scene::error::SceneError;
 use crate::scene::film_scene::{FilmContact, FilmScene};
 use crate::scene::timeline::{Phase, Timeline};
@@ -57,19 +56,17 @@ pub fn solve(
     Ok(run::run(&mut run, &Timeline::new(scene), observer))
 }
 
-/// Runs a scene with the contact and the share of the stable step it names, by these workers.
+/// Runs a scene with the contact and the share of the stable step it names.
 ///
 /// # Errors
 /// As [`check`], and what shows only with the capsule made.
 pub fn solve_scene(
-    workers: Workers,
     scene: &Scene,
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
     let contact = FilmContact::of(&scene.contact);
     let mut run = FilmRun::from_scene(scene, stable_share(scene)?, Some(contact), reference)?;
-    run.film.share_with(workers);
     Ok(run::run(&mut run, &Timeline::new(scene), observer))
 }
 

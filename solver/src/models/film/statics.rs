@@ -18,7 +18,7 @@ use crate::geometry::mesh::{Mesh, Shape};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::strain_energy;
 use crate::mechanics::forces::pressure::volume;
-use crate::mechanics::supports::{Mover, Supports};
+use crate::mechanics::supports::{PrescribedNodes, Supports};
 use crate::output::measures::{REFERENCE_PRESSURES, Reference};
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
@@ -87,12 +87,12 @@ pub fn erected(scene: &Scene) -> Result<Erected, SceneError> {
         supports.movers = capsule
             .supports
             .iter()
-            .map(|support| Mover {
+            .map(|support| PrescribedNodes {
                 nodes: support.nodes.clone(),
                 start: support.nodes.iter().map(place).collect(),
                 held: support.hold.projector(),
                 motion: WHOLE,
-                beside: support.nodes.iter().map(way).collect(),
+                displacements: support.nodes.iter().map(way).collect(),
             })
             .collect();
     }
@@ -105,7 +105,7 @@ const WHOLE: Motion = Motion {
     to: 1.0,
     profile: Profile::Linear,
     translation: Vector3::new(0.0, 0.0, 0.0),
-    turn: None,
+    rotation: None,
 };
 
 impl Erected {

@@ -5,7 +5,7 @@ use crate::geometry::fold::FoldPattern;
 use crate::integrators::dormand_prince::Control;
 use crate::mechanics::gas::Gas;
 use crate::scene::error::SceneError;
-use crate::scene::{Scene, SupportPlace};
+use crate::scene::{Scene, SupportLocation};
 
 /// A piston's bottom is held along z and its top is free along it.
 pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
@@ -15,15 +15,15 @@ pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
     for (index, support) in scene.supports.iter().enumerate() {
         let along_z = support.fix.contains('z');
         match support.on {
-            SupportPlace::BottomRing | SupportPlace::BottomCap => bottom_held |= along_z,
-            SupportPlace::TopRing | SupportPlace::TopCap if along_z => {
+            SupportLocation::BottomRing | SupportLocation::BottomCap => bottom_held |= along_z,
+            SupportLocation::TopRing | SupportLocation::TopCap if along_z => {
                 return invalid(
                     format!("supports[{index}].fix"),
                     "model `piston` moves the top along z, so it cannot be held along z; allowed \
                      there: letters of \"xy\"",
                 );
             }
-            SupportPlace::TopRing | SupportPlace::TopCap => {}
+            SupportLocation::TopRing | SupportLocation::TopCap => {}
         }
     }
     if bottom_held {

@@ -124,7 +124,7 @@ impl Run {
         mut steps: u64,
         observer: &mut dyn Observer,
     ) -> Option<Stop> {
-        let breaks = course.breaks();
+        let breaks = course.breakpoints();
         let frames = course.frame_samples();
         // A pause never lies between a landing and its sample, so but for the first sample the phase
         // is that of the way just gone.

@@ -61,7 +61,8 @@ impl Model for Recorder {
 }
 
 fn course() -> Timeline {
-    let window = |from, to, rate| InflowWindow { from, to, rate, temperature: 300.0 };
+    let window =
+        |from, to, rate| InflowWindow { from, to, mass_flow_rate: rate, temperature: 300.0 };
     Timeline {
         end_time: 1.05,
         sample_interval: 0.1,
@@ -90,7 +91,10 @@ fn samples_are_even_and_breaks_are_landed_on() {
         assert_eq!(phase.packed, *target <= 0.25, "{target}");
         let first = if *target <= 0.5 { 1.0 } else { 0.0 };
         let second = if *target > 0.33 { 0.5 } else { 0.0 };
-        assert!((phase.inflow.mass - first - second).abs() < 1e-15, "{target}: {phase:?}");
+        assert!(
+            (phase.inflow.mass_flow_rate - first - second).abs() < 1e-15,
+            "{target}: {phase:?}"
+        );
     }
     assert_eq!((deployment.steps, deployment.elements), (targets.len() as u64, 7));
     assert_eq!(deployment.audit.passages, Some(0));

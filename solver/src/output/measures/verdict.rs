@@ -46,7 +46,7 @@ impl LastTenth {
         } else {
             (Verdict::Partial, (-stalled_margin).min(-deployed_margin))
         };
-        (verdict, margin < thresholds.close_margin)
+        (verdict, margin < thresholds.near_threshold_margin)
     }
 }
 

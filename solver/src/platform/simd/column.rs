@@ -1,6 +1,7 @@
-//! Numbers in a row that begin where a line of the cache does.
+//! Columns of `f64` values that start on a cache line.
 //!
-//! Eight at a time are then one line, never two: a step over a capsule's film takes 5 % less.
+//! The first value of a [`Column`] is aligned to 64 bytes, so that a group of eight values never
+//! spans two cache lines.
 
 use core::fmt;
 use core::ops::{Deref, DerefMut};
@@ -9,16 +10,17 @@ use serde::{Deserialize, Serialize};
 
 use super::{Lanes, WIDTH};
 
-/// A column of numbers, used as the slice it is.
+/// A column of values; it dereferences to a slice.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Column {
+    /// The values in groups of eight; values from `length` on are padding.
     lanes: Vec<Lanes>,
     length: usize,
 }
 
 impl Column {
-    /// The same number `length` times.
+    /// `length` copies of one value.
     pub fn repeat(value: f64, length: usize) -> Self {
         Self { lanes: vec![Lanes::splat(value); length.div_ceil(WIDTH)], length }
     }
@@ -28,26 +30,29 @@ impl Deref for Column {
     type Target = [f64];
 
     #[inline]
-    #[expect(unsafe_code, reason = "eight numbers are eight numbers")]
+    #[expect(unsafe_code, reason = "a slice of `Lanes` is viewed as a slice of `f64`")]
     fn deref(&self) -> &[f64] {
-        // SAFETY: `Lanes` is eight numbers without padding, and there are enough of them.
+        // SAFETY: `Lanes` is `repr(C)` and holds eight `f64` without padding (64 bytes, align 64), all
+        // initialised. Every constructor stores at least `length` values, and neither field changes
+        // afterwards.
         unsafe { core::slice::from_raw_parts(self.lanes.as_ptr().cast(), self.length) }
     }
 }
 
 impl DerefMut for Column {
     #[inline]
-    #[expect(unsafe_code, reason = "eight numbers are eight numbers")]
+    #[expect(unsafe_code, reason = "a slice of `Lanes` is viewed as a slice of `f64`")]
     fn deref_mut(&mut self) -> &mut [f64] {
-        // SAFETY: as above.
+        // SAFETY: memory and length are valid as in `deref`; `&mut self` makes the access exclusive, and
+        // every bit pattern is a valid `f64`.
         unsafe { core::slice::from_raw_parts_mut(self.lanes.as_mut_ptr().cast(), self.length) }
     }
 }
 
 impl From<Vec<f64>> for Column {
-    fn from(numbers: Vec<f64>) -> Self {
-        let mut column = Self::repeat(0.0, numbers.len());
-        column.copy_from_slice(&numbers);
+    fn from(values: Vec<f64>) -> Self {
+        let mut column = Self::repeat(0.0, values.len());
+        column.copy_from_slice(&values);
         column
     }
 }
@@ -59,8 +64,8 @@ impl From<Column> for Vec<f64> {
 }
 
 impl FromIterator<f64> for Column {
-    fn from_iter<I: IntoIterator<Item = f64>>(numbers: I) -> Self {
-        numbers.into_iter().collect::<Vec<_>>().into()
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        values.into_iter().collect::<Vec<_>>().into()
     }
 }
 
@@ -81,16 +86,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_its_numbers_at_the_beginning_of_a_line() {
+    fn a_column_is_aligned_and_keeps_its_values() {
         for length in [0, 1, 7, 8, 9, 800] {
-            let numbers: Vec<f64> = (0..length).map(|k| f64::from(k) - 0.5).collect();
-            let mut column = Column::from(numbers.clone());
-            assert_eq!(*column, *numbers);
+            let values: Vec<f64> = (0..length).map(|k| f64::from(k) - 0.5).collect();
+            let mut column = Column::from(values.clone());
+            assert_eq!(*column, *values);
             assert_eq!(column.as_ptr() as usize % 64, 0);
-            column.iter_mut().for_each(|own| *own *= 2.0);
+            column.iter_mut().for_each(|value| *value *= 2.0);
             assert_eq!(
                 Vec::from(column.clone()),
-                numbers.iter().map(|x| x * 2.0).collect::<Vec<_>>()
+                values.iter().map(|x| x * 2.0).collect::<Vec<_>>()
             );
             let text = serde_json::to_string(&column).expect("numbers");
             assert_eq!(serde_json::from_str::<Column>(&text).expect("a list"), column);

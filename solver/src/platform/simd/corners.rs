@@ -1,39 +1,47 @@
-//! From nodes to elements and back: gathers and sums, checked once.
+//! Gather of node values to the corners of kites, and scatter of corner forces back to nodes. All
+//! node indices are checked once, when [`Corners`] is built.
 
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
 
 use super::{Vectors, WIDTH, Wide};
 
-/// The four corners of kites, eight kites a block, checked once to lie within a number of nodes so that
-/// a kernel need not check them again.
+/// Largest number of nodes: gather instructions take indices as signed 32-bit integers.
+const MAX_NODES: usize = 1 << 31;
+
+/// Nodes at the four corners of kites, eight kites a block.
+///
+/// Invariant: every index in `blocks` is below `nodes`, and `nodes` is at most [`MAX_NODES`]. The
+/// kernels therefore do not check indices again.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Corners {
     nodes: usize,
+    /// Node of each corner and lane.
     blocks: Vec<[[u32; WIDTH]; 4]>,
-    /// Nodes up to the farthest of each block and of those before it; of the last, all.
+    /// For each block, one more than the largest node of it and of all blocks before it; for the last
+    /// block, the number of nodes.
     reach: Vec<usize>,
 }
 
 impl Corners {
-    /// The corners of these kites over `nodes` nodes; the last block is filled up with kites of one node
-    /// alone.
+    /// The corners of `kites` over `nodes` nodes. Free lanes of the last block repeat one node, the
+    /// first of that block.
     ///
     /// # Panics
-    /// When a kite names a node that is not there.
+    /// When a kite names a node at or above `nodes`, or `nodes` is above 2³¹.
     pub fn new(kites: &[[u32; 4]], nodes: usize) -> Self {
-        assert!(kites.iter().flatten().all(|node| (*node as usize) < nodes), "nodes there are");
-        assert!(nodes <= 1 << 31, "at most 2^31 nodes");
+        assert!(kites.iter().flatten().all(|node| (*node as usize) < nodes), "a node out of range");
+        assert!(nodes <= MAX_NODES, "more than 2^31 nodes");
         let block = |chunk: &[[u32; 4]]| {
             let node =
                 |corner: usize, lane: usize| chunk.get(lane).map_or(chunk[0][0], |t| t[corner]);
             [0, 1, 2, 3].map(|corner| core::array::from_fn(|lane| node(corner, lane)))
         };
         let blocks: Vec<[[u32; WIDTH]; 4]> = kites.chunks(WIDTH).map(block).collect();
-        let farthest = |block: &[[u32; WIDTH]; 4]| block.iter().flatten().max().map_or(0, |k| *k);
+        let largest = |block: &[[u32; WIDTH]; 4]| block.iter().flatten().max().map_or(0, |k| *k);
         let mut reach: Vec<usize> = blocks
             .iter()
             .scan(0, |reach, block| {
-                *reach = (farthest(block) as usize + 1).max(*reach);
+                *reach = (largest(block) as usize + 1).max(*reach);
                 Some(*reach)
             })
             .collect();
@@ -43,13 +51,14 @@ impl Corners {
         Self { nodes, blocks, reach }
     }
 
-    /// Begins anew the sums a block is the first to add to, `begun` of which are; how many are then.
+    /// Sets to zero the sums that `block` is the first to add to. `cleared` of them are zero already;
+    /// returns their new number.
     ///
-    /// All at once would be written long before anything is added to them, and leave the cache.
+    /// Clearing all sums before the first block would evict them from the cache before their use.
     #[inline(always)]
-    pub fn begin(&self, block: usize, begun: usize, sums: &mut [NodeSum]) -> usize {
+    pub fn clear_sums(&self, block: usize, cleared: usize, sums: &mut [NodeSum]) -> usize {
         let reach = self.reach[block];
-        for sum in &mut sums[begun..reach] {
+        for sum in &mut sums[cleared..reach] {
             *sum = NodeSum::default();
         }
         reach
@@ -61,7 +70,9 @@ impl Corners {
     }
 }
 
-/// Three columns over the nodes, checked once to reach as far as the corners do.
+/// Three columns over the nodes, with the corners to gather at.
+///
+/// Invariant: each column is at least as long as `corners.nodes`.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns<'a> {
     corners: &'a Corners,
@@ -69,16 +80,16 @@ pub struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    /// These columns, at these corners.
+    /// The x, y and z columns of a node quantity.
     ///
     /// # Panics
-    /// When a column is shorter than there are nodes.
+    /// When a column is shorter than the number of nodes.
     #[inline(always)]
     pub fn new(corners: &'a Corners, columns: [&'a [f64]; 3]) -> Self {
         let [x, y, z] = columns;
         let nodes = corners.nodes;
-        let whole = x.len() >= nodes && y.len() >= nodes && z.len() >= nodes;
-        assert!(whole, "one value a node");
+        let complete = x.len() >= nodes && y.len() >= nodes && z.len() >= nodes;
+        assert!(complete, "one value a node");
         Self { corners, columns }
     }
 
@@ -89,46 +100,55 @@ impl<'a> Columns<'a> {
         [self.gather(a), self.gather(b), self.gather(c), self.gather(d)]
     }
 
+    /// The vectors at eight nodes of `self.corners`.
     #[inline(always)]
-    #[expect(unsafe_code, reason = "places are checked when `Corners` is made, columns in `new`")]
-    fn gather<L: Wide>(&self, at: &[u32; WIDTH]) -> Vectors<L> {
+    #[expect(
+        unsafe_code,
+        reason = "indices are checked in `Corners::new`, columns in `Columns::new`"
+    )]
+    fn gather<L: Wide>(&self, nodes: &[u32; WIDTH]) -> Vectors<L> {
         let [x, y, z] = self.columns;
-        // SAFETY: every node is below the number of nodes, which is at most 2^31, and so are the columns
-        // long.
-        unsafe { Vectors { x: L::gather(x, at), y: L::gather(y, at), z: L::gather(z, at) } }
+        // SAFETY: `corners` alone calls this, with nodes of `self.corners`: each is below its number of
+        // nodes, which is at most 2^31 and at most the length of each column (both invariants).
+        unsafe {
+            Vectors { x: L::gather(x, nodes), y: L::gather(y, nodes), z: L::gather(z, nodes) }
+        }
     }
 }
 
-/// The vectors at these places of three columns of one length.
+/// The vectors at these indices of three columns.
 ///
 /// # Panics
-/// When a place is beyond the columns, or 2^31 or more.
+/// When an index is not below the length of every column, or is 2³¹ or more.
 #[inline(always)]
-#[expect(unsafe_code, reason = "places are checked here")]
-pub fn vectors_at<L: Wide>([x, y, z]: [&[f64]; 3], at: &[u32; WIDTH]) -> Vectors<L> {
+#[expect(unsafe_code, reason = "indices are checked here")]
+pub fn vectors_at<L: Wide>([x, y, z]: [&[f64]; 3], indices: &[u32; WIDTH]) -> Vectors<L> {
     let mut last = 0;
-    for place in at {
-        last = if *place > last { *place } else { last };
+    for index in indices {
+        last = if *index > last { *index } else { last };
     }
     let last = last as usize;
-    assert!(last < x.len() && last < y.len() && last < z.len(), "one value a place");
-    assert!(last < 1 << 31, "below 2^31");
-    // SAFETY: every place is below 2^31 and the length of the columns.
-    unsafe { Vectors { x: L::gather(x, at), y: L::gather(y, at), z: L::gather(z, at) } }
+    assert!(last < x.len() && last < y.len() && last < z.len(), "an index out of range");
+    assert!(last < MAX_NODES, "an index of 2^31 or more");
+    // SAFETY: `last`, the largest index, is below the length of each column and below 2^31.
+    unsafe {
+        Vectors { x: L::gather(x, indices), y: L::gather(y, indices), z: L::gather(z, indices) }
+    }
 }
 
-/// A node's sums over its elements, in one line of the cache: x, y, z and a number without meaning.
+/// Sums over the elements at a node, in one cache line. Entries 0 to 2 are x, y, z; entry 3 is padding
+/// without meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(C, align(64))]
 pub struct NodeSum {
-    /// Force of the film, N.
+    /// Internal force of the film, N.
     pub film: [f64; 4],
-    /// Six times ∂V/∂x, m².
+    /// Sum of the element normals (x1 − x0) × (x2 − x0), which is 6 ∂V/∂x, m².
     pub normal: [f64; 4],
 }
 
 impl NodeSum {
-    /// Adds another.
+    /// Adds another sum entry by entry.
     #[inline(always)]
     pub fn add(&mut self, other: &Self) {
         for k in 0..4 {
@@ -141,13 +161,14 @@ impl NodeSum {
 }
 
 impl Corners {
-    /// Adds what each kite of a block gives to its corners s, a, t, b, kite by kite and for each corner
-    /// by corner: the force on that corner; the normal of both halves to s and t, of its own to a and b.
+    /// Adds the forces and normals of a block's kites to their corners s, a, t, b: kite by kite, and
+    /// for each kite corner by corner. `film` holds the forces on the four corners. Corners s and t
+    /// receive the normal of the whole kite, a that of the first element, b that of the second.
     ///
     /// # Panics
     /// When there are fewer sums than nodes.
     #[inline(always)]
-    #[expect(unsafe_code, reason = "nodes are checked when `Corners` is made, sums here")]
+    #[expect(unsafe_code, reason = "indices are checked in `Corners::new`, the sums here")]
     pub fn scatter<L: Wide>(
         &self,
         block: usize,
@@ -157,15 +178,16 @@ impl Corners {
     ) {
         assert!(sums.len() >= self.nodes, "one sum a node");
         let rows = [
-            L::rows(&film[0], whole),
-            L::rows(&film[1], first),
-            L::rows(&film[2], whole),
-            L::rows(&film[3], second),
+            L::to_node_sums(&film[0], whole),
+            L::to_node_sums(&film[1], first),
+            L::to_node_sums(&film[2], whole),
+            L::to_node_sums(&film[3], second),
         ];
         let nodes = &self.blocks[block];
         for lane in 0..WIDTH {
             for corner in 0..4 {
-                // SAFETY: every node is below `self.nodes`, and there are as many sums.
+                // SAFETY: every node is below `self.nodes` (invariant), and `sums` has at least as many
+                // entries (asserted above).
                 let sum = unsafe { sums.get_unchecked_mut(nodes[corner][lane] as usize) };
                 sum.add(&rows[corner][lane]);
             }

@@ -1,14 +1,17 @@
-//! Which instruction set a kernel runs on, chosen when it is called.
+//! Macros that compile one kernel for every instruction set and select one at run time.
 
-/// Defines `pub fn $name(path, arguments…)` that runs the `#[inline(always)]` function `$kernel` on
-/// the instruction set of `path`.
+/// Defines `fn $name(instruction_set, arguments…)`, which runs the `#[inline(always)]` function
+/// `$kernel` compiled for `instruction_set`.
 ///
-/// A path this machine lacks runs as scalar: the bits are the same.
+/// An instruction set that this machine lacks runs as scalar: the bits are the same.
 macro_rules! dispatch {
     ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)?) => {
         $(#[$meta])*
-        #[expect(unsafe_code, reason = "each instruction set is entered only where it is detected")]
-        $vis fn $name(path: $crate::platform::simd::InstructionSet, $($arg: $ty),*) $(-> $ret)? {
+        #[expect(unsafe_code, reason = "calls a function compiled for a detected instruction set")]
+        $vis fn $name(
+            instruction_set: $crate::platform::simd::InstructionSet,
+            $($arg: $ty),*
+        ) $(-> $ret)? {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
@@ -20,28 +23,39 @@ macro_rules! dispatch {
                     $kernel($($arg),*)
                 }
                 use $crate::platform::simd::InstructionSet;
-                match path {
-                    // SAFETY: the features are there, just asked for.
-                    InstructionSet::Avx2 if path.available() => return unsafe { avx2($($arg),*) },
-                    // SAFETY: as above.
-                    InstructionSet::Avx512 if path.available() => return unsafe { avx512($($arg),*) },
+                match instruction_set {
+                    InstructionSet::Avx2 if instruction_set.available() => {
+                        // SAFETY: `available` has detected avx2, the only feature `avx2` enables.
+                        return unsafe { avx2($($arg),*) };
+                    }
+                    InstructionSet::Avx512 if instruction_set.available() => {
+                        // SAFETY: `available` has detected avx512f and avx512dq, the features `avx512`
+                        // enables.
+                        return unsafe { avx512($($arg),*) };
+                    }
                     _ => {}
                 }
             }
-            let _ = path;
+            let _ = instruction_set;
             $kernel($($arg),*)
         }
     };
 }
 pub(crate) use dispatch;
 
-/// Defines `pub fn $name(path, arguments…)` as `dispatch!` does, for a kernel that is written over any
-/// [`Wide`] and runs on the registers of each instruction set.
+/// Defines `fn $name(instruction_set, arguments…)` as `dispatch!` does, for a kernel that is generic
+/// over [`Wide`](super::Wide): each instruction set runs it on its own vector type.
+///
+/// This macro alone names the types of [`x86`](super::x86): it uses them only inside functions that
+/// enable their target feature, entered only after detection. The safety of `x86` rests on that.
 macro_rules! dispatch_wide {
     ($(#[$meta:meta])* $vis:vis fn $name:ident / $kernel:ident ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)?) => {
         $(#[$meta])*
-        #[expect(unsafe_code, reason = "each instruction set is entered only where it is detected")]
-        $vis fn $name(path: $crate::platform::simd::InstructionSet, $($arg: $ty),*) $(-> $ret)? {
+        #[expect(unsafe_code, reason = "calls a function compiled for a detected instruction set")]
+        $vis fn $name(
+            instruction_set: $crate::platform::simd::InstructionSet,
+            $($arg: $ty),*
+        ) $(-> $ret)? {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2")]
@@ -53,15 +67,20 @@ macro_rules! dispatch_wide {
                     $kernel::<$crate::platform::simd::x86::Avx512>($($arg),*)
                 }
                 use $crate::platform::simd::InstructionSet;
-                match path {
-                    // SAFETY: the features are there, just asked for.
-                    InstructionSet::Avx2 if path.available() => return unsafe { avx2($($arg),*) },
-                    // SAFETY: as above.
-                    InstructionSet::Avx512 if path.available() => return unsafe { avx512($($arg),*) },
+                match instruction_set {
+                    InstructionSet::Avx2 if instruction_set.available() => {
+                        // SAFETY: `available` has detected avx2, the only feature `avx2` enables.
+                        return unsafe { avx2($($arg),*) };
+                    }
+                    InstructionSet::Avx512 if instruction_set.available() => {
+                        // SAFETY: `available` has detected avx512f and avx512dq, the features `avx512`
+                        // enables.
+                        return unsafe { avx512($($arg),*) };
+                    }
                     _ => {}
                 }
             }
-            let _ = path;
+            let _ = instruction_set;
             $kernel::<$crate::platform::simd::Lanes>($($arg),*)
         }
     };

@@ -1,4 +1,5 @@
-//! Eight plain numbers: what every machine has, and what other registers are checked against.
+//! Eight `f64` values in a plain array: the portable implementation of [`Wide`], and the reference for
+//! the vector registers.
 
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
 
@@ -8,66 +9,70 @@ use serde::{Deserialize, Serialize};
 
 use super::{NodeSum, Vectors, WIDTH, Wide};
 
-/// One number of each of eight elements.
+/// One value for each of eight elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 #[repr(C, align(64))]
 pub struct Lanes(pub [f64; WIDTH]);
 
 impl Lanes {
-    /// The same number eight times.
+    /// One value in every lane.
     #[inline(always)]
     pub fn splat(value: f64) -> Self {
         Self([value; WIDTH])
     }
 
-    /// Eight numbers from `column[at..]`.
+    /// Eight values from `column[first..]`.
     #[inline(always)]
-    pub fn load(column: &[f64], at: usize) -> Self {
+    pub fn load(column: &[f64], first: usize) -> Self {
         let mut lanes = [0.0; WIDTH];
-        lanes.copy_from_slice(&column[at..at + WIDTH]);
+        lanes.copy_from_slice(&column[first..first + WIDTH]);
         Self(lanes)
     }
 
-    /// Writes to `column[at..]`.
+    /// Writes eight values to `column[first..]`.
     #[inline(always)]
-    pub fn store(self, column: &mut [f64], at: usize) {
-        column[at..at + WIDTH].copy_from_slice(&self.0);
+    pub fn store(self, column: &mut [f64], first: usize) {
+        column[first..first + WIDTH].copy_from_slice(&self.0);
     }
 
-    #[expect(clippy::needless_range_loop, reason = "iterators are not inlined either")]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "an iterator is not inlined into a target feature"
+    )]
     #[inline(always)]
-    fn zip(self, other: Self, join: impl Fn(f64, f64) -> f64) -> Self {
-        // A plain loop: the array's own `map` and `from_fn` are not inlined into another instruction set.
+    fn zip(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
+        // A plain loop: `array::map` and `array::from_fn` are not inlined into a function with another
+        // target feature.
         let mut lanes = [0.0; WIDTH];
         for lane in 0..WIDTH {
-            lanes[lane] = join(self.0[lane], other.0[lane]);
+            lanes[lane] = operation(self.0[lane], other.0[lane]);
         }
         Self(lanes)
     }
 
-    /// Square roots.
+    /// Square root of each lane.
     #[must_use]
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.zip(self, |a, _| a.sqrt())
     }
 
-    /// Quotients.
+    /// Quotient of each pair of lanes.
     #[must_use]
     #[inline(always)]
     pub fn over(self, other: Self) -> Self {
         self.zip(other, |a, b| a / b)
     }
 
-    /// The larger of each pair.
+    /// The larger of each pair of lanes; `other` where either is NaN.
     #[must_use]
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
 
-    /// `yes` where this is above 0, else `no`.
+    /// The lane of `yes` where this lane is above 0, else that of `no` (also for NaN).
     #[must_use]
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
@@ -79,14 +84,14 @@ impl Lanes {
         Self(lanes)
     }
 
-    /// Sum of the eight, as a tree: ((0+4)+(2+6)) + ((1+5)+(3+7)).
+    /// Sum of the lanes in a fixed order: ((0+4)+(2+6)) + ((1+5)+(3+7)).
     #[inline(always)]
     pub fn sum(self) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.0;
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
-    /// Largest of the eight.
+    /// Largest lane; NaN lanes are ignored.
     pub fn largest(self) -> f64 {
         self.0.into_iter().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a })
     }
@@ -145,12 +150,12 @@ impl Wide for Lanes {
         Self::splat(value)
     }
     #[inline(always)]
-    fn load(column: &[f64], at: usize) -> Self {
-        Self::load(column, at)
+    fn load(column: &[f64], first: usize) -> Self {
+        Self::load(column, first)
     }
     #[inline(always)]
-    fn store(self, column: &mut [f64], at: usize) {
-        self.store(column, at);
+    fn store(self, column: &mut [f64], first: usize) {
+        self.store(column, first);
     }
     #[inline(always)]
     fn lanes(self) -> Lanes {
@@ -173,33 +178,33 @@ impl Wide for Lanes {
         self.if_positive(yes, no)
     }
     #[inline(always)]
-    #[expect(unsafe_code, reason = "as the trait says")]
-    unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self {
+    #[expect(unsafe_code, reason = "the trait's contract")]
+    unsafe fn gather(column: &[f64], indices: &[u32; WIDTH]) -> Self {
         let mut lanes = [0.0; WIDTH];
         for lane in 0..WIDTH {
-            // SAFETY: the caller's promise.
-            lanes[lane] = unsafe { *column.get_unchecked(at[lane] as usize) };
+            // SAFETY: the caller guarantees that every index is below the length of `column`.
+            lanes[lane] = unsafe { *column.get_unchecked(indices[lane] as usize) };
         }
         Self(lanes)
     }
     #[inline(always)]
-    fn columns(rows: &[NodeSum; WIDTH]) -> [Vectors; 2] {
+    fn from_node_sums(rows: &[NodeSum; WIDTH]) -> [Vectors; 2] {
         let mut columns = [Vectors::<Self>::default(); 2];
         for (lane, row) in rows.iter().enumerate() {
-            for (own, [x, y, z, _]) in columns.iter_mut().zip([row.film, row.normal]) {
-                (own.x.0[lane], own.y.0[lane], own.z.0[lane]) = (x, y, z);
+            for (vectors, [x, y, z, _]) in columns.iter_mut().zip([row.film, row.normal]) {
+                (vectors.x.0[lane], vectors.y.0[lane], vectors.z.0[lane]) = (x, y, z);
             }
         }
         columns
     }
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "as in `zip`")]
-    fn rows(first: &Vectors, second: &Vectors) -> [NodeSum; WIDTH] {
+    fn to_node_sums(film: &Vectors, normal: &Vectors) -> [NodeSum; WIDTH] {
         let mut rows = [NodeSum::default(); WIDTH];
         for lane in 0..WIDTH {
             rows[lane] = NodeSum {
-                film: [first.x.0[lane], first.y.0[lane], first.z.0[lane], 0.0],
-                normal: [second.x.0[lane], second.y.0[lane], second.z.0[lane], 0.0],
+                film: [film.x.0[lane], film.y.0[lane], film.z.0[lane], 0.0],
+                normal: [normal.x.0[lane], normal.y.0[lane], normal.z.0[lane], 0.0],
             };
         }
         rows

@@ -1,11 +1,12 @@
-//! Eight elements at a time: kernels compiled for several instruction sets.
+//! Kernels that process eight elements at a time, compiled for several instruction sets.
 //!
-//! A kernel is written once over any [`Wide`] and is `#[inline(always)]`; `dispatch_wide!` instantiates
-//! it on the registers of each instruction set, under `#[target_feature]`, and picks at run time. What
-//! the compiler does well by itself is written over [`Lanes`], plain arrays, and goes by `dispatch!`. Every
-//! lane does the same additions, multiplications, divisions and square roots in the same order on every
-//! path, nothing is contracted to a fused multiply-add, and sums over lanes are one fixed tree: the bits
-//! are equal, the build needs no flags.
+//! A kernel is written once, generic over [`Wide`], and is `#[inline(always)]`; `dispatch_wide!`
+//! compiles it for the vector registers of each instruction set and selects one at run time. A kernel
+//! that the compiler vectorises well is written over [`Lanes`], plain arrays, and uses `dispatch!`.
+//!
+//! All instruction sets give the same bits: every lane does the same additions, multiplications,
+//! divisions and square roots in the same order, nothing is contracted to a fused multiply-add, and a
+//! sum over lanes has one fixed order. The build needs no flags.
 
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
 
@@ -25,22 +26,22 @@ pub(crate) use dispatch::{dispatch, dispatch_wide};
 pub use lanes::Lanes;
 pub use vectors::Vectors;
 
-/// Elements handled at once.
+/// Elements processed together: lanes of a [`Wide`].
 pub const WIDTH: usize = 8;
 
 /// Instruction set a kernel runs on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InstructionSet {
-    /// What every x86-64 (or other) machine has.
+    /// The baseline of the target; available on every machine.
     Scalar,
-    /// AVX2: four at a time.
+    /// AVX2: four `f64` a register.
     Avx2,
-    /// AVX-512: eight at a time.
+    /// AVX-512 (F and DQ): eight `f64` a register.
     Avx512,
 }
 
 impl InstructionSet {
-    /// Every path, the widest last.
+    /// Every instruction set, the widest last.
     pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
 
     /// Name: `scalar`, `avx2`, `avx512`.
@@ -52,7 +53,12 @@ impl InstructionSet {
         }
     }
 
-    /// Whether this machine has it.
+    /// The instruction set of this name; `None` for an unknown name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|instruction_set| instruction_set.name() == name)
+    }
+
+    /// Whether this machine supports it.
     pub fn available(self) -> bool {
         match self {
             Self::Scalar => true,
@@ -67,15 +73,15 @@ impl InstructionSet {
         }
     }
 
-    /// The widest this machine has.
+    /// The widest instruction set that this machine supports.
     pub fn detect() -> Self {
         let [scalar, rest @ ..] = Self::ALL;
-        rest.into_iter().rev().find(|path| path.available()).unwrap_or(scalar)
+        rest.into_iter().rev().find(|instruction_set| instruction_set.available()).unwrap_or(scalar)
     }
 }
 
-/// One number of each of eight elements, in whatever an instruction set has for it. All of its
-/// operations give the bits that eight plain numbers would.
+/// One `f64` for each of eight elements, in the registers of an instruction set. Every operation gives
+/// the bits of eight scalar operations.
 pub trait Wide:
     Copy
     + Add<Output = Self>
@@ -84,46 +90,45 @@ pub trait Wide:
     + Mul<f64, Output = Self>
     + Neg<Output = Self>
 {
-    /// The same number eight times.
+    /// One value in every lane.
     fn splat(value: f64) -> Self;
-    /// Eight numbers from `column[at..]`.
-    fn load(column: &[f64], at: usize) -> Self;
-    /// Writes to `column[at..]`.
-    fn store(self, column: &mut [f64], at: usize);
-    /// As plain numbers.
+    /// Eight values from `column[first..]`.
+    fn load(column: &[f64], first: usize) -> Self;
+    /// Writes eight values to `column[first..]`.
+    fn store(self, column: &mut [f64], first: usize);
+    /// The values as a plain array.
     fn lanes(self) -> Lanes;
-    /// Square roots.
+    /// Square root of each lane.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Quotients.
+    /// Quotient of each pair of lanes.
     #[must_use]
     fn over(self, other: Self) -> Self;
-    /// The larger of each pair; the other where either is no number.
+    /// The larger of each pair of lanes; `other` where either is NaN.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// `yes` where this is above 0, else `no`.
+    /// The lane of `yes` where this lane is above 0, else that of `no` (also for NaN).
     #[must_use]
     fn if_positive(self, yes: Self, no: Self) -> Self;
-    /// The numbers at these places of a column.
+    /// The values at these indices of a column.
     ///
     /// # Safety
-    /// The column must reach beyond each place, and no place be 2^31 or more.
-    #[expect(unsafe_code, reason = "places are checked once, not at each call")]
-    unsafe fn gather(column: &[f64], at: &[u32; WIDTH]) -> Self;
-    /// Vectors one by one: the first three numbers of each four from `first`, the last three from
-    /// `second`, as [`NodeSum`] has them.
-    fn rows(first: &Vectors<Self>, second: &Vectors<Self>) -> [NodeSum; WIDTH];
-    /// Back from there.
-    fn columns(rows: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2];
+    /// Every index must be below the length of `column` and below 2^31.
+    #[expect(unsafe_code, reason = "indices are checked once, not at each call")]
+    unsafe fn gather(column: &[f64], indices: &[u32; WIDTH]) -> Self;
+    /// Transposes eight film forces and eight normals to one [`NodeSum`] a lane.
+    fn to_node_sums(film: &Vectors<Self>, normal: &Vectors<Self>) -> [NodeSum; WIDTH];
+    /// Transposes eight sums to their film forces and their normals.
+    fn from_node_sums(rows: &[NodeSum; WIDTH]) -> [Vectors<Self>; 2];
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "bits are what is asked")]
+#[expect(clippy::float_cmp, reason = "equal bits are the property")]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_sum_is_a_fixed_tree() {
+    fn lanes_are_summed_in_a_fixed_order() {
         let lanes = Lanes([1e16, 1.0, -1e16, 1.0, 1.0, 1.0, 1.0, 1.0]);
         assert_eq!(lanes.sum(), ((1e16 + 1.0) + (-1e16 + 1.0)) + (2.0 + 2.0));
         assert_eq!(lanes.largest(), 1e16);
@@ -132,8 +137,8 @@ mod tests {
     #[inline(always)]
     fn kernel(values: &[f64]) -> f64 {
         let mut sum = Lanes::default();
-        for at in (0..values.len()).step_by(WIDTH) {
-            let a = Lanes::load(values, at);
+        for first in (0..values.len()).step_by(WIDTH) {
+            let a = Lanes::load(values, first);
             sum += (a * a + a * 0.1).sqrt().over(a + Lanes::splat(3.0));
         }
         sum.sum()
@@ -141,12 +146,22 @@ mod tests {
     dispatch! { fn run / kernel(values: &[f64]) -> f64 }
 
     #[test]
-    fn every_path_gives_the_same_bits() {
+    fn every_instruction_set_gives_the_same_bits() {
         let values: Vec<f64> = (0..800).map(|k| f64::from(k) * 0.371 + 0.01).collect();
         let scalar = run(InstructionSet::Scalar, &values);
-        for path in InstructionSet::ALL {
-            assert_eq!(run(path, &values).to_bits(), scalar.to_bits(), "{}", path.name());
+        for instruction_set in InstructionSet::ALL {
+            let sum = run(instruction_set, &values);
+            assert_eq!(sum.to_bits(), scalar.to_bits(), "{}", instruction_set.name());
         }
         assert!(InstructionSet::detect().available());
+    }
+
+    #[test]
+    fn names_are_read_back_and_unknown_ones_refused() {
+        for instruction_set in InstructionSet::ALL {
+            assert_eq!(InstructionSet::from_name(instruction_set.name()), Some(instruction_set));
+        }
+        assert_eq!(InstructionSet::from_name("AVX2"), None);
+        assert_eq!(InstructionSet::from_name(""), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Vectors of eight elements, component by component.
+//! Eight 3-vectors at a time, stored component by component.
 
 #![allow(clippy::inline_always, reason = "a kernel must be inlined into its instruction set")]
 
@@ -6,7 +6,7 @@ use core::ops::{Add, Neg, Sub};
 
 use super::{Lanes, Wide};
 
-/// One vector of each of eight elements.
+/// Eight vectors, one a lane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vectors<L = Lanes> {
     /// x components.
@@ -18,13 +18,13 @@ pub struct Vectors<L = Lanes> {
 }
 
 impl<L: Wide> Vectors<L> {
-    /// Scalar products.
+    /// Scalar products, lane by lane.
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// Vector products.
+    /// Cross products, lane by lane.
     #[must_use]
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
@@ -35,7 +35,7 @@ impl<L: Wide> Vectors<L> {
         }
     }
 
-    /// Each vector times its own number.
+    /// Each vector times the factor of its lane.
     #[must_use]
     #[inline(always)]
     pub fn scale(self, factor: L) -> Self {

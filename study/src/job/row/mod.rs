@@ -137,7 +137,7 @@ impl Cells {
         self.set("deployed_volume_threshold", thresholds.deployed_volume);
         self.set("deployed_height_threshold", thresholds.deployed_height);
         self.set("stalled_volume_threshold", thresholds.stalled_volume);
-        self.set("close_margin", thresholds.close_margin);
+        self.set("close_margin", thresholds.near_threshold_margin);
         if let Ok(pattern) = FoldPattern::new(&job.scene.design) {
             self.set("phi", pattern.angles.phi);
             self.set("half_angle", pattern.half_angle);

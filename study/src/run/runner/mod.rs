@@ -1,7 +1,6 @@
 //! Running a study: plan, skip what is finished, run the rest, store every job as it ends.
 //!
-//! Workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute; where jobs
-//! are fewer than threads, each gets its share of them. This
+//! Workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. This
 //! thread alone touches the disk: it stores what comes in, history file first, journal record
 //! second, so that a record always has its file; whatever happens in between is run again and gives
 //! the same bits. A job that is run again ([`Run::again`]) is withdrawn first, and its new history is

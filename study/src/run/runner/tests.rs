@@ -129,17 +129,6 @@ fn any_number_of_threads_and_any_batch_leave_the_same_bytes() {
 }
 
 #[test]
-fn jobs_fewer_than_threads_share_them() {
-    for (jobs, threads, each) in [(9, 2, 1), (3, 2, 1), (1, 2, 2), (3, 5, 2), (1, 5, 5)] {
-        // One of the points is no job, from the third on.
-        let folder = folder();
-        let executor = Scripted::new(ran);
-        run_quiet(folder.path(), jobs, threads, &executor);
-        assert_eq!(executor.threads.load(Ordering::SeqCst), each, "{jobs} points on {threads}");
-    }
-}
-
-#[test]
 fn a_second_run_computes_nothing_and_changes_no_file() {
     let folder = folder();
     let executor = Scripted::new(ran);

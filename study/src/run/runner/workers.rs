@@ -65,12 +65,6 @@ pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
     }
 }
 
-/// Threads each of so many jobs gets of those there are: one, but where there are fewer jobs than
-/// threads.
-pub fn share(threads: usize, jobs: usize) -> usize {
-    (threads / jobs.max(1)).max(1)
-}
-
 /// Runs all jobs on a pool, batch by batch in their order, until none is left or `ending` says so.
 /// Dropping the sender at the end tells the receiver that nothing more comes.
 pub fn work(
@@ -82,7 +76,6 @@ pub fn work(
 ) {
     let next = AtomicUsize::new(0);
     let batch = executor.batch().max(1);
-    let share = share(pool.current_num_threads(), jobs.len());
     pool.broadcast(|context| {
         let thread = context.index();
         while !ending() {
@@ -103,7 +96,7 @@ pub fn work(
                 }
                 !ending()
             };
-            let outcomes = execute_guarded(executor, &refs, share, &watch);
+            let outcomes = execute_guarded(executor, &refs, &watch);
             for (offset, outcome) in outcomes.into_iter().enumerate() {
                 let Some(ended) = finish(first + offset, thread, refs[offset], outcome) else {
                     continue;

@@ -77,7 +77,7 @@ fn conflict(a: &FilmSupport, b: &FilmSupport, place: Vector3<f64>) -> Option<Vec
 
 /// The way of a node to the end of its support's motion, m.
 fn way(support: &FilmSupport, place: Vector3<f64>) -> Vector3<f64> {
-    support.motion.map_or_else(Vector3::zeros, |motion| motion.place(place, motion.to) - place)
+    support.motion.map_or_else(Vector3::zeros, |motion| motion.position(place, motion.to) - place)
 }
 
 /// Unit directions held.

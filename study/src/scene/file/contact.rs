@@ -102,7 +102,7 @@ fn plates(
         let own = format!("{place}.move");
         let motion =
             object.given("move").map(|json| motion(json, &own, settings, source)).transpose()?;
-        if motion.is_some_and(|motion| motion.turn.is_some()) {
+        if motion.is_some_and(|motion| motion.rotation.is_some()) {
             return Err(object.error("move", "a plate does not turn", "a translation alone"));
         }
         let name = match object.text("name")? {
@@ -119,7 +119,7 @@ fn plates(
             point: object.vector("point")?.ok_or_else(|| object.missing("point"))?,
             normal: object.direction("normal")?,
             motion,
-            until: object.number("until")?.unwrap_or(f64::INFINITY),
+            removal_time: object.number("until")?.unwrap_or(f64::INFINITY),
         });
     }
     Ok(plates)

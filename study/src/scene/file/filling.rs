@@ -105,9 +105,14 @@ fn windows(
             return Err(window.error("to", problem, format!("above its `from`, {from} s")));
         }
         let (rate, temperature) = (window.needed("rate")?, window.needed("temperature")?);
-        windows.push(InflowWindow { from, to: to.min(end_time), rate, temperature });
+        windows.push(InflowWindow {
+            from,
+            to: to.min(end_time),
+            mass_flow_rate: rate,
+            temperature,
+        });
     }
-    windows.retain(|window| window.rate > 0.0 && window.from < window.to);
+    windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
     windows.sort_by(|a, b| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to)));
     Ok(windows)
 }

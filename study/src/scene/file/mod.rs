@@ -17,7 +17,7 @@ mod supports;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use billow_solver::mechanics::supports::Mover;
+use billow_solver::mechanics::supports::PrescribedNodes;
 use billow_solver::models::film::Rings;
 use billow_solver::platform::simd;
 use billow_solver::scene::error::SceneError;
@@ -48,7 +48,7 @@ pub struct SceneFile {
     /// What is run.
     pub film: FilmScene,
     /// What moves beside the supports' own motions: the ring of an erected capsule to its place.
-    pub seating: Vec<Mover>,
+    pub seating: Vec<PrescribedNodes>,
     /// What makes it a capsule.
     pub rings: Option<Rings>,
     /// What is followed, by name.
@@ -143,7 +143,7 @@ impl SceneFile {
         let mut seating = supports::seating(&supports, &shape);
         if statics {
             for mover in std::mem::take(&mut seating) {
-                for (node, place) in mover.places(mover.motion.to) {
+                for (node, place) in mover.positions(mover.motion.to) {
                     let own = &mut shape.shell.positions[node as usize];
                     *own += mover.held * (place - *own);
                 }
@@ -172,7 +172,7 @@ impl SceneFile {
                 statics,
                 mass_damping: number(&settings, "solver.mass_damping", &reader.source)?,
                 step_limit: unsigned(&settings, "solver.step_limit", &reader.source)?,
-                path: simd,
+                instruction_set: simd,
             },
             outputs,
             contact,

@@ -44,7 +44,7 @@ impl Followed {
 const FAR: f64 = 0.2;
 
 /// Most samples of one run: more would be a slip of the unit.
-const MOST_SAMPLES: f64 = 1e6;
+const MOST_SAMPLES: f64 = billow_solver::scene::MAX_SAMPLES;
 
 /// Refuses a run of more samples than anybody reads.
 pub(super) fn check_interval(

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use billow_solver::mechanics::supports::Mover;
+use billow_solver::mechanics::supports::PrescribedNodes;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
-use billow_solver::scene::motion::{Motion, Profile, Turn};
+use billow_solver::scene::motion::{Motion, Profile, Rotation};
 use nalgebra::Vector3;
 
 use super::object::Object;
@@ -20,14 +20,14 @@ const SEATING_TIME: f64 = 0.01;
 
 /// The way of an erected capsule's bottom ring, where it is held, to the stowed N-gon: a design's
 /// bottom ring is held there whatever its shape. None where it moves otherwise.
-pub(super) fn seating(supports: &[FilmSupport], shape: &Shape) -> Vec<Mover> {
+pub(super) fn seating(supports: &[FilmSupport], shape: &Shape) -> Vec<PrescribedNodes> {
     let Some(seats) = &shape.seats else { return Vec::new() };
     let bottom = |support: &&FilmSupport| {
         let mut places = shape.places.iter().filter(|(name, _)| name.starts_with("bottom_"));
         support.motion.is_none() && places.any(|(_, nodes)| *nodes == support.nodes)
     };
     let place = |node: &u32| shape.shell.positions[*node as usize];
-    let mover = |support: &FilmSupport| Mover {
+    let mover = |support: &FilmSupport| PrescribedNodes {
         nodes: support.nodes.clone(),
         start: support.nodes.iter().map(place).collect(),
         held: support.hold.projector(),
@@ -36,9 +36,13 @@ pub(super) fn seating(supports: &[FilmSupport], shape: &Shape) -> Vec<Mover> {
             to: SEATING_TIME,
             profile: Profile::Smooth,
             translation: Vector3::zeros(),
-            turn: None,
+            rotation: None,
         },
-        beside: support.nodes.iter().map(|node| seats[*node as usize] - place(node)).collect(),
+        displacements: support
+            .nodes
+            .iter()
+            .map(|node| seats[*node as usize] - place(node))
+            .collect(),
     };
     supports.iter().filter(bottom).map(mover).collect()
 }
@@ -285,7 +289,7 @@ pub(super) fn motion(
             let at = format!("{at}.rotation");
             let turn = Object::new(json, &at, "a rotation", ROTATION_KEYS, &[], source)?;
             let centre = turn.vector("centre")?.unwrap_or_default();
-            Ok(Turn { axis: turn.direction("axis")?, centre, angle: turn.needed("angle")? })
+            Ok(Rotation { axis: turn.direction("axis")?, centre, angle: turn.needed("angle")? })
         })
         .transpose()?;
     let translation = object.vector("translation")?;
@@ -299,6 +303,6 @@ pub(super) fn motion(
         to,
         profile: if smooth { Profile::Smooth } else { Profile::Linear },
         translation: translation.unwrap_or_default(),
-        turn,
+        rotation: turn,
     })
 }

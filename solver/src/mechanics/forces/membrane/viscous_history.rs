@@ -1,11 +1,12 @@
-//! What elements remember from one pass to the next, for viscosity.
+//! Strain and viscous stress of the elements at the end of a step, stored for the next one.
 //!
 //! ```text
 //! e = (Exx + Eyy, Exx − Eyy, 2 Exy)        s = ((Sxx + Syy)/2, (Sxx − Syy)/2, Sxy)        S:E = s·e
-//! −A t s_v = drag ((1 + ν)/2 e1, (1 − ν)/2 e2, (1 − ν)/2 e3)/Δt        over the change of e in the step
+//! −A t s_v = η ((1 + ν)/2 Δe1, (1 − ν)/2 Δe2, (1 − ν)/2 Δe3)/Δt        η = −A t E/(1−ν²) 2ζ/ω_e
 //! ```
 //!
-//! Viscosity is part of the state: its stress follows from two places, and a state has one.
+//! Symbols: Δe change of the strain e in the step Δt, `s_v` viscous stress. The viscous stress depends on
+//! the positions at two times; a state holds the positions at one, so it must store the stress.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -14,77 +15,89 @@ use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::{Lanes, WIDTH};
 
-/// What is remembered of eight elements, in their own axes ([`crate::mechanics::film_model::ElementBlock`]).
+/// Stored values of eight elements, each in its own axes
+/// ([`crate::mechanics::film_model::ElementBlock`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViscousHistory {
-    /// e of the module's equations.
+    /// Strain e.
     pub(crate) strain: [Lanes; 3],
     /// −A t `s_v`, J.
-    pub(crate) drag: [Lanes; 3],
+    pub(crate) minus_weighted_stress: [Lanes; 3],
 }
 
 impl ViscousHistory {
-    /// Of film that has not moved: the halves of a model's kites, eight by eight.
+    /// Histories of a film at rest, without viscous stress: the first and the second elements of each
+    /// block of eight kites.
     pub fn at_rest(model: &FilmModel) -> Vec<[Self; 2]> {
         vec![[Self::default(); 2]; model.constants.len()]
     }
 
-    /// Of film that came to these places (m) with these velocities (m/s): `S_v` of Ė = sym(FᵀḞ). The
-    /// strains are known after the first pass.
-    pub fn in_motion(model: &FilmModel, places: &Field, velocities: &Field) -> Vec<[Self; 2]> {
-        let mut past = Self::at_rest(model);
+    /// Histories of a film at these positions (m) with these velocities (m/s): `S_v` of Ė = sym(FᵀḞ).
+    /// The first call of [`super::assemble_membrane`] sets the strains.
+    pub fn in_motion(model: &FilmModel, positions: &Field, velocities: &Field) -> Vec<[Self; 2]> {
+        let mut histories = Self::at_rest(model);
         let nu = model.material.poisson_ratio;
         for (index, kite) in model.kites.iter().enumerate() {
             let (block, lane) = (index / WIDTH, index % WIDTH);
-            let [places, speeds] = [edges(places, kite), edges(velocities, kite)];
+            let [edges_of, rates_of] = [edges(positions, kite), edges(velocities, kite)];
             for half in 0..2 {
-                let ([p, q], [u, w]) = (places[half], speeds[half]);
+                let ([p, q], [u, w]) = (edges_of[half], rates_of[half]);
                 let constants = &model.constants[block][half];
-                let [a, b, d] = constants.inverse.each_ref().map(|lanes| lanes.0[lane]);
-                let (pp, pq, qq) = (p.dot(&u), p.dot(&w) + q.dot(&u), q.dot(&w));
-                let lean = b * pp + d * pq;
-                let (xx, yy) = (a * a * pp, b * lean + d * d * qq);
-                let shear = a * (b * pp + lean);
-                let drag = 0.5 * constants.drag.0[lane];
-                let (both, apart) = (drag * (1.0 + nu), drag * (1.0 - nu));
-                let stress = [both * (xx + yy), apart * (xx - yy), apart * shear];
-                for (own, stress) in past[block][half].drag.iter_mut().zip(stress) {
-                    own.0[lane] = stress;
+                let [a, b, d] = constants.inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
+                // Rate of the metric, then of the strain.
+                let (m1, m2, m3) = (p.dot(&u), p.dot(&w) + q.dot(&u), q.dot(&w));
+                let b_m1_d_m2 = b * m1 + d * m2;
+                let (xx, yy) = (a * a * m1, b * b_m1_d_m2 + d * d * m3);
+                let shear = a * (b * m1 + b_m1_d_m2);
+                let viscosity = 0.5 * constants.minus_viscosity.0[lane];
+                let (mean_factor, shear_factor) = (viscosity * (1.0 + nu), viscosity * (1.0 - nu));
+                let stress =
+                    [mean_factor * (xx + yy), shear_factor * (xx - yy), shear_factor * shear];
+                let stored = &mut histories[block][half].minus_weighted_stress;
+                for (stored, stress) in stored.iter_mut().zip(stress) {
+                    stored.0[lane] = stress;
                 }
             }
         }
-        past
+        histories
     }
 }
 
-/// First and last edge of the halves of a kite.
+/// Edges p and q of the two elements of a kite, or their rates.
 fn edges(field: &Field, kite: &[u32; 4]) -> [[Vector3<f64>; 2]; 2] {
     let [s, a, t, b] = kite.map(|node| field.get(node as usize));
     [[a - s, t - s], [t - s, b - s]]
 }
 
-/// Forces on nodes (N) of the `S_v` remembered: the part of [`super::assemble_membrane`]'s that it has there.
-pub fn viscous_forces(model: &FilmModel, places: &Field, past: &[[ViscousHistory; 2]]) -> Field {
-    let mut sum = Field::zeros(model.nodes());
+/// Viscous forces on the nodes (N) at these positions (m): the part of the membrane forces that comes
+/// from the stored `S_v`.
+pub fn viscous_forces(
+    model: &FilmModel,
+    positions: &Field,
+    histories: &[[ViscousHistory; 2]],
+) -> Field {
+    let mut forces = Field::zeros(model.nodes());
     for (index, kite) in model.kites.iter().enumerate() {
         let (block, lane) = (index / WIDTH, index % WIDTH);
         let [s, a, t, b] = *kite;
-        let ends = [[s, a, t], [s, t, b]];
-        for (half, [p, q]) in edges(places, kite).into_iter().enumerate() {
-            let inverse = &model.constants[block][half].inverse;
-            let [a, b, d] = inverse.each_ref().map(|lanes| lanes.0[lane]);
-            let [mean, apart, xy] = past[block][half].drag.each_ref().map(|lanes| lanes.0[lane]);
-            let (xx, yy) = (mean + apart, mean - apart);
-            let lean = b * yy + a * xy;
-            let pull = [a * a * xx + b * (lean + a * xy), d * lean, d * d * yy];
-            let (first, second) = (p * pull[0] + q * pull[1], p * pull[1] + q * pull[2]);
-            for (node, force) in ends[half].into_iter().zip([-(first + second), first, second]) {
-                sum.set(node as usize, sum.get(node as usize) + force);
+        let nodes = [[s, a, t], [s, t, b]];
+        for (half, [p, q]) in edges(positions, kite).into_iter().enumerate() {
+            let inverse_shape = &model.constants[block][half].inverse_shape;
+            let [a, b, d] = inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
+            let stress = &histories[block][half].minus_weighted_stress;
+            let [mean, half_difference, xy] = stress.each_ref().map(|lanes| lanes.0[lane]);
+            let (xx, yy) = (mean + half_difference, mean - half_difference);
+            // Force densities −r of the edges: Gᵀ of the stress.
+            let b_yy_a_xy = b * yy + a * xy;
+            let r = [a * a * xx + b * (b_yy_a_xy + a * xy), d * b_yy_a_xy, d * d * yy];
+            let (first, second) = (p * r[0] + q * r[1], p * r[1] + q * r[2]);
+            for (node, force) in nodes[half].into_iter().zip([-(first + second), first, second]) {
+                forces.set(node as usize, forces.get(node as usize) + force);
             }
         }
     }
-    sum
+    forces
 }
 
 #[cfg(test)]
@@ -92,20 +105,23 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::*;
-    use crate::mechanics::forces::membrane::{NodeForces, Sums, assemble_membrane, strain};
+    use crate::mechanics::forces::membrane::{
+        MembraneSums, NodeForces, assemble_membrane, deformation_gradient, strain,
+    };
     use crate::mechanics::material::PlaneTensor;
     use crate::platform::simd::InstructionSet;
     use crate::scene::Film;
 
-    /// Nine elements and eleven nodes, shaken: their places at 0, h and 2h.
-    struct Shaken {
+    /// Nine elements and eleven nodes that move at constant velocities: positions at the start and
+    /// after one and two steps of `length` (s).
+    struct MovingFilm {
         model: FilmModel,
         velocities: Field,
-        places: [Field; 3],
+        positions: [Field; 3],
         length: f64,
     }
 
-    impl Shaken {
+    impl MovingFilm {
         fn new(length: f64) -> Self {
             let film = Film::PAPER;
             let flat: Vec<_> = (0..11_u32)
@@ -119,128 +135,121 @@ mod tests {
                 triangles.iter().map(|t| t.map(|node| flat[node as usize])).collect();
             let model = FilmModel::new(&film, flat.len(), &triangles, &reference).expect("a film");
             let wave = |k: usize| libm::sin(1.7 * k as f64);
-            let moving = |k: usize| Vector3::new(wave(k), wave(2 * k + 1), wave(3 * k)) * 20.0;
-            let velocities: Vec<_> = (0..flat.len()).map(moving).collect();
-            let places = [0.0, 1.0, 2.0].map(|steps| {
-                let place = |(p, v): (&Vector2<f64>, &Vector3<f64>)| {
+            let velocity = |k: usize| Vector3::new(wave(k), wave(2 * k + 1), wave(3 * k)) * 20.0;
+            let velocities: Vec<_> = (0..flat.len()).map(velocity).collect();
+            let positions = [0.0, 1.0, 2.0].map(|steps| {
+                let position = |(p, v): (&Vector2<f64>, &Vector3<f64>)| {
                     Vector3::new(1.001 * p.x, p.y, 0.02 * p.x) + v * (steps * length)
                 };
-                Field::of(&flat.iter().zip(&velocities).map(place).collect::<Vec<_>>())
+                Field::of(&flat.iter().zip(&velocities).map(position).collect::<Vec<_>>())
             });
-            Self { model, velocities: Field::of(&velocities), places, length }
+            Self { model, velocities: Field::of(&velocities), positions, length }
         }
 
-        /// What is remembered at h and at 2h, and the sums of the second step.
-        fn steps(&self) -> ([Vec<[ViscousHistory; 2]>; 2], Sums) {
-            let Self { model, places: [first, second, third], length, .. } = self;
-            let (mut past, mut out) = (ViscousHistory::at_rest(model), NodeForces::new(model));
-            let path = InstructionSet::detect();
-            let _ = assemble_membrane(path, model, first, 0.0, &mut past, &mut out);
-            let _ = assemble_membrane(path, model, second, *length, &mut past, &mut out);
-            let middle = past.clone();
-            let sums = assemble_membrane(path, model, third, *length, &mut past, &mut out);
-            ([middle, past], sums)
+        /// The histories after one and two steps, and the sums of the second step.
+        fn steps(&self) -> ([Vec<[ViscousHistory; 2]>; 2], MembraneSums) {
+            let Self { model, positions: [first, second, third], length, .. } = self;
+            let (mut histories, mut out) = (ViscousHistory::at_rest(model), NodeForces::new(model));
+            let set = InstructionSet::detect();
+            let _ = assemble_membrane(set, model, first, 0.0, &mut histories, &mut out);
+            let _ = assemble_membrane(set, model, second, *length, &mut histories, &mut out);
+            let middle = histories.clone();
+            let sums = assemble_membrane(set, model, third, *length, &mut histories, &mut out);
+            ([middle, histories], sums)
         }
     }
 
-    /// −A t F `S_v` Dm⁻ᵀ of this strain rate, in axes of the reference.
-    fn by_gradient(
+    /// Viscous forces −A t F `S_v` Dm⁻ᵀ of this strain rate of each element.
+    fn forces_by_gradient(
         model: &FilmModel,
-        places: &Field,
+        positions: &Field,
         rate: impl Fn(usize) -> PlaneTensor,
     ) -> Field {
-        let mut sum = Field::zeros(model.nodes());
+        let mut forces = Field::zeros(model.nodes());
         for (element, triangle) in model.triangles.iter().enumerate() {
-            let [x0, x1, x2] = triangle.map(|node| places.get(node as usize));
             let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
-            let (p, q) = (x1 - x0, x2 - x0);
-            let (f, g) = (p * a + q * c, p * b + q * d);
+            let [f, g] = deformation_gradient(model, positions, element);
             let PlaneTensor { xx, yy, xy } = model.material.full_stress(rate(element));
             let (p, q) = (f * xx + g * xy, f * xy + g * yy);
-            let loss = -model.volume[element] * model.viscous_time[element];
-            let (first, second) = ((p * a + q * b) * loss, (p * c + q * d) * loss);
+            let factor = -model.volume[element] * model.viscous_time[element];
+            let (first, second) = ((p * a + q * b) * factor, (p * c + q * d) * factor);
             for (node, force) in triangle.iter().zip([-(first + second), first, second]) {
-                sum.set(*node as usize, sum.get(*node as usize) + force);
+                forces.set(*node as usize, forces.get(*node as usize) + force);
             }
         }
-        sum
+        forces
     }
 
-    fn assert_same(one: &Field, other: &Field, share: f64) {
-        let size = other.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    /// Asserts that two fields agree within `tolerance` times the largest vector of the second.
+    fn assert_close(left: &Field, right: &Field, tolerance: f64) {
+        let size = right.iter().map(|force| force.norm()).fold(0.0, f64::max);
         assert!(size > 0.0);
-        for (one, other) in one.iter().zip(other.iter()) {
-            assert!((one - other).norm() < share * size, "{one} {other}");
+        for (left, right) in left.iter().zip(right.iter()) {
+            assert!((left - right).norm() < tolerance * size, "{left} {right}");
         }
     }
 
     #[test]
-    fn viscosity_resists_the_change_of_strain() {
-        let shaken = Shaken::new(2e-6);
-        let Shaken { model, places: [_, second, third], length, .. } = &shaken;
-        let ([_, past], _) = shaken.steps();
+    fn viscous_force_follows_the_change_of_strain_in_a_step() {
+        let film = MovingFilm::new(2e-6);
+        let MovingFilm { model, positions: [_, second, third], length, .. } = &film;
+        let ([_, histories], _) = film.steps();
         let rate = |element: usize| {
-            let [then, now] = [second, third].map(|places| strain(model, places, element));
-            let rate = |then: f64, now: f64| (now - then) / length;
+            let [before, after] = [second, third].map(|x| strain(model, x, element));
+            let rate = |before: f64, after: f64| (after - before) / length;
             PlaneTensor {
-                xx: rate(then.xx, now.xx),
-                yy: rate(then.yy, now.yy),
-                xy: rate(then.xy, now.xy),
+                xx: rate(before.xx, after.xx),
+                yy: rate(before.yy, after.yy),
+                xy: rate(before.xy, after.xy),
             }
         };
-        let by_gradient = by_gradient(model, third, rate);
-        assert_same(&viscous_forces(model, third, &past), &by_gradient, 1e-9);
+        let expected = forces_by_gradient(model, third, rate);
+        assert_close(&viscous_forces(model, third, &histories), &expected, 1e-9);
     }
 
-    /// At the start, of the velocities there; a pass of no length keeps it.
     #[test]
-    fn what_is_in_motion_resists_from_the_start() {
-        let Shaken { model, velocities, places: [places, ..], .. } = &Shaken::new(2e-6);
-        let gradients = |field: &Field, element: usize| {
-            let [x0, x1, x2] = model.triangles[element].map(|node| field.get(node as usize));
-            let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
-            let (p, q) = (x1 - x0, x2 - x0);
-            [p * a + q * c, p * b + q * d]
-        };
+    fn viscous_force_at_the_start_follows_the_velocities_and_a_zero_step_keeps_it() {
+        let MovingFilm { model, velocities, positions: [positions, ..], .. } =
+            &MovingFilm::new(2e-6);
         let rate = |element: usize| {
-            let ([f, g], [fr, gr]) = (gradients(places, element), gradients(velocities, element));
-            let xy = (f.dot(&gr) + g.dot(&fr)) * 0.5;
-            PlaneTensor { xx: f.dot(&fr), yy: g.dot(&gr), xy }
+            let [f, g] = deformation_gradient(model, positions, element);
+            let [f_rate, g_rate] = deformation_gradient(model, velocities, element);
+            let xy = (f.dot(&g_rate) + g.dot(&f_rate)) * 0.5;
+            PlaneTensor { xx: f.dot(&f_rate), yy: g.dot(&g_rate), xy }
         };
-        let by_gradient = by_gradient(model, places, rate);
-        let mut past = ViscousHistory::in_motion(model, places, velocities);
-        assert_same(&viscous_forces(model, places, &past), &by_gradient, 1e-12);
+        let expected = forces_by_gradient(model, positions, rate);
+        let mut histories = ViscousHistory::in_motion(model, positions, velocities);
+        assert_close(&viscous_forces(model, positions, &histories), &expected, 1e-12);
 
-        let (mut still, mut out) = (ViscousHistory::at_rest(model), NodeForces::new(model));
-        let _ =
-            assemble_membrane(InstructionSet::detect(), model, places, 0.0, &mut still, &mut out);
+        let set = InstructionSet::detect();
+        let (mut at_rest, mut out) = (ViscousHistory::at_rest(model), NodeForces::new(model));
+        let _ = assemble_membrane(set, model, positions, 0.0, &mut at_rest, &mut out);
         let elastic = out.films();
-        let sums =
-            assemble_membrane(InstructionSet::detect(), model, places, 0.0, &mut past, &mut out);
+        let sums = assemble_membrane(set, model, positions, 0.0, &mut histories, &mut out);
         let viscous: Vec<_> = out.films().iter().zip(elastic.iter()).map(|(f, g)| f - g).collect();
-        assert_same(&Field::of(&viscous), &by_gradient, 1e-9);
+        assert_close(&Field::of(&viscous), &expected, 1e-9);
         assert!(sums.viscous_work.abs() <= 0.0);
     }
 
-    /// The work told is minus the trapezoid of the viscous forces along the way, but for what is of a higher
-    /// order in the step.
+    /// The viscous work equals minus the trapezoidal work of the viscous forces, up to a difference of
+    /// higher order in the step.
     #[test]
-    fn the_work_told_is_the_trapezoid_of_the_forces() {
-        let off = |length: f64| {
-            let shaken = Shaken::new(length);
-            let Shaken { model, velocities, places: [_, second, third], .. } = &shaken;
-            let ([before, after], sums) = shaken.steps();
-            let along = |forces: &Field| -> f64 {
+    fn viscous_work_is_the_trapezoidal_work_of_the_viscous_forces() {
+        let error = |length: f64| {
+            let film = MovingFilm::new(length);
+            let MovingFilm { model, velocities, positions: [_, second, third], .. } = &film;
+            let ([before, after], sums) = film.steps();
+            let power = |forces: &Field| -> f64 {
                 forces.iter().zip(velocities.iter()).map(|(f, v)| -f.dot(&v)).sum()
             };
             let trapezoid = 0.5
                 * length
-                * (along(&viscous_forces(model, second, &before))
-                    + along(&viscous_forces(model, third, &after)));
+                * (power(&viscous_forces(model, second, &before))
+                    + power(&viscous_forces(model, third, &after)));
             assert!(trapezoid > 0.0);
             (sums.viscous_work / trapezoid - 1.0).abs()
         };
-        let (whole, half) = (off(2e-6), off(1e-6));
+        let (whole, half) = (error(2e-6), error(1e-6));
         assert!(whole < 1e-5 && half < 0.5 * whole, "{whole} {half}");
     }
 }

@@ -1,0 +1,39 @@
+//! Model and solution parameters of a capsule run.
+
+use serde::{Deserialize, Serialize};
+
+/// The model that computes the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelKind {
+    /// One moving mass on one gas volume: [`crate::models::piston`].
+    Piston,
+    /// The film with contact: [`crate::models::film`].
+    Film,
+}
+
+/// Model and solution parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Solver {
+    /// Model.
+    pub model: ModelKind,
+    /// Simulated time, s.
+    pub end_time: f64,
+    /// Choice of the time step.
+    pub stepping: Stepping,
+    /// Maximum number of accepted steps; a run that reaches it stops with `step_limit`.
+    pub step_limit: u64,
+}
+
+/// Choice of the time step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Stepping {
+    /// Error-controlled, with this relative tolerance a step.
+    Adaptive(f64),
+    /// This step, s; shortened only to end at breakpoints and sample times.
+    Fixed(f64),
+    /// This fraction of the stable step (CFL number), for explicit models.
+    Stable(f64),
+}
