@@ -76,9 +76,8 @@ fn steps(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(model.elements() as u64));
         let mut film = start.clone();
         group.bench_function("plain loops", |bencher| {
-            bencher.iter(|| {
-                black_box(reference_step(&model, &parameters, &free, length, &mut film))
-            });
+            bencher
+                .iter(|| black_box(reference_step(&model, &parameters, &free, length, &mut film)));
         });
         for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
             let mut film = start.clone();
