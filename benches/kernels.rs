@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
-use billow_solver::integrators::explicit::reference_step::{Moving, fast_step, plain_step};
+use billow_solver::integrators::explicit::reference_step::{FilmMotion, vector_step, reference_step};
 use billow_solver::integrators::explicit::update::Push;
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::mechanics::film_model::FilmModel;
@@ -63,18 +63,18 @@ fn steps(criterion: &mut Criterion) {
             gain: length,
             pressed: false,
         };
-        let start = Moving::new(InstructionSet::detect(), &model, places, Field::zeros(nodes));
+        let start = FilmMotion::new(InstructionSet::detect(), &model, places, Field::zeros(nodes));
         let mut group = criterion.benchmark_group(format!("film n {subdivisions}"));
         group.throughput(Throughput::Elements(model.elements() as u64));
         let mut film = start.clone();
         group.bench_function("plain loops", |bencher| {
-            bencher.iter(|| black_box(plain_step(&model, &push, &free, length, &mut film)));
+            bencher.iter(|| black_box(reference_step(&model, &push, &free, length, &mut film)));
         });
         for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
             let mut film = start.clone();
             group.bench_function(path.name(), |bencher| {
                 bencher
-                    .iter(|| black_box(fast_step(path, &model, &push, &free, length, &mut film)));
+                    .iter(|| black_box(vector_step(path, &model, &push, &free, length, &mut film)));
             });
         }
         group.finish();

@@ -104,7 +104,7 @@ pub struct FilmSolver {
     /// Accepted steps after which a run stops with `step_limit`.
     pub step_limit: u64,
     /// Instruction set; the bits are the same on each.
-    pub path: InstructionSet,
+    pub instruction_set: InstructionSet,
 }
 
 /// What is followed of a run.

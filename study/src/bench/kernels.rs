@@ -5,8 +5,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use billow_solver::integrators::explicit::Explicit;
-use billow_solver::integrators::explicit::reference_step::{Moving, fast_step, plain_step};
-use billow_solver::integrators::explicit::update::Push;
+use billow_solver::integrators::explicit::reference_step::{
+    FilmMotion, reference_step, vector_step,
+};
+use billow_solver::integrators::explicit::update::KickParameters;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::platform::stopwatch::Untimed;
 use billow_solver::scene::timeline::Timeline;
@@ -81,24 +83,24 @@ pub fn measure(
         rows.push(row(STEP, width, seconds));
     }
     // The same work as the step's, at a fixed pressure: nothing else is in either.
-    let push = Push {
+    let push = KickParameters {
         overpressure: film.overpressure(),
-        gravity: film.setting.gravity,
-        weight: 1.0,
-        keep: 1.0,
-        gain: film.state.last_step,
-        pressed: false,
+        gravity: film.parameters.gravity,
+        weight_factor: 1.0,
+        velocity_factor: 1.0,
+        acceleration_factor: film.state.last_step,
+        contact_active: false,
     };
-    let (free, length) = (&film.setting.supports.free, film.state.last_step);
+    let (free, length) = (&film.parameters.supports.free, film.state.last_step);
     let moving = |path| {
-        let (places, velocities) = (film.state.places.clone(), film.state.velocities.clone());
-        Moving::new(path, &film.model, places, velocities)
+        let (places, velocities) = (film.state.positions.clone(), film.state.velocities.clone());
+        FilmMotion::new(path, &film.model, places, velocities)
     };
     for width in widths {
         let seconds = least(effort, stop, &mut || {
             let mut own = moving(width);
             Ok(timed(steps, &mut || {
-                black_box(fast_step(width, &film.model, &push, free, length, &mut own));
+                black_box(vector_step(width, &film.model, &push, free, length, &mut own));
             }))
         })?;
         rows.push(row(FILM, width, seconds));
@@ -106,7 +108,7 @@ pub fn measure(
     let seconds = least(effort, stop, &mut || {
         let mut own = moving(InstructionSet::Scalar);
         Ok(timed(steps, &mut || {
-            black_box(plain_step(&film.model, &push, free, length, &mut own));
+            black_box(reference_step(&film.model, &push, free, length, &mut own));
         }))
     })?;
     rows.push(row(REFERENCE, InstructionSet::Scalar, seconds));
@@ -116,7 +118,7 @@ pub fn measure(
 /// Seconds of so many steps on a path.
 fn stepped(film: &Explicit, path: InstructionSet, course: &Timeline, steps: u64) -> Result<f64> {
     let mut film = film.clone();
-    film.setting.path = path;
+    film.parameters.instruction_set = path;
     let start = Instant::now();
     take(&mut film, course, steps, &mut Untimed)?;
     Ok(start.elapsed().as_secs_f64())

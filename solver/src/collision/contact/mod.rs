@@ -160,11 +160,17 @@ const OF_EDGE: f64 = 0.02;
 impl ContactModel {
     /// Contact of a film at these places (m), at this distance (m), or at 0.4 of the smallest gap of a
     /// node and an element, at most a fiftieth of the mean edge length.
-    pub fn of_film(model: &FilmModel, places: &Field, distance: Option<f64>) -> Self {
+    pub fn of_film(
+        model: &FilmModel,
+        places: &Field,
+        distance: Option<f64>,
+        instruction_set: InstructionSet,
+    ) -> Self {
         let topology = Topology::new(model.nodes(), &model.triangles);
         let length = |[a, b]: &[u32; 2]| (places.get(*a as usize) - places.get(*b as usize)).norm();
         let edge = topology.edges.iter().map(length).sum::<f64>() / topology.edges.len() as f64;
         let mut law = Self::new(topology, OF_EDGE * edge, model.largest_frequency(), edge);
+        law.path = instruction_set;
         let area: f64 = model.volume.iter().sum::<f64>() / model.thickness;
         law.area_density = model.mass.iter().sum::<f64>() / area;
         let distance = distance.unwrap_or_else(|| {

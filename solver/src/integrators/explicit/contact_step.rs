@@ -22,47 +22,48 @@ fn unkept(pair: Pair) -> String {
 
 impl Explicit {
     /// The plates of the start.
-    pub(super) fn meet_first(&mut self) {
-        let Some(law) = &self.setting.contact else { return };
-        let places = &self.state.places;
-        self.state.meeting.searches = 1;
-        let start = law.plates.iter().map(|plate| plate.start(places, law.distance));
-        self.state.meeting.plates = start.collect();
+    pub(super) fn initialise_contact(&mut self) {
+        let Some(law) = &self.parameters.contact else { return };
+        let positions = &self.state.positions;
+        self.state.contact_state.searches = 1;
+        let start = law.plates.iter().map(|plate| plate.start(positions, law.distance));
+        self.state.contact_state.plates = start.collect();
     }
 
-    /// Forces of contact at the places now, which are those of `time` (s).
-    pub(super) fn press(&mut self, time: f64) {
-        let Some(law) = &self.setting.contact else { return };
-        let (places, meeting) = (&self.state.places, &mut self.state.meeting);
-        let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
+    /// Forces of contact at the positions now, which are those of `time` (s).
+    pub(super) fn update_contact_forces(&mut self, time: f64) {
+        let Some(law) = &self.parameters.contact else { return };
+        let (positions, contact_state) = (&self.state.positions, &mut self.state.contact_state);
+        let search = self.candidates.get_or_insert_with(|| law.look(positions, contact_state.path));
         if search.pushed {
             let Field { x, y, z } = &mut self.forces.contact;
             for column in [x, y, z] {
                 column.fill(0.0);
             }
         }
-        law.meet(places, &self.model.mass, &mut self.forces.contact, meeting, search);
-        search.pushed = !meeting.contacts.is_empty() || !law.plates.is_empty();
+        law.meet(positions, &self.model.mass, &mut self.forces.contact, contact_state, search);
+        search.pushed = !contact_state.contacts.is_empty() || !law.plates.is_empty();
         let (forces, stiffness) = (&mut self.forces.contact, law.stiffness);
-        for (plate, pressed) in law.plates.iter().zip(&mut meeting.plates) {
-            plate.push(places, &self.model, time, law.distance, stiffness, pressed, forces);
+        for (plate, pressed) in law.plates.iter().zip(&mut contact_state.plates) {
+            plate.push(positions, &self.model, time, law.distance, stiffness, pressed, forces);
         }
     }
 
     /// Looks for pairs the drift to come could bring together, and keeps them apart, and off the plates:
     /// in turn, until neither changes anything and no node is faster than the pairs were looked for.
-    pub(super) fn keep_apart(
+    pub(super) fn collision_step(
         &mut self,
         kick: f64,
         length: f64,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<(), Failure> {
-        let Some(law) = &self.setting.contact else { return Ok(()) };
-        let (model, supports, time) = (&self.model, &self.setting.supports, self.state.time);
-        let State { places, velocities, meeting, .. } = &mut self.state;
-        let path = self.setting.path;
-        let fastest = |velocities: &Field| largest_squared_speed(path, velocities).sqrt();
-        let search = self.search.get_or_insert_with(|| law.look(places, meeting.path));
+        let Some(law) = &self.parameters.contact else { return Ok(()) };
+        let (model, supports, time) = (&self.model, &self.parameters.supports, self.state.time);
+        let State { positions, velocities, contact_state, .. } = &mut self.state;
+        let instruction_set = self.parameters.instruction_set;
+        let fastest =
+            |velocities: &Field| largest_squared_speed(instruction_set, velocities).sqrt();
+        let search = self.candidates.get_or_insert_with(|| law.look(positions, contact_state.path));
         let speed = fastest(velocities);
         if speed >= model.wave_speed() {
             // The step ends the run; nothing is near or far for film that fast.
@@ -70,9 +71,9 @@ impl Explicit {
         }
         let mut way = speed * length;
         stopwatch.begins(Stage::Search);
-        law.prepare(places, meeting, search, way);
+        law.prepare(positions, contact_state, search, way);
         stopwatch.begins(Stage::Pairs);
-        law.rub(model, supports, places, &self.next, velocities, kick, meeting);
+        law.rub(model, supports, positions, &self.next, velocities, kick, contact_state);
         // Friction may have made a node faster.
         let rubbed = if law.friction > 0.0 { fastest(velocities) * length } else { way };
         let mut own_way = way.max(rubbed);
@@ -81,13 +82,13 @@ impl Explicit {
             let kept = law.guard(
                 model,
                 supports,
-                places,
+                positions,
                 &self.next,
                 velocities,
                 length,
                 &search.near,
                 own_way,
-                meeting,
+                contact_state,
                 turn,
                 &mut stopped,
             );
@@ -96,18 +97,18 @@ impl Explicit {
             }
             let before = stopped.len();
             for plate in &law.plates {
-                plate.guard(places, model, supports, velocities, time, length, &mut stopped);
+                plate.guard(positions, model, supports, velocities, time, length, &mut stopped);
             }
             let now = fastest(velocities) * length;
             let farther = now > way;
             if farther {
-                meeting.path -= way;
-                law.prepare(places, meeting, search, now);
+                contact_state.path -= way;
+                law.prepare(positions, contact_state, search, now);
                 way = now;
                 own_way = now;
             }
             if !farther && stopped.len() == before {
-                meeting.taken += taken(&stopped, &self.next, velocities);
+                contact_state.taken += taken(&stopped, &self.next, velocities);
                 return Ok(());
             }
         }
@@ -117,50 +118,50 @@ impl Explicit {
 
     /// Smallest distance of film that is held apart, m; infinite where none is.
     pub fn smallest_gap(&self) -> f64 {
-        self.search.as_ref().map_or(f64::INFINITY, |search| search.smallest_gap)
+        self.candidates.as_ref().map_or(f64::INFINITY, |search| search.smallest_gap)
     }
 
     /// Intersections of the mesh now, or when it last came to a target.
     pub fn intersections(&self) -> u64 {
-        self.watch.as_ref().map_or(0, |watch| watch.piercings.count)
+        self.monitor.as_ref().map_or(0, |watch| watch.piercings.count)
     }
 
     /// Whether contact or a plate pushes, or may.
-    pub(super) fn pushed(&self) -> bool {
-        let none = self.setting.contact.is_none();
-        !none && self.search.as_ref().is_none_or(|search| search.pushed)
+    pub(super) fn contact_active(&self) -> bool {
+        let none = self.parameters.contact.is_none();
+        !none && self.candidates.as_ref().is_none_or(|search| search.pushed)
     }
 
     /// Half a step's work of the plates, by their force now, on the way to `until` (s).
-    pub(super) fn plate_work(&mut self, until: f64) {
-        let Some(law) = &self.setting.contact else { return };
+    pub(super) fn add_plate_work(&mut self, until: f64) {
+        let Some(law) = &self.parameters.contact else { return };
         let state = &mut self.state;
-        for (plate, pressed) in law.plates.iter().zip(&state.meeting.plates) {
+        for (plate, pressed) in law.plates.iter().zip(&state.contact_state.plates) {
             let work = 0.5 * pressed.force * plate.way(state.time, until);
             state.works.support += work;
             state.works.contact -= work;
         }
     }
 
-    /// Lets the audit see the places after a step.
-    pub(super) fn seen(&mut self) -> Result<(), Failure> {
-        if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
-            watch.step(&law.topology, &self.state.places);
+    /// Lets the audit see the positions after a step.
+    pub(super) fn monitor_step(&mut self) -> Result<(), Failure> {
+        if let (Some(watch), Some(law)) = (&mut self.monitor, &self.parameters.contact) {
+            watch.step(&law.topology, &self.state.positions);
         }
         self.nothing_passed()
     }
 
     /// Has the audit look at all steps it has seen.
-    pub(super) fn look(&mut self) -> Result<(), Failure> {
-        if let (Some(watch), Some(law)) = (&mut self.watch, &self.setting.contact) {
+    pub(super) fn monitor_interval(&mut self) -> Result<(), Failure> {
+        if let (Some(watch), Some(law)) = (&mut self.monitor, &self.parameters.contact) {
             watch.look(&law.topology);
-            watch.piercings.look(&law.topology, &self.state.places);
+            watch.piercings.look(&law.topology, &self.state.positions);
         }
         self.nothing_passed()
     }
 
     fn nothing_passed(&self) -> Result<(), Failure> {
-        match self.watch.as_ref().and_then(|watch| watch.first) {
+        match self.monitor.as_ref().and_then(|watch| watch.first) {
             None => Ok(()),
             Some((passage, at)) => {
                 let [x, y, z] = [at.x, at.y, at.z];
