@@ -265,3 +265,12 @@ fn every_feasible_design_of_a_grid_runs() {
     println!("{feasible} feasible designs");
     assert!(feasible >= 20, "{feasible}");
 }
+
+#[test]
+fn a_model_without_stored_reference_refuses_to_compute_one() {
+    let scene = crate::rig::paper_scene();
+    assert_eq!(models::reference_scene(&scene), None);
+    let refused = models::reference(InstructionSet::detect(), &scene, &mut || true);
+    let message = refused.unwrap_err().to_string();
+    assert!(message.contains("solver.model") && message.contains("piston"), "{message}");
+}

@@ -17,7 +17,7 @@ use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::statics::tangent::{self, Stiffness};
 use billow_solver::statics::{
-    Loaded, Relaxation, Settling, StaticError, StaticFailureKind, equilibrium, solve_unobserved,
+    Loaded, Relaxation, StaticError, StaticFailureKind, Tolerances, equilibrium, solve_unobserved,
 };
 use nalgebra::{SVector, Vector2, Vector3};
 
@@ -306,7 +306,7 @@ fn the_watcher_can_end_a_search() {
             std::ops::ControlFlow::Continue(())
         }
     };
-    let ended = equilibrium(&loaded, Field::of(&piece.nodes), &Settling::default(), stop);
+    let ended = equilibrium(&loaded, Field::of(&piece.nodes), &Tolerances::default(), stop);
     assert_eq!(ended.unwrap_err().kind, StaticFailureKind::Stopped);
 }
 
@@ -326,7 +326,7 @@ fn an_equilibrium_has_the_same_bits_on_every_instruction_set() {
         let start = Instant::now();
         let go = &mut |_: &_| std::ops::ControlFlow::Continue(());
         let rest =
-            equilibrium(&loaded, capsule.positions.clone(), &Settling::default(), go).unwrap();
+            equilibrium(&loaded, capsule.positions.clone(), &Tolerances::default(), go).unwrap();
         println!("{}: {:.3} s", instruction_set.name(), start.elapsed().as_secs_f64());
         rest.positions
     });

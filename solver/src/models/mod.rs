@@ -41,12 +41,16 @@ type SolveFn = fn(
     &mut dyn Observer,
 ) -> Result<Deployment, SceneError>;
 
+/// A search for a static reference: [`reference()`].
+type ReferenceFn =
+    fn(InstructionSet, &Scene, &mut dyn FnMut() -> bool) -> Result<Reference, SceneError>;
+
 /// The static reference of a model.
 struct ReferenceEntry {
     /// [`reference_scene`].
     scene: fn(&Scene) -> Scene,
     /// [`reference()`].
-    solve: fn(InstructionSet, &Scene, &mut dyn FnMut() -> bool) -> Result<Reference, SceneError>,
+    solve: ReferenceFn,
 }
 
 /// The entry of a model.

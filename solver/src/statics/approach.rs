@@ -8,7 +8,7 @@
 //!
 //! Slack or flat film of extent L converges fastest under a pressure p0 that makes it taut everywhere;
 //! the equilibrium then follows the pressure down to p. Film that starts full, near its shape, begins at
-//! a tenth of that pressure. At intermediate pressures film has a compression fraction c_k in proportion
+//! a tenth of that pressure. At intermediate pressures film has a compression fraction `c_k` in proportion
 //! to the pressure, so that its shape hardly depends on it and each pressure needs few steps; the last
 //! step has the film's own fraction. Wrinkled film has many energy minima near each other. Descending
 //! pressures reach the minimum that continues the taut film, with its symmetry; a start at the final
@@ -17,8 +17,8 @@
 use nalgebra::Vector3;
 
 use super::newton::{
-    IterationObserver, Loaded, Rest, Settling, StaticFailure, StaticFailureKind, equilibrium,
-    extent, tensile_stiffness,
+    Equilibrium, IterationObserver, Loaded, StaticFailure, StaticFailureKind, Tolerances,
+    equilibrium, extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
 use crate::geometry::field::Field;
@@ -50,7 +50,7 @@ const MOTION_PARTS: [u32; 3] = [1, 4, 16];
 const RELAXATION_STEPS: u64 = 20_000;
 
 /// Tolerances of intermediate equilibria. Chosen.
-const INTERMEDIATE: Settling = Settling { residual: 1e-3, step: 1e-3, iterations: 80 };
+const INTERMEDIATE: Tolerances = Tolerances { residual: 1e-3, step: 1e-3, iterations: 80 };
 
 /// Finds the static equilibrium under this load from these positions (m), with moving supports at the
 /// end of their motion. `from` (Pa): the overpressure at which the positions already are an equilibrium,
@@ -65,18 +65,18 @@ pub fn settle(
     loaded: &Loaded<'_>,
     positions: &Field,
     from: Option<f64>,
-    settling: &Settling,
+    tolerances: &Tolerances,
     observer: IterationObserver<'_>,
-) -> Result<Rest, StaticFailure> {
+) -> Result<Equilibrium, StaticFailure> {
     let stages = stages(loaded, positions, from);
     let moves = !loaded.supports.movers.is_empty();
     let attempts = if moves { &MOTION_PARTS[..] } else { &MOTION_PARTS[..1] };
     let mut last = None;
     for parts in attempts {
         let mut continuation =
-            Continuation { loaded, settling, observer: &mut *observer, iterations: 0 };
+            Continuation { loaded, tolerances, observer: &mut *observer, iterations: 0 };
         match continuation.run(positions, &stages, *parts) {
-            Ok(rest) => return Ok(rest),
+            Ok(found) => return Ok(found),
             Err(failure) if failure.kind == StaticFailureKind::Stopped => return Err(failure),
             Err(failure) => last = Some(failure),
         }
@@ -134,7 +134,7 @@ fn fullness(model: &FilmModel, positions: &Field) -> f64 {
 /// A continuation in progress.
 struct Continuation<'a, 'b> {
     loaded: &'a Loaded<'a>,
-    settling: &'a Settling,
+    tolerances: &'a Tolerances,
     observer: IterationObserver<'b>,
     iterations: u32,
 }
@@ -146,7 +146,7 @@ impl Continuation<'_, '_> {
         positions: &Field,
         stages: &[Stage],
         parts: u32,
-    ) -> Result<Rest, StaticFailure> {
+    ) -> Result<Equilibrium, StaticFailure> {
         let mut positions = positions.clone();
         for part in 1..=parts {
             move_held(self.loaded.supports, &mut positions, f64::from(part) / f64::from(parts));
@@ -158,16 +158,16 @@ impl Continuation<'_, '_> {
         for stage in before {
             positions = self.approach(positions, *stage)?;
         }
-        let found = match self.equilibrium(positions, *last, self.settling) {
+        let found = match self.equilibrium(positions, *last, self.tolerances) {
             Err(failure) if !is_final(&failure) => match relaxed(self.loaded, &failure.positions) {
-                Some(positions) => self.equilibrium(positions, *last, self.settling),
+                Some(positions) => self.equilibrium(positions, *last, self.tolerances),
                 None => Err(failure),
             },
             found => found,
         };
         let iterations = self.iterations;
         match found {
-            Ok(rest) => Ok(Rest { iterations, ..rest }),
+            Ok(found) => Ok(Equilibrium { iterations, ..found }),
             Err(failure) => Err(StaticFailure { iterations, ..failure }),
         }
     }
@@ -175,7 +175,7 @@ impl Continuation<'_, '_> {
     /// Positions near the equilibrium of an intermediate load.
     fn approach(&mut self, positions: Field, stage: Stage) -> Result<Field, StaticFailure> {
         match self.equilibrium(positions, stage, &INTERMEDIATE) {
-            Ok(rest) => Ok(rest.positions),
+            Ok(found) => Ok(found.positions),
             Err(failure) if is_final(&failure) => Err(failure),
             Err(failure) => Ok(*failure.positions),
         }
@@ -186,14 +186,14 @@ impl Continuation<'_, '_> {
         &mut self,
         positions: Field,
         stage: Stage,
-        settling: &Settling,
-    ) -> Result<Rest, StaticFailure> {
+        tolerances: &Tolerances,
+    ) -> Result<Equilibrium, StaticFailure> {
         let mut model = self.loaded.model.clone();
         model.material.compression = stage.compression;
         let loaded = Loaded { model: &model, overpressure: stage.overpressure, ..*self.loaded };
-        let found = equilibrium(&loaded, positions, settling, &mut *self.observer);
+        let found = equilibrium(&loaded, positions, tolerances, &mut *self.observer);
         self.iterations += match &found {
-            Ok(rest) => rest.iterations,
+            Ok(found) => found.iterations,
             Err(failure) => failure.iterations,
         };
         found

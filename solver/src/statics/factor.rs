@@ -20,7 +20,7 @@ use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::InstructionSet;
 
 /// Lower bound of a pivot over its diagonal entry for the matrix to count as positive definite. Chosen:
-/// a hundred times the rounding error of a pivot.
+/// about fifty rounding errors of the entry.
 const MIN_PIVOT_RATIO: f64 = 1e-14;
 
 /// One unknown of a face: its index in the front, the corner it moves, and the direction.

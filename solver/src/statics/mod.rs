@@ -33,8 +33,8 @@ pub mod unknowns;
 
 pub use approach::settle;
 pub use newton::{
-    Iteration, IterationObserver, Loaded, Rest, Settling, StaticFailure, StaticFailureKind,
-    equilibrium,
+    Equilibrium, Iteration, IterationObserver, Loaded, StaticFailure, StaticFailureKind,
+    Tolerances, equilibrium,
 };
 pub use relaxation::Relaxation;
 
@@ -125,13 +125,13 @@ pub fn solve_from(
     };
     let (positions, from) =
         known.map_or((&start, None), |(state, pressure)| (&state.positions, Some(pressure)));
-    let rest = settle(&loaded, positions, from, &Settling::default(), observer)?;
-    let strain = strain_energy(&model, &rest.positions);
-    let volume = scene.shell.volume(|node| rest.positions.get(node as usize));
+    let equilibrium = settle(&loaded, positions, from, &Tolerances::default(), observer)?;
+    let strain = strain_energy(&model, &equilibrium.positions);
+    let volume = scene.shell.volume(|node| equilibrium.positions.get(node as usize));
     let gravity_work: f64 = model
         .mass
         .iter()
-        .zip(rest.positions.iter())
+        .zip(equilibrium.positions.iter())
         .map(|(mass, position)| mass * scene.gravity.dot(&position))
         .sum();
     let plane_work: f64 = supports
@@ -139,19 +139,19 @@ pub fn solve_from(
         .iter()
         .filter_map(|body| {
             let node = *body.nodes.first()? as usize;
-            let displacement = rest.positions.get(node) - start.get(node);
+            let displacement = equilibrium.positions.get(node) - start.get(node);
             Some(body.plane.force * body.plane.normal.dot(&displacement))
         })
         .sum();
     Ok(StaticSolution {
-        reactions: scene.supports.iter().map(|support| reaction(support, &rest)).collect(),
+        reactions: scene.supports.iter().map(|support| reaction(support, &equilibrium)).collect(),
         strain_energy: strain,
         potential_energy: strain - overpressure * volume - gravity_work - plane_work,
         volume,
-        iterations: rest.iterations,
-        residual: rest.residual,
-        positions: rest.positions,
-        forces: rest.forces,
+        iterations: equilibrium.iterations,
+        residual: equilibrium.residual,
+        positions: equilibrium.positions,
+        forces: equilibrium.forces,
         model,
     })
 }
@@ -164,19 +164,23 @@ pub fn solve_unobserved(scene: &FilmScene) -> Result<StaticSolution, StaticError
     solve(scene, &mut |_| ControlFlow::Continue(()))
 }
 
-fn reaction(support: &FilmSupport, rest: &Rest) -> Reaction {
-    let [force, moment] = support_force(rest, &support.nodes, &support.hold.projector());
+fn reaction(support: &FilmSupport, equilibrium: &Equilibrium) -> Reaction {
+    let [force, moment] = support_force(equilibrium, &support.nodes, &support.hold.projector());
     Reaction { name: support.name.clone(), force, moment }
 }
 
 /// Force of the film on a support that holds `nodes` along `held`, N, and its moment about the origin, N m.
-pub fn support_force(rest: &Rest, nodes: &[u32], held: &Matrix3<f64>) -> [Vector3<f64>; 2] {
+pub fn support_force(
+    equilibrium: &Equilibrium,
+    nodes: &[u32],
+    held: &Matrix3<f64>,
+) -> [Vector3<f64>; 2] {
     let mut sum = [Vector3::zeros(); 2];
     for node in nodes {
         let node = *node as usize;
-        let force = held * rest.forces.get(node);
+        let force = held * equilibrium.forces.get(node);
         sum[0] += force;
-        sum[1] += rest.positions.get(node).cross(&force);
+        sum[1] += equilibrium.positions.get(node).cross(&force);
     }
     sum
 }

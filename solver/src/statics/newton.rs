@@ -43,7 +43,7 @@ pub struct Loaded<'a> {
 
 /// Tolerances of an equilibrium, and the limit of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settling {
+pub struct Tolerances {
     /// Upper bound of the residual force over the load (Euclidean norms), a fraction.
     pub residual: f64,
     /// Upper bound of the largest displacement of the next Newton step over the size of the film.
@@ -52,7 +52,7 @@ pub struct Settling {
     pub iterations: u32,
 }
 
-impl Default for Settling {
+impl Default for Tolerances {
     fn default() -> Self {
         Self { residual: 1e-7, step: 1e-6, iterations: 400 }
     }
@@ -110,7 +110,7 @@ pub struct StaticFailure {
 
 /// A static equilibrium found by Newton's method.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rest {
+pub struct Equilibrium {
     /// Positions of the nodes, m.
     pub positions: Field,
     /// Forces of film, pressure and weight on the nodes, N. At held nodes the supports balance them.
@@ -145,13 +145,13 @@ const MAX_SLOPE_RATIO: f64 = 0.5;
 pub fn equilibrium(
     loaded: &Loaded<'_>,
     positions: Field,
-    settling: &Settling,
+    tolerances: &Tolerances,
     observer: IterationObserver<'_>,
-) -> Result<Rest, StaticFailure> {
+) -> Result<Equilibrium, StaticFailure> {
     let unknowns = Unknowns::new(loaded.model, loaded.supports);
     let elimination = Elimination::new(loaded.model, &unknowns, &positions);
     let mut search = NewtonSearch::new(loaded, unknowns, positions);
-    search.run(&elimination, settling, observer)
+    search.run(&elimination, tolerances, observer)
 }
 
 /// A search in progress.
@@ -268,9 +268,9 @@ impl<'a> NewtonSearch<'a> {
     fn run(
         &mut self,
         elimination: &Elimination,
-        settling: &Settling,
+        tolerances: &Tolerances,
         observer: IterationObserver<'_>,
-    ) -> Result<Rest, StaticFailure> {
+    ) -> Result<Equilibrium, StaticFailure> {
         let size = extent(&self.positions);
         let omega = self.loaded.model.largest_frequency();
         let mass: Vec<f64> = self.unknowns.mass.iter().map(|m| m * omega * omega).collect();
@@ -301,11 +301,11 @@ impl<'a> NewtonSearch<'a> {
             if observer(&iteration).is_break() {
                 return Err(self.failure(StaticFailureKind::Stopped));
             }
-            if residual <= settling.residual
-                && displacement <= settling.step * size
+            if residual <= tolerances.residual
+                && displacement <= tolerances.step * size
                 && shift <= MAX_SETTLED_SHIFT
             {
-                return Ok(Rest {
+                return Ok(Equilibrium {
                     positions: self.positions.clone(),
                     forces: self.forces.clone(),
                     iterations: self.iterations,
@@ -313,7 +313,7 @@ impl<'a> NewtonSearch<'a> {
                     shift,
                 });
             }
-            if self.iterations >= settling.iterations {
+            if self.iterations >= tolerances.iterations {
                 return Err(self.failure(StaticFailureKind::IterationLimit));
             }
             let max_step = MAX_STEP * size;

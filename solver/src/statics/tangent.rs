@@ -12,7 +12,7 @@
 //! Symbols: g gradients of the shape functions of the corners (1/m), B strain of a unit displacement, n
 //! direction of tension, m direction across it, c compression fraction. D is positive semidefinite in
 //! every regime; for c = 0 so is K without the pressure. The tangent of a follower pressure is not
-//! symmetric element by element; K_p is its symmetric part. The antisymmetric part cancels over a closed
+//! symmetric element by element; `K_p` is its symmetric part. The antisymmetric part cancels over a closed
 //! surface, and over an open surface whose edge is held or slides in planes.
 
 use nalgebra::{Matrix3, Matrix3x2, SMatrix, Vector2, Vector3};

@@ -123,7 +123,7 @@ fn gaps_at<'a>(
 ) -> impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>) + 'a {
     |couple, pairs, gaps| match couple {
         CandidateKind::EdgeEdge => {
-            edge_gaps(InstructionSet::detect(), topology, places, pairs, gaps)
+            edge_gaps(InstructionSet::detect(), topology, places, pairs, gaps);
         }
         _ => element_gaps(InstructionSet::detect(), topology, places, pairs, gaps),
     }

@@ -297,8 +297,9 @@ mod tests {
         nodes
             .flat_map(|vector| [vector.x, vector.y, vector.z])
             .chain((0..kites).flat_map(|kite| {
-                let own = histories[kite / WIDTH].iter().flat_map(|own| [own.strain, own.drag]);
-                own.flatten().map(move |entry| entry.0[kite % WIDTH])
+                let history = histories[kite / WIDTH].iter();
+                let entries = history.flat_map(|history| [history.strain, history.drag]);
+                entries.flatten().map(move |entry| entry.0[kite % WIDTH])
             }))
             .map(f64::to_bits)
             .collect()

@@ -140,13 +140,13 @@ fn select_kick_kernel<L: Wide>(
             kick_kernel::<L, false, false>(model, forces, parameters, free, velocities, next);
         }
         (false, true) => {
-            kick_kernel::<L, false, true>(model, forces, parameters, free, velocities, next)
+            kick_kernel::<L, false, true>(model, forces, parameters, free, velocities, next);
         }
         (true, false) => {
-            kick_kernel::<L, true, false>(model, forces, parameters, free, velocities, next)
+            kick_kernel::<L, true, false>(model, forces, parameters, free, velocities, next);
         }
         (true, true) => {
-            kick_kernel::<L, true, true>(model, forces, parameters, free, velocities, next)
+            kick_kernel::<L, true, true>(model, forces, parameters, free, velocities, next);
         }
     }
 }

@@ -26,7 +26,7 @@ use crate::scene::motion::{Motion, Profile};
 use crate::scene::{
     Contact, Film, GasSupply, HeatTransfer, Outputs, Scene, Solver, Stepping, Thresholds,
 };
-use crate::statics::{Loaded, Settling, StaticFailure, settle};
+use crate::statics::{Loaded, StaticFailure, Tolerances, settle};
 
 /// One static equilibrium.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,20 +138,25 @@ impl Erected {
         let observer = &mut |_: &_| {
             if continues() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        let rest =
-            settle(&loaded, &self.positions, self.equilibrium_at, &Settling::default(), observer)?;
-        self.positions.clone_from(&rest.positions);
+        let equilibrium = settle(
+            &loaded,
+            &self.positions,
+            self.equilibrium_at,
+            &Tolerances::default(),
+            observer,
+        )?;
+        self.positions.clone_from(&equilibrium.positions);
         // Held nodes are at their stowed positions.
         self.supports.movers.clear();
         self.equilibrium_at = Some(overpressure);
         Ok(StaticState {
             overpressure,
-            volume: volume(&self.model, &rest.positions),
-            z_rim: mean_z(&rest.positions, &self.mesh.top_ring),
-            strain_energy: strain_energy(&self.model, &rest.positions),
-            iterations: rest.iterations,
-            residual: rest.residual,
-            positions: rest.positions,
+            volume: volume(&self.model, &equilibrium.positions),
+            z_rim: mean_z(&equilibrium.positions, &self.mesh.top_ring),
+            strain_energy: strain_energy(&self.model, &equilibrium.positions),
+            iterations: equilibrium.iterations,
+            residual: equilibrium.residual,
+            positions: equilibrium.positions,
         })
     }
 }
