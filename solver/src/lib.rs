@@ -1,25 +1,34 @@
 //! Fold patterns of inflatable capsules and their deployment: pure computation.
 //!
-//! A [`Scene`](scene::Scene) holds everything one run needs; [`solve`](models::solve) turns it
-//! into a [`Deployment`](deployment::Deployment) of history, measures and audit. Nothing here
-//! knows of studies, files, clocks, threads or
-//! terminals.
+//! A [`Scene`](scene::Scene) holds everything one run needs. [`solve`](models::solve) turns it into a
+//! [`Deployment`](output::outcome::Deployment): history, measures and audit. This crate knows nothing of
+//! studies, files, clocks, threads or terminals.
 //!
 //! **Units.** SI throughout, `f64`, angles in radians.
 //!
-//! **Frame.** z is the axis of the capsule, pointing from the bottom ring (z = 0) to the top;
-//! angles turn counter-clockwise seen from above; triangles wind counter-clockwise seen from
-//! outside, so normals point outward.
+//! **Frame.** z is the axis of the capsule and points from the bottom ring (z = 0) to the top. Angles are
+//! counter-clockwise seen from above. The nodes of a triangle are counter-clockwise seen from outside, so
+//! normals point outward.
 //!
-//! **Bits.** Transcendental functions come from the `libm` crate alone, additions are plain, so a
-//! job gives the same bits on any x86-64 machine.
+//! **Bits.** Transcendental functions come from the `libm` crate alone, and no operation is contracted to
+//! a fused multiply-add. A job gives the same bits on any x86-64 machine and on every instruction set.
 //!
-//! **Reading order.** [`fold`] (the geometry of the paper), [`mesh`] (nodes and triangles of a
-//! pattern), [`scene`], [`gas`], [`ladder`] (the models), [`deployment`], [`ledger`],
-//! [`measures`], [`audit`].
+//! **Folders.** Each uses only those below it:
 //!
-//! The equation numbers are those of "Research on the Folding Patterns and Deployment Dynamics of
-//! Inflatable Capsule Structures" unless a comment says otherwise.
+//! | folder | holds |
+//! |---|---|
+//! | [`models`] | the models: piston, film; the run loop |
+//! | [`statics`] | static equilibrium |
+//! | [`integrators`] | time integration: explicit central differences, Dormand-Prince |
+//! | [`output`] | history, frames, measures, ledger, audit, checkpoint |
+//! | [`collision`] | broad phase, distances, contact, intersections, tunnelling monitor |
+//! | [`mechanics`] | material, membrane, pressure, gas, supports |
+//! | [`scene`] | everything one run needs: plain data |
+//! | [`geometry`] | fold pattern, mesh, topology, OBJ and FOLD text |
+//! | [`platform`] | vector instructions, stopwatch, fault injection |
+//!
+//! Equation numbers refer to "Research on the Folding Patterns and Deployment Dynamics of Inflatable
+//! Capsule Structures", unless a comment names another source.
 
 pub mod collision;
 pub mod geometry;
@@ -31,6 +40,6 @@ pub mod platform;
 pub mod scene;
 pub mod statics;
 
-/// Number of the physics: part of every job id, raised whenever a change of the solver changes
-/// any result.
+/// Version of the physics: part of every job id. It increases with every change of the solver that changes
+/// a result.
 pub const PHYSICS_VERSION: u32 = 4;

@@ -7,6 +7,7 @@ use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::Model;
 use billow_solver::output::measures::Reference;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::timeline::Phase;
 
@@ -47,7 +48,9 @@ fn a_step_allocates_nothing() {
     scene.design.subdivisions = 2;
     scene.gas.leak_area = 1e-4;
     let reference = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    let mut run = FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(reference)).unwrap();
+    let mut run =
+        FilmRun::from_scene(InstructionSet::detect(), &scene, DEFAULT_CFL, None, Some(reference))
+            .unwrap();
     let inflow = Inflow { mass_flow_rate: 0.005, temperature_flow: 0.005 * 293.0 };
     for packed in [true, false] {
         let before = count();

@@ -7,6 +7,7 @@ use billow_solver::models::run::{Observer, Progress};
 use billow_solver::models::{self, piston::PistonRun};
 use billow_solver::output::measures::Verdict;
 use billow_solver::output::outcome::{FailureKind, Stop};
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportLocation};
 
@@ -62,7 +63,7 @@ fn five_grams_a_second_within_the_rungs_bands() {
     assert!((0.055 * 0.75..0.055 * 1.25).contains(&high), "{high}");
     assert!((22.0..21.0 * 1.75).contains(&speed), "{speed}");
     assert!((20.0..18.0 * 1.60).contains(&kinetic), "{kinetic}");
-    assert_eq!((m.verdict, m.close), (Some(Verdict::Deployed), false));
+    assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Deployed), false));
     assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
     assert!(deployment.audit.gas_residual < 1e-6, "{:?}", deployment.audit);
 }
@@ -87,7 +88,7 @@ fn without_gas_nothing_moves() {
     let deployment = run(&paper_scene());
     assert_eq!(deployment.stop, Stop::Done);
     let m = &deployment.measures;
-    assert_eq!((m.verdict, m.close), (Some(Verdict::Stalled), false));
+    assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Stalled), false));
     assert_eq!(m.final_z_rim, Some(0.04));
     assert_eq!((m.final_pressure, m.final_temperature), (Some(0.0), Some(293.0)));
     assert_eq!((m.peak_kinetic_energy, m.t_settled, m.t_deployed), (Some(0.0), None, None));
@@ -172,7 +173,8 @@ fn an_observer_can_stop_a_run() {
             progress.time < self.0
         }
     }
-    let deployment = models::solve(&injected(), None, &mut Until(0.02)).unwrap();
+    let deployment =
+        models::solve(InstructionSet::detect(), &injected(), None, &mut Until(0.02)).unwrap();
     assert_eq!(deployment.stop, Stop::Cancelled);
     assert_eq!(*deployment.history.column("time").last().unwrap(), 0.02);
     assert_eq!(deployment.measures.verdict, None);
@@ -183,7 +185,12 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
     let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
         let mut scene = injected();
         change(&mut scene);
-        match models::solve(&scene, None, &mut billow_solver::models::run::Unobserved) {
+        match models::solve(
+            InstructionSet::detect(),
+            &scene,
+            None,
+            &mut billow_solver::models::run::Unobserved,
+        ) {
             Err(SceneError::Invalid { key, problem }) => {
                 assert_eq!(key, expected, "{problem}");
                 assert!(!problem.is_empty());
@@ -257,4 +264,13 @@ fn every_feasible_design_of_a_grid_runs() {
     }
     println!("{feasible} feasible designs");
     assert!(feasible >= 20, "{feasible}");
+}
+
+#[test]
+fn a_model_without_stored_reference_refuses_to_compute_one() {
+    let scene = crate::rig::paper_scene();
+    assert_eq!(models::reference_scene(&scene), None);
+    let refused = models::reference(InstructionSet::detect(), &scene, &mut || true);
+    let message = refused.unwrap_err().to_string();
+    assert!(message.contains("solver.model") && message.contains("piston"), "{message}");
 }

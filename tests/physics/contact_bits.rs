@@ -1,10 +1,13 @@
-//! The folded capsule with contact, put back on its state: the same bits from any step on.
+//! The folded capsule with contact and tunnelling monitor: the same bits on every instruction set, and
+//! after a resume from any step.
 
 use billow_solver::geometry::mesh::Shape;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::models::film::capsule;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::monitor_settings::MonitorSettings;
 use billow_solver::scene::timeline::Phase;
 
 use crate::geometry::paper_design;
@@ -15,29 +18,58 @@ const INFLOW: Phase = Phase {
     inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
 };
 
-/// The paper's capsule of film that bears compression, stowed.
-fn stowed() -> Explicit {
+/// The paper's capsule, stowed, of film that resists compression, with friction. The monitor checks every
+/// step of about half of the blocks.
+fn stowed(instruction_set: InstructionSet) -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     scene.film.compression = 1.0;
     let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (mut film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
-    film.contact = Some(FilmContact::default());
+    let (mut film, _) = capsule::film_scene(instruction_set, &scene, stowed, 0.45).unwrap();
+    let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
+    film.contact = Some(FilmContact { friction: 0.2, monitor, ..FilmContact::default() });
     capsule::start(&film).unwrap()
 }
 
+fn text(film: &Explicit) -> String {
+    serde_json::to_string(&film.state).unwrap()
+}
+
+fn passages(film: &Explicit) -> u64 {
+    film.monitor.as_ref().unwrap().passages
+}
+
 #[test]
-fn contact_goes_on_bit_for_bit_from_any_step() {
-    let text = |film: &Explicit| serde_json::to_string(&film.state).unwrap();
-    let mut whole = stowed();
+fn contact_and_monitor_bits_are_equal_on_every_instruction_set() {
+    let end = |instruction_set: InstructionSet| {
+        let mut film = stowed(instruction_set);
+        film.advance(0.02, &INFLOW).unwrap();
+        film
+    };
+    let scalar = end(InstructionSet::Scalar);
+    assert!(scalar.state.works.contact != 0.0 && scalar.ledger().contact_dissipation != 0.0);
+    for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
+        let film = end(set);
+        assert!(text(&film) == text(&scalar), "{}", set.name());
+        assert!(film.forces == scalar.forces, "{}", set.name());
+        assert_eq!(film.ledger(), scalar.ledger(), "{}", set.name());
+        assert_eq!(film.smallest_gap().to_bits(), scalar.smallest_gap().to_bits());
+        assert_eq!(passages(&film), passages(&scalar), "{}", set.name());
+        assert_eq!(film.intersections(), scalar.intersections(), "{}", set.name());
+    }
+}
+
+#[test]
+fn a_resumed_run_with_contact_has_the_same_bits() {
+    let mut whole = stowed(InstructionSet::detect());
     whole.advance(0.02, &INFLOW).unwrap();
-    assert!(whole.state.meeting.path_length > 0.1 && whole.state.works.contact != 0.0);
+    assert!(whole.state.contact_state.path_length > 0.1 && whole.state.works.contact != 0.0);
     for pause in [1, 100, 777, 1500] {
-        let mut film = stowed();
+        let mut film = stowed(InstructionSet::detect());
         let mut steps = pause;
         assert!(!film.advance_at_most(0.02, &INFLOW, &mut steps).unwrap());
         let state = serde_json::from_str(&text(&film)).unwrap();
-        let mut film = Explicit::resume(film.model, film.setting, state);
+        let mut film = Explicit::resume(film.model, film.parameters, state);
         film.advance(0.02, &INFLOW).unwrap();
         assert!(text(&film) == text(&whole), "paused after {pause} steps");
     }

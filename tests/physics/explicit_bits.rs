@@ -1,4 +1,4 @@
-//! The same bits whatever the instruction set, and from any step on.
+//! The same bits on every instruction set, and after a resume from any step.
 
 use billow_solver::geometry::mesh::Shape;
 use billow_solver::integrators::explicit::{Explicit, State};
@@ -11,14 +11,13 @@ use billow_solver::scene::timeline::Phase;
 use crate::geometry::paper_design;
 use crate::rig::paper_scene;
 
-fn film(path: InstructionSet) -> Explicit {
+fn film(instruction_set: InstructionSet) -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     scene.film.compression = 0.01;
     scene.gravity = -9.8;
     let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (mut film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
-    film.solver.instruction_set = path;
+    let (film, _) = capsule::film_scene(instruction_set, &scene, stowed, 0.45).unwrap();
     capsule::start(&film).unwrap()
 }
 
@@ -33,19 +32,19 @@ fn bits(state: &State) -> String {
 
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
-    let end = |path: InstructionSet| {
-        let mut film = film(path);
+    let end = |instruction_set: InstructionSet| {
+        let mut film = film(instruction_set);
         film.advance(8e-3, &INFLOW).unwrap();
         (bits(&film.state), film.ledger())
     };
     let scalar = end(InstructionSet::Scalar);
-    for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
-        assert!(end(path) == scalar, "{}", path.name());
+    for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
+        assert!(end(set) == scalar, "{}", set.name());
     }
 }
 
 #[test]
-fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
+fn a_resumed_run_has_the_same_bits() {
     let whole = {
         let mut film = film(InstructionSet::detect());
         film.advance(2e-3, &INFLOW).unwrap();
@@ -57,9 +56,9 @@ fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
         let mut steps = pause;
         for target in [2e-3, 3e-3] {
             while !film.advance_at_most(target, &INFLOW, &mut steps).unwrap() {
-                // As text and back: what a checkpoint does.
+                // As text and back, as in a checkpoint.
                 let state = serde_json::from_str(&bits(&film.state)).unwrap();
-                film = Explicit::resume(film.model, film.setting, state);
+                film = Explicit::resume(film.model, film.parameters, state);
                 steps = u64::MAX;
             }
         }
@@ -67,12 +66,14 @@ fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
     }
 }
 
-/// Targets that differ by rounding: over a step of next to no time the rounding of a strain is no rate.
+/// Targets that differ by rounding: in so short a step the rounding of a strain is not a strain rate.
 #[test]
-fn a_sliver_of_a_step_leaves_viscosity_as_it_is() {
+fn a_tiny_step_leaves_the_viscous_stress_unchanged() {
     let mut film = film(InstructionSet::detect());
     film.advance(2e-3, &INFLOW).unwrap();
-    let drags = |film: &Explicit| viscous_forces(&film.model, &film.state.places, &film.state.past);
+    let drags = |film: &Explicit| {
+        viscous_forces(&film.model, &film.state.positions, &film.state.viscous_history)
+    };
     let (before, steps) = (drags(&film), film.state.steps);
     film.advance(2e-3_f64.next_up(), &INFLOW).unwrap();
     assert_eq!(film.state.steps, steps + 1);

@@ -39,12 +39,12 @@ fn a_moving_support_does_the_work_it_should() {
         motion,
     });
     let right_node = right.nodes[0] as usize;
-    film.setting.supports = Supports::new(&[left, right], &film.state.places);
+    film.parameters.supports = Supports::new(&[left, right], &film.state.positions);
     film.advance(1e-3, &free()).unwrap();
     film.advance(2e-3, &free()).unwrap();
     let end: Ledger = film.ledger();
     println!("moving support: {end:?}, defect {}", end.defect(&start));
-    let moved = film.state.places.get(right_node) - piece.nodes[right_node];
+    let moved = film.state.positions.get(right_node) - piece.nodes[right_node];
     assert!((moved - Vector3::new(2e-3, 0.5e-3, 1e-3)).norm() < 1e-14);
     assert!(end.support_work > 0.09 && end.strain > 0.09 && end.viscous_work > 0.0);
     assert!(end.defect(&start).abs() < 5e-3 * end.support_work, "{}", end.defect(&start));
@@ -55,9 +55,9 @@ fn weight_falls_as_it_should() {
     let piece = icosphere(0, 0.5);
     let mut film =
         at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
-    film.setting.gravity = Vector3::new(0.0, 0.0, -9.806_65);
+    film.parameters.gravity = Vector3::new(0.0, 0.0, -9.806_65);
     film.advance(0.1, &free()).unwrap();
-    let drop = film.state.places.z[0] - piece.nodes[0].z;
+    let drop = film.state.positions.z[0] - piece.nodes[0].z;
     assert!((drop / (-0.5 * 9.806_65 * 0.01) - 1.0).abs() < 1e-12, "{drop}");
     let ledger = film.ledger();
     assert!((ledger.kinetic / ledger.gravity_work - 1.0).abs() < 1e-3, "{ledger:?}");
@@ -69,12 +69,12 @@ fn typed_stops() {
     let gas = nitrogen_gas();
     let mut film =
         at_rest(&piece, &PAPER_FILM, PressureLoad::Gas(gas), gas.at_temperature(1e-3, 293.0));
-    film.setting.step_limit = 7;
+    film.parameters.step_limit = 7;
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!((failure.kind, film.state.steps), (FailureKind::StepLimit, 7));
 
-    film.setting.step_limit = u64::MAX;
-    film.setting.cfl = 3.0;
+    film.parameters.step_limit = u64::MAX;
+    film.parameters.cfl = 3.0;
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::Unstable, "{failure:?}");
     assert!(failure.place.starts_with("node ") && failure.time < 0.1, "{failure:?}");

@@ -7,6 +7,7 @@ use billow_solver::models::film::{self, static_states};
 use billow_solver::models::run::Unobserved;
 use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::{HeatTransfer, Scene};
 
@@ -26,7 +27,8 @@ fn injected(subdivisions: u32, end_time: f64) -> Scene {
 }
 
 fn run(scene: &Scene, cfl: f64) -> Deployment {
-    film::solve(scene, cfl, None, Some(unread()), &mut Unobserved).expect("a scene that can be run")
+    film::solve(InstructionSet::detect(), scene, cfl, None, Some(unread()), &mut Unobserved)
+        .expect("a scene that can be run")
 }
 
 fn report(name: &str, deployment: &Deployment, wall: f64) {
@@ -119,7 +121,8 @@ fn static_states_rise_with_pressure() {
     for subdivisions in [4, 5] {
         let scene = injected(subdivisions, 0.3);
         let start = Instant::now();
-        let states = static_states(&scene, &[1000.0, 100.0, 10.0, 1.0]).unwrap();
+        let states =
+            static_states(InstructionSet::detect(), &scene, &[1000.0, 100.0, 10.0, 1.0]).unwrap();
         for s in &states {
             println!(
                 "n {subdivisions}, {} Pa: V {:.6}, z_rim {:.6}, {} steps",
@@ -178,7 +181,14 @@ fn every_entry_of_the_ledger_is_kept() {
 #[test]
 fn a_step_share_out_of_range_is_refused() {
     for cfl in [0.0, 1.5, f64::NAN] {
-        let refused = film::solve(&injected(2, 0.1), cfl, None, Some(unread()), &mut Unobserved);
+        let refused = film::solve(
+            InstructionSet::detect(),
+            &injected(2, 0.1),
+            cfl,
+            None,
+            Some(unread()),
+            &mut Unobserved,
+        );
         assert!(matches!(refused, Err(SceneError::Invalid { key, .. }) if key == "cfl"));
     }
 }

@@ -10,7 +10,6 @@
 )]
 
 mod allocation;
-mod calm;
 mod capsule;
 mod conservation;
 mod contact_bits;
@@ -25,6 +24,7 @@ mod gas_cases;
 mod geometry;
 mod membrane_cases;
 mod piston_cases;
+mod quiescence;
 mod rig;
 mod rigid_planes;
 mod shells;

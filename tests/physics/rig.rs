@@ -8,6 +8,7 @@ use billow_solver::models;
 use billow_solver::models::piston::{EndFilm, Piston, VolumeLaw};
 use billow_solver::models::run::Unobserved;
 use billow_solver::output::outcome::Deployment;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::{
     Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
     Species, Stepping, Support, SupportLocation, Thresholds,
@@ -94,5 +95,6 @@ pub fn paper_scene() -> Scene {
 }
 
 pub fn run(scene: &Scene) -> Deployment {
-    models::solve(scene, None, &mut Unobserved).expect("a scene that can be run")
+    models::solve(InstructionSet::detect(), scene, None, &mut Unobserved)
+        .expect("a scene that can be run")
 }

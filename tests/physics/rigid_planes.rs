@@ -33,14 +33,14 @@ fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
     let mut film =
         at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
     let setting = Parameters {
-        supports: Supports::new(&supports, &film.state.places),
-        viscosity: film.setting.viscosity,
+        supports: Supports::new(&supports, &film.state.positions),
+        viscosity: film.parameters.viscosity,
         mass_damping: 5.0,
         cfl,
         ..Parameters::free(PressureLoad::Overpressure(0.0), piece.nodes.len())
     };
     let still = Field::zeros(piece.nodes.len());
-    film = Explicit::new(film.model, setting, film.state.places, still, GasState::default());
+    film = Explicit::new(film.model, setting, film.state.positions, still, GasState::default());
     let start = film.ledger();
     film.advance(0.02, &Phase::default()).unwrap();
     let end = film.ledger();
@@ -55,11 +55,12 @@ fn a_turned_scene_moves_as_the_unturned() {
     let (turned, second) = hanging(turn, 0.45);
     println!("defects {first:e} {second:e}, plane {}", straight.state.planes[0]);
     assert!((straight.state.planes[0] / turned.state.planes[0] - 1.0).abs() < 1e-9);
-    for (a, b) in straight.state.places.iter().zip(turned.state.places.iter()) {
+    for (a, b) in straight.state.positions.iter().zip(turned.state.positions.iter()) {
         assert!((turn * a - b).norm() < 1e-10, "{a} {b}");
     }
     assert!(
-        straight.setting.supports.oblique.is_empty() && !turned.setting.supports.oblique.is_empty()
+        straight.parameters.supports.oblique.is_empty()
+            && !turned.parameters.supports.oblique.is_empty()
     );
     assert!(first < 1e-3 && second < 1e-3);
 }
@@ -87,15 +88,15 @@ fn planes_and_film_keep_their_momentum() {
     let supports = [support(edge(0.0), plane(0.01, -1.0)), support(edge(0.3), plane(0.03, 2.0))];
     let film = at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(0.0), GasState::default());
     let setting = Parameters {
-        supports: Supports::new(&supports, &film.state.places),
+        supports: Supports::new(&supports, &film.state.positions),
         ..Parameters::free(PressureLoad::Overpressure(0.0), piece.nodes.len())
     };
     let still = Field::zeros(piece.nodes.len());
     let mut film =
-        Explicit::new(film.model, setting, film.state.places, still, GasState::default());
+        Explicit::new(film.model, setting, film.state.positions, still, GasState::default());
     let momentum = |film: &Explicit| -> f64 {
         let nodes = film.model.mass.iter().zip(film.state.velocities.iter());
-        let bodies = film.setting.supports.bodies.iter().zip(&film.state.planes);
+        let bodies = film.parameters.supports.bodies.iter().zip(&film.state.planes);
         nodes.map(|(m, v)| m * v.x).sum::<f64>()
             + bodies.map(|(b, v)| b.plane.mass * v).sum::<f64>()
     };

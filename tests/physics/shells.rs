@@ -30,10 +30,10 @@ fn sphere_stretch(level: u32, overpressure: f64) -> (f64, Explicit) {
     let piece = icosphere(level, number("sphere/radius"));
     let mut film =
         at_rest(&piece, &PAPER_FILM, PressureLoad::Overpressure(overpressure), GasState::default());
-    film.setting.cfl = 0.9;
-    let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
+    film.parameters.cfl = 0.9;
+    let relaxation = Relaxation { max_kinetic_fraction: 1e-14, ..Relaxation::default() };
     relaxation.relax_at(&mut film, overpressure).unwrap();
-    let loaded: f64 = film.state.places.iter().map(|x| x.norm()).sum();
+    let loaded: f64 = film.state.positions.iter().map(|x| x.norm()).sum();
     let unloaded: f64 = piece.nodes.iter().map(Vector3::norm).sum();
     (loaded / unloaded - 1.0, film)
 }
@@ -84,16 +84,16 @@ fn cylinder_under_pressure() {
                 PressureLoad::Overpressure(overpressure),
                 GasState::default(),
             );
-            film.setting.cfl = 0.9;
+            film.parameters.cfl = 0.9;
             let ends: Vec<u32> = (0..around).chain(along * around..(along + 1) * around).collect();
-            film.setting.supports.hold(&ends, "z");
-            for node in 0..film.state.places.len() {
-                film.state.places.z[node] *= 1.0 + axial;
+            film.parameters.supports.hold(&ends, "z");
+            for node in 0..film.state.positions.len() {
+                film.state.positions.z[node] *= 1.0 + axial;
             }
-            let relaxation = Relaxation { kinetic_share: 1e-14, ..Relaxation::default() };
+            let relaxation = Relaxation { max_kinetic_fraction: 1e-14, ..Relaxation::default() };
             relaxation.relax_at(&mut film, overpressure).unwrap();
-            let mean: f64 = film.state.places.iter().map(|x| x.xy().norm()).sum::<f64>()
-                / film.state.places.len() as f64;
+            let mean: f64 = film.state.positions.iter().map(|x| x.xy().norm()).sum::<f64>()
+                / film.state.positions.len() as f64;
             let pull: f64 = (0..around as usize).map(|node| film.force(node).z).sum();
             // S_axial t λ_axial over the undeformed girth: p π r² by balance of a closed end.
             let r = radius * (1.0 + hoop);
@@ -123,7 +123,7 @@ fn released(level: u32, pressure: f64) -> Explicit {
 fn film_and_gas_together_are_of_second_order_in_the_step() {
     let volume = |cfl: f64| {
         let mut film = released(1, 1000.0);
-        film.setting.cfl = cfl;
+        film.parameters.cfl = cfl;
         film.advance(0.9e-3, &free()).unwrap();
         film.state.volume
     };

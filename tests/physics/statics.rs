@@ -17,7 +17,7 @@ use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::statics::tangent::{self, Stiffness};
 use billow_solver::statics::{
-    Loaded, Relaxation, Settling, StaticError, StaticFailureKind, equilibrium, solve_unwatched,
+    Loaded, Relaxation, StaticError, StaticFailureKind, Tolerances, equilibrium, solve_unobserved,
 };
 use nalgebra::{SVector, Vector2, Vector3};
 
@@ -138,7 +138,7 @@ fn over_a_closed_film_nothing_of_the_pressure_is_left_out() {
 fn where_damped_motion_rests_newton_rests() {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
-    let mut capsule = erected(&scene).unwrap();
+    let mut capsule = erected(InstructionSet::detect(), &scene).unwrap();
     let state = capsule.settle(100.0).unwrap();
     let nodes = capsule.model.nodes();
     let setting = Parameters {
@@ -153,7 +153,7 @@ fn where_damped_motion_rests_newton_rests() {
         // Pushed off by a tenth of a millimetre, so that there is something to settle.
         Field::of(
             &state
-                .places
+                .positions
                 .iter()
                 .zip(pattern(nodes, 5))
                 .enumerate()
@@ -163,10 +163,10 @@ fn where_damped_motion_rests_newton_rests() {
         Field::zeros(nodes),
         GasState::default(),
     );
-    Relaxation { kinetic_share: 1e-16, ..Relaxation::default() }
+    Relaxation { max_kinetic_fraction: 1e-16, ..Relaxation::default() }
         .relax_at(&mut film, 100.0)
         .unwrap();
-    let moved = (0..nodes).map(|n| (film.state.places.get(n) - state.places.get(n)).norm());
+    let moved = (0..nodes).map(|n| (film.state.positions.get(n) - state.positions.get(n)).norm());
     let moved = moved.fold(0.0, f64::max);
     println!("{} Newton steps; damped motion moves {moved:e} m on", state.iterations);
     assert!(moved < 1e-6, "{moved}");
@@ -236,14 +236,14 @@ fn a_rigid_plane_goes_where_its_force_is_borne() {
         on("plate", ends(columns), Hold::Body(plane)),
     ];
     let scene = scene(strip(columns, length, width), 0.0, supports);
-    let state = solve_unwatched(&scene).unwrap();
+    let state = solve_unobserved(&scene).unwrap();
     // λ (λ² − 1)/2 E t w = F.
     let stiffness = ELASTIC.youngs_modulus * ELASTIC.thickness * width;
     let mut stretch = 1.0;
     for _ in 0..50 {
         stretch = 1.0 + force / (stiffness * stretch * (stretch + 1.0) / 2.0);
     }
-    let travel = state.places.x[(columns * 3) as usize] - length;
+    let travel = state.positions.x[(columns * 3) as usize] - length;
     println!("travel {travel}, expected {}", (stretch - 1.0) * length);
     assert!((travel / ((stretch - 1.0) * length) - 1.0).abs() < 1e-6);
     assert!((state.reactions[0].force.x / force - 1.0).abs() < 1e-6);
@@ -266,8 +266,8 @@ fn what_is_moved_is_moved_and_bears() {
     let mut moved = on("jaw", ends(6), all);
     moved.motion = Some(motion);
     let supports = vec![on("wall", ends(0), all), moved];
-    let state = solve_unwatched(&scene(strip(6, 0.3, 0.1), 0.0, supports)).unwrap();
-    assert!((state.places.x[18] - 0.303).abs() < 1e-15);
+    let state = solve_unobserved(&scene(strip(6, 0.3, 0.1), 0.0, supports)).unwrap();
+    assert!((state.positions.x[18] - 0.303).abs() < 1e-15);
     let [wall, jaw] = [&state.reactions[0], &state.reactions[1]];
     assert!((wall.force + jaw.force).norm() < 1e-6 * wall.force.norm());
     let pull = ELASTIC.youngs_modulus * ELASTIC.thickness * 0.1 * 0.01;
@@ -279,7 +279,7 @@ fn what_is_moved_is_moved_and_bears() {
 fn film_that_falls_is_refused() {
     let mut falling = scene(strip(4, 0.3, 0.1), 0.0, Vec::new());
     falling.gravity = Vector3::new(0.0, 0.0, -9.81);
-    let refused = solve_unwatched(&falling);
+    let refused = solve_unobserved(&falling);
     let Err(StaticError::NoState(failure)) = refused else { panic!("{refused:?}") };
     assert_ne!(failure.kind, StaticFailureKind::Stopped);
     println!("{failure}");
@@ -295,7 +295,7 @@ fn the_watcher_can_end_a_search() {
         supports: &supports,
         overpressure: 100.0,
         gravity: Vector3::zeros(),
-        path: InstructionSet::detect(),
+        instruction_set: InstructionSet::detect(),
     };
     let mut looks = 0;
     let stop = &mut |_: &_| {
@@ -306,29 +306,29 @@ fn the_watcher_can_end_a_search() {
             std::ops::ControlFlow::Continue(())
         }
     };
-    let ended = equilibrium(&loaded, Field::of(&piece.nodes), &Settling::default(), stop);
+    let ended = equilibrium(&loaded, Field::of(&piece.nodes), &Tolerances::default(), stop);
     assert_eq!(ended.unwrap_err().kind, StaticFailureKind::Stopped);
 }
 
-/// The same bits on every instruction set.
 #[test]
-fn a_state_has_the_same_bits_on_every_path() {
+fn an_equilibrium_has_the_same_bits_on_every_instruction_set() {
     let mut scene = paper_scene();
     scene.design.subdivisions = 2;
-    let capsule = erected(&scene).unwrap();
-    let states = InstructionSet::ALL.map(|path| {
+    let capsule = erected(InstructionSet::detect(), &scene).unwrap();
+    let states = InstructionSet::ALL.map(|instruction_set| {
         let loaded = Loaded {
             model: &capsule.model,
             supports: &Supports::none(capsule.model.nodes()),
             overpressure: 1000.0,
             gravity: Vector3::zeros(),
-            path,
+            instruction_set,
         };
         let start = Instant::now();
         let go = &mut |_: &_| std::ops::ControlFlow::Continue(());
-        let rest = equilibrium(&loaded, capsule.places.clone(), &Settling::default(), go).unwrap();
-        println!("{}: {:.3} s", path.name(), start.elapsed().as_secs_f64());
-        rest.places
+        let rest =
+            equilibrium(&loaded, capsule.positions.clone(), &Tolerances::default(), go).unwrap();
+        println!("{}: {:.3} s", instruction_set.name(), start.elapsed().as_secs_f64());
+        rest.positions
     });
     assert!(states.iter().all(|state| *state == states[0]));
 }

@@ -188,7 +188,7 @@ fn what_cannot_be_measured_is_bad_input() {
         command(&["--quick"]).env("BILLOW_SIMD", "neon").output().expect("the binary runs");
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        said(&output).contains("BILLOW_SIMD = neon: is no instruction set"),
+        said(&output).contains("BILLOW_SIMD = neon: unknown instruction set"),
         "{}",
         said(&output)
     );

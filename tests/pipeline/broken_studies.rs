@@ -106,7 +106,7 @@ fn every_broken_file_gives_one_clear_error() {
         ),
         (
             changed("/supports", json!([{"on": "bottom_ring", "fix": "xy"}])),
-            &["supports: model `piston` stands on its bottom ring", "allowed: at least one"],
+            &["supports: model `piston` needs a fixed bottom", "allowed: at least one"],
         ),
         (
             changed(

@@ -7,6 +7,7 @@ use billow_solver::output::audit::Audit;
 use billow_solver::output::outcome::{FailureKind, Stop};
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::timeline::Timeline;
+use billow_study::cases::Rig;
 use billow_study::cases::capsule_run::paper_capsule;
 use billow_study::cases::contact_capsule::stowed;
 use billow_study::cases::contact_rig::not_returned;
@@ -19,10 +20,10 @@ type Fault = fn(&mut ContactModel);
 /// and the share of its kinetic energy contact did not return.
 fn deploy(fault: Fault) -> (Stop, Audit, f64) {
     let scene = paper_capsule(5, 0.03);
-    let mut run = stowed(&scene, FilmContact::default()).expect("a capsule");
-    let Explicit { model, mut setting, state, .. } = run.film;
-    fault(setting.contact.as_mut().expect("contact"));
-    run.film = Explicit::new(model, setting, state.places, state.velocities, state.gas);
+    let mut run = stowed(&Rig::default(), &scene, FilmContact::default()).expect("a capsule");
+    let Explicit { model, mut parameters, state, .. } = run.film;
+    fault(parameters.contact.as_mut().expect("contact"));
+    run.film = Explicit::new(model, parameters, state.positions, state.velocities, state.gas);
     let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     let kinetic = deployment.history.column("kinetic_energy");
     let peak = kinetic.iter().copied().fold(0.0, f64::max);

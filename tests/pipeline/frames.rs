@@ -86,7 +86,7 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
         let sample = times.iter().position(|time| time.to_bits() == frame.time.to_bits()).unwrap();
         #[expect(clippy::cast_possible_truncation, reason = "as frames have it")]
         let z_max = history.column("z_max")[sample] as f32;
-        let highest = frame.places.iter().map(|place| place[2]).fold(f32::MIN, f32::max);
+        let highest = frame.positions.iter().map(|place| place[2]).fold(f32::MIN, f32::max);
         assert_eq!(highest.to_bits(), z_max.to_bits(), "at {}", frame.time);
     }
 

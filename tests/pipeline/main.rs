@@ -12,6 +12,7 @@ mod determinism;
 mod film_study;
 mod folding;
 mod frames;
+mod instruction_sets;
 mod keeping;
 mod mutations;
 mod physics_version;

@@ -45,7 +45,7 @@ const JUDGES: [(Term, Judge, Judge); 22] = [
 
 fn judged(case: &str, mutation: Option<Fault>) -> Judged {
     let case = CASES.iter().find(|own| own.name == case).expect("a case");
-    case.run(&Rig { mutation })
+    case.run(&Rig { mutation, ..Rig::default() })
 }
 
 /// Whether a judge sees a fault.

@@ -9,6 +9,7 @@ use billow_solver::models;
 use billow_solver::models::run::Model;
 use billow_solver::models::run::Unobserved;
 use billow_solver::output::history::COLUMNS;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
@@ -33,7 +34,8 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
 
 /// Of a piston's whole history.
 fn piston(scene: &Scene) -> String {
-    let deployment = models::solve(scene, None, &mut Unobserved).expect("a scene that can be run");
+    let deployment = models::solve(InstructionSet::detect(), scene, None, &mut Unobserved)
+        .expect("a scene that can be run");
     let columns = COLUMNS.iter().map(|column| deployment.history.column(column.name));
     hash(columns.flatten().copied())
 }
@@ -41,7 +43,7 @@ fn piston(scene: &Scene) -> String {
 /// Of film's end state: places, velocities, gas, works; that of contact where there is any.
 fn end_state(film: &Explicit) -> String {
     let state = &film.state;
-    let fields = [&state.places, &state.velocities].map(|field| [&field.x, &field.y, &field.z]);
+    let fields = [&state.positions, &state.velocities].map(|field| [&field.x, &field.y, &field.z]);
     let nodes = fields.into_iter().flatten().flat_map(|column| column.iter()).copied();
     let works = state.works;
     let scalars = [
@@ -57,7 +59,7 @@ fn end_state(film: &Explicit) -> String {
         works.viscous,
         works.damping,
     ];
-    let met = film.setting.contact.as_ref().map(|_| works.contact);
+    let met = film.parameters.contact.as_ref().map(|_| works.contact);
     hash(nodes.chain(scalars).chain(met))
 }
 
@@ -85,11 +87,11 @@ fn preinflated() -> String {
 /// Film on film from the first millisecond on, calm in the end.
 fn capsule() -> String {
     let contact = FilmContact::default();
-    let mut run = stowed(&paper_capsule(2, 0.02), contact).expect("a capsule");
+    let mut run = stowed(&Rig::default(), &paper_capsule(2, 0.02), contact).expect("a capsule");
     let inflow = Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 };
     let phase = Phase { packed: false, inflow };
     run.advance(0.02, &phase).expect("it runs");
-    assert!(run.film.state.meeting.path_length > 0.1 && run.film.state.works.contact != 0.0);
+    assert!(run.film.state.contact_state.path_length > 0.1 && run.film.state.works.contact != 0.0);
     let in_motion = run.film.state.last_step;
     for target in 21..=300 {
         run.advance(1e-3 * f64::from(target), &phase).expect("it runs");

@@ -212,7 +212,7 @@ fn flags_that_cannot_be_are_refused() {
     for (arguments, simd, expected) in [
         (&["scene.json"][..], "neon", "scalar"),
         (&["scene.json", "--resume", "gone"], "", "gone"),
-        (&["scene.json", "--resume", "broken"], "", "no sound checkpoint"),
+        (&["scene.json", "--resume", "broken"], "", "not a valid checkpoint"),
         (&["scene.json", "--every", "5"], "", "--checkpoint"),
         (&["scene.json", "--threads", "0"], "", "--threads"),
         (&["gone.json"], "", "scenes/sphere.json"),

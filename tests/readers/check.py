@@ -53,8 +53,8 @@ FILM_UNITS = {
     "contact_area_fraction": "1",
     "smallest_gap": "m",
     "contact_pairs": "1",
-    "contact_searches": "1",
-    "contact_impulses": "1",
+    "broad_phase_rebuilds": "1",
+    "collision_impulses": "1",
 }
 UNITS = {"", "1", "s", "m", "m/s", "m2", "m3", "Pa", "K", "kg", "kg/s", "N", "N/m", "J", "Hz", "rad", "ns",
          "kg/m3", "m/s2", "J/(kg K)", "W/(m2 K)"}

@@ -1,32 +1,35 @@
-//! What a result is worth: energy, gas, intersections.
+//! The audit: how far a result can be trusted. Energy, gas, film through film.
 
 use crate::output::history::History;
 
-/// Energy ledger residual above which a run has drifted and is no result.
-pub const RESIDUAL_BOUND: f64 = 1e-2;
+/// Upper bound of the energy ledger residual, a fraction of the energy moved. A run with a larger one at
+/// any sample fails as `energy_drift`. Chosen.
+pub const MAX_LEDGER_RESIDUAL: f64 = 1e-2;
 
 /// The audit of one run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Audit {
-    /// Largest energy ledger residual of the stored series.
+    /// Largest energy ledger residual at any sample, a fraction ([`crate::output::ledger`]).
     pub ledger_residual: f64,
-    /// Largest gas balance residual (mass and internal energy) of the stored series.
+    /// Largest residual of the gas balance at any sample, a fraction: the larger one of mass and energy.
     pub gas_residual: f64,
-    /// Energy dissipated by film viscosity over the work of the gas.
+    /// Energy dissipated by the film's viscosity over the work of the gas, at the end; 0 where the gas did
+    /// no positive work.
     pub viscous_fraction: f64,
-    /// Film through film, whole run; `None` where the model does not count them.
+    /// Passages of film through film counted over the whole run; `None` if the model does not count them.
     pub passages: Option<u64>,
-    /// Intersections at the worst frame; `None` where the model does not look.
+    /// Largest number of intersections of the mesh at any sample; `None` if the model does not count them.
+    /// Between samples only passages are counted.
     pub intersections: Option<u64>,
 }
 
 impl Audit {
-    /// The audit of a history; `counts_passages` where the model does.
+    /// The audit of a history; `counts_passages`: whether the model counts passages and intersections.
     pub fn of(history: &History, counts_passages: bool) -> Self {
         let largest = |name: &str| history.column(name).iter().copied().fold(0.0, f64::max);
         let last = |name: &str| history.column(name).last().copied().unwrap_or(0.0);
         let gas_work = last("gas_work");
-        // Counts are whole numbers below 2^53 stored as f64.
+        // Histories store counts as f64; all are whole numbers below 2^53.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
         let count = |name: &str| counts_passages.then(|| largest(name) as u64);
         Self {
@@ -39,10 +42,10 @@ impl Audit {
     }
 }
 
-/// Time (s) of the first sample whose ledger residual is above [`RESIDUAL_BOUND`], or no number.
+/// Time (s) of the first sample whose ledger residual is above [`MAX_LEDGER_RESIDUAL`] or NaN.
 pub fn first_drift(history: &History) -> Option<f64> {
-    let sound = |residual: f64| residual <= RESIDUAL_BOUND;
-    let index = history.column("ledger_residual").iter().position(|value| !sound(*value))?;
+    let within_bound = |residual: f64| residual <= MAX_LEDGER_RESIDUAL;
+    let index = history.column("ledger_residual").iter().position(|value| !within_bound(*value))?;
     Some(history.column("time")[index])
 }
 
@@ -59,15 +62,16 @@ mod tests {
     }
 
     #[test]
-    fn drift_is_found_at_its_first_sample() {
-        let sound = [sample(0.0, 0.0, 0.0, 0.0), sample(0.1, 3.0, 1.0, 4.0)];
-        assert_eq!(first_drift(&History::of(&sound)), None);
-        let drifted = [sound[0], sound[1], sample(0.2, 3.1, 1.0, 4.0), sample(0.3, 9.0, 1.0, 4.0)];
+    fn first_drift_is_the_first_sample_above_the_bound() {
+        let within = [sample(0.0, 0.0, 0.0, 0.0), sample(0.1, 3.0, 1.0, 4.0)];
+        assert_eq!(first_drift(&History::of(&within)), None);
+        let drifted =
+            [within[0], within[1], sample(0.2, 3.1, 1.0, 4.0), sample(0.3, 9.0, 1.0, 4.0)];
         assert_eq!(first_drift(&History::of(&drifted)), Some(0.2));
     }
 
     #[test]
-    fn the_audit_takes_the_worst_and_the_last() {
+    fn the_audit_takes_the_largest_residual_and_the_last_works() {
         let series =
             [sample(0.0, 0.0, 0.0, 0.0), sample(0.1, 3.1, 1.0, 4.0), sample(0.2, 2.0, 2.0, 4.0)];
         let audit = Audit::of(&History::of(&series), false);

@@ -1,12 +1,13 @@
-//! The whole state of a run of film, to and from text, bit for bit.
+//! Checkpoints: the complete state of a film run as text, exact to the bit.
 //!
 //! ```text
-//! {"format": "billow-checkpoint", "version": 1, "physics_version": …, "scene": "…", "state": …, "run": …}
+//! {"format": "billow-checkpoint", "version": 2, "physics_version": …, "scene": "…", "state": …, "run": …}
 //! ```
 //!
-//! JSON, every number in the shortest digits that read back as it. A run goes on from any step, also
-//! within an inflow window, packed, or on the way of a moving support: what is constant comes from the
-//! scene again, and `scene` says which one that must be. What a state holds belongs to the physics version.
+//! JSON; every number has the shortest digits that read back to the same bits. A run resumes from any
+//! step: within an inflow window, packed, or while a support moves. Everything constant comes from the
+//! scene; `scene` is the fingerprint of the scene that this must be. The fields of the state belong to
+//! the version of the format and the physics version: a checkpoint of other versions is refused.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -15,8 +16,8 @@ use crate::PHYSICS_VERSION;
 
 /// Name of the format.
 pub const FORMAT: &str = "billow-checkpoint";
-/// Version of the format this program writes, and the newest it reads.
-pub const VERSION: u32 = 1;
+/// Version of the format this program writes and reads.
+pub const VERSION: u32 = 2;
 
 /// A run of film between two steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,38 +26,38 @@ pub struct Checkpoint<S, R> {
     format: String,
     version: u32,
     physics_version: u32,
-    /// Fingerprint of the scene: whatever tells it from every other.
+    /// Fingerprint of the scene.
     scene: String,
-    /// All that changes in the film.
+    /// Everything that changes in the film.
     pub state: S,
-    /// How far the run is.
+    /// Samples, tracks and frames so far.
     pub run: R,
 }
 
-/// Why a text is no checkpoint to go on from.
+/// Why a text is not a valid checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CheckpointError {
-    /// No checkpoint, or a damaged one.
-    #[error("no sound checkpoint: {0}")]
-    Unsound(String),
-    /// Written by a newer program.
-    #[error("a checkpoint of version {found}; this program reads up to {VERSION}")]
-    Newer {
-        /// Its version.
+    /// Not a checkpoint, or a damaged one.
+    #[error("not a valid checkpoint: {0}")]
+    Invalid(String),
+    /// Written in another version of the format.
+    #[error("checkpoint format version {found}; this program reads version {VERSION}")]
+    Version {
+        /// Version of the checkpoint.
         found: u32,
     },
-    /// The solver has changed since.
-    #[error("computed by physics version {found}; this program has {PHYSICS_VERSION}")]
+    /// Computed by another physics version.
+    #[error("checkpoint of physics version {found}; this program has {PHYSICS_VERSION}")]
     Physics {
-        /// Its physics version.
+        /// Physics version of the checkpoint.
         found: u32,
     },
-    /// Of another scene.
-    #[error("of another scene: the scene, or a file it names, has changed since")]
+    /// The checkpoint of another scene.
+    #[error("checkpoint of another scene: the scene, or a file it names, has changed")]
     Scene,
 }
 
-/// What every version of the format has.
+/// The fields that every version of the format has.
 #[derive(Deserialize)]
 struct Head {
     format: String,
@@ -67,7 +68,7 @@ struct Head {
 impl<S: Serialize + DeserializeOwned + Clone, R: Serialize + DeserializeOwned + Clone>
     Checkpoint<S, R>
 {
-    /// Takes down a run of the scene of that fingerprint.
+    /// The checkpoint of a run of the scene with this fingerprint.
     pub fn new(scene: &str, state: &S, run: &R) -> Self {
         Self {
             format: FORMAT.to_owned(),
@@ -79,35 +80,35 @@ impl<S: Serialize + DeserializeOwned + Clone, R: Serialize + DeserializeOwned + 
         }
     }
 
-    /// As text.
+    /// The checkpoint as text.
     ///
     /// # Errors
-    /// [`CheckpointError::Unsound`] for a number JSON cannot hold; no accepted step leaves one.
+    /// [`CheckpointError::Invalid`] for a number that is not finite; no accepted step leaves one.
     pub fn to_text(&self) -> Result<String, CheckpointError> {
-        let unsound = |error: serde_json::Error| CheckpointError::Unsound(error.to_string());
-        let text = serde_json::to_string(self).map_err(unsound)?;
-        // A number that is none is written as null, which no number reads: refused now, not later.
+        let invalid = |error: serde_json::Error| CheckpointError::Invalid(error.to_string());
+        let text = serde_json::to_string(self).map_err(invalid)?;
+        // JSON writes NaN as null, which does not read as a number: fail now, not at the resume.
         Self::from_text(&text, &self.scene)?;
         Ok(text)
     }
 
-    /// Reads a checkpoint of the scene of that fingerprint.
+    /// Reads a checkpoint of the scene with this fingerprint.
     ///
     /// # Errors
     /// [`CheckpointError`].
     pub fn from_text(text: &str, scene: &str) -> Result<Self, CheckpointError> {
-        let unsound = |error: serde_json::Error| CheckpointError::Unsound(error.to_string());
-        let head: Head = serde_json::from_str(text).map_err(unsound)?;
+        let invalid = |error: serde_json::Error| CheckpointError::Invalid(error.to_string());
+        let head: Head = serde_json::from_str(text).map_err(invalid)?;
         if head.format != FORMAT {
-            return Err(CheckpointError::Unsound(format!("its format is {:?}", head.format)));
+            return Err(CheckpointError::Invalid(format!("its format is {:?}", head.format)));
         }
-        if head.version > VERSION {
-            return Err(CheckpointError::Newer { found: head.version });
+        if head.version != VERSION {
+            return Err(CheckpointError::Version { found: head.version });
         }
         if head.physics_version != PHYSICS_VERSION {
             return Err(CheckpointError::Physics { found: head.physics_version });
         }
-        let checkpoint: Self = serde_json::from_str(text).map_err(unsound)?;
+        let checkpoint: Self = serde_json::from_str(text).map_err(invalid)?;
         if checkpoint.scene != scene {
             return Err(CheckpointError::Scene);
         }

@@ -1,11 +1,11 @@
-//! Shapes of the film at chosen moments of a run, for pictures and for programs that play them.
+//! Frames: shapes of the film at chosen times of a run, for pictures and animations.
 //!
 //! ```text
 //! t_k = t_release + (t_end − t_release) (k/n)²,  k = 0 … n        and t = 0
 //! ```
 //!
-//! Film moves most right after its release, so frames lie densely there and thin out. Each is taken at
-//! the sample nearest to its time: frames change no step, and so no bit of a run.
+//! Film moves most right after its release, so frames are dense there and sparse later. Each frame is
+//! stored at the sample nearest to its time, so frames change no step and no bit of a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,9 +18,9 @@ use crate::scene::timeline::Timeline;
 pub struct Frame {
     /// Simulated time, s.
     pub time: f64,
-    /// Place of each node, m, in single precision: for the eye, not to go on from.
-    pub places: Vec<[f32; 3]>,
-    /// What each element does.
+    /// Position of each node, m, in single precision: for pictures only.
+    pub positions: Vec<[f32; 3]>,
+    /// Regime of each element: taut, wrinkled or slack.
     pub regimes: Vec<Regime>,
 }
 
@@ -29,15 +29,15 @@ pub struct Frame {
 pub struct Frames {
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Storey of each element: 0 the bottom cap, 1 to M the storeys from below, M + 1 the top cap; 0
-    /// throughout where the film is no capsule.
+    /// Storey of each element: 0 the bottom cap, 1 to M the storeys from below, M + 1 the top cap. All 0
+    /// if the film is not a capsule.
     pub storeys: Vec<u32>,
     /// In order of time.
     pub frames: Vec<Frame>,
 }
 
 impl Timeline {
-    /// Numbers of the samples that are frames, rising.
+    /// Indices of the samples that are frames, ascending.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "times above 0")]
     pub(crate) fn frame_samples(&self) -> Vec<u64> {
         let sample = |time: f64| libm::round(time / self.sample_interval) as u64;
@@ -47,13 +47,13 @@ impl Timeline {
             1 => return vec![end],
             _ => vec![0],
         };
-        let left = self.end_time - self.release_time;
+        let remaining = self.end_time - self.release_time;
         let last = self.frames - 1;
         samples.extend((0..=last).map(|k| {
-            let share = f64::from(k) / f64::from(last);
-            sample(self.release_time + left * share * share).min(end)
+            let fraction = f64::from(k) / f64::from(last);
+            sample(self.release_time + remaining * fraction * fraction).min(end)
         }));
-        // Whatever rounding says, the end is one.
+        // The end is always a frame, whatever the rounding.
         samples.push(end);
         samples.sort_unstable();
         samples.dedup();
@@ -68,7 +68,7 @@ mod tests {
     use crate::scene::inflow::Schedule;
     use proptest::prelude::*;
 
-    fn course(frames: u32, end_time: f64, release_time: f64, sample_interval: f64) -> Timeline {
+    fn timeline(frames: u32, end_time: f64, release_time: f64, sample_interval: f64) -> Timeline {
         Timeline {
             end_time,
             sample_interval,
@@ -81,12 +81,12 @@ mod tests {
     }
 
     #[test]
-    fn frames_lie_densely_after_the_release() {
-        let dense = course(5, 1.6, 0.0, 0.001).frame_samples();
+    fn frames_are_dense_after_the_release() {
+        let dense = timeline(5, 1.6, 0.0, 0.001).frame_samples();
         assert_eq!(dense, [0, 100, 400, 900, 1600]);
-        assert_eq!(course(3, 2.0, 1.0, 0.25).frame_samples(), [0, 4, 5, 8]);
-        assert_eq!(course(1, 1.0, 0.0, 0.3).frame_samples(), [4], "the end is a sample of its own");
-        assert!(course(0, 1.0, 0.0, 0.3).frame_samples().is_empty());
+        assert_eq!(timeline(3, 2.0, 1.0, 0.25).frame_samples(), [0, 4, 5, 8]);
+        assert_eq!(timeline(1, 1.0, 0.0, 0.3).frame_samples(), [4], "the end is an extra sample");
+        assert!(timeline(0, 1.0, 0.0, 0.3).frame_samples().is_empty());
     }
 
     proptest! {
@@ -94,12 +94,12 @@ mod tests {
         fn every_frame_is_a_sample_and_start_and_end_are_frames(
             frames in 2_u32..200, end in 0.001..20.0_f64, part in 0.0..0.99_f64, samples in 1.0..3000.0_f64,
         ) {
-            let course = course(frames, end, part * end, end / samples);
-            let chosen = course.frame_samples();
+            let timeline = timeline(frames, end, part * end, end / samples);
+            let chosen = timeline.frame_samples();
             let last = *chosen.last().unwrap();
             prop_assert_eq!(chosen[0], 0);
-            prop_assert_eq!(course.sample_time(last).to_bits(), end.to_bits());
-            prop_assert!(last == 0 || course.sample_time(last - 1) < end);
+            prop_assert_eq!(timeline.sample_time(last).to_bits(), end.to_bits());
+            prop_assert!(last == 0 || timeline.sample_time(last - 1) < end);
             prop_assert!(chosen.windows(2).all(|pair| pair[0] < pair[1]));
             prop_assert!(chosen.len() <= frames as usize + 2);
         }

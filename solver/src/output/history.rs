@@ -1,10 +1,10 @@
-//! Time histories: one column a quantity, one row a sample.
+//! Time histories: one column per quantity, one row per sample.
 
 use serde::{Deserialize, Serialize};
 
 use crate::output::ledger::{GasBalance, Ledger};
 
-/// What a model shows of itself at one moment.
+/// The sampled quantities of a model at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sample {
@@ -24,13 +24,13 @@ pub struct Sample {
     pub pressure: f64,
     /// Gas temperature, K.
     pub temperature: f64,
-    /// Force on the packing lid, N.
+    /// Force of the film on the packing lid, N; 0 after release.
     pub lid_force: f64,
-    /// Film's side of the ledger.
+    /// Energy ledger of the film.
     pub ledger: Ledger,
-    /// Gas's side of the ledger.
+    /// Mass and energy balance of the gas.
     pub gas: GasBalance,
-    /// Film through film counted so far.
+    /// Passages of film through film counted so far.
     pub passages: u64,
     /// Intersections of the mesh now.
     pub intersections: u64,
@@ -58,7 +58,7 @@ impl Sample {
             self.ledger.gravity_work,
             self.ledger.support_work,
             self.ledger.viscous_work,
-            self.ledger.friction_work,
+            self.ledger.contact_dissipation,
             self.ledger.damping_work,
             self.gas.heat,
             self.gas.enthalpy_in,
@@ -71,21 +71,21 @@ impl Sample {
     }
 }
 
-/// The series a run leaves, sampled at [`crate::scene::Outputs::sample_interval`]. Every column
-/// has the length of `time`.
+/// The time series of a run, one sample every [`crate::scene::Outputs::sample_interval`]. All stored
+/// columns have the length of `time`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History {
     /// Columns in the order of [`COLUMNS`].
     columns: Vec<Vec<f64>>,
-    /// Whether [`RING_COLUMNS`] are among them.
+    /// Whether [`RING_COLUMNS`] are filled.
     rings: bool,
 }
 
-/// Columns of a capsule alone: film without rings has none of them.
+/// Columns that only a capsule has: film without rings leaves them out.
 pub const RING_COLUMNS: [&str; 3] = ["z_centre", "z_rim", "vz"];
 
-/// A series of one more quantity than [`COLUMNS`], at the same times: a node's place, an element's
-/// resultant.
+/// A further time series beside [`COLUMNS`], at the same times: for example the position of a node or the
+/// membrane force of an element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// Name, as in the file.
@@ -94,7 +94,7 @@ pub struct Track {
     pub unit: &'static str,
     /// Meaning, one line.
     pub meaning: &'static str,
-    /// One value a sample.
+    /// One value per sample.
     pub values: Vec<f64>,
 }
 
@@ -111,7 +111,7 @@ pub struct HistoryColumn {
 
 macro_rules! columns {
     ($($name:literal [$unit:literal] $meaning:literal),+ $(,)?) => {
-        /// Every column of a history, in stored order.
+        /// All columns of a history, in stored order.
         pub const COLUMNS: &[HistoryColumn] = &[$(HistoryColumn { name: $name, unit: $unit, meaning: $meaning }),+];
     };
 }
@@ -126,25 +126,30 @@ columns! {
     "pressure" ["Pa"] "gas pressure",
     "temperature" ["K"] "gas temperature (film temperature while there is no gas)",
     "gas_mass" ["kg"] "gas inside",
-    "lid_force" ["N"] "force on the packing lid",
+    "lid_force" ["N"] "force of the film on the packing lid",
     "kinetic_energy" ["J"] "kinetic energy of the film",
     "strain_energy" ["J"] "elastic energy of the film",
-    "contact_energy" ["J"] "elastic energy of contact",
+    "contact_energy" ["J"] "elastic energy of contact: minus the work of contact forces since time 0",
     "gas_work" ["J"] "work of the gas on the film since time 0",
     "ambient_work" ["J"] "work of the ambient pressure on the film since time 0",
     "gravity_work" ["J"] "work of gravity on the film since time 0",
-    "support_work" ["J"] "work of moving supports and the lid on the film since time 0",
+    "support_work" ["J"] "work of moving supports and plates on the film since time 0",
     "viscous_work" ["J"] "energy dissipated by film viscosity since time 0",
-    "friction_work" ["J"] "energy dissipated by friction since time 0",
+    "friction_work" ["J"] "energy dissipated by friction and by collision impulses since time 0",
     "damping_work" ["J"] "energy dissipated by mass damping since time 0",
-    "heat" ["J"] "heat given by the film to the gas since time 0",
+    "heat" ["J"] "heat from the film to the gas since time 0",
     "enthalpy_in" ["J"] "enthalpy let in since time 0",
     "enthalpy_out" ["J"] "enthalpy leaked since time 0",
-    "ledger_residual" ["1"] "energy ledger residual over the energy moved so far",
-    "gas_residual" ["1"] "gas energy and mass balance residual, relative",
-    "passages" ["1"] "film through film counted so far",
+    "ledger_residual" ["1"] "energy ledger residual: energy error over the energy moved so far",
+    "gas_residual" ["1"] "gas balance residual: the larger relative error of mass and energy",
+    "passages" ["1"] "passages of film through film counted so far",
     "intersections" ["1"] "intersections of the mesh at this sample",
 }
+
+/// Names of history columns and tracks that changed: old name, new name. Readers accept the old name in
+/// files written by earlier versions.
+pub const RENAMED_COLUMNS: &[(&str, &str)] =
+    &[("contact_searches", "broad_phase_rebuilds"), ("contact_impulses", "collision_impulses")];
 
 impl Default for History {
     fn default() -> Self {
@@ -158,7 +163,7 @@ impl History {
         Self { columns: vec![Vec::new(); COLUMNS.len()], rings: true }
     }
 
-    /// The same without [`RING_COLUMNS`].
+    /// This history without [`RING_COLUMNS`].
     #[must_use]
     pub fn without_rings(mut self) -> Self {
         self.rings = false;
@@ -170,12 +175,12 @@ impl History {
         self
     }
 
-    /// The history of a series of samples, with both residuals judged over the whole of it.
+    /// The history of a series of samples. Both residuals use the whole series.
     pub fn of(samples: &[Sample]) -> Self {
         let ledgers: Vec<Ledger> = samples.iter().map(|sample| sample.ledger).collect();
-        let books: Vec<GasBalance> = samples.iter().map(|sample| sample.gas).collect();
+        let gas_balances: Vec<GasBalance> = samples.iter().map(|sample| sample.gas).collect();
         let residuals = crate::output::ledger::residuals(&ledgers);
-        let gas_residuals = crate::output::ledger::gas_residuals(&books);
+        let gas_residuals = crate::output::ledger::gas_residuals(&gas_balances);
         let mut history = Self::new();
         for column in &mut history.columns {
             column.reserve_exact(samples.len());
@@ -193,10 +198,10 @@ impl History {
         }
     }
 
-    /// The column of that name; empty where it is left out.
+    /// The column of that name; empty if it is left out.
     ///
     /// # Panics
-    /// When no column has that name: names are fixed at compile time, so that is a mistake in code.
+    /// If no column has that name: names are fixed at compile time, so this is an error in the code.
     pub fn column(&self, name: &str) -> &[f64] {
         let index = COLUMNS.iter().position(|column| column.name == name);
         &self.columns[index.unwrap_or_else(|| panic!("no history column {name:?}"))]
@@ -207,7 +212,7 @@ impl History {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// Whether there is no sample yet.
+    /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

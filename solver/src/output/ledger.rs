@@ -1,7 +1,8 @@
-//! The energy ledger and the gas balance: does the run's energy add up?
+//! The energy ledger of the film and the balance of the gas: does the energy of a run add up?
 //!
 //! ```text
-//! film:   Δ(kinetic + strain + contact) + viscous + friction + damping = gas + ambient + gravity + support
+//! film:   Δ(kinetic + strain + contact) + viscous + contact dissipation + damping
+//!             = gas + ambient + gravity + support
 //! gas:    Δm = mass in − mass out
 //!         ΔU = enthalpy in − enthalpy out − gas work + heat
 //!
@@ -9,54 +10,66 @@
 //!               the divisor at least 1 % of its value at the end
 //! ```
 //!
-//! Every work is accumulated from its own force and displacement while the run goes; none is found
-//! by difference. The energies on the left are functions of the state. The external works are
-//! those of gas, ambient pressure, gravity and supports. The enthalpy let in, a hundred times the
-//! kinetic energy, would hide any error and is no part of the film's divisor; the gas balances are
-//! judged by what they move: m0 + mass in, U0 + enthalpy in + |heat| + |gas work|, with the same
-//! floor. Residuals are judged on the stored series, once the end is known.
+//! Each work is accumulated during the run from its own force and its own displacement; none is the
+//! difference of others. The energies on the left are functions of the state, except the contact
+//! energy, which is minus the accumulated work of the contact forces. The external works are those of
+//! gas, ambient pressure, gravity and supports.
+//!
+//! The film's divisor leaves out the enthalpy let in: it is about a hundred times the kinetic energy
+//! and would hide any error. The divisors of the gas are m0 + mass in and
+//! U0 + enthalpy in + |heat| + |gas work|, with the same floor. Residuals are computed from the stored
+//! series, after the end of the run.
 
 use serde::{Deserialize, Serialize};
 
-/// The film's side of the ledger at one moment; all J.
+/// The energy ledger of the film at one moment. All entries in J.
+///
+/// Works are positive where they give energy to the film; dissipation is positive where the film loses
+/// energy.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ledger {
-    /// Kinetic energy.
+    /// Kinetic energy of nodes and rigid planes now.
     pub kinetic: f64,
-    /// Elastic energy of the film.
+    /// Elastic energy of the film now.
     pub strain: f64,
-    /// Elastic energy of contact.
+    /// Elastic energy of contact of film with film and with plates: minus the work of the contact
+    /// forces since time 0.
     pub contact: f64,
-    /// Work of the gas on the film.
+    /// Work of the gas pressure, or of a fixed overpressure, on the film since time 0.
     pub gas_work: f64,
-    /// Work of the ambient pressure on the film.
+    /// Work of the ambient pressure on the film since time 0: −`p_ambient` ΔV.
     pub ambient_work: f64,
-    /// Work of gravity on the film.
+    /// Work of gravity on the film since time 0.
     pub gravity_work: f64,
-    /// Work of moving supports and the lid on the film.
+    /// Work of moving supports, of the constant forces on rigid planes and of moving plates (the lid
+    /// is one) on the film since time 0. Supports that do not move do no work.
     pub support_work: f64,
-    /// Energy dissipated by film viscosity.
+    /// Energy dissipated by the film's viscosity since time 0.
     pub viscous_work: f64,
-    /// Energy dissipated by friction.
-    pub friction_work: f64,
-    /// Energy dissipated by mass damping, which only statics has.
+    /// Energy dissipated by contact since time 0: by friction and by the impulses that resolve
+    /// collisions. History files and tables call this column `friction_work`.
+    pub contact_dissipation: f64,
+    /// Energy dissipated by mass damping since time 0. A scene may ask for mass damping; static
+    /// relaxation always uses it.
     pub damping_work: f64,
 }
 
 impl Ledger {
+    /// Energy stored in the film, J.
     fn stored(&self) -> f64 {
         self.kinetic + self.strain + self.contact
     }
 
-    /// Energy that appeared from nowhere since `start`, J; negative where it was lost.
+    /// Energy error since `start`, J: positive where energy appeared without a source, negative where it
+    /// disappeared.
     pub fn defect(&self, start: &Self) -> f64 {
         let external = self.gas_work + self.ambient_work + self.gravity_work + self.support_work;
-        let dissipated = self.viscous_work + self.friction_work + self.damping_work;
+        let dissipated = self.viscous_work + self.contact_dissipation + self.damping_work;
         (self.stored() - start.stored()) + dissipated - external
     }
 
-    /// Σ|external work|, J.
+    /// Sum of the magnitudes of the external works, J.
     pub fn external(&self) -> f64 {
         self.gas_work.abs()
             + self.ambient_work.abs()
@@ -65,15 +78,17 @@ impl Ledger {
     }
 }
 
-/// The gas's side of the ledger at one moment.
+/// The mass and energy balance of the gas at one moment.
+///
+/// `*_in` is positive into the capsule, `*_out` positive out of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GasBalance {
-    /// Mass inside, kg.
+    /// Mass inside now, kg.
     pub mass: f64,
-    /// Internal energy, J.
+    /// Internal energy now, J.
     pub internal_energy: f64,
-    /// Mass let in since time 0, kg, by the schedule's closed form.
+    /// Mass let in since time 0, kg: the exact integral of the inflow schedule.
     pub mass_in: f64,
     /// Mass leaked since time 0, kg.
     pub mass_out: f64,
@@ -81,43 +96,48 @@ pub struct GasBalance {
     pub enthalpy_in: f64,
     /// Enthalpy leaked since time 0, J.
     pub enthalpy_out: f64,
-    /// Heat given by the film since time 0, J.
+    /// Heat from the film to the gas since time 0, J; negative where the gas is warmer.
     pub heat: f64,
-    /// Work done on the film since time 0, J.
+    /// Work of the gas on the film since time 0, J; the ledger of the film holds the same number.
     pub gas_work: f64,
 }
 
 impl GasBalance {
+    /// Mass error since `start`, kg.
     fn mass_defect(&self, start: &Self) -> f64 {
         (self.mass - start.mass) - self.mass_in + self.mass_out
     }
 
+    /// Energy error since `start`, J.
     fn energy_defect(&self, start: &Self) -> f64 {
         (self.internal_energy - start.internal_energy) - self.enthalpy_in + self.enthalpy_out
             - self.heat
             + self.gas_work
     }
 
+    /// Divisor of the mass error, kg.
     fn mass_moved(&self, start: &Self) -> f64 {
         start.mass + self.mass_in
     }
 
+    /// Divisor of the energy error, J.
     fn energy_moved(&self, start: &Self) -> f64 {
         start.internal_energy + self.enthalpy_in + self.heat.abs() + self.gas_work.abs()
     }
 }
 
-/// The share of its final value below which a divisor never falls.
-const DIVISOR_FLOOR: f64 = 0.01;
+/// Lower bound of a divisor, as a fraction of its final value. Chosen: rounding at the start of a run,
+/// when little has moved, is no error.
+const MIN_DIVISOR_FRACTION: f64 = 0.01;
 
-/// Kinetic energy below which film is at rest, J: some hundred times k T. Rounding alone moves film
-/// that nothing loads (1e-27 J for a metre of it), and closes no ledger.
-const REST: f64 = 1e-18;
+/// Lower bound of the film's divisor, J. Chosen: a few hundred times k T at room temperature. Rounding
+/// moves film without any load (about 1e-27 J per metre of film), and such a ledger never closes.
+const MIN_KINETIC_ENERGY: f64 = 1e-18;
 
-/// Residual of the film's energy at every sample of a series.
+/// Energy residual of the film at every sample of a series: |error| over energy moved so far.
 pub fn residuals(series: &[Ledger]) -> Vec<f64> {
     let Some(start) = series.first() else { return Vec::new() };
-    let mut peak_kinetic = REST;
+    let mut peak_kinetic = MIN_KINETIC_ENERGY;
     let moved: Vec<f64> = series
         .iter()
         .map(|ledger| {
@@ -129,11 +149,11 @@ pub fn residuals(series: &[Ledger]) -> Vec<f64> {
     relative(&defects, &moved)
 }
 
-/// Residual of the gas at every sample of a series: the larger of mass's and energy's.
+/// Residual of the gas at every sample of a series: the larger one of mass and energy.
 pub fn gas_residuals(series: &[GasBalance]) -> Vec<f64> {
     let Some(start) = series.first() else { return Vec::new() };
     let column = |value: fn(&GasBalance, &GasBalance) -> f64| -> Vec<f64> {
-        series.iter().map(|books| value(books, start)).collect()
+        series.iter().map(|balance| value(balance, start)).collect()
     };
     let mass = relative(&column(GasBalance::mass_defect), &column(GasBalance::mass_moved));
     let energy = relative(&column(GasBalance::energy_defect), &column(GasBalance::energy_moved));
@@ -141,9 +161,9 @@ pub fn gas_residuals(series: &[GasBalance]) -> Vec<f64> {
 }
 
 fn relative(defects: &[f64], moved: &[f64]) -> Vec<f64> {
-    let floor = DIVISOR_FLOOR * moved.last().copied().unwrap_or(0.0);
+    let floor = MIN_DIVISOR_FRACTION * moved.last().copied().unwrap_or(0.0);
     let ratio = |(defect, moved): (&f64, &f64)| {
-        // Nothing moved and nothing amiss is no error; something amiss where nothing moved is.
+        // 0/0 counts as no error; an error without any motion is infinite.
         if *defect == 0.0 { 0.0 } else { defect.abs() / moved.max(floor) }
     };
     defects.iter().zip(moved).map(ratio).collect()
@@ -164,19 +184,19 @@ mod tests {
     }
 
     #[test]
-    fn energy_from_nowhere_shows_with_its_size() {
+    fn residual_is_the_energy_error_over_the_energy_moved() {
         let series = [at(0.0, 0.0, 0.0), at(3.0, 2.0, 0.0), at(1.0, 2.0, 1.0)];
         assert_eq!(residuals(&series), [0.0, 1.0 / 5.0, 0.0]);
     }
 
     #[test]
-    fn early_noise_is_judged_by_a_hundredth_of_the_end() {
+    fn early_errors_are_divided_by_one_percent_of_the_final_divisor() {
         let series = [at(0.0, 0.0, 0.0), at(1e-9, 0.0, 0.0), at(50.0, 50.0, 0.0)];
         assert!((residuals(&series)[1] - 1e-9).abs() < 1e-20);
     }
 
     #[test]
-    fn every_entry_counts() {
+    fn every_entry_enters_the_ledger() {
         let entries: [fn(&mut Ledger); 10] = [
             |l| l.kinetic = 1.0,
             |l| l.strain = 1.0,
@@ -186,7 +206,7 @@ mod tests {
             |l| l.gravity_work = 1.0,
             |l| l.support_work = 1.0,
             |l| l.viscous_work = 1.0,
-            |l| l.friction_work = 1.0,
+            |l| l.contact_dissipation = 1.0,
             |l| l.damping_work = 1.0,
         ];
         let start = Ledger::default();
@@ -199,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn lost_gas_shows_in_mass_and_in_energy() {
+    fn gas_residual_is_the_larger_of_mass_and_energy() {
         let start = GasBalance { mass: 1.0, internal_energy: 100.0, ..GasBalance::default() };
         let mut mass_lost = GasBalance { mass: 1.5, mass_in: 1.0, ..start };
         assert_eq!(gas_residuals(&[start, mass_lost]), [0.0, 0.25]);
@@ -209,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_without_anything_has_no_residual() {
+    fn a_run_without_motion_has_no_residual() {
         assert_eq!(residuals(&[Ledger::default(); 3]), [0.0; 3]);
         assert_eq!(gas_residuals(&[GasBalance::default(); 3]), [0.0; 3]);
         assert!(residuals(&[]).is_empty() && gas_residuals(&[]).is_empty());

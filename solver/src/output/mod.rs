@@ -1,4 +1,4 @@
-//! What a run leaves: history, frames, measures, energy ledger, audit, checkpoint.
+//! The outputs of a run: history, frames, measures, energy ledger, audit, checkpoint.
 
 pub mod audit;
 pub mod checkpoint;

@@ -1,4 +1,4 @@
-//! What a run gives back: its history and measures, and how it ended.
+//! The result of a run: its history and measures, and how it ended.
 
 use super::audit::Audit;
 use super::frames::Frames;
@@ -10,64 +10,65 @@ use super::measures::Measures;
 pub struct Deployment {
     /// Time series, up to the end or to the moment the run stopped.
     pub history: History,
-    /// What was followed beside it.
+    /// Further time series: followed nodes and elements, contact, plates.
     pub tracks: Vec<Track>,
-    /// Shapes kept; none of a model without a shape, or where none were asked for.
+    /// Stored shapes of the film; `None` for a model without a mesh, or if the scene asks for none.
     pub frames: Option<Frames>,
-    /// What the history says, in single numbers.
+    /// Measures: single numbers computed from the history.
     pub measures: Measures,
-    /// What the history is worth.
+    /// Audit: how far the history can be trusted.
     pub audit: Audit,
     /// How the run ended.
     pub stop: Stop,
     /// Accepted steps.
     pub steps: u64,
-    /// Elements of the mesh (0 for a model without one).
+    /// Elements of the mesh; 0 for a model without a mesh.
     pub elements: usize,
 }
 
 impl Deployment {
-    /// The series of that name among what was followed; empty where it was not.
+    /// The values of the track of that name; empty if there is none.
     pub fn followed(&self, name: &str) -> &[f64] {
-        let own = self.tracks.iter().find(|track| track.name == name);
-        own.map_or(&[], |track| track.values.as_slice())
+        let track = self.tracks.iter().find(|track| track.name == name);
+        track.map_or(&[], |track| track.values.as_slice())
     }
 }
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stop {
-    /// Reached its end time.
+    /// The run reached its end time.
     Done,
-    /// The observer asked for an end; nothing of it is a result.
+    /// The observer ended the run; nothing of it is a result.
     Cancelled,
-    /// Stopped short: a typed outcome, stored as such.
+    /// The run stopped early for this reason. The job stores it as its status.
     Failed(Failure),
 }
 
-/// Why, when and where a run stopped short.
+/// Why, when and where a run stopped early.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Failure {
     /// Kind.
     pub kind: FailureKind,
     /// Simulated time, s.
     pub time: f64,
-    /// Where: an element, a node, or the part of the model, in words.
+    /// Where: a node, an element or a part of the model, in words.
     pub place: String,
 }
 
 /// The kinds of failure a run can end in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FailureKind {
-    /// State no longer finite, or growing without bound.
+    /// The state is not finite, or grows without bound.
     Unstable,
-    /// The energy ledger left its bound.
+    /// The energy ledger residual is above its bound
+    /// ([`MAX_LEDGER_RESIDUAL`](super::audit::MAX_LEDGER_RESIDUAL)).
     EnergyDrift,
-    /// The enclosed volume fell to zero or below.
+    /// The enclosed volume is zero or negative.
     InvertedVolume,
-    /// More steps than allowed, or a step too small to advance time.
+    /// The run needs more steps than allowed, or a step is too small to advance time.
     StepLimit,
-    /// Film went through film.
+    /// Film passed through film.
     Interpenetrated,
 }
 
@@ -81,14 +82,35 @@ impl FailureKind {
         Self::Interpenetrated,
     ];
 
-    /// Name, as in the table's `status` column.
+    /// Name, as in the `status` column of the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Unstable => "unstable",
-            Self::EnergyDrift => "drifted",
+            Self::EnergyDrift => "energy_drift",
             Self::InvertedVolume => "inverted_volume",
             Self::StepLimit => "step_limit",
             Self::Interpenetrated => "interpenetrated",
         }
+    }
+
+    /// The kind of that name; also accepts `drifted`, the name of [`Self::EnergyDrift`] in results of
+    /// earlier versions.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let name = if name == "drifted" { Self::EnergyDrift.name() } else { name };
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_read_back_and_the_old_one_too() {
+        for kind in FailureKind::ALL {
+            assert_eq!(FailureKind::from_name(kind.name()), Some(kind));
+        }
+        assert_eq!(FailureKind::from_name("drifted"), Some(FailureKind::EnergyDrift));
+        assert_eq!(FailureKind::from_name("done"), None);
     }
 }

@@ -1,14 +1,14 @@
-//! Static states of film: where it rests under a fixed overpressure, its weight and its supports.
+//! Static equilibria of film under a fixed overpressure, its weight and its supports.
 //!
 //! ```text
-//! f_film(x) + p ∂V/∂x + m g + what supports bear = 0
-//! Π = strain energy − p V − Σ m g·x − Σ F s        its minimum, where pressure has an energy
+//! f_film(x) + p ∂V/∂x + m g + support forces = 0
+//! Π = strain energy − p V − Σ m g·x − Σ F s        minimal at the equilibrium of closed film
 //! ```
 //!
 //! Symbols: p overpressure, V enclosed volume; F the constant force on a rigid plane, s its travel.
-//! [`solve`] takes a scene, [`settle`] film with its load from any start, [`equilibrium`] is Newton's
-//! method alone, [`Relaxation`] the slow way by damped motion. All four end with a state whose
-//! residual is small against the load, or with a typed failure.
+//! [`solve`] takes a scene; [`settle`] takes film with its load and any start; [`equilibrium`] is Newton's
+//! method alone; [`Relaxation`] is damped motion, slower but more robust. Each ends with a state whose
+//! residual is small compared with the load, or with a typed failure.
 
 use core::ops::ControlFlow;
 
@@ -33,52 +33,52 @@ pub mod unknowns;
 
 pub use approach::settle;
 pub use newton::{
-    Iteration, Loaded, Rest, Settling, StaticFailure, StaticFailureKind, TunnellingMonitor,
-    equilibrium,
+    Equilibrium, Iteration, IterationObserver, Loaded, StaticFailure, StaticFailureKind,
+    Tolerances, equilibrium,
 };
 pub use relaxation::Relaxation;
 
-/// Why a scene has no static state to give.
+/// Why a scene has no static equilibrium.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticError {
-    /// Its faces are no film.
+    /// Its faces are not a film.
     #[error(transparent)]
     Shell(#[from] ShellError),
-    /// Its elements are no film.
+    /// Its elements are not a film.
     #[error(transparent)]
     Film(#[from] FilmError),
-    /// It is filled with gas.
-    #[error("a static state needs a fixed pressure; there is gas")]
+    /// It is filled with gas instead of a fixed pressure.
+    #[error("a static equilibrium needs a fixed pressure, but the scene has gas")]
     Gas,
-    /// None was found.
+    /// The search found none.
     #[error(transparent)]
     NoState(#[from] StaticFailure),
 }
 
-/// A static state of a scene.
+/// A static equilibrium of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticSolution {
     /// The film.
     pub model: FilmModel,
-    /// Places of the nodes, m.
-    pub places: Field,
-    /// Forces of film, pressure and weight on the nodes, N: what supports bear.
+    /// Positions of the nodes, m.
+    pub positions: Field,
+    /// Forces of film, pressure and weight on the nodes, N. At held nodes the supports balance them.
     pub forces: Field,
-    /// What the film exerts on each support, in the scene's order.
+    /// Force of the film on each support, in the order of the scene.
     pub reactions: Vec<Reaction>,
     /// Strain energy, J.
     pub strain_energy: f64,
-    /// Strain energy less p V, weight and what pushes planes, J.
+    /// Potential energy Π, J.
     pub potential_energy: f64,
-    /// Enclosed volume, m³, boundary loops closed by their fans at the start.
+    /// Enclosed volume, m³; boundary loops are closed by fans.
     pub volume: f64,
-    /// Newton steps in all.
+    /// Total number of Newton steps.
     pub iterations: u32,
-    /// Residual force over the load.
+    /// Residual force over the load, a fraction.
     pub residual: f64,
 }
 
-/// What film exerts on one support.
+/// Force of the film on one support.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reaction {
     /// Name of the support.
@@ -89,27 +89,27 @@ pub struct Reaction {
     pub moment: Vector3<f64>,
 }
 
-/// The state of rest of a scene under its fixed pressure, what moves having come to its end.
-/// Velocities, gas, release and times are not read.
+/// The static equilibrium of a scene under its fixed pressure, with moving supports at the end of their
+/// motion. Velocities, gas, release and times have no effect.
 ///
 /// # Errors
 /// [`StaticError`].
 pub fn solve(
     scene: &FilmScene,
-    watch: TunnellingMonitor<'_>,
+    observer: IterationObserver<'_>,
 ) -> Result<StaticSolution, StaticError> {
-    solve_from(scene, None, watch)
+    solve_from(scene, None, observer)
 }
 
-/// [`solve`], from a state of the same scene under another overpressure (Pa) where there is one:
-/// sooner, where the pressure falls.
+/// [`solve`], starting from a known equilibrium of the same scene at another overpressure (Pa). It needs
+/// fewer steps if the pressure is lower.
 ///
 /// # Errors
 /// As [`solve`].
 pub fn solve_from(
     scene: &FilmScene,
     known: Option<(&StaticSolution, f64)>,
-    watch: TunnellingMonitor<'_>,
+    observer: IterationObserver<'_>,
 ) -> Result<StaticSolution, StaticError> {
     let Filling::Pressure(overpressure) = scene.filling else { return Err(StaticError::Gas) };
     scene.shell.check()?;
@@ -121,62 +121,66 @@ pub fn solve_from(
         supports: &supports,
         overpressure,
         gravity: scene.gravity,
-        path: scene.solver.instruction_set,
+        instruction_set: scene.solver.instruction_set,
     };
-    let (places, from) = known.map_or((&start, None), |(state, at)| (&state.places, Some(at)));
-    let rest = settle(&loaded, places, from, &Settling::default(), watch)?;
-    let strain = strain_energy(&model, &rest.places);
-    let volume = scene.shell.volume(|node| rest.places.get(node as usize));
-    let weight: f64 = model
+    let (positions, from) =
+        known.map_or((&start, None), |(state, pressure)| (&state.positions, Some(pressure)));
+    let equilibrium = settle(&loaded, positions, from, &Tolerances::default(), observer)?;
+    let strain = strain_energy(&model, &equilibrium.positions);
+    let volume = scene.shell.volume(|node| equilibrium.positions.get(node as usize));
+    let gravity_work: f64 = model
         .mass
         .iter()
-        .zip(rest.places.iter())
-        .map(|(mass, place)| mass * scene.gravity.dot(&place))
+        .zip(equilibrium.positions.iter())
+        .map(|(mass, position)| mass * scene.gravity.dot(&position))
         .sum();
-    let pushed: f64 = supports
+    let plane_work: f64 = supports
         .bodies
         .iter()
         .filter_map(|body| {
             let node = *body.nodes.first()? as usize;
-            let way = rest.places.get(node) - start.get(node);
-            Some(body.plane.force * body.plane.normal.dot(&way))
+            let displacement = equilibrium.positions.get(node) - start.get(node);
+            Some(body.plane.force * body.plane.normal.dot(&displacement))
         })
         .sum();
     Ok(StaticSolution {
-        reactions: scene.supports.iter().map(|support| reaction(support, &rest)).collect(),
+        reactions: scene.supports.iter().map(|support| reaction(support, &equilibrium)).collect(),
         strain_energy: strain,
-        potential_energy: strain - overpressure * volume - weight - pushed,
+        potential_energy: strain - overpressure * volume - gravity_work - plane_work,
         volume,
-        iterations: rest.iterations,
-        residual: rest.residual,
-        places: rest.places,
-        forces: rest.forces,
+        iterations: equilibrium.iterations,
+        residual: equilibrium.residual,
+        positions: equilibrium.positions,
+        forces: equilibrium.forces,
         model,
     })
 }
 
-/// [`solve`] without a listener.
+/// [`solve`] without an observer.
 ///
 /// # Errors
 /// As [`solve`].
-pub fn solve_unwatched(scene: &FilmScene) -> Result<StaticSolution, StaticError> {
+pub fn solve_unobserved(scene: &FilmScene) -> Result<StaticSolution, StaticError> {
     solve(scene, &mut |_| ControlFlow::Continue(()))
 }
 
-fn reaction(support: &FilmSupport, rest: &Rest) -> Reaction {
-    let [force, moment] = borne(rest, &support.nodes, &support.hold.projector());
+fn reaction(support: &FilmSupport, equilibrium: &Equilibrium) -> Reaction {
+    let [force, moment] = support_force(equilibrium, &support.nodes, &support.hold.projector());
     Reaction { name: support.name.clone(), force, moment }
 }
 
-/// What film exerts on nodes held along these directions, and its moment about the origin: N and
-/// N m.
-pub fn borne(rest: &Rest, nodes: &[u32], held: &Matrix3<f64>) -> [Vector3<f64>; 2] {
+/// Force of the film on a support that holds `nodes` along `held`, N, and its moment about the origin, N m.
+pub fn support_force(
+    equilibrium: &Equilibrium,
+    nodes: &[u32],
+    held: &Matrix3<f64>,
+) -> [Vector3<f64>; 2] {
     let mut sum = [Vector3::zeros(); 2];
     for node in nodes {
         let node = *node as usize;
-        let force = held * rest.forces.get(node);
+        let force = held * equilibrium.forces.get(node);
         sum[0] += force;
-        sum[1] += rest.places.get(node).cross(&force);
+        sum[1] += equilibrium.positions.get(node).cross(&force);
     }
     sum
 }

@@ -1,12 +1,12 @@
-//! Static states by damped motion: slow and sure.
+//! Static equilibria by damped motion (dynamic relaxation): slow and robust.
 //!
 //! ```text
-//! m a = f − c m v,   c = 2 ω          until kinetic energy < share · p V
-//! ω² = Σ Δx·Δr / Σ m Δx²              r = −f; the frequency the motion has now
+//! m a = f − c m v,   c = 2 ω          until kinetic energy < fraction · p V
+//! ω² = Σ Δx·Δr / Σ m Δx²              r = −f
 //! ```
 //!
-//! The frequency is Rayleigh's quotient of the last stretch of motion (P. Underwood, "Dynamic
-//! relaxation", 1983).
+//! ω is the frequency of the present motion: Rayleigh's quotient of its last [`Relaxation::check_interval`]
+//! steps (P. Underwood, "Dynamic relaxation", 1983).
 
 use nalgebra::Vector3;
 
@@ -15,62 +15,63 @@ use crate::integrators::explicit::{Explicit, PressureLoad};
 use crate::output::outcome::Failure;
 use crate::scene::timeline::Phase;
 
-/// How a relaxation goes.
+/// Settings of a relaxation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relaxation {
-    /// Share of the stable step.
+    /// CFL number.
     pub cfl: f64,
-    /// Settled: kinetic energy below this share of p V, twice in a row.
-    pub kinetic_share: f64,
-    /// Steps between two looks.
-    pub stretch: u32,
-    /// Steps a pressure may take.
+    /// Upper bound of the kinetic energy over p V at two successive checks.
+    pub max_kinetic_fraction: f64,
+    /// Number of steps between two checks.
+    pub check_interval: u32,
+    /// Upper bound of the number of steps at one pressure.
     pub step_limit: u64,
 }
 
 impl Default for Relaxation {
     fn default() -> Self {
-        Self { cfl: 0.9, kinetic_share: 1e-9, stretch: 50, step_limit: 400_000 }
+        Self { cfl: 0.9, max_kinetic_fraction: 1e-9, check_interval: 50, step_limit: 400_000 }
     }
 }
 
 impl Relaxation {
-    /// Relaxes film at this overpressure (Pa) until it is settled, adapting the mass damping.
+    /// Relaxes film at this overpressure (Pa) until it is at rest. Adapts the mass damping.
     ///
     /// # Errors
-    /// [`Failure`] of the motion, or `step_limit` when it does not settle.
+    /// [`Failure`] of the motion; `step_limit` if the film does not come to rest.
     pub fn relax_at(&self, film: &mut Explicit, overpressure: f64) -> Result<(), Failure> {
-        film.setting.interior = PressureLoad::Overpressure(overpressure);
+        film.parameters.pressure_load = PressureLoad::Overpressure(overpressure);
         film.state.pressure = overpressure;
         let limit = film.state.steps + self.step_limit;
-        film.setting.step_limit = limit;
-        let mut calm = 0;
-        while calm < 2 {
-            let (places, forces) = (film.state.places.clone(), all_forces(film));
-            let target = film.state.time + film.stable_step() * f64::from(self.stretch);
+        film.parameters.step_limit = limit;
+        let mut settled_checks = 0;
+        while settled_checks < 2 {
+            let (positions, forces) = (film.state.positions.clone(), free_forces(film));
+            let target = film.state.time + film.stable_step() * f64::from(self.check_interval);
             film.advance(target, &Phase::default())?;
-            film.setting.mass_damping = 2.0 * frequency(film, &places, &forces);
+            film.parameters.mass_damping = 2.0 * frequency(film, &positions, &forces);
             let energy = film.overpressure() * film.state.volume;
-            let settled = film.kinetic_energy().abs() < self.kinetic_share * energy;
-            calm = if settled { calm + 1 } else { 0 };
+            let settled = film.kinetic_energy().abs() < self.max_kinetic_fraction * energy;
+            settled_checks = if settled { settled_checks + 1 } else { 0 };
         }
         Ok(())
     }
 }
 
-fn all_forces(film: &Explicit) -> Vec<Vector3<f64>> {
-    let free = |node: usize| film.setting.supports.projector(node) * film.force(node);
-    (0..film.model.nodes()).map(free).collect()
+/// Forces on all nodes along free directions, N.
+fn free_forces(film: &Explicit) -> Vec<Vector3<f64>> {
+    let free_force = |node: usize| film.parameters.supports.projector(node) * film.force(node);
+    (0..film.model.nodes()).map(free_force).collect()
 }
 
-/// ω of the motion since `places`, rad/s.
-fn frequency(film: &Explicit, places: &Field, forces: &[Vector3<f64>]) -> f64 {
+/// Frequency ω of the motion since these positions (m) with these forces (N), rad/s.
+fn frequency(film: &Explicit, positions: &Field, forces: &[Vector3<f64>]) -> f64 {
     let (mut stiffness, mut mass) = (0.0, 0.0);
-    for (node, (before, now)) in forces.iter().zip(all_forces(film)).enumerate() {
-        let moved = film.state.places.get(node) - places.get(node);
+    for (node, (before, now)) in forces.iter().zip(free_forces(film)).enumerate() {
+        let moved = film.state.positions.get(node) - positions.get(node);
         stiffness += moved.dot(&(before - now));
         mass += film.model.mass[node] * moved.norm_squared();
     }
-    // A quotient below nought belongs to a motion that still gains speed: let it.
+    // A negative quotient belongs to a motion that still accelerates: no damping then.
     if mass > 0.0 { (stiffness / mass).max(0.0).sqrt() } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! How the forces on an element's nodes change as they move: its stiffness.
+//! Tangent stiffness of an element: minus the change of its nodal forces with the positions of its nodes.
 //!
 //! ```text
 //! K_ab = A t [(g_a·S g_b) 1 + B_aᵀ D B_b] − K_p,ab       D = ∂²W/∂e²
@@ -9,11 +9,11 @@
 //! K_p,ab = p/12 [e_b − e_a]×                   pressure p, e_a the edge opposite corner a
 //! ```
 //!
-//! Symbols: g gradients of the corners' shape functions (1/m), B strain of a unit move, n the
-//! direction of tension and m across it. D is positive semidefinite in every regime, and for c = 0
-//! so is all of K but the pressure. The tangent of a follower pressure is not symmetric element by
-//! element; its symmetric part is what stands here. Over a closed surface, and over an open one
-//! whose edge is held or slides in planes, the rest cancels.
+//! Symbols: g gradients of the shape functions of the corners (1/m), B strain of a unit displacement, n
+//! direction of tension, m direction across it, c compression fraction. D is positive semidefinite in
+//! every regime; for c = 0 so is K without the pressure. The tangent of a follower pressure is not
+//! symmetric element by element; `K_p` is its symmetric part. The antisymmetric part cancels over a closed
+//! surface, and over an open surface whose edge is held or slides in planes.
 
 use nalgebra::{Matrix3, Matrix3x2, SMatrix, Vector2, Vector3};
 
@@ -25,7 +25,7 @@ use crate::mechanics::material::{Material, PlaneTensor, Regime};
 /// Stiffness of three nodes, three components each, N/m.
 pub type Stiffness = SMatrix<f64, 9, 9>;
 
-/// D at a strain, Pa, for (xx, yy, 2xy).
+/// D at a strain, Pa, for the strain components (xx, yy, 2xy).
 pub fn material_tangent(material: &Material, strain: PlaneTensor) -> Matrix3<f64> {
     let (k, nu) = (material.plane_modulus(), material.poisson_ratio);
     let full = Matrix3::new(k, k * nu, 0.0, k * nu, k, 0.0, 0.0, 0.0, 0.5 * k * (1.0 - nu));
@@ -33,33 +33,33 @@ pub fn material_tangent(material: &Material, strain: PlaneTensor) -> Matrix3<f64
         Regime::Taut => full,
         Regime::Wrinkled => {
             let (first, second) = strain.principal();
-            let across = first - second;
-            let cos = (strain.xx - strain.yy) / across;
-            let sin = 2.0 * strain.xy / across;
+            let difference = first - second;
+            let cos = (strain.xx - strain.yy) / difference;
+            let sin = 2.0 * strain.xy / difference;
             let along = Vector3::new(0.5 * (1.0 + cos), 0.5 * (1.0 - cos), 0.5 * sin);
-            let aslant = Vector3::new(-0.5 * sin, 0.5 * sin, 0.5 * cos);
+            let shear = Vector3::new(-0.5 * sin, 0.5 * sin, 0.5 * cos);
             let modulus = material.youngs_modulus;
             along * along.transpose() * modulus
-                + aslant * aslant.transpose() * (2.0 * modulus * first / across)
+                + shear * shear.transpose() * (2.0 * modulus * first / difference)
         }
         Regime::Slack => Matrix3::zeros(),
     };
     relaxed + (full - relaxed) * material.compression
 }
 
-/// Elastic stiffness of an element with its nodes at these places (m).
-pub fn elastic(model: &FilmModel, places: &Field, element: usize) -> Stiffness {
-    let corners = model.triangles[element].map(|node| places.get(node as usize));
+/// Elastic stiffness of an element with its nodes at these positions (m).
+pub fn elastic(model: &FilmModel, positions: &Field, element: usize) -> Stiffness {
+    let corners = model.triangles[element].map(|node| positions.get(node as usize));
     let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
     let slopes = [Vector2::new(-(a + c), -(b + d)), Vector2::new(a, b), Vector2::new(c, d)];
     let (p, q) = (corners[1] - corners[0], corners[2] - corners[0]);
     let gradient = Matrix3x2::from_columns(&[p * a + q * c, p * b + q * d]);
-    let strain = strain(model, places, element);
+    let strain = strain(model, positions, element);
     let stress = model.material.stress(strain).tensor;
     let tangent = material_tangent(&model.material, strain);
     let volume = model.volume[element];
     let (f, g) = (gradient.column(0), gradient.column(1));
-    let moves = slopes.map(|slope| {
+    let strain_matrices = slopes.map(|slope| {
         Matrix3::from_rows(&[
             (f * slope.x).transpose(),
             (g * slope.y).transpose(),
@@ -68,12 +68,12 @@ pub fn elastic(model: &FilmModel, places: &Field, element: usize) -> Stiffness {
     });
     let mut stiffness = Stiffness::zeros();
     for i in 0..3 {
-        let left = moves[i].transpose() * tangent * volume;
+        let left = strain_matrices[i].transpose() * tangent * volume;
         for j in 0..=i {
             let (s, r) = (slopes[i], slopes[j]);
-            let pull =
+            let initial_stress =
                 stress.xx * s.x * r.x + stress.yy * s.y * r.y + stress.xy * (s.x * r.y + s.y * r.x);
-            let block = left * moves[j] + Matrix3::identity() * (pull * volume);
+            let block = left * strain_matrices[j] + Matrix3::identity() * (initial_stress * volume);
             stiffness.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&block);
             if i != j {
                 stiffness.fixed_view_mut::<3, 3>(3 * j, 3 * i).copy_from(&block.transpose());
@@ -83,9 +83,9 @@ pub fn elastic(model: &FilmModel, places: &Field, element: usize) -> Stiffness {
     stiffness
 }
 
-/// Stiffness (minus the change of force with place) of a pressure (Pa) on a face.
-pub fn pressure(face: [u32; 3], places: &Field, pressure: f64) -> Stiffness {
-    let [a, b, c] = face.map(|node| places.get(node as usize));
+/// Stiffness of a pressure (Pa) on a face at these positions (m), N/m.
+pub fn pressure(face: [u32; 3], positions: &Field, pressure: f64) -> Stiffness {
+    let [a, b, c] = face.map(|node| positions.get(node as usize));
     let edges = [c - b, a - c, b - a];
     let mut stiffness = Stiffness::zeros();
     for i in 0..3 {
@@ -97,7 +97,7 @@ pub fn pressure(face: [u32; 3], places: &Field, pressure: f64) -> Stiffness {
     stiffness
 }
 
-/// v× as a matrix.
+/// The matrix of the cross product v×.
 fn cross(v: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
 }

@@ -1,13 +1,12 @@
-//! What a static state is looked for in: places of free nodes along what is free of them, and the
-//! travel of rigid planes.
+//! The unknowns of a static equilibrium: displacements of nodes along their free directions, and the travel
+//! of rigid planes.
 //!
 //! ```text
-//! u_i = Σ_k d_ik q_k          d: unit directions nobody holds; normals of planes the node is bound to
+//! u_i = Σ_k d_ik q_k          d: free unit directions; normals of the planes of a node
 //! r_k = Σ_i d_ik·f_i          + the constant force of a plane
 //! ```
 //!
-//! A node without mass (the tip of closing faces) is moved by no force and counts as held, as in a
-//! run.
+//! A node without mass (the apex of closing faces) counts as held, as in a run.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -15,29 +14,32 @@ use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::supports::Supports;
 
-/// Unknown displacements and what they move.
+/// The unknown displacements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknowns {
-    /// Unknowns each node moves by, with the direction: nodes' own first, then rigid planes'.
+    /// Unknowns that move each node, with their direction: first the node's own, then those of its planes.
     pub of_node: Vec<Vec<(u32, Vector3<f64>)>>,
-    /// Unknowns that belong to one node alone, as a range.
-    pub own: Vec<core::ops::Range<u32>>,
-    /// Where the unknowns of rigid planes begin; there is one a plane, in their order.
-    pub planes: u32,
-    /// Mass each moves, kg.
+    /// Range of the unknowns of each node alone.
+    pub node_range: Vec<core::ops::Range<u32>>,
+    /// First unknown of the rigid planes; one per plane, in their order.
+    pub first_plane: u32,
+    /// Mass moved by each unknown, kg.
     pub mass: Vec<f64>,
-    /// Constant force along each, N.
+    /// Constant force along each unknown, N.
     pub force: Vec<f64>,
 }
 
-/// Unit directions a projector leaves free.
+/// Orthonormal basis of the image of a projector: the free directions.
 fn free_directions(projector: &Matrix3<f64>) -> Vec<Vector3<f64>> {
     let mut rest = *projector;
     let mut found = Vec::new();
-    // A projector's diagonal entry is the squared length of what it leaves of that axis.
+    // A diagonal entry of a projector is the squared length of the projection of that axis.
     for _ in 0..3 {
         let axis =
-            (0..3).fold(0, |best, k| if rest[(k, k)] > rest[(best, best)] { k } else { best });
+            (0..3).fold(
+                0,
+                |largest, k| if rest[(k, k)] > rest[(largest, largest)] { k } else { largest },
+            );
         if rest[(axis, axis)] <= 1e-9 {
             break;
         }
@@ -49,12 +51,12 @@ fn free_directions(projector: &Matrix3<f64>) -> Vec<Vector3<f64>> {
 }
 
 impl Unknowns {
-    /// Of a film held so.
+    /// The unknowns of a film with these supports.
     pub fn new(model: &FilmModel, supports: &Supports) -> Self {
         let mut all = Self {
             of_node: vec![Vec::new(); model.nodes()],
-            own: vec![0..0; model.nodes()],
-            planes: 0,
+            node_range: vec![0..0; model.nodes()],
+            first_plane: 0,
             mass: Vec::new(),
             force: Vec::new(),
         };
@@ -68,9 +70,9 @@ impl Unknowns {
                     count += 1;
                 }
             }
-            all.own[node] = first..count;
+            all.node_range[node] = first..count;
         }
-        all.planes = count;
+        all.first_plane = count;
         for (plane, body) in (count..).zip(&supports.bodies) {
             for node in &body.nodes {
                 all.of_node[*node as usize].push((plane, body.plane.normal));
@@ -84,17 +86,17 @@ impl Unknowns {
         all
     }
 
-    /// How many there are.
+    /// Number of unknowns.
     pub fn len(&self) -> usize {
         self.mass.len()
     }
 
-    /// Whether all is held.
+    /// Whether there are no unknowns.
     pub fn is_empty(&self) -> bool {
         self.mass.is_empty()
     }
 
-    /// Forces along the unknowns, N, of these forces on nodes.
+    /// Forces along the unknowns, N, from forces on the nodes (N).
     pub fn gather(&self, forces: &Field) -> Vec<f64> {
         let mut along = self.force.clone();
         for (node, moves) in self.of_node.iter().enumerate() {
@@ -106,24 +108,25 @@ impl Unknowns {
         along
     }
 
-    /// Moves the nodes by these displacements (m) times `share`.
-    pub fn shift(&self, places: &mut Field, by: &[f64], share: f64) {
+    /// Moves the nodes by `fraction` times these displacements along the unknowns (m).
+    pub fn shift(&self, positions: &mut Field, by: &[f64], fraction: f64) {
         for (node, moves) in self.of_node.iter().enumerate() {
             if !moves.is_empty() {
-                places.set(node, places.get(node) + self.of(node, by) * share);
+                positions.set(node, positions.get(node) + self.displacement(node, by) * fraction);
             }
         }
     }
 
-    /// Displacement of a node, m.
-    pub fn of(&self, node: usize, by: &[f64]) -> Vector3<f64> {
+    /// Displacement of a node, m, from displacements along the unknowns (m).
+    pub fn displacement(&self, node: usize, by: &[f64]) -> Vector3<f64> {
         let moves = self.of_node[node].iter();
         moves.map(|(unknown, direction)| direction * by[*unknown as usize]).sum()
     }
 
-    /// Largest displacement of a node, m.
+    /// Largest displacement of any node, m.
     pub fn largest(&self, by: &[f64]) -> f64 {
-        let squared = (0..self.of_node.len()).map(|node| self.of(node, by).norm_squared());
+        let squared =
+            (0..self.of_node.len()).map(|node| self.displacement(node, by).norm_squared());
         squared.fold(0.0, f64::max).sqrt()
     }
 }
@@ -133,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn free_directions_span_what_a_projector_leaves() {
+    fn free_directions_span_the_image_of_a_projector() {
         let normal = Vector3::new(1.0, -2.0, 0.5).normalize();
         let plane = Matrix3::identity() - normal * normal.transpose();
         let line = normal * normal.transpose();

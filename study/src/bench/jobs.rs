@@ -4,9 +4,12 @@
 use std::num::NonZero;
 use std::time::Instant;
 
+use billow_solver::platform::simd::InstructionSet;
+
 use super::{Effort, INTERRUPTED, Line};
 use crate::input::value::Value;
 use crate::job::executor::Solver;
+use crate::job::references::References;
 use crate::job::row::DONE;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::scratch::Scratch;
@@ -67,7 +70,12 @@ impl JobsRow {
 ///
 /// # Errors
 /// A disk that fails; a signal.
-pub fn measure(threads: u32, effort: Effort, stop: &Stop) -> Result<JobsRow> {
+pub fn measure(
+    threads: u32,
+    instruction_set: InstructionSet,
+    effort: Effort,
+    stop: &Stop,
+) -> Result<JobsRow> {
     let sets = QUICK.iter().filter(|_| effort == Effort::Quick).map(ToString::to_string);
     let sets: Vec<String> = sets.collect();
     let study =
@@ -81,7 +89,7 @@ pub fn measure(threads: u32, effort: Effort, stop: &Stop) -> Result<JobsRow> {
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(&study, finished),
             unit: &|name| study.unit(name).to_owned(),
-            executor: &Solver::default(),
+            executor: &Solver { instruction_set, references: References::default() },
             results: Results::new(&Disk, &folder.path().join("results")),
             threads: NonZero::new(threads as usize),
             stop: stop.clone(),

@@ -85,15 +85,15 @@ pub fn measure(
     // The same work as the step's, at a fixed pressure: nothing else is in either.
     let push = KickParameters {
         overpressure: film.overpressure(),
-        gravity: film.setting.gravity,
+        gravity: film.parameters.gravity,
         weight_factor: 1.0,
         velocity_factor: 1.0,
         acceleration_factor: film.state.last_step,
         contact_active: false,
     };
-    let (free, length) = (&film.setting.supports.free, film.state.last_step);
+    let (free, length) = (&film.parameters.supports.free, film.state.last_step);
     let moving = |path| {
-        let (places, velocities) = (film.state.places.clone(), film.state.velocities.clone());
+        let (places, velocities) = (film.state.positions.clone(), film.state.velocities.clone());
         FilmMotion::new(path, &film.model, places, velocities)
     };
     for width in widths {
@@ -118,7 +118,7 @@ pub fn measure(
 /// Seconds of so many steps on a path.
 fn stepped(film: &Explicit, path: InstructionSet, course: &Timeline, steps: u64) -> Result<f64> {
     let mut film = film.clone();
-    film.setting.path = path;
+    film.parameters.instruction_set = path;
     let start = Instant::now();
     take(&mut film, course, steps, &mut Untimed)?;
     Ok(start.elapsed().as_secs_f64())

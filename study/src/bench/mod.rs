@@ -243,7 +243,7 @@ pub fn run(plan: &Plan, stop: &Stop, tell: &mut dyn FnMut(&str)) -> Result<Repor
     if has(Part::Jobs) {
         for threads in jobs::THREADS {
             tell(&format!("64 jobs, threads {threads}"));
-            report.jobs.push(jobs::measure(threads, plan.effort, stop)?);
+            report.jobs.push(jobs::measure(threads, plan.path, plan.effort, stop)?);
         }
     }
     report.machine.peak_memory = machine::peak_memory();

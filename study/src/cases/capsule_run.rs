@@ -76,8 +76,8 @@ pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     let scene = paper_capsule(5, 0.3);
     // Nothing here is judged by its static states.
     let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    let mut run =
-        FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(unread)).map_err(|e| e.to_string())?;
+    let mut run = FilmRun::from_scene(rig.instruction_set, &scene, DEFAULT_CFL, None, Some(unread))
+        .map_err(|e| e.to_string())?;
     run.film = rig.faulty(run.film);
     let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     if deployment.stop != Stop::Done {
@@ -119,12 +119,12 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     let mut film = rig.start(&scene)?;
     let inflow = Inflow { mass_flow_rate: 1.0, temperature_flow: 400.0 };
     let phase = Phase { packed: false, inflow };
-    let (mut ledgers, mut books) = (vec![film.ledger()], vec![film.books()]);
+    let (mut ledgers, mut books) = (vec![film.ledger()], vec![film.gas_balance()]);
     for sample in 1..=40 {
         let time = f64::from(sample) * 1e-3;
         advance(&mut film, time, &phase)?;
         ledgers.push(film.ledger());
-        books.push(GasBalance { mass_in: inflow.mass_flow_rate * time, ..film.books() });
+        books.push(GasBalance { mass_in: inflow.mass_flow_rate * time, ..film.gas_balance() });
     }
     let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
     Ok(vec![

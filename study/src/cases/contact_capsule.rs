@@ -27,15 +27,16 @@ use super::{Outcome, Rig, Row};
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn stowed(scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
+pub fn stowed(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
     // Nothing here is judged by its static states.
     let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    FilmRun::from_scene(scene, DEFAULT_CFL, Some(contact), Some(unread)).map_err(|e| e.to_string())
+    FilmRun::from_scene(rig.instruction_set, scene, DEFAULT_CFL, Some(contact), Some(unread))
+        .map_err(|e| e.to_string())
 }
 
 /// Runs a scene with this contact to its end.
 fn deploy(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<(FilmRun, Deployment), String> {
-    let mut run = stowed(scene, contact)?;
+    let mut run = stowed(rig, scene, contact)?;
     run.film = rig.faulty(run.film);
     let deployment = run::run(&mut run, &Timeline::new(scene), &mut Unobserved);
     match &deployment.stop {
@@ -52,7 +53,7 @@ fn sound(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: f64) -
     let audit = &deployment.audit;
     let count = |counted: Option<u64>| counted.map_or(f64::NAN, |counted| counted as f64);
     let peak = deployment.history.column("kinetic_energy").iter().copied().fold(0.0, worse);
-    let meeting = &run.film.state.meeting;
+    let meeting = &run.film.state.contact_state;
     let word = format!(
         "{} elements, {} steps, {} searches, {} approaches taken out",
         deployment.elements,
@@ -142,7 +143,7 @@ pub(super) fn capsule_deployed_fine(rig: &Rig) -> Outcome {
 pub(super) fn contact_distance(rig: &Rig) -> Outcome {
     let scene = paper_capsule(5, 0.3);
     let (run, _) = deploy(rig, &scene, FilmContact::default())?;
-    let usual = run.film.setting.contact.as_ref().ok_or("no contact")?.distance;
+    let usual = run.film.parameters.contact.as_ref().ok_or("no contact")?.distance;
     let expected = run.volume();
     let mut judged = Vec::new();
     for share in [0.5, 2.0] {

@@ -41,7 +41,7 @@ fn two_films() -> (Shell, usize) {
 
 /// Nodes that lie on the wrong side of an element of the other film, seen along z.
 fn astray(film: &Explicit, split: usize) -> usize {
-    let places: Vec<Vector3<f64>> = film.state.places.iter().collect();
+    let places: Vec<Vector3<f64>> = film.state.positions.iter().collect();
     let wrong = |node: usize| {
         film.model.triangles.iter().any(|corners| {
             let below = node < split;
@@ -124,7 +124,7 @@ pub fn squeezed_bag(rig: &Rig) -> Outcome {
         plate(up * start, -up, Some((up * (share * tall - start), closed)))
     };
     let height = |film: &Explicit| {
-        let z = || film.state.places.z.iter().copied();
+        let z = || film.state.positions.z.iter().copied();
         z().fold(f64::NEG_INFINITY, f64::max) - z().fold(f64::INFINITY, f64::min)
     };
     let mut judged = Vec::new();
@@ -173,7 +173,7 @@ pub fn dropped_sheet(rig: &Rig) -> Outcome {
         };
         let mut film = rig.start(&scene)?;
         let seen = follow(&mut film, 0.03, 60, &Phase::default())?;
-        let lowest = film.state.places.z.iter().copied().fold(f64::INFINITY, f64::min);
+        let lowest = film.state.positions.z.iter().copied().fold(f64::INFINITY, f64::min);
         let run = format!("c {compression}: ");
         judged.push(Row::at_least(&format!("{run}lowest node above the floor, m"), lowest, 0.0));
         judged.push(seen.returned(&film, &run));

@@ -33,8 +33,8 @@ const LOOK: f64 = 0.01;
 /// The stowed capsule under a fixed pressure (Pa), come to rest.
 fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), String> {
     let stowed = Shape::Stowed(scene.design.stowed_height);
-    let (film, mesh) =
-        capsule::film_scene(scene, stowed, DEFAULT_CFL).map_err(|error| error.to_string())?;
+    let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)
+        .map_err(|error| error.to_string())?;
     let mut film = FilmScene {
         filling: Filling::Pressure(pressure),
         contact: Some(FilmContact::default()),
@@ -61,10 +61,10 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), 
 fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
     let name = |what: &str| format!("{what}, at {} Pa", expected.overpressure);
     let band = |key: &str| number(&format!("deployed_equals_inflated/{key}"));
-    let rim = mesh.top_ring.iter().map(|node| film.state.places.z[*node as usize]).sum::<f64>()
+    let rim = mesh.top_ring.iter().map(|node| film.state.positions.z[*node as usize]).sum::<f64>()
         / mesh.top_ring.len() as f64;
     let share = film.kinetic_energy() / (expected.overpressure * film.state.volume);
-    let passages = film.watch.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
+    let passages = film.monitor.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
     let word = format!("at rest after {:.2} s, {} steps", film.state.time, film.state.steps);
     let strain = film.strain_energy();
     vec![
@@ -86,7 +86,8 @@ fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
 fn meet(rig: &Rig, subdivisions: u32) -> Outcome {
     let scene = paper_capsule(subdivisions, 1.0);
     let pressures = numbers("deployed_equals_inflated/pressures");
-    let inflated = static_states(&scene, &pressures).map_err(|error| error.to_string())?;
+    let inflated = static_states(rig.instruction_set, &scene, &pressures)
+        .map_err(|error| error.to_string())?;
     let mut judged = Vec::new();
     for expected in &inflated {
         let (film, mesh) = relaxed(rig, &scene, expected.overpressure)?;

@@ -89,7 +89,7 @@ pub fn follow(film: &mut Explicit, end: f64, samples: u32, phase: &Phase) -> Res
     for sample in 1..=samples {
         advance(film, end * f64::from(sample) / f64::from(samples), phase)?;
         seen.intersections = seen.intersections.max(crossings(film));
-        let contacts = &film.state.meeting.contacts;
+        let contacts = &film.state.contact_state.contacts;
         let pressed = contacts.iter().filter(|contact| contact.energy > 0.0).count();
         seen.pairs = seen.pairs.max(pressed);
         seen.ledgers.push(film.ledger());
@@ -99,13 +99,13 @@ pub fn follow(film: &mut Explicit, end: f64, samples: u32, phase: &Phase) -> Res
 
 /// Intersections of the whole film now.
 pub fn crossings(film: &Explicit) -> usize {
-    let law = film.setting.contact.as_ref();
-    law.map_or(0, |law| intersections(&law.mesh, &film.state.places).len())
+    let law = film.parameters.contact.as_ref();
+    law.map_or(0, |law| intersections(&law.mesh, &film.state.positions).len())
 }
 
 /// Energy that went into contact and neither is stored nor was taken by impulses, J.
 pub fn not_returned(film: &Explicit) -> f64 {
-    let meeting = &film.state.meeting;
+    let meeting = &film.state.contact_state;
     let pairs: f64 = meeting.contacts.iter().map(|contact| contact.energy).sum();
     let plates: f64 = meeting.plates.iter().map(|plate| plate.energy).sum();
     (film.ledger().contact - pairs - plates + meeting.collision_dissipation).abs()
@@ -119,14 +119,14 @@ impl Seen {
 
     /// Passages at any step, and intersections.
     pub fn counts(&self, film: &Explicit, run: &str) -> Vec<Row> {
-        let passages = film.watch.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
+        let passages = film.monitor.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
         vec![
             Row::at_most(&format!("{run}passages"), passages, 0.0).with_note(&format!(
                 "{} steps looked at, {} pairs pressed at most, {} approaches taken out; film residual \
                  {:.1e}",
                 film.state.steps,
                 self.pairs,
-                film.state.meeting.collision_impulses,
+                film.state.contact_state.collision_impulses,
                 self.residual()
             )),
             Row::at_most(&format!("{run}intersections"), self.intersections as f64, 0.0),

@@ -54,7 +54,7 @@ pub fn friction(rig: &Rig) -> Outcome {
     let mass = sum(&|node| film.model.mass[node]);
     let momentum = sum(&|node| film.model.mass[node] * film.state.velocities.x[node]);
     let lost = speed - momentum / mass;
-    let taken = film.ledger().friction_work;
+    let taken = film.ledger().contact_dissipation;
     let mut judged = vec![
         Row::new("speed lost, m/s", lost, mu * gravity * time, band),
         Row::at_least("energy friction took, J", taken, 0.0),
@@ -82,7 +82,7 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     scene.solver.mass_damping = 200.0;
     let mut film = rig.start(&scene)?;
     follow(&mut film, 0.05, 10, &Phase::default())?;
-    let heights = &film.state.places.z[split..];
+    let heights = &film.state.positions.z[split..];
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     Ok([lowest, heights.iter().copied().fold(0.0, worse)])
 }

@@ -68,14 +68,14 @@ fn between(film: &Explicit, law: &ContactModel, k: u32) -> [f64; 2] {
     let each = film.model.mass.len() / LAYERS as usize;
     let layer = |node: u32| node as usize / each;
     let mut meeting = ContactState::default();
-    let own = film.state.meeting.contacts.iter().filter(|contact| {
+    let own = film.state.contact_state.contacts.iter().filter(|contact| {
         let layers = contact.pair.nodes(&law.mesh.topology).map(layer);
         let (low, high) = (layers.iter().min(), layers.iter().max());
         low == Some(&(k as usize)) && high == Some(&(k as usize + 1))
     });
     meeting.contacts = own.copied().collect();
     let areas: Vec<f64> = film.model.mass.iter().map(|mass| mass / law.area_density).collect();
-    let pressed = law.interlayer_pressure(&film.state.places, &areas, &meeting);
+    let pressed = law.interlayer_pressure(&film.state.positions, &areas, &meeting);
     let whole: f64 = areas.iter().sum();
     // Each of the two sheets bears the force once.
     let force = 0.5 * pressed.mean * pressed.area_fraction * whole;
@@ -89,7 +89,7 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
     for distance in numbers("stack/distances") {
         let mut film = rig.start(&stack(distance, pressure))?;
         let seen = follow(&mut film, REST, 10, &Phase::default())?;
-        let law = film.setting.contact.as_ref().ok_or("no contact")?;
+        let law = film.parameters.contact.as_ref().ok_or("no contact")?;
         for k in 0..LAYERS - 1 {
             let [mean, largest] = between(&film, law, k);
             let quantity = format!(

@@ -71,8 +71,9 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         let start = film.state.volume;
         let seen = follow(&mut film, REST, 8, &Phase::default())?;
         let nodes = 2 * AROUND as usize;
-        let top = film.state.places.y.iter().take(nodes).copied().fold(0.0, f64::max);
-        let pushed: f64 = film.state.meeting.plates.iter().map(|plate| 0.5 * plate.force).sum();
+        let top = film.state.positions.y.iter().take(nodes).copied().fold(0.0, f64::max);
+        let pushed: f64 =
+            film.state.contact_state.plates.iter().map(|plate| 0.5 * plate.force).sum();
         let run = format!("g {gap} m: ");
         let word =
             format!("g is {:.6} m; kinetic energy {:.1e} J", 2.0 * top, film.kinetic_energy());

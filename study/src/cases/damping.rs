@@ -36,7 +36,7 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     let place = scene.shell.positions[centre].x;
     let mut film = rig.start(&scene)?;
     let interval = film.stable_step();
-    let turns = turns(&mut film, interval, 9, |film| film.state.places.x[centre] - place)?;
+    let turns = turns(&mut film, interval, 9, |film| film.state.positions.x[centre] - place)?;
     // Four periods between eight half waves.
     let omega = 4.0 * TAU / (turns[8].time - turns[0].time);
     let decrement = libm::log(turns[0].value / turns[8].value) / 4.0;

@@ -39,7 +39,7 @@ fn ring(
     scene.solver.cfl = CFL;
     let mut film = rig.start(&scene)?;
     frequency(&mut film, interval, crossings, |film| {
-        let heights = film.state.places.z.iter().zip(shape);
+        let heights = film.state.positions.z.iter().zip(shape);
         heights.zip(&film.model.mass).map(|((z, shape), mass)| mass * z * shape).sum()
     })
 }

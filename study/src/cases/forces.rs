@@ -82,7 +82,7 @@ pub fn force_energy(rig: &Rig) -> Outcome {
         for (name, a, b, regime) in regimes {
             let film = Film { compression, ..film() };
             let moved = film_at(rig, &shell, film, stretched(&shell, a, b), Vec::new())?;
-            let (model, places) = (&moved.model, &moved.state.places);
+            let (model, places) = (&moved.model, &moved.state.positions);
             let mut elements = 0..model.elements();
             if !elements.all(|e| model.material.regime(strain(model, places, e)) == regime) {
                 return Err(format!("film that should be {name} is not"));
@@ -100,7 +100,7 @@ pub fn force_energy(rig: &Rig) -> Outcome {
     let places: Vec<_> =
         shell.positions.iter().zip(pattern(shell.positions.len(), 9)).map(off).collect();
     let moved = film_at(rig, &shell, film(), places, Vec::new())?;
-    let (areas, places) = (moved.forces.areas(), &moved.state.places);
+    let (areas, places) = (moved.forces.areas(), &moved.state.positions);
     let volume = |x: &Field| -pressure::volume(&moved.model, x);
     let off = defect(&areas, places, 1e-6, volume) / (0.25 * 0.25);
     judged.push(Row::at_most("force of pressure over p h^2", off, band));
@@ -118,7 +118,7 @@ pub fn force_energy(rig: &Rig) -> Outcome {
         masses.iter().zip(x.iter()).map(|(mass, x)| -mass * gravity.dot(&x)).sum()
     };
     let total: f64 = masses.iter().sum::<f64>() * gravity.norm();
-    let off = defect(&weight, &heavy.state.places, 1e-3, energy) / total;
+    let off = defect(&weight, &heavy.state.positions, 1e-3, energy) / total;
     judged.push(Row::at_most("weight, of the whole", off, band));
     Ok(judged)
 }
@@ -139,7 +139,7 @@ pub fn path_energy(rig: &Rig) -> Outcome {
         let next = film_at(rig, &shell, film, at(k), Vec::new())?;
         for node in 0..next.model.nodes() {
             let mean = (moved.forces.film(node) + next.forces.film(node)) * 0.5;
-            work -= mean.dot(&(next.state.places.get(node) - moved.state.places.get(node)));
+            work -= mean.dot(&(next.state.positions.get(node) - moved.state.positions.get(node)));
         }
         moved = next;
         largest = largest.max(moved.strain_energy());
@@ -176,7 +176,7 @@ pub fn dissipation(rig: &Rig) -> Outcome {
             film.forces.films().iter().zip(bare.forces.films().iter()).map(|(f, g)| f - g).collect()
         };
         let told = film_at(rig, &shell, viscous, places.clone(), velocities.clone())?;
-        let drag = viscous_forces(&told.model, &told.state.places, &told.state.past);
+        let drag = viscous_forces(&told.model, &told.state.positions, &told.state.viscous_history);
         let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let taken: f64 = drags.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let size: f64 = drags.iter().map(Vector3::norm).sum();

@@ -47,7 +47,7 @@ impl Piston {
 
 /// Height of the plate, m.
 fn height(film: &Explicit) -> f64 {
-    film.state.places.z[4]
+    film.state.positions.z[4]
 }
 
 fn injection() -> Phase {
@@ -149,7 +149,7 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
             advance(&mut film, ratio * linear, &Phase::default())?;
             // Back at rest after one period: what speed is left tells by how much it was missed.
             let speed = film.velocities().z[4];
-            let force = film.force_on(&film.setting.supports.bodies[0]) - pressure * area;
+            let force = film.force_on(&film.parameters.supports.bodies[0]) - pressure * area;
             Ok(ratio * linear - speed / (force / mass))
         };
         let values = [period(0.8)?, period(0.4)?, period(0.2)?];

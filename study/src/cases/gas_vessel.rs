@@ -109,6 +109,6 @@ pub fn cooling(rig: &Rig) -> Outcome {
         judged.push(Row::new(&quantity, share, libm::exp(-turns), band));
     }
     let given = capacity * (start - around) * (libm::exp(-4.0) - 1.0);
-    judged.push(Row::new("heat given by the film, J", tank.state.books.heat, given, band));
+    judged.push(Row::new("heat given by the film, J", tank.state.gas_balance.heat, given, band));
     Ok(judged)
 }

@@ -41,7 +41,7 @@ pub fn patch(rig: &Rig) -> Outcome {
     let force = inside.iter().map(|node| film.forces.film(*node).norm()).fold(0.0, worse);
     let expected = 0.5 * (1.004 * 1.004 - 1.0);
     let off = (0..film.model.elements())
-        .map(|element| (strain(&film.model, &film.state.places, element).xx - expected).abs())
+        .map(|element| (strain(&film.model, &film.state.positions, element).xx - expected).abs())
         .fold(0.0, worse);
     Ok(vec![
         Row::at_most("force inside, of E t h", force / scale, band),
@@ -63,13 +63,13 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let scale = film.youngs_modulus * film.thickness * 0.1;
     let film = rig.start(&FilmScene { velocities: velocities.clone(), ..scene(shell, film) })?;
     let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
-    let drag = viscous_forces(&film.model, &film.state.places, &film.state.past);
+    let drag = viscous_forces(&film.model, &film.state.positions, &film.state.viscous_history);
     let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
     // On the way, by steps of any size: a turn of the whole in one.
-    let mut past = film.state.past.clone();
+    let mut past = film.state.viscous_history.clone();
     let mut out = NodeForces::new(&film.model);
-    let spun = film.state.places.iter().map(|x| turn * x).collect::<Vec<_>>();
-    let (spun, path) = (Field::of(&spun), film.setting.path);
+    let spun = film.state.positions.iter().map(|x| turn * x).collect::<Vec<_>>();
+    let (spun, path) = (Field::of(&spun), film.parameters.instruction_set);
     let stepped = assemble_membrane(path, &film.model, &spun, 1e-5, &mut past, &mut out);
     let dragged = viscous_forces(&film.model, &spun, &past);
     let dragged = dragged.iter().map(|force| force.norm()).fold(0.0, worse);
@@ -95,7 +95,7 @@ fn momentum(film: &Explicit) -> (Vector3<f64>, Vector3<f64>, f64) {
     for (node, mass) in film.model.mass.iter().enumerate() {
         let velocity = film.state.velocities.get(node);
         sum += velocity * *mass;
-        moment += (film.state.places.get(node) + velocity * back).cross(&velocity) * *mass;
+        moment += (film.state.positions.get(node) + velocity * back).cross(&velocity) * *mass;
         size += velocity.norm() * mass;
     }
     (sum, moment, size)

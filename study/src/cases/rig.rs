@@ -15,10 +15,18 @@ use nalgebra::Vector3;
 use super::reference::number;
 
 /// How cases are run: as they are, or with a deliberate fault that a judge must notice.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Rig {
     /// The fault; tests only.
     pub mutation: Option<Fault>,
+    /// Instruction set. Every one gives the same bits.
+    pub instruction_set: InstructionSet,
+}
+
+impl Default for Rig {
+    fn default() -> Self {
+        Self { mutation: None, instruction_set: InstructionSet::detect() }
+    }
 }
 
 impl Rig {
@@ -27,17 +35,25 @@ impl Rig {
     /// # Errors
     /// What is wrong with the scene.
     pub fn start(&self, scene: &FilmScene) -> Result<Explicit, String> {
-        let film = capsule::start(scene).map_err(|error| error.to_string())?;
+        let film = capsule::start(&self.on_instruction_set(scene));
+        let film = film.map_err(|error| error.to_string())?;
         Ok(self.faulty(film))
+    }
+
+    /// The scene with the rig's instruction set.
+    pub fn on_instruction_set(&self, scene: &FilmScene) -> FilmScene {
+        let mut scene = scene.clone();
+        scene.solver.instruction_set = self.instruction_set;
+        scene
     }
 
     /// Film at time 0, with the fault in it.
     pub fn faulty(&self, film: Explicit) -> Explicit {
         let Some(mutation) = self.mutation else { return film };
-        let Explicit { mut model, mut setting, state, .. } = film;
+        let Explicit { mut model, mut parameters, state, .. } = film;
         model.inject_fault(mutation);
-        setting.mutation = Some(mutation);
-        Explicit::new(model, setting, state.places, state.velocities, state.gas)
+        parameters.fault = Some(mutation);
+        Explicit::new(model, parameters, state.positions, state.velocities, state.gas)
     }
 }
 
@@ -124,7 +140,7 @@ pub fn advance(film: &mut Explicit, target: f64, phase: &Phase) -> Result<(), St
 /// The gas's temperature, K.
 pub fn temperature(film: &Explicit) -> f64 {
     use billow_solver::integrators::explicit::PressureLoad;
-    match film.setting.interior {
+    match film.parameters.pressure_load {
         PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
         PressureLoad::Overpressure(_) => f64::NAN,
     }

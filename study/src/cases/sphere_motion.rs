@@ -32,7 +32,7 @@ fn rest(rig: &Rig, level: u32, overpressure: f64) -> Result<Explicit, String> {
     let filling = Filling::Pressure(overpressure);
     let mut film = rig.start(&FilmScene { filling, ..scene(sphere(level), film()) })?;
     // What motion is left must be small beside a swing of 1e-5 of the radius.
-    let relaxation = Relaxation { kinetic_share: 1e-15, ..Relaxation::default() };
+    let relaxation = Relaxation { max_kinetic_fraction: 1e-15, ..Relaxation::default() };
     relaxation
         .relax_at(&mut film, overpressure)
         .map_err(|failure| format!("no rest: {:?}, {}", failure.kind, failure.place))?;
@@ -53,7 +53,7 @@ fn filled(pressure: f64, volume: f64) -> Filling {
 fn breath(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
     let rest = rest(rig, level, pressure)?;
     let mut shell = sphere(level);
-    shell.positions = rest.state.places.iter().collect();
+    shell.positions = rest.state.positions.iter().collect();
     // A swing of 1e-5 of the radius at about 5300 rad/s.
     let swing = number("breathing_sphere/amplitude") * 5300.0;
     let velocities = shell.positions.iter().map(|x| x * swing).collect();
@@ -102,7 +102,9 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
 /// where it is at rest.
 fn let_go(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
     let rest = rest(rig, level, pressure)?;
-    let PressureLoad::Overpressure(_) = rest.setting.interior else { unreachable!("relaxed so") };
+    let PressureLoad::Overpressure(_) = rest.parameters.pressure_load else {
+        unreachable!("relaxed so")
+    };
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);
     let species = nitrogen().species;

@@ -15,7 +15,7 @@ use super::static_rest::{at_rest, film};
 use super::{Outcome, Rig, Row};
 
 /// Energy, height and volume on three meshes.
-pub fn square_airbag(_: &Rig) -> Outcome {
+pub fn square_airbag(rig: &Rig) -> Outcome {
     let [diagonal, youngs_modulus, poisson_ratio, thickness, pressure, volume] =
         ["diagonal", "youngs_modulus", "poisson_ratio", "thickness", "overpressure", "volume"]
             .map(|key| number(&format!("square_airbag/{key}")));
@@ -35,11 +35,11 @@ pub fn square_airbag(_: &Rig) -> Outcome {
             held(seam, "z"),
         ];
         let filling = Filling::Pressure(pressure);
-        let (state, word) = at_rest(&FilmScene { filling, supports, ..scene(shell, film) })?;
+        let (state, word) = at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film) })?;
         let name = |what: &str| format!("{what}, {cells} cells");
-        let corner = state.places.get(state.places.len() - 1);
+        let corner = state.positions.get(state.positions.len() - 1);
         let inward = 2.0_f64.sqrt() * side - corner.xy().norm();
-        let stress = resultants(&state.model, &state.places, 0).principal[0] / thickness * 1e-6;
+        let stress = resultants(&state.model, &state.positions, 0).principal[0] / thickness * 1e-6;
         judged.push(
             Row::at_most(
                 &name("potential energy above the row's, J"),
@@ -54,10 +54,10 @@ pub fn square_airbag(_: &Rig) -> Outcome {
         judged.push(
             Row::at_most(
                 &name("w_M off the row's, m"),
-                (state.places.z[0] - row[2]).abs(),
+                (state.positions.z[0] - row[2]).abs(),
                 height_band,
             )
-            .with_note(&format!("{:.6} m", state.places.z[0])),
+            .with_note(&format!("{:.6} m", state.positions.z[0])),
         );
         whole = 8.0 * state.volume;
     }

@@ -26,7 +26,7 @@ use super::{Outcome, Rig, Row};
 const THICKNESS: f64 = 1e-4;
 
 /// Height, volume and membrane force of a clamped disc under pressure.
-pub fn clamped_disc(_: &Rig) -> Outcome {
+pub fn clamped_disc(rig: &Rig) -> Outcome {
     let [size, force, least] =
         ["size_band", "force_band", "order"].map(|key| number(&format!("clamped_disc/{key}")));
     let mut judged = Vec::new();
@@ -42,14 +42,14 @@ pub fn clamped_disc(_: &Rig) -> Outcome {
             let filling = Filling::Pressure(pressure);
             let supports = vec![held(rim(rings), "xyz")];
             let scene = FilmScene { filling, supports, ..scene(disc(rings, radius), film) };
-            let (state, _) = at_rest(&scene)?;
+            let (state, _) = at_rest(rig, &scene)?;
             // The first six elements lie round the centre.
             let pull = |element| {
-                let own = resultants(&state.model, &state.places, element).nominal;
+                let own = resultants(&state.model, &state.positions, element).nominal;
                 0.5 * (own[0] + own[1])
             };
             let middle = (0..6).map(pull).sum::<f64>() / 6.0;
-            Ok([state.places.z[0], state.volume, middle])
+            Ok([state.positions.z[0], state.volume, middle])
         };
         let values = [run(8)?, run(16)?, run(32)?];
         let names = ["w0, m", "volume, m3", "N0, N/m"];
@@ -68,7 +68,7 @@ pub fn clamped_disc(_: &Rig) -> Outcome {
 }
 
 /// Radius, thickness and volume of the balloon.
-pub fn mylar_balloon(_: &Rig) -> Outcome {
+pub fn mylar_balloon(rig: &Rig) -> Outcome {
     let [radius, size, bulk] =
         ["radius", "size_band", "volume_band"].map(|key| number(&format!("mylar_balloon/{key}")));
     let mut judged = Vec::new();
@@ -80,14 +80,15 @@ pub fn mylar_balloon(_: &Rig) -> Outcome {
             let rim = ring(0, around);
             let supports = vec![held(rim.clone(), "z")];
             let shell = polar(rings, around, radius);
-            let (state, word) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+            let (state, word) =
+                at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film()) })?;
             let middle =
                 Vector3::new(mean(&state, &rim, |x| x.x), mean(&state, &rim, |x| x.y), 0.0);
             let far = |x: Vector3<f64>| (x - middle).norm();
             let wide = mean(&state, &rim, far);
             let dent = mean(&state, &rim, |x| (far(x) - wide).abs());
             let cube = radius * radius * radius;
-            let pole = state.places.get(state.places.len() - 1);
+            let pole = state.positions.get(state.positions.len() - 1);
             let sizes = [wide / radius, 2.0 * pole.z / radius, 2.0 * state.volume / cube];
             Ok((sizes, format!("{word}; rim out of round by {:.1e} in the mean", dent / wide)))
         };

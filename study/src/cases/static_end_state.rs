@@ -58,7 +58,7 @@ fn sizes(state: &StaticSolution, known: &Known) -> [f64; 5] {
     };
     let centres = [middle(low), middle(high)];
     let radius = |at: usize| mean(state, &known.rims[at], |x| (x - centres[at]).xy().norm());
-    let pole = known.poles.map(|node| state.places.get(node as usize));
+    let pole = known.poles.map(|node| state.positions.get(node as usize));
     [
         state.volume,
         radius(0),
@@ -69,14 +69,15 @@ fn sizes(state: &StaticSolution, known: &Known) -> [f64; 5] {
 }
 
 /// Sizes at both pressures, the higher first, and what they took.
-fn inflate(known: &Known) -> Result<([[f64; 5]; 2], String), String> {
+fn inflate(rig: &Rig, known: &Known) -> Result<([[f64; 5]; 2], String), String> {
     let pressures = rows("end_state").into_iter().rev().map(|row| row[0]);
     let (mut found, mut last): (Vec<[f64; 5]>, Option<(StaticSolution, f64)>) = (Vec::new(), None);
     let mut words = Vec::new();
     for pressure in pressures {
         let filling = Filling::Pressure(pressure);
         let scene = FilmScene { filling, ..scene(known.shell.clone(), film()) };
-        let (state, word) = at_rest_from(&scene, last.as_ref().map(|(state, at)| (state, *at)))?;
+        let (state, word) =
+            at_rest_from(rig, &scene, last.as_ref().map(|(state, at)| (state, *at)))?;
         found.push(sizes(&state, known));
         words.push(word);
         last = Some((state, pressure));
@@ -85,13 +86,13 @@ fn inflate(known: &Known) -> Result<([[f64; 5]; 2], String), String> {
 }
 
 /// Rows of three meshes against the table; differences between the pressures judged or told.
-fn judge(meshes: &[Known; 3], differences: bool) -> Outcome {
+fn judge(rig: &Rig, meshes: &[Known; 3], differences: bool) -> Outcome {
     let (rows, bands) = (rows("end_state"), numbers("end_state/bands"));
     let difference_band = number("end_state/difference_band");
     let mut found = Vec::new();
     let mut words = Vec::new();
     for known in meshes {
-        let (sizes, word) = inflate(known)?;
+        let (sizes, word) = inflate(rig, known)?;
         found.push(sizes);
         words.push(word);
     }
@@ -134,8 +135,8 @@ fn judge(meshes: &[Known; 3], differences: bool) -> Outcome {
 }
 
 /// Circular caps, on the pattern's own mesh.
-pub fn pattern(_: &Rig) -> Outcome {
-    judge(&[own_mesh(8)?, own_mesh(16)?, own_mesh(32)?], false)
+pub fn pattern(rig: &Rig) -> Outcome {
+    judge(rig, &[own_mesh(8)?, own_mesh(16)?, own_mesh(32)?], false)
 }
 
 /// The pattern's own mesh, erected.
@@ -151,12 +152,12 @@ fn own_mesh(subdivisions: u32) -> Result<Known, String> {
 }
 
 /// Circular caps, on a mesh along the meridians.
-pub fn aligned(_: &Rig) -> Outcome {
+pub fn aligned(rig: &Rig) -> Outcome {
     let [bottom, top, height] =
         ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
     let meshes = [8, 16, 32].map(|fine| {
         let capped = capped(fine, [bottom, top], height);
         Known { shell: capped.shell, rims: capped.rims, poles: capped.poles }
     });
-    judge(&meshes, true)
+    judge(rig, &meshes, true)
 }

@@ -12,7 +12,7 @@ use super::reference::{numbers, rows};
 use super::{Outcome, Rig, Row};
 
 /// Volume, rim height and strain energy on this mesh.
-fn on_mesh(subdivisions: u32) -> Outcome {
+fn on_mesh(rig: &Rig, subdivisions: u32) -> Outcome {
     let bands = numbers("end_state_polygon/bands");
     let scene = paper_capsule(subdivisions, 0.3);
     // The table tells pressures rising; falling ones settle soonest.
@@ -20,7 +20,8 @@ fn on_mesh(subdivisions: u32) -> Outcome {
     rows.retain(|row| (row[0] - f64::from(subdivisions)).abs() < 0.5);
     rows.sort_by(|a, b| b[1].total_cmp(&a[1]));
     let pressures: Vec<f64> = rows.iter().map(|row| row[1]).collect();
-    let states = static_states(&scene, &pressures).map_err(|error| error.to_string())?;
+    let states = static_states(rig.instruction_set, &scene, &pressures)
+        .map_err(|error| error.to_string())?;
     let mut judged = Vec::new();
     for (row, state) in rows.iter().zip(states) {
         let values = [
@@ -40,16 +41,16 @@ fn on_mesh(subdivisions: u32) -> Outcome {
 }
 
 /// The coarser mesh.
-pub fn coarse(_: &Rig) -> Outcome {
-    on_mesh(5)
+pub fn coarse(rig: &Rig) -> Outcome {
+    on_mesh(rig, 5)
 }
 
 /// The finer mesh.
-pub fn fine(_: &Rig) -> Outcome {
-    on_mesh(8)
+pub fn fine(rig: &Rig) -> Outcome {
+    on_mesh(rig, 8)
 }
 
 /// The finest mesh.
-pub fn finest(_: &Rig) -> Outcome {
-    on_mesh(16)
+pub fn finest(rig: &Rig) -> Outcome {
+    on_mesh(rig, 16)
 }

@@ -26,7 +26,7 @@ use super::static_rest::{at_rest, film, mean};
 use super::{Outcome, Rig, Row};
 
 /// Radius of a sphere at rest.
-pub fn sphere(_: &Rig) -> Outcome {
+pub fn sphere(rig: &Rig) -> Outcome {
     let [radius, band, least] =
         ["radius", "band", "order"].map(|key| number(&format!("static_sphere/{key}")));
     let mut judged = Vec::new();
@@ -35,8 +35,8 @@ pub fn sphere(_: &Rig) -> Outcome {
         let run = |level: u32| -> Result<f64, String> {
             let filling = Filling::Pressure(pressure);
             let scene = FilmScene { filling, ..scene(icosphere(level, radius), film()) };
-            let (state, _) = at_rest(&scene)?;
-            let loaded: f64 = state.places.iter().map(|x| x.norm()).sum();
+            let (state, _) = at_rest(rig, &scene)?;
+            let loaded: f64 = state.positions.iter().map(|x| x.norm()).sum();
             let unloaded: f64 = scene.shell.positions.iter().map(Vector3::norm).sum();
             Ok(loaded / unloaded - 1.0)
         };
@@ -59,7 +59,7 @@ fn plate(nodes: Vec<u32>, force: f64) -> FilmSupport {
 }
 
 /// Both stretches of a cylinder with closed ends.
-pub fn cylinder(_: &Rig) -> Outcome {
+pub fn cylinder(rig: &Rig) -> Outcome {
     let [radius, length, pressure, axial, hoop, band, least] =
         ["radius", "length", "overpressure", "axial", "hoop", "band", "order"]
             .map(|key| number(&format!("static_cylinder/{key}")));
@@ -72,7 +72,7 @@ pub fn cylinder(_: &Rig) -> Outcome {
         let supports =
             vec![held(ring(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
         let filling = Filling::Pressure(pressure);
-        let (state, _) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (state, _) = at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film()) })?;
         let all: Vec<u32> = (0..(along + 1) * around).collect();
         Ok([
             mean(&state, &all, |x| x.xy().norm()) / radius - 1.0,
@@ -91,7 +91,7 @@ pub fn cylinder(_: &Rig) -> Outcome {
 }
 
 /// Membrane forces of a cone away from its ends.
-pub fn cone(_: &Rig) -> Outcome {
+pub fn cone(rig: &Rig) -> Outcome {
     let [bottom, top, height, pressure, band] =
         ["bottom_radius", "top_radius", "height", "overpressure", "band"]
             .map(|key| number(&format!("cone/{key}")));
@@ -109,16 +109,16 @@ pub fn cone(_: &Rig) -> Outcome {
             plate(ring(along, around), pressure * PI * top * top),
         ];
         let filling = Filling::Pressure(pressure);
-        let (state, _) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (state, _) = at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film()) })?;
         let (mut sum, mut worst, mut count) = ([0.0; 2], [0.0; 2], 0.0);
         for (element, triangle) in state.model.triangles.iter().enumerate() {
-            let corners = triangle.map(|node| state.places.get(node as usize));
+            let corners = triangle.map(|node| state.positions.get(node as usize));
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             if (middle.z / height - 0.5).abs() < 1.0 / 6.0 {
                 // The mean distance of the surface itself, not of the chord.
                 let radius = corners.iter().map(|x| x.xy().norm()).sum::<f64>() / 3.0;
                 let hoop = pressure * radius / cos;
-                let own = resultants(&state.model, &state.places, element).cauchy;
+                let own = resultants(&state.model, &state.positions, element).cauchy;
                 for (at, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
                     sum[at] += own[at] / expected;
                     worst[at] = worse(worst[at], (own[at] / expected - 1.0).abs());

@@ -29,7 +29,7 @@ const BEAM: f64 = 0.2;
 const STRAIN: f64 = 1e-4;
 
 /// k and 2M/(P h) of a beam bent and pulled so that k is about `asked`.
-fn bend(rows: u32, asked: f64) -> Result<[f64; 2], String> {
+fn bend(rig: &Rig, rows: u32, asked: f64) -> Result<[f64; 2], String> {
     let film = film();
     let stiffness = film.youngs_modulus * film.thickness;
     // The whole section is stretched while k ≤ 1: P = E t h ε_mean, ε_max = ε_mean + κ h/2.
@@ -59,7 +59,7 @@ fn bend(rows: u32, asked: f64) -> Result<[f64; 2], String> {
         held(foot, "y"),
         held(all, "z"),
     ];
-    let (state, _) = at_rest(&FilmScene { supports, ..scene(shell, film) })?;
+    let (state, _) = at_rest(rig, &FilmScene { supports, ..scene(shell, film) })?;
     let (mut force, mut moment) = (0.0, 0.0);
     for node in wall {
         let own = state.forces.x[node as usize];
@@ -72,12 +72,12 @@ fn bend(rows: u32, asked: f64) -> Result<[f64; 2], String> {
 }
 
 /// The bent strip.
-pub fn beam(_: &Rig) -> Outcome {
+pub fn beam(rig: &Rig) -> Outcome {
     let band = number("beam/band");
     let mut judged = Vec::new();
     for row in rows("beam") {
         let (asked, expected) = (row[0], row[1]);
-        let values = [bend(8, asked)?, bend(16, asked)?, bend(32, asked)?];
+        let values = [bend(rig, 8, asked)?, bend(rig, 16, asked)?, bend(rig, 32, asked)?];
         let errors = values.map(|[_, value]| value / expected - 1.0);
         judged.push(
             Row::new(&format!("2M/(P h) at k {asked}"), values[2][1], expected, band)
@@ -90,7 +90,7 @@ pub fn beam(_: &Rig) -> Outcome {
 }
 
 /// Torque and wrinkle radius of an annulus turned by this angle, rad.
-fn twist(rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
+fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
     let [inner, outer, outward] = ["inner_radius", "outer_radius", "outward"]
         .map(|key| number(&format!("annulus_torsion/{key}")));
     let around = 6 * rings;
@@ -111,12 +111,12 @@ fn twist(rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
     let all: Vec<u32> = (0..(rings + 1) * around).collect();
     let hub = FilmSupport { motion: Some(motion), ..held(ring(0, around), "xyz") };
     let supports = vec![hub, held(ring(rings, around), "xyz"), held(all, "z")];
-    let (state, word) = at_rest(&FilmScene { supports, ..scene(pulled, film()) })?;
+    let (state, word) = at_rest(rig, &FilmScene { supports, ..scene(pulled, film()) })?;
     let cells = around as usize * 2;
     let last = (0..rings as usize).rev().find(|ring| {
         let own = ring * cells..(ring + 1) * cells;
         let wrinkled = own.filter(|element| {
-            resultants(&state.model, &state.places, *element).regime != Regime::Taut
+            resultants(&state.model, &state.positions, *element).regime != Regime::Taut
         });
         2 * wrinkled.count() > cells
     });
@@ -125,7 +125,7 @@ fn twist(rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
 }
 
 /// The twisted annulus at four angles.
-pub fn annulus_torsion(_: &Rig) -> Outcome {
+pub fn annulus_torsion(rig: &Rig) -> Outcome {
     let band = number("annulus_torsion/band");
     let [inner, outer] =
         ["inner_radius", "outer_radius"].map(|key| number(&format!("annulus_torsion/{key}")));
@@ -133,10 +133,10 @@ pub fn annulus_torsion(_: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for row in rows("annulus_torsion") {
         let (angle, torque, radius) = (row[0], row[1], row[2]);
-        let (values, word) = twist(finest, angle)?;
+        let (values, word) = twist(rig, finest, angle)?;
         let errors = [
-            twist(finest / 4, angle)?.0[0] / torque - 1.0,
-            twist(finest / 2, angle)?.0[0] / torque - 1.0,
+            twist(rig, finest / 4, angle)?.0[0] / torque - 1.0,
+            twist(rig, finest / 2, angle)?.0[0] / torque - 1.0,
             values[0] / torque - 1.0,
         ];
         judged.push(

@@ -68,7 +68,7 @@ fn grows(rig: &Rig, shell: &Shell, film: &Film, share: f64, omega: f64) -> Resul
     let kick = |kick: &Vector3<f64>| Vector3::new(kick.x, kick.y, 0.0) * 1e-6;
     let velocities = pattern(shell.positions.len(), 4).iter().map(kick).collect();
     let mut moving = rig.start(&FilmScene { velocities, ..scene(shell.clone(), *film) })?;
-    moving.setting.cfl = share * moving.model.largest_frequency() / omega;
+    moving.parameters.cfl = share * moving.model.largest_frequency() / omega;
     let target = 3000.0 * moving.stable_step();
     if moving.advance(target, &Phase::default()).is_err() {
         return Ok(true);

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use billow_solver::output::audit::RESIDUAL_BOUND;
+use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use serde_json::{Map, json};
 
 use super::print::count;
@@ -152,7 +152,7 @@ fn trusted(trust: &Trust) -> String {
         }
     };
     format!(
-        "{} done; ledger residual at most {} (drifted above {RESIDUAL_BOUND}); {film}",
+        "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); {film}",
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)
     )

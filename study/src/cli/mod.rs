@@ -17,6 +17,7 @@ mod completions;
 mod doctor;
 mod fold;
 mod frames;
+mod instruction_set;
 mod memory;
 mod notes;
 mod picture;

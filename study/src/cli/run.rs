@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
+use super::instruction_set::instruction_set;
 use super::print::count;
 use super::{Format, Global, memory, notes, output_error};
 use crate::analysis::answer::Answer;
@@ -52,6 +53,7 @@ pub(super) fn run_study(
     global: &Global,
     out: &mut dyn Write,
 ) -> Result<()> {
+    let instruction_set = instruction_set()?;
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let loudness = match global {
         Global { quiet: true, .. } => Loudness::Quiet,
@@ -65,7 +67,10 @@ pub(super) fn run_study(
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(study, finished),
             unit: &|name| study.unit(name).to_owned(),
-            executor: &Solver { references: References::known(results.references()) },
+            executor: &Solver {
+                instruction_set,
+                references: References::known(results.references()),
+            },
             results: results.clone(),
             threads: threads(global)?,
             stop,

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use billow_solver::geometry::mesh_io::obj;
-use billow_solver::platform::simd;
 
+use super::instruction_set::instruction_set;
 use super::print::print_rows;
 use super::{Format, Global, output_error};
 use crate::job::JobId;
@@ -94,29 +94,6 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     Err(Error::JobsFailed(format!("{}: {}{time}: {place}", args.scene.display(), solved.status)))
 }
 
-/// The instruction set: that of `BILLOW_SIMD`, or the widest this machine has.
-pub(super) fn instruction_set() -> Result<simd::InstructionSet> {
-    let Some(word) = std::env::var_os("BILLOW_SIMD").filter(|word| !word.is_empty()) else {
-        return Ok(simd::InstructionSet::detect());
-    };
-    let word = word.to_string_lossy();
-    let known = simd::InstructionSet::ALL.into_iter().find(|path| path.name() == word);
-    let problem = match known {
-        Some(path) if path.available() => return Ok(path),
-        Some(_) => "is no instruction set of this machine",
-        None => "is no instruction set",
-    };
-    let here = simd::InstructionSet::ALL.into_iter().filter(|path| path.available());
-    Err(Error::Input(InputError {
-        file: "BILLOW_SIMD".to_owned(),
-        key: String::new(),
-        value: word.into_owned(),
-        problem: problem.to_owned(),
-        allowed: here.map(simd::InstructionSet::name).collect::<Vec<_>>().join(", "),
-        hint: "leave it unset: every one gives the same bits".to_owned(),
-    }))
-}
-
 /// What cannot be written, or what a state of rest has none of, is not asked for.
 fn check_files(args: &Args, scene: &SceneFile) -> Result<()> {
     for path in [&args.out, &args.shape, &args.checkpoint].into_iter().flatten() {
@@ -158,8 +135,8 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
     }
     if let Some(path) = &args.shape {
         let places = match &solved.end {
-            Ended::Motion(motion) => &motion.0.film.state.places,
-            Ended::Rest(rest) => &rest.places,
+            Ended::Motion(motion) => &motion.0.film.state.positions,
+            Ended::Rest(rest) => &rest.positions,
             Ended::NoRest(_) => return Ok(()),
         };
         let numbering = &scene.numbering;

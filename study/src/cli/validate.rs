@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 
+use super::instruction_set::instruction_set;
 use super::print::print_rows;
 use super::{Format, Global};
 use crate::cases::{self, CASES, Case, Judged, Rig, Tier};
@@ -55,15 +56,17 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             hint: String::new(),
         }));
     }
+    let rig = Rig { instruction_set: instruction_set()?, ..Rig::default() };
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let total = cases.len();
-    let mut judged = judge(super::run::pool(global)?, cases.clone(), &stop, &|number, judged| {
-        if !global.quiet {
-            let verdict = if judged.pass() { "in band" } else { "OUT OF BAND" };
-            let Judged { name, seconds, .. } = judged;
-            eprintln!("billow: {number}/{total} {name}: {verdict}, {seconds:.1} s");
-        }
-    });
+    let mut judged =
+        judge(super::run::pool(global)?, cases.clone(), rig, &stop, &|number, judged| {
+            if !global.quiet {
+                let verdict = if judged.pass() { "in band" } else { "OUT OF BAND" };
+                let Judged { name, seconds, .. } = judged;
+                eprintln!("billow: {number}/{total} {name}: {verdict}, {seconds:.1} s");
+            }
+        });
     let place = |judged: &Judged| cases.iter().position(|case| case.name == judged.name);
     judged.sort_by_key(place);
     if !skipped.is_empty() && !global.quiet {
@@ -88,13 +91,14 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 fn judge(
     pool: ThreadPool,
     cases: Vec<&'static Case>,
+    rig: Rig,
     stop: &Stop,
     tell: &dyn Fn(usize, &Judged),
 ) -> Vec<Judged> {
     let (told, ended) = mpsc::channel();
     let _running = thread::spawn(move || {
         // Nobody listens once a signal has come.
-        cases::run_all(&pool, &cases, &Rig::default(), &|judged| drop(told.send(judged.clone())))
+        cases::run_all(&pool, &cases, &rig, &|judged| drop(told.send(judged.clone())))
     });
     let mut judged = Vec::new();
     while stop.requested().is_none() {

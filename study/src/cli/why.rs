@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
-use billow_solver::output::audit::RESIDUAL_BOUND;
+use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::REFERENCE_PRESSURES;
 use serde_json::{Map, json};
 
@@ -104,7 +104,7 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
         status => {
             lines.extend(failure(cells, status));
             let energy = number(cells, "peak_kinetic_energy").unwrap_or(f64::INFINITY);
-            if status == "drifted" && energy < LITTLE {
+            if matches!(status, "drifted" | "energy_drift") && energy < LITTLE {
                 lines.push((
                     "energy",
                     format!(
@@ -244,7 +244,9 @@ fn failure(cells: &Cells, status: &str) -> Vec<Line> {
         row::INVALID => "the model refused the scene before its first step",
         row::PANICKED => "the program met a state it did not expect: a mistake in billow",
         "unstable" => "the state left all bounds: no number, or energy out of nothing",
-        "drifted" => "the energy ledger did not balance, so what was computed is no result",
+        "drifted" | "energy_drift" => {
+            "the energy ledger did not balance, so what was computed is no result"
+        }
         "inverted_volume" => "the enclosed volume fell to nothing or turned inside out",
         "step_limit" => "it took all the steps solver.step_limit allows before its end time",
         "interpenetrated" => "film passed through film, or lay through film",
@@ -274,7 +276,9 @@ fn advice(status: &str, short: &str, root: &str) -> String {
         row::INVALID => "change the key the reason names".to_owned(),
         row::PANICKED => format!("report the reason with {root}/study.json and the job id"),
         "step_limit" => format!("{look}: where the steps went; then raise solver.step_limit"),
-        "unstable" | "drifted" => format!("{look}; then a finer step (billow schema: solver)"),
+        "unstable" | "drifted" | "energy_drift" => {
+            format!("{look}; then a finer step (billow schema: solver)")
+        }
         _ => look,
     }
 }
@@ -282,9 +286,9 @@ fn advice(status: &str, short: &str, root: &str) -> String {
 /// What the audit says.
 fn trust(cells: &Cells) -> Vec<Line> {
     let Some(residual) = number(cells, "ledger_residual") else { return Vec::new() };
-    let sign = if residual <= RESIDUAL_BOUND { "≤" } else { ">" };
+    let sign = if residual <= MAX_LEDGER_RESIDUAL { "≤" } else { ">" };
     let residual = brief_number(residual);
-    let mut ledger = format!("largest residual {residual} {sign} {RESIDUAL_BOUND}");
+    let mut ledger = format!("largest residual {residual} {sign} {MAX_LEDGER_RESIDUAL}");
     if let Some(gas) = number(cells, "gas_residual") {
         let _ = write!(ledger, "; gas balance {}", brief_number(gas));
     }
@@ -322,7 +326,7 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
     let mut keys = json!({
         "job": id.as_str(),
         "parameters": parameters,
-        "ledger_bound": RESIDUAL_BOUND,
+        "ledger_bound": MAX_LEDGER_RESIDUAL,
         "checks": checks,
         "why": lines.iter().map(|(about, text)| format!("{about}: {text}")).collect::<Vec<_>>(),
     });

@@ -9,6 +9,7 @@ use billow_solver::models::run::{Observer, Progress};
 use billow_solver::models::{self};
 use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
 
 use crate::job::references::References;
@@ -55,8 +56,10 @@ pub enum Outcome {
 }
 
 /// The solver on this machine, one job at a time.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Solver {
+    /// Instruction set. Every one gives the same bits.
+    pub instruction_set: InstructionSet,
     /// Static states known so far.
     pub references: References,
 }
@@ -76,10 +79,10 @@ impl Executor for Solver {
                 pressure: 0.0,
             };
             let goes_on = &mut || watch(position, start);
-            let (reference, note) = self.references.of(&job.scene, goes_on);
+            let (reference, note) = self.references.of(self.instruction_set, &job.scene, goes_on);
             let start = Instant::now();
             let mut watcher = Watcher { position, watch };
-            match models::solve(&job.scene, reference, &mut watcher) {
+            match models::solve(self.instruction_set, &job.scene, reference, &mut watcher) {
                 Ok(deployment) if deployment.stop == Stop::Cancelled => Outcome::Cancelled,
                 Ok(deployment) => Outcome::Ran {
                     deployment: Box::new(deployment),

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use billow_solver::models;
 use billow_solver::output::measures::Reference;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Scene;
 
 use crate::job::JobId;
@@ -36,6 +37,7 @@ impl References {
     /// whole run is ending, and none is looked for again.
     pub fn of(
         &self,
+        instruction_set: InstructionSet,
         scene: &Scene,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> (Option<Reference>, Option<String>) {
@@ -46,7 +48,8 @@ impl References {
             Arc::clone(slots.entry(id.clone()).or_default())
         };
         let found = slot.get_or_init(|| {
-            let found = models::reference(&of, goes_on).map_err(|error| error.to_string());
+            let found =
+                models::reference(instruction_set, &of, goes_on).map_err(|error| error.to_string());
             if let Ok(reference) = &found {
                 let mut fresh = self.fresh.lock().unwrap_or_else(PoisonError::into_inner);
                 fresh.push((id, reference.clone()));

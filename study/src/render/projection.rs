@@ -62,7 +62,7 @@ impl View {
         let mut facets = Vec::with_capacity(triangles.len());
         let mut patches = Vec::with_capacity(triangles.len());
         for (element, triangle) in triangles.iter().enumerate() {
-            let places = triangle.map(|node| frame.places[node as usize]);
+            let places = triangle.map(|node| frame.positions[node as usize]);
             let corners = places.map(|place| self.project(place));
             let places = places.map(|place| Vector3::from(place.map(f64::from)));
             let [a, b, c] = places;
@@ -97,7 +97,7 @@ mod tests {
         let numbers = (0..).step_by(3).take(triangles.len());
         let frame = Frame {
             time: 0.0,
-            places: triangles.as_flattened().to_vec(),
+            positions: triangles.as_flattened().to_vec(),
             regimes: vec![Regime::Taut; triangles.len()],
         };
         (numbers.map(|first| [first, first + 1, first + 2]).collect(), frame)

@@ -128,7 +128,7 @@ pub fn frames(number: u32, count: u32) -> Frames {
     let all = [Regime::Slack, Regime::Wrinkled, Regime::Taut];
     let frame = |frame: u32| Frame {
         time: 0.1 * f64::from(frame),
-        places: (0..4).map(|node| place(frame, node)).collect(),
+        positions: (0..4).map(|node| place(frame, node)).collect(),
         regimes: (0..2).map(|element| all[((frame + element) % 3) as usize]).collect(),
     };
     Frames {

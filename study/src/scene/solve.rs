@@ -182,7 +182,7 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
     };
     let Some(path) = &pauses.resume else {
         let mut model = FilmRun::of(&scene.film, rings).map_err(unsound)?;
-        model.film.setting.supports.movers.extend(scene.seating.iter().cloned());
+        model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
         return Ok((model, Run::default()));
     };
     let refuse = |problem: String| Error::Disk { path: path.clone(), problem };
@@ -197,15 +197,15 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
             CheckpointError::Scene => {
                 "\n  next: resume with the scene, files and --set it was made with"
             }
-            CheckpointError::Newer { .. } | CheckpointError::Physics { .. } => {
+            CheckpointError::Version { .. } | CheckpointError::Physics { .. } => {
                 "\n  next: resume with the billow that wrote it, or start anew without --resume"
             }
-            CheckpointError::Unsound(_) => "\n  next: start anew without --resume",
+            CheckpointError::Invalid(_) => "\n  next: start anew without --resume",
         };
         refuse(format!("{error}{next}"))
     })?;
     let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(unsound)?;
-    model.film.setting.supports.movers.extend(scene.seating.iter().cloned());
+    model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
     Ok((model, checkpoint.run))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! | key | meaning |
 //! |---|---|
-//! | `status` | `done`; `paused`; `unstable`, `drifted`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
+//! | `status` | `done`; `paused`; `unstable`, `energy_drift`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
 //! | `notes` | what the program decided for itself, where it did |
 //! | `stop` | kind, time and place, where there is no result |
 //! | `volume` | enclosed, m³; of open film between it and the fans over its free edges |
@@ -123,9 +123,9 @@ fn in_motion(
     deployment: &billow_solver::output::outcome::Deployment,
 ) -> Json {
     let explicit = &run.film;
-    let mut summary = film(scene, &explicit.model, &explicit.state.places);
+    let mut summary = film(scene, &explicit.model, &explicit.state.positions);
     let ledger = explicit.ledger();
-    let temperature = match explicit.setting.interior {
+    let temperature = match explicit.parameters.pressure_load {
         PressureLoad::Gas(gas) => gas.temperature(explicit.state.gas),
         PressureLoad::Overpressure(_) => scene.film.film.temperature,
     };
@@ -149,7 +149,7 @@ fn in_motion(
             "gravity_work": ledger.gravity_work,
             "support_work": ledger.support_work,
             "viscous_work": ledger.viscous_work,
-            "friction_work": ledger.friction_work,
+            "friction_work": ledger.contact_dissipation,
             "damping_work": ledger.damping_work,
             "residual": deployment.audit.ledger_residual,
             "gas_residual": deployment.audit.gas_residual,
@@ -177,8 +177,8 @@ fn in_motion(
 
 /// What contact did, its extremes over the samples; `null` where it is off.
 fn contact(run: &FilmRun, deployment: &billow_solver::output::outcome::Deployment) -> Json {
-    let Some(law) = &run.film.setting.contact else { return Json::Null };
-    let meeting = &run.film.state.meeting;
+    let Some(law) = &run.film.parameters.contact else { return Json::Null };
+    let meeting = &run.film.state.contact_state;
     let most = |name: &str| deployment.followed(name).iter().copied().fold(0.0, f64::max);
     let plates = law.plates.iter().zip(&meeting.plates);
     let stored = meeting.contacts.iter().map(|contact| contact.energy).sum::<f64>()
@@ -198,7 +198,7 @@ fn contact(run: &FilmRun, deployment: &billow_solver::output::outcome::Deploymen
 }
 
 fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> Json {
-    let mut summary = film(scene, &rest.model, &rest.places);
+    let mut summary = film(scene, &rest.model, &rest.positions);
     let pressure = match scene.film.filling {
         billow_solver::scene::film_scene::Filling::Pressure(pressure) => pressure,
         billow_solver::scene::film_scene::Filling::Gas { .. } => {
@@ -211,7 +211,7 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         .map(|own| (own.name.clone(), reaction([own.force, own.moment])))
         .collect::<Map<_, _>>();
     let stress = (0..rest.model.elements()).fold(0.0_f64, |largest, element| {
-        let own = resultants(&rest.model, &rest.places, element);
+        let own = resultants(&rest.model, &rest.positions, element);
         largest.max(own.principal[0] / thickness(&rest.model, element))
     });
     let mesh = CollisionMesh::new(rest.model.nodes(), &rest.model.triangles);
@@ -227,7 +227,7 @@ fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> 
         "gas_mass": 0.0,
         "reactions": reactions,
         "passages": null,
-        "intersections": intersections(&mesh, &rest.places).len(),
+        "intersections": intersections(&mesh, &rest.positions).len(),
         "energies": {
             "kinetic": 0.0, "strain": rest.strain_energy, "potential": rest.potential_energy,
         },

@@ -1,22 +1,21 @@
-//! Integration of a small, piecewise smooth system of ordinary differential equations:
-//! Dormand-Prince 5(4), error controlled or of fixed step.
+//! Dormand-Prince 5(4) for small, piecewise smooth systems of ordinary differential equations, with error
+//! control or a fixed step.
 //!
 //! ```text
 //! dy/dt = f_b(y)        while margin_b(y) > 0;        b → next branch where margin_b = 0
 //! ```
 //!
-//! - A call to [`Integrator::advance`] lands on its target time exactly; within it f does not
-//!   depend on time, so samples, window edges and the release are targets and never lie inside a
-//!   step.
+//! - [`Integrator::advance`] reaches its target time exactly. f does not depend on time within a call:
+//!   samples, edges of inflow windows and the release are targets, so they never lie inside a step.
 //! - The branch b is constant within a step. A step that ends outside its branch is cut where the
-//!   margin vanishes, so a kink of the force costs no order of accuracy.
-//! - [`Stepping::Adaptive`]: the largest component error of a step, over tolerance times the scale
-//!   of its group (the largest value any component of the group has had so far), is kept at or
-//!   below 1. The scales begin with the least ones given at the start. The controller sees numbers of the
-//!   run alone, so it is deterministic.
-//! - [`Stepping::Fixed`]: the same formulas, every step as given, shortened only to land.
-//! - Sums are compensated (Kahan), so a constant rate integrates to rounding whatever the number of
-//!   steps. Nothing is allocated inside a step.
+//!   margin vanishes, so a kink of the force does not reduce the order of accuracy.
+//! - [`Stepping::Adaptive`]: the error of each component, divided by tolerance times the scale of its
+//!   group, is at most 1 in every step. The scale of a group is the largest magnitude of its components
+//!   so far, and at least the initial scale. The controller uses numbers of the run only, so it is
+//!   deterministic.
+//! - [`Stepping::Fixed`]: the same formulas with the given step, shortened only to reach the target.
+//! - Sums are compensated (Kahan), so a constant rate integrates exactly up to rounding for any number of
+//!   steps. A step allocates no memory.
 
 use crate::output::outcome::{Failure, FailureKind};
 use crate::scene::Stepping;
@@ -25,85 +24,83 @@ mod step;
 
 use step::{Trial, step};
 
-/// Tolerance of [`Stepping::Adaptive`] to use where nobody asks for another: ledger residuals stay
-/// below 1e-6.
+/// Default tolerance of [`Stepping::Adaptive`]. Chosen: ledger residuals stay below 1e-6.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// A piecewise smooth, autonomous system of N equations.
 pub trait System<const N: usize> {
-    /// Names one smooth piece.
+    /// Name of a smooth piece.
     type Branch: Copy;
 
-    /// Group of each component, below N: components of one group share one error scale.
+    /// Group of each component, below N. The components of a group share one error scale.
     const GROUPS: [usize; N];
 
-    /// f: dy/dt in a branch.
+    /// f = dy/dt in a branch.
     fn rates(&self, branch: Self::Branch, state: &[f64; N]) -> [f64; N];
 
     /// Positive inside the branch, negative outside, smooth across its edge.
     fn margin(&self, branch: Self::Branch, state: &[f64; N]) -> f64;
 
-    /// The branch entered by leaving `branch` at `state`.
+    /// The next branch if the state leaves `branch` at `state`.
     fn next_branch(&self, branch: Self::Branch, state: &[f64; N]) -> Self::Branch;
 
-    /// Whether a state is one the system can be in.
+    /// Checks whether a state is valid.
     ///
     /// # Errors
-    /// Kind and place of the failure, if not.
+    /// Kind and place of the failure.
     fn check(&self, state: &[f64; N]) -> Result<(), (FailureKind, &'static str)>;
 }
 
-/// How to step, and how long at most.
+/// Choice of the step, and the limit of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
     /// How the step is chosen.
     pub stepping: Stepping,
-    /// Accepted steps after which the run stops.
+    /// Accepted steps after which the run fails with `step_limit`.
     pub step_limit: u64,
 }
 
-/// The changing part of an integration.
+/// State of an integration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Integrator<const N: usize, B> {
     /// Time, s.
     pub time: f64,
-    /// y.
+    /// State y.
     pub state: [f64; N],
-    /// The smooth piece the state is in.
+    /// Branch of the state.
     pub branch: B,
     /// Accepted steps so far.
     pub steps: u64,
-    /// What the rounding of `state` has dropped so far.
+    /// Rounding error of `state` so far (Kahan).
     carry: [f64; N],
     /// Largest magnitude so far, by group.
     scales: [f64; N],
-    /// Step the controller would take next, s; 0 before the first.
+    /// Next step of the controller, s; 0 before the first.
     next_step: f64,
 }
 
-/// Share of the way to the first target that the first trial step takes.
-const FIRST_STEP: f64 = 1e-3;
-/// A remaining way this close to one step is taken in one, that no sliver is left.
-const LANDING_SLACK: f64 = 1.0 + 1e-9;
-/// Share of the target time below which a step does not advance it, even from time 0.
-const SMALLEST_STEP: f64 = 1e-18;
-/// Part of a step, relative, to which the edge of a branch is located.
+/// First trial step over the time to the first target. Chosen.
+const FIRST_STEP_FRACTION: f64 = 1e-3;
+/// Upper bound of the remaining time over a step that one step may cover. Chosen: avoids a tiny last step.
+const MAX_LAST_STEP_RATIO: f64 = 1.0 + 1e-9;
+/// Lower bound of a step over the target time. Chosen: a smaller step advances nothing, even from time 0.
+const MIN_STEP_FRACTION: f64 = 1e-18;
+/// Tolerance of the edge of a branch, as a fraction of the step. Chosen.
 const EDGE_TOLERANCE: f64 = 1e-14;
 
 impl<const N: usize, B: Copy> Integrator<N, B> {
-    /// Starts at a time (s), a state and the branch that state is in. `scales` by group: the error
-    /// scales a run that starts from nothing begins with; 0 for none.
+    /// An integration at this time (s), with this state and its branch. `scales`: initial error scale of each
+    /// group; 0 if there is none.
     pub fn new(time: f64, state: [f64; N], branch: B, scales: [f64; N]) -> Self {
         Self { time, state, branch, steps: 0, carry: [0.0; N], scales, next_step: 0.0 }
     }
 
-    /// Integrates to `target` (s) exactly, calling `accepted` with the state after every step.
+    /// Integrates to exactly `target` (s) and calls `accepted` with the state after every step.
     ///
     /// # Errors
-    /// [`Failure`] when the state leaves what [`System::check`] allows
-    /// ([`FailureKind::InvertedVolume`], …), is no longer finite ([`FailureKind::Unstable`]), or
-    /// the steps run out or no longer advance time ([`FailureKind::StepLimit`]). Time and state are
-    /// those of the last accepted step.
+    /// [`Failure`] if [`System::check`] refuses the state ([`FailureKind::InvertedVolume`], …), if it is not
+    /// finite ([`FailureKind::Unstable`]), or if the steps run out or are too small to advance time
+    /// ([`FailureKind::StepLimit`]). Time and state are those of the last accepted step.
     pub fn advance<S: System<N, Branch = B>>(
         &mut self,
         system: &S,
@@ -122,8 +119,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
             if leaves {
                 trial = self.to_edge(system, &rates, trial);
             }
-            let landed = !leaves && trial.length >= target - self.time;
-            self.accept::<S>(&trial, if landed { Some(target) } else { None });
+            let reaches_target = !leaves && trial.length >= target - self.time;
+            self.accept::<S>(&trial, if reaches_target { Some(target) } else { None });
             if let Err((kind, place)) = system.check(&self.state) {
                 return Err(self.failure(kind, place.to_owned()));
             }
@@ -138,7 +135,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         Ok(())
     }
 
-    /// A step that meets the tolerance (adaptive) or has the given length (fixed), and is finite.
+    /// A finite step that meets the tolerance (adaptive) or has the given length (fixed).
     fn trial<S: System<N, Branch = B>>(
         &mut self,
         system: &S,
@@ -146,29 +143,34 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         target: f64,
         control: &Control,
     ) -> Result<Trial<N>, Failure> {
-        let rest = target - self.time;
+        let remaining = target - self.time;
         let take = |length: f64| step(|y| system.rates(self.branch, y), &self.state, rates, length);
         match control.stepping {
             Stepping::Fixed(length) => {
-                let trial = take(self.representable(length, rest));
+                let trial = take(self.representable(length, remaining));
                 if trial.is_finite() {
                     Ok(trial)
                 } else {
-                    Err(self.failure(FailureKind::Unstable, "state of the fixed step".to_owned()))
+                    Err(self
+                        .failure(FailureKind::Unstable, "state after the fixed step".to_owned()))
                 }
             }
             Stepping::Stable(_) => unreachable!("no model integrated here has a stable step"),
             Stepping::Adaptive(tolerance) => {
-                let mut wish =
-                    if self.next_step > 0.0 { self.next_step } else { FIRST_STEP * rest };
+                let mut desired = if self.next_step > 0.0 {
+                    self.next_step
+                } else {
+                    FIRST_STEP_FRACTION * remaining
+                };
                 let mut rejected = false;
                 loop {
-                    let length = self.representable(wish, rest);
-                    if self.time + length <= self.time || length < SMALLEST_STEP * target.abs() {
-                        let (kind, place) = if take(wish).is_finite() {
-                            (FailureKind::StepLimit, "step too small to advance time")
+                    let length = self.representable(desired, remaining);
+                    if self.time + length <= self.time || length < MIN_STEP_FRACTION * target.abs()
+                    {
+                        let (kind, place) = if take(desired).is_finite() {
+                            (FailureKind::StepLimit, "the step is too small to advance time")
                         } else {
-                            (FailureKind::Unstable, "state not finite at the smallest step")
+                            (FailureKind::Unstable, "the state is not finite at the smallest step")
                         };
                         return Err(self.failure(kind, place.to_owned()));
                     }
@@ -176,24 +178,28 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                     let error = self.error::<S>(&trial, tolerance);
                     if error <= 1.0 {
                         let grown = length * growth(error, rejected);
-                        // A step cut short to land says little of the next one.
-                        self.next_step = if length < wish { grown.max(wish) } else { grown };
+                        // A step shortened to reach the target does not shorten the next one.
+                        self.next_step = if length < desired { grown.max(desired) } else { grown };
                         return Ok(trial);
                     }
                     rejected = true;
-                    // From the wish: rounding to representable times could undo a shrunken length.
-                    wish = wish.min(length) * growth(error, true);
+                    // From the desired step: rounding to representable times could undo the reduction.
+                    desired = desired.min(length) * growth(error, true);
                 }
             }
         }
     }
 
-    /// The step nearest to the wish that ends on a representable time, or on the target.
-    fn representable(&self, wish: f64, rest: f64) -> f64 {
-        if rest <= wish * LANDING_SLACK { rest } else { (self.time + wish) - self.time }
+    /// The step nearest to the desired one that ends at a representable time, or at the target.
+    fn representable(&self, desired: f64, remaining: f64) -> f64 {
+        if remaining <= desired * MAX_LAST_STEP_RATIO {
+            remaining
+        } else {
+            (self.time + desired) - self.time
+        }
     }
 
-    /// Largest error of a trial over what is tolerated; infinite where the trial is not finite.
+    /// Largest error of a trial over its tolerance; infinite if the trial is not finite.
     fn error<S: System<N>>(&self, trial: &Trial<N>, tolerance: f64) -> f64 {
         if !trial.is_finite() {
             return f64::INFINITY;
@@ -210,8 +216,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         largest
     }
 
-    /// Cuts a trial that leaves the branch to where its margin vanishes (secant, safeguarded by
-    /// bisection; ends on the outer side of the edge).
+    /// Shortens a trial that leaves the branch so that its margin vanishes. Secant method with bisection;
+    /// ends just outside the edge.
     fn to_edge<S: System<N, Branch = B>>(
         &self,
         system: &S,
@@ -219,8 +225,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         outside: Trial<N>,
     ) -> Trial<N> {
         let full = outside.length;
-        // A step that begins on an edge may lie beyond it by rounding: it counts as inside, so that
-        // a branch just entered is left where it ends, and one wrongly entered at once.
+        // A step that begins on an edge may begin outside by rounding. It counts as inside, so that the
+        // step ends at the other edge of a branch just entered, or at once if the branch is wrong.
         let start_margin = system.margin(self.branch, &self.state).max(0.0);
         let (mut inner, mut inner_margin) = (0.0, start_margin);
         let (mut outer, mut outer_margin) = (full, system.margin(self.branch, &outside.state));
@@ -234,8 +240,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
             if middle <= inner || middle >= outer {
                 break;
             }
-            let sound = !bisect && secant > inner && secant < outer;
-            let length = if sound { secant } else { middle };
+            let use_secant = !bisect && secant > inner && secant < outer;
+            let length = if use_secant { secant } else { middle };
             let trial = step(|y| system.rates(self.branch, y), &self.state, rates, length);
             let margin = system.margin(self.branch, &trial.state);
             if margin > 0.0 {
@@ -244,13 +250,13 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                 best = trial;
                 (outer, outer_margin) = (length, margin);
             }
-            // A margin that starts near zero, rises and falls fools the secant again and again.
+            // The secant converges slowly if the margin starts near zero, rises and falls.
             bisect = !bisect && outer - inner > 0.5 * width;
         }
         best
     }
 
-    fn accept<S: System<N>>(&mut self, trial: &Trial<N>, landing: Option<f64>) {
+    fn accept<S: System<N>>(&mut self, trial: &Trial<N>, end: Option<f64>) {
         grow_scales::<N, S>(&mut self.scales, &self.state);
         grow_scales::<N, S>(&mut self.scales, &trial.state);
         for ((value, carry), increment) in
@@ -261,7 +267,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
             *carry = (sum - *value) - corrected;
             *value = sum;
         }
-        self.time = landing.unwrap_or(self.time + trial.length);
+        self.time = end.unwrap_or(self.time + trial.length);
         self.steps += 1;
     }
 
@@ -276,7 +282,8 @@ fn grow_scales<const N: usize, S: System<N>>(scales: &mut [f64; N], state: &[f64
     }
 }
 
-/// Factor from one step to the next: error^(−1/5) with a margin, within [0.2, 5].
+/// Ratio of the next step to this one: 0.9 error^(−1/5), limited to 0.2…5, or to 0.2…1 after a rejection
+/// (E. Hairer, S. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4).
 fn growth(error: f64, rejected: bool) -> f64 {
     let largest = if rejected { 1.0 } else { 5.0 };
     if error == 0.0 { largest } else { (0.9 * libm::pow(error, -0.2)).clamp(0.2, largest) }

@@ -1,5 +1,5 @@
-//! One step of Dormand and Prince's pair of order 5(4) (J. Comput. Appl. Math. 6, 1980, p. 19;
-//! RK5(4)7M). The result is that of order 5; its last stage is the next step's first.
+//! One step of the pair of order 5(4) by Dormand and Prince (J. Comput. Appl. Math. 6, 1980, p. 19;
+//! RK5(4)7M). The result has order 5; its last stage is the first stage of the next step.
 
 const A: [[f64; 6]; 6] = [
     [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -10,7 +10,7 @@ const A: [[f64; 6]; 6] = [
     [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 
-/// Weights of order 5 less those of order 4.
+/// Weights of order 5 minus those of order 4.
 const ERROR: [f64; 7] = [
     71.0 / 57600.0,
     0.0,
@@ -21,10 +21,10 @@ const ERROR: [f64; 7] = [
     -1.0 / 40.0,
 ];
 
-/// A step tried.
+/// A trial step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trial<const N: usize> {
-    /// Its length, s.
+    /// Length, s.
     pub(super) length: f64,
     /// y at its end.
     pub(super) state: [f64; N],
@@ -43,7 +43,7 @@ impl<const N: usize> Trial<N> {
     }
 }
 
-/// Tries a step from `state`, where f = `rates`.
+/// A trial step from `state`, with f(state) = `rates`.
 pub(super) fn step<const N: usize>(
     f: impl Fn(&[f64; N]) -> [f64; N],
     state: &[f64; N],
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn weights_are_consistent() {
+    fn weights_satisfy_the_first_order_condition() {
         let nodes = [1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0];
         for (row, node) in A.iter().zip(nodes) {
             assert!((row.iter().sum::<f64>() - node).abs() < 2e-15);
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn polynomials_of_degree_five_are_exact() {
-        // y = t^5 by way of a state that carries t itself.
+        // y = t^5; the state contains t.
         let f = |y: &[f64; 2]| [1.0, 5.0 * y[0] * y[0] * y[0] * y[0]];
         let start = [0.3, 0.3 * 0.3 * 0.3 * 0.3 * 0.3];
         let trial = step(f, &start, &f(&start), 0.7);

@@ -1,7 +1,7 @@
 use super::*;
 
-/// A mass thrown up against constant gravity over a floor that pushes back as a stiff spring:
-/// z, v. Branch: whether the floor is touched.
+/// A mass under gravity above a floor that acts as a stiff spring; state z, v. Branch: whether the mass
+/// touches the floor.
 struct Bouncer {
     stiffness: f64,
 }
@@ -42,14 +42,14 @@ fn run(stepping: Stepping, end: f64) -> (Integrator<2, bool>, Bouncer) {
 }
 
 #[test]
-fn bounces_keep_their_energy() {
+fn bounces_conserve_energy() {
     let (end, system) = run(Stepping::Adaptive(1e-10), 10.0);
     let drift = energy(&system, &end.state) / energy(&system, &[0.5, 1.0]) - 1.0;
     assert!(drift.abs() < 1e-7, "{drift:e}");
 }
 
 #[test]
-fn order_five_survives_the_kink() {
+fn a_kink_does_not_reduce_the_order() {
     let (reference, _) = run(Stepping::Adaptive(1e-13), 1.3);
     let error = |dt: f64| {
         let (end, _) = run(Stepping::Fixed(dt), 1.3);
@@ -61,7 +61,7 @@ fn order_five_survives_the_kink() {
 }
 
 #[test]
-fn tolerance_rules_the_error() {
+fn the_tolerance_bounds_the_error() {
     let (reference, _) = run(Stepping::Adaptive(1e-13), 1.3);
     let error = |tolerance| {
         let (end, _) = run(Stepping::Adaptive(tolerance), 1.3);
@@ -78,7 +78,7 @@ fn stop(system: &Bouncer, start: [f64; 2], stepping: Stepping, step_limit: u64) 
 }
 
 #[test]
-fn stops_are_typed_and_say_when() {
+fn failures_have_kind_place_and_time() {
     let system = Bouncer { stiffness: 1e4 };
     let limit = stop(&system, [0.5, 1.0], Stepping::Fixed(1e-3), 70);
     assert_eq!(limit.kind, FailureKind::StepLimit);
@@ -114,7 +114,7 @@ impl System<1> for Runaway {
 }
 
 #[test]
-fn a_runaway_ends_typed_at_its_pole() {
+fn a_pole_ends_the_run_with_a_failure() {
     let mut integrator = Integrator::new(0.0, [1.0], (), [0.0]);
     let control = Control { stepping: Stepping::Adaptive(1e-6), step_limit: 1_000_000 };
     let failure = integrator.advance(&Runaway, 2.0, &control, &mut |_| ()).unwrap_err();
@@ -141,7 +141,7 @@ impl System<1> for Constant {
 }
 
 #[test]
-fn a_constant_rate_integrates_to_rounding_whatever_the_step() {
+fn a_constant_rate_is_exact_up_to_rounding_for_any_step() {
     for stepping in [
         Stepping::Fixed(1e-5),
         Stepping::Fixed(0.000_333),

@@ -94,20 +94,20 @@ struct MaxDisplacements {
 impl Explicit {
     /// Sets the initial state of contact.
     pub(super) fn initialise_contact(&mut self) {
-        let Some(contact_model) = &self.setting.contact else { return };
-        let positions = &self.state.places;
-        self.state.meeting.broad_phase_rebuilds = 1;
+        let Some(contact_model) = &self.parameters.contact else { return };
+        let positions = &self.state.positions;
+        self.state.contact_state.broad_phase_rebuilds = 1;
         let plates = contact_model.plates.iter();
         let states = plates.map(|plate| plate.initial_state(positions, contact_model.distance));
-        self.state.meeting.plates = states.collect();
+        self.state.contact_state.plates = states.collect();
     }
 
     /// Updates contacts and plates, and the contact forces, at the current positions, which are those
     /// of `time` (s).
     pub(super) fn update_contact_forces(&mut self, time: f64) {
-        let Some(contact_model) = &self.setting.contact else { return };
-        let (positions, state) = (&self.state.places, &mut self.state.meeting);
-        let list = self.search.get_or_insert_with(|| {
+        let Some(contact_model) = &self.parameters.contact else { return };
+        let (positions, state) = (&self.state.positions, &mut self.state.contact_state);
+        let list = self.candidates.get_or_insert_with(|| {
             CandidateList::build(contact_model, positions, state.path_length)
         });
         if list.contact_active {
@@ -132,10 +132,10 @@ impl Explicit {
         length: f64,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<(), Failure> {
-        let Some(contact_model) = &self.setting.contact else { return Ok(()) };
-        let instruction_set = self.setting.path;
-        let State { places: positions, velocities, meeting: state, time, .. } = &mut self.state;
-        let list = self.search.get_or_insert_with(|| {
+        let Some(contact_model) = &self.parameters.contact else { return Ok(()) };
+        let instruction_set = self.parameters.instruction_set;
+        let State { positions, velocities, contact_state: state, time, .. } = &mut self.state;
+        let list = self.candidates.get_or_insert_with(|| {
             CandidateList::build(contact_model, positions, state.path_length)
         });
         let speed = largest_speed(instruction_set, velocities);
@@ -149,7 +149,7 @@ impl Explicit {
         stopwatch.begins(Stage::Pairs);
         let mut step = CollisionStep {
             film: &self.model,
-            supports: &self.setting.supports,
+            supports: &self.parameters.supports,
             positions,
             velocities_before_kick: &self.next,
             velocities,
@@ -176,26 +176,26 @@ impl Explicit {
     /// Smallest gap of the pairs of film that are closer than their contact distance, m; infinite if
     /// there is none. Pairs beyond the contact distance are not considered.
     pub fn smallest_gap(&self) -> f64 {
-        self.search.as_ref().map_or(f64::INFINITY, |list| list.smallest_gap)
+        self.candidates.as_ref().map_or(f64::INFINITY, |list| list.smallest_gap)
     }
 
     /// Number of intersections of the mesh when the monitor counted them last: at the last target, or
     /// where a run was paused.
     pub fn intersections(&self) -> u64 {
-        self.watch.as_ref().map_or(0, |monitor| monitor.intersection_counter.count)
+        self.monitor.as_ref().map_or(0, |monitor| monitor.intersection_counter.count)
     }
 
     /// Whether contact or a plate may exert a force now.
     pub(super) fn contact_active(&self) -> bool {
-        let has_contact = self.setting.contact.is_some();
-        has_contact && self.search.as_ref().is_none_or(|list| list.contact_active)
+        let has_contact = self.parameters.contact.is_some();
+        has_contact && self.candidates.as_ref().is_none_or(|list| list.contact_active)
     }
 
     /// Adds half a step's work of the plates, with their forces now, for the motion until `until` (s).
     pub(super) fn add_plate_work(&mut self, until: f64) {
-        let Some(contact_model) = &self.setting.contact else { return };
+        let Some(contact_model) = &self.parameters.contact else { return };
         let state = &mut self.state;
-        for (plate, plate_state) in contact_model.plates.iter().zip(&state.meeting.plates) {
+        for (plate, plate_state) in contact_model.plates.iter().zip(&state.contact_state.plates) {
             let work = 0.5 * plate_state.force * plate.displacement(state.time, until);
             state.works.support += work;
             state.works.contact -= work;
@@ -207,8 +207,9 @@ impl Explicit {
     /// # Errors
     /// `interpenetrated` if the monitor has found a passage.
     pub(super) fn monitor_step(&mut self) -> Result<(), Failure> {
-        if let (Some(monitor), Some(contact_model)) = (&mut self.watch, &self.setting.contact) {
-            monitor.record_step(&contact_model.mesh, &self.state.places);
+        if let (Some(monitor), Some(contact_model)) = (&mut self.monitor, &self.parameters.contact)
+        {
+            monitor.record_step(&contact_model.mesh, &self.state.positions);
         }
         self.check_passages()
     }
@@ -218,15 +219,16 @@ impl Explicit {
     /// # Errors
     /// `interpenetrated` if the monitor has found a passage.
     pub(super) fn monitor_interval(&mut self) -> Result<(), Failure> {
-        if let (Some(monitor), Some(contact_model)) = (&mut self.watch, &self.setting.contact) {
+        if let (Some(monitor), Some(contact_model)) = (&mut self.monitor, &self.parameters.contact)
+        {
             monitor.test_block(&contact_model.mesh);
-            monitor.intersection_counter.update(&contact_model.mesh, &self.state.places);
+            monitor.intersection_counter.update(&contact_model.mesh, &self.state.positions);
         }
         self.check_passages()
     }
 
     fn check_passages(&self) -> Result<(), Failure> {
-        match self.watch.as_ref().and_then(|monitor| monitor.first_passage) {
+        match self.monitor.as_ref().and_then(|monitor| monitor.first_passage) {
             None => Ok(()),
             Some((passage, position)) => {
                 let [x, y, z] = [position.x, position.y, position.z];

@@ -1,4 +1,11 @@
-//! What a run has done so far, in joules.
+//! Energy accounting of a run: the entries of the film's ledger and of the gas balance, in joules.
+//!
+//! ```text
+//! kinetic  ½ Σ m v⁻·v⁺ + ½ Σ M u⁻ u⁺        v nodes, u rigid planes
+//! gravity  g · Σ m (x − x⁰)
+//! ```
+//!
+//! Signs and meaning of every entry: [`Ledger`] and [`GasBalance`].
 
 use nalgebra::Vector3;
 
@@ -7,35 +14,37 @@ use crate::mechanics::forces::membrane::strain_energy;
 use crate::output::ledger::{GasBalance, Ledger};
 
 impl Explicit {
-    /// Elastic energy, J.
+    /// Elastic energy of the film, J.
     pub fn strain_energy(&self) -> f64 {
-        strain_energy(&self.model, &self.state.places)
+        strain_energy(&self.model, &self.state.positions)
     }
 
-    /// The film's side of the ledger.
+    /// The energy ledger of the film.
     pub fn ledger(&self) -> Ledger {
         let works = self.state.works;
+        let contact_state = &self.state.contact_state;
         Ledger {
             kinetic: self.kinetic_energy(),
             strain: self.strain_energy(),
             gas_work: works.gas,
             ambient_work: works.ambient,
             gravity_work: self
-                .setting
+                .parameters
                 .gravity
                 .dot(&(self.first_moment() - Vector3::from(self.state.start_moment))),
             support_work: works.support,
             viscous_work: works.viscous,
             damping_work: works.damping,
             contact: -works.contact,
-            friction_work: self.state.meeting.friction_dissipation
-                + self.state.meeting.collision_dissipation,
+            contact_dissipation: contact_state.friction_dissipation
+                + contact_state.collision_dissipation,
         }
     }
 
-    /// The gas's side of the ledger; the mass let in is the loop's. A fixed overpressure has none.
-    pub fn books(&self) -> GasBalance {
-        let gas_work = match self.setting.interior {
+    /// The balance of the gas. The run adds the mass let in, which follows from the inflow schedule.
+    /// Under a fixed overpressure every entry is 0.
+    pub fn gas_balance(&self) -> GasBalance {
+        let gas_work = match self.parameters.pressure_load {
             PressureLoad::Gas(_) => self.state.works.gas,
             PressureLoad::Overpressure(_) => 0.0,
         };
@@ -43,13 +52,13 @@ impl Explicit {
             mass: self.state.gas.mass,
             internal_energy: self.state.gas.internal_energy,
             gas_work,
-            ..self.state.books
+            ..self.state.gas_balance
         }
     }
 
-    /// Σ m x, kg m.
+    /// First moment of mass Σ m x, kg m.
     pub(super) fn first_moment(&self) -> Vector3<f64> {
-        let nodes = self.model.mass.iter().zip(self.state.places.iter());
-        nodes.map(|(mass, place)| place * *mass).sum()
+        let nodes = self.model.mass.iter().zip(self.state.positions.iter());
+        nodes.map(|(mass, position)| position * *mass).sum()
     }
 }

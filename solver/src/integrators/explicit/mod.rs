@@ -1,23 +1,25 @@
 //! Central differences for film and its gas.
 //!
 //! ```text
-//! f = f_film(xⁿ, xⁿ⁻¹) + (p − p_ambient) ∂V/∂x + m g      at time n
+//! f = f_film(xⁿ, xⁿ⁻¹) + f_contact + (p − p_ambient) ∂V/∂x + m g      at time n
 //! v⁺ = v⁻ + h a,  h = (Δt⁻ + Δt)/2                        half-step velocities
 //! x ← x + Δt v⁺;  the gas steps from V to V'              time n + 1
 //!
-//! Δt ≤ CFL (√(1+ζ²) − ζ) 2/√(ω_film² + ω_gas²)             film in motion; calm film: `calm`
+//! Δt ≤ CFL (√(1+ζ²) − ζ) 2/√(ω_film² + ω_gas²)             stable step; quiescent film: `quiescence`
 //! kinetic energy at n: ½ Σ m v⁻·v⁺
 //! ```
 //!
-//! Every work is the trapezoid of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx (viscosity's
-//! but for a part of the third order in Δt: [`crate::mechanics::forces::damping`]): with
-//! the kinetic energy above their sum is kept exactly at an even step, so whatever the ledger
-//! misses is a force that is no derivative of its energy, or a step too long for its bends. The
-//! gas gives ½ (pⁿ + pⁿ⁺¹) ΔV and the same number is the film's entry.
+//! Each work is the trapezoid rule of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx; the
+//! work of viscosity agrees with that up to third order in Δt ([`crate::mechanics::forces::damping`]).
+//! With equal steps these works and the kinetic energy above add up exactly. So a ledger residual has
+//! one of two causes: a force that is not the derivative of its energy, or a step too long for a
+//! change of stiffness. The gas does the work ½ (pⁿ + pⁿ⁺¹) ΔV, and the ledger of the film takes the
+//! same number.
 //!
-//! Between two targets all steps are equal, so a target is hit exactly and no sliver is left, but where
-//! calm film (`calm`) is pressed on the way: from there they are shorter. What
-//! changes is one [`State`]: a run put back on it goes on bit for bit, at any step.
+//! Between two targets all steps are equal, so a run reaches every target exactly and without a tiny
+//! last step. One exception: contact with a quiescent film shortens the steps from there on.
+//! Everything that changes is one [`State`]: a run resumed from it continues with the same bits, from
+//! any step.
 
 use nalgebra::Vector3;
 
@@ -52,48 +54,50 @@ pub use parameters::{DEFAULT_CFL, Parameters, PressureLoad};
 pub use quiescence::Quiescence;
 pub use state::{State, StepInterval, Works};
 
-/// Steps shorter than this over the film's largest frequency are slivers, between targets that differ by rounding.
-const SLIVER: f64 = 1e-6;
+/// Upper bound of step × largest film frequency for a step that leaves viscosity unchanged. Such steps
+/// lie between targets that differ by rounding. Chosen: far below any step of a run (about 1).
+const MAX_TINY_STEP: f64 = 1e-6;
 
-/// Film in motion: constants and state.
+/// Film in motion: film model, parameters and state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explicit {
-    /// The film.
+    /// Film model: constant.
     pub model: FilmModel,
-    /// All else that is constant.
-    pub setting: Parameters,
-    /// All that changes.
+    /// Everything else that is constant.
+    pub parameters: Parameters,
+    /// Everything that changes.
     pub state: State,
-    /// Forces on nodes now: a function of the state.
+    /// Forces on the nodes now: a function of the state.
     pub forces: NodeForces,
-    /// Who counts passages; nobody where film has no contact.
-    pub watch: Option<TunnellingMonitor>,
-    /// What is near: a function of the state, made when first asked for.
-    search: Option<CandidateList>,
+    /// Tunnelling monitor: counts passages of film through film. `None` without contact.
+    pub monitor: Option<TunnellingMonitor>,
+    /// Candidate pairs of contact: a function of the state, built at first use.
+    candidates: Option<CandidateList>,
+    /// Scratch: the velocities after a kick.
     next: Field,
 }
 
 impl Explicit {
-    /// Starts at time 0 from places (m), velocities (m/s) and a gas.
+    /// Film at time 0 with these positions (m), velocities (m/s) and gas.
     pub fn new(
         model: FilmModel,
-        setting: Parameters,
-        places: Field,
+        parameters: Parameters,
+        positions: Field,
         velocities: Field,
         gas: GasState,
     ) -> Self {
-        let planes = setting.supports.bodies.iter().map(|body| body.plane.velocity).collect();
-        let state = State::start(places, velocities, Vec::new(), planes, gas);
-        let mut film = Self::with(model, setting, state);
+        let planes = parameters.supports.bodies.iter().map(|body| body.plane.velocity).collect();
+        let state = State::start(positions, velocities, Vec::new(), planes, gas);
+        let mut film = Self::with(model, parameters, state);
         film.bind_to_planes();
-        film.state.past =
-            ViscousHistory::in_motion(&film.model, &film.state.places, &film.state.velocities);
+        film.state.viscous_history =
+            ViscousHistory::in_motion(&film.model, &film.state.positions, &film.state.velocities);
         film.initialise_contact();
-        let sums = film.pass_at(0.0, 0.0, &mut Untimed);
+        let sums = film.assemble_forces(0.0, 0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
-        film.state.pressure = match film.setting.interior {
+        film.state.pressure = match film.parameters.pressure_load {
             PressureLoad::Gas(gas) => {
-                film.setting.fault(Term::GasPressure)
+                film.parameters.fault_factor(Term::GasPressure)
                     * gas.pressure(film.state.gas, film.state.volume)
             }
             PressureLoad::Overpressure(pressure) => pressure,
@@ -102,27 +106,30 @@ impl Explicit {
         film
     }
 
-    /// Goes on from a state of the same film under the same setting, bit for bit.
+    /// Resumes from a state of the same film under the same parameters. The run continues with the same
+    /// bits.
     ///
     /// # Panics
-    /// On the state of another film.
-    pub fn resume(model: FilmModel, setting: Parameters, state: State) -> Self {
-        let mut film = Self::with(model, setting, state);
-        let _ = film.pass_at(film.state.time, 0.0, &mut Untimed);
+    /// If the state is that of another film.
+    pub fn resume(model: FilmModel, parameters: Parameters, state: State) -> Self {
+        let mut film = Self::with(model, parameters, state);
+        let _ = film.assemble_forces(film.state.time, 0.0, &mut Untimed);
         film
     }
 
-    fn with(model: FilmModel, setting: Parameters, state: State) -> Self {
+    fn with(model: FilmModel, parameters: Parameters, state: State) -> Self {
         let forces = NodeForces::new(&model);
         let next = Field::zeros(model.nodes());
-        let watch = setting.watch.zip(setting.contact.as_ref());
-        let watch = watch.map(|(how, law)| {
-            TunnellingMonitor::new(how, &law.mesh, &state.places, state.steps, setting.path)
+        let monitor = parameters.monitor.zip(parameters.contact.as_ref());
+        let monitor = monitor.map(|(settings, contact_model)| {
+            let (mesh, positions) = (&contact_model.mesh, &state.positions);
+            let instruction_set = parameters.instruction_set;
+            TunnellingMonitor::new(settings, mesh, positions, state.steps, instruction_set)
         });
-        Self { model, setting, state, forces, watch, search: None, next }
+        Self { model, parameters, state, forces, monitor, candidates: None, next }
     }
 
-    /// Advances to `target` (s) exactly, under a phase.
+    /// Advances to exactly `target` (s) under a phase.
     ///
     /// # Errors
     /// [`Failure`]: `unstable`, `inverted_volume` or `step_limit`.
@@ -130,8 +137,8 @@ impl Explicit {
         self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
     }
 
-    /// Advances towards `target` (s), under a phase, by at most `steps` steps, which it counts down;
-    /// whether it got there. Pausing changes no bit of what follows.
+    /// Advances towards `target` (s) under a phase by at most `steps` steps, and subtracts the steps taken
+    /// from `steps`. Returns whether it reached the target. A pause changes no bit of the run.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -144,7 +151,7 @@ impl Explicit {
         self.advance_timed(target, phase, steps, &mut Untimed)
     }
 
-    /// The same, telling a stopwatch what is done when.
+    /// [`Self::advance_at_most`] with a stopwatch that learns when each stage begins.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -155,33 +162,33 @@ impl Explicit {
         steps: &mut u64,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<bool, Failure> {
-        let mut stretch = match self.state.stretch.take() {
-            Some(stretch) => stretch,
-            None => self.way_to(target, phase).ok_or_else(|| self.too_small())?,
+        let mut interval = match self.state.step_interval.take() {
+            Some(interval) => interval,
+            None => self.plan_interval(target, phase).ok_or_else(|| self.no_advance())?,
         };
-        while let Some(until) = stretch.next_end() {
+        while let Some(end) = interval.next_end() {
             if *steps == 0 {
-                self.state.stretch = Some(stretch);
+                self.state.step_interval = Some(interval);
                 stopwatch.begins(Stage::Audit);
                 self.monitor_interval()?;
                 return Ok(false);
             }
-            if self.state.steps >= self.setting.step_limit {
+            if self.state.steps >= self.parameters.step_limit {
                 let place = format!("after {} accepted steps", self.state.steps);
                 return Err(self.failure(FailureKind::StepLimit, &place));
             }
             *steps -= 1;
-            stretch.index += 1.0;
-            if phase.packed && self.setting.contact.is_none() {
-                self.wait(stretch.length, phase.inflow);
+            interval.index += 1;
+            if phase.packed && self.parameters.contact.is_none() {
+                self.wait(interval.length, phase.inflow);
             } else {
-                self.step(stretch.length, until, phase.inflow, stopwatch)?;
+                self.step(interval.length, end, phase.inflow, stopwatch)?;
             }
-            self.state.time = until;
+            self.state.time = end;
             self.state.steps += 1;
-            if self.stirred(&stretch) {
-                let target = stretch.target;
-                stretch = self.way_on_to(target).ok_or_else(|| self.too_small())?;
+            if self.activity_detected(&interval) {
+                let target = interval.target;
+                interval = self.replan_interval(target).ok_or_else(|| self.no_advance())?;
             }
         }
         stopwatch.begins(Stage::Audit);
@@ -189,177 +196,195 @@ impl Explicit {
         Ok(true)
     }
 
-    fn too_small(&self) -> Failure {
-        self.failure(FailureKind::StepLimit, "step too small to advance time")
+    fn no_advance(&self) -> Failure {
+        self.failure(FailureKind::StepLimit, "the step is too small to advance time")
     }
 
-    /// The longest step allowed to film in motion now, s.
+    /// The longest step of film in motion now, s: CFL number times stable step.
     pub fn stable_step(&self) -> f64 {
-        self.longest_step(self.setting.cfl, true)
+        self.max_step(self.parameters.cfl, true)
     }
 
-    /// The longest step of this share of the stable one, s, and stable where contact presses or does not.
-    fn longest_step(&self, cfl: f64, pressed: bool) -> f64 {
+    /// The longest step at this CFL number now, s; with `contact_active` also stable under contact forces.
+    fn max_step(&self, cfl: f64, contact_active: bool) -> f64 {
         let film = self.model.largest_frequency();
-        let gas = match self.setting.interior {
+        let gas = match self.parameters.pressure_load {
             PressureLoad::Gas(gas) => {
                 let stiffness = gas.gamma() * self.state.pressure;
-                let (supports, forces) = (&self.setting.supports, &self.forces);
+                let (supports, forces) = (&self.parameters.supports, &self.forces);
                 gas_frequency_squared(&self.model, supports, forces, stiffness, self.state.volume)
             }
             PressureLoad::Overpressure(_) => 0.0,
         };
-        let share = stable_share(self.setting.viscosity) * 2.0;
-        let alone = cfl * share / (film * film + gas).sqrt();
-        match self.setting.contact.as_ref().filter(|_| pressed) {
-            // Contact counts for stability only: what is well below its limit resolves it too.
-            Some(law) => {
-                alone.min(share / (film * film + gas + law.added_frequency_squared()).sqrt())
+        let factor = stable_share(self.parameters.viscosity) * 2.0;
+        let max_step = cfl * factor / (film * film + gas).sqrt();
+        match self.parameters.contact.as_ref().filter(|_| contact_active) {
+            // Contact bounds stability only: the CFL number already keeps the step well below it.
+            Some(contact_model) => {
+                let contact = contact_model.added_frequency_squared();
+                max_step.min(factor / (film * film + gas + contact).sqrt())
             }
-            None => alone,
+            None => max_step,
         }
     }
 
-    /// A step in which nothing moves: film without contact, packed.
+    /// A step in which no node moves: packed film without contact.
     fn wait(&mut self, length: f64, inflow: Inflow) {
         self.state.last_step = 0.0;
         self.step_gas(self.state.volume, length, inflow);
     }
 
-    /// A step that ends at the time `until` (s).
+    /// A step of `length` (s) that ends at the time `end` (s).
     fn step(
         &mut self,
         length: f64,
-        until: f64,
+        end: f64,
         inflow: Inflow,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<(), Failure> {
         stopwatch.begins(Stage::Update);
-        self.kick(0.5 * (self.state.last_step + length), length, until);
+        self.kick(0.5 * (self.state.last_step + length), length, end);
         self.collision_step(0.5 * (self.state.last_step + length), length, stopwatch)?;
         stopwatch.begins(Stage::Update);
-        self.share_work(length);
-        let way = length * self.setting.fault(Term::Drift);
+        self.half_step_works(length);
+        let drift = length * self.parameters.fault_factor(Term::Drift);
         let state = &mut self.state;
-        let path = self.setting.path;
-        let fastest = drift_nodes(path, &state.velocities, way, &mut state.places);
-        self.add_plate_work(until);
-        // Rounding of a strain over next to no time would be a rate: such a step leaves viscosity as it is.
-        let sliver = length * self.model.largest_frequency() < SLIVER;
-        let sums = self.pass_at(until, if sliver { 0.0 } else { length }, stopwatch);
+        let instruction_set = self.parameters.instruction_set;
+        let max_speed_squared =
+            drift_nodes(instruction_set, &state.velocities, drift, &mut state.positions);
+        self.add_plate_work(end);
+        // In a tiny step the rounding of a strain would count as a strain rate.
+        let tiny = length * self.model.largest_frequency() < MAX_TINY_STEP;
+        let sums = self.assemble_forces(end, if tiny { 0.0 } else { length }, stopwatch);
         stopwatch.begins(Stage::Gas);
-        self.add_plate_work(until);
+        self.add_plate_work(end);
         let volume = sums.six_volumes / 6.0;
-        // No NaN passes either of these.
-        let sound = fastest < self.model.wave_speed() * self.model.wave_speed();
-        if !sound || !volume.is_finite() {
+        // Both checks fail for NaN.
+        let subsonic = max_speed_squared < self.model.wave_speed() * self.model.wave_speed();
+        if !subsonic || !volume.is_finite() {
             return Err(self.unstable());
         }
-        self.state.works.viscous += sums.viscous_work * self.setting.fault(Term::ViscousWork);
+        self.state.works.viscous +=
+            sums.viscous_work * self.parameters.fault_factor(Term::ViscousWork);
         self.state.film_stress = self.state.film_stress.max(sums.largest_stress);
-        if matches!(self.setting.interior, PressureLoad::Gas(_)) && volume <= 0.0 {
+        if matches!(self.parameters.pressure_load, PressureLoad::Gas(_)) && volume <= 0.0 {
             return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
         }
         self.step_gas(volume, length, inflow);
         stopwatch.begins(Stage::Update);
-        self.share_work(length);
+        self.half_step_works(length);
         self.state.last_step = length;
         stopwatch.begins(Stage::Audit);
         self.monitor_step()
     }
 
-    /// Half a step's work of what acts at the nodes now along the velocities now: on moving supports,
-    /// and of an overpressure on the film.
-    fn share_work(&mut self, length: f64) {
+    /// Adds half a step's work of the forces now along the velocities now: of contact, of moving supports,
+    /// and of a fixed overpressure. Called before and after the drift, so each work is a trapezoid.
+    fn half_step_works(&mut self, length: f64) {
         let half = 0.5 * length;
         if self.contact_active() {
             let (contact, velocities) = (&self.forces.contact, &self.state.velocities);
-            self.state.works.contact += half * sparse_power(self.setting.path, contact, velocities);
+            self.state.works.contact +=
+                half * sparse_power(self.parameters.instruction_set, contact, velocities);
         }
         self.state.works.support -= half * self.support_power();
-        if let PressureLoad::Overpressure(pressure) = self.setting.interior {
-            let sweep: f64 = (0..self.model.nodes())
+        if let PressureLoad::Overpressure(pressure) = self.parameters.pressure_load {
+            let volume_rate: f64 = (0..self.model.nodes())
                 .map(|node| self.forces.area(node).dot(&self.state.velocities.get(node)))
                 .sum();
-            self.state.works.gas += half * pressure * sweep;
+            self.state.works.gas += half * pressure * volume_rate;
         }
     }
 
-    /// The gas, while the volume goes to `volume` (m³).
+    /// Advances the gas by `length` (s) while the volume changes to `volume` (m³).
     fn step_gas(&mut self, volume: f64, length: f64, inflow: Inflow) {
         let state = &mut self.state;
-        if let PressureLoad::Gas(gas) = self.setting.interior {
+        if let PressureLoad::Gas(gas) = self.parameters.pressure_load {
             let mut step = gas.step(state.gas, state.volume, volume, length, inflow);
-            if let Some(mutation) = self.setting.mutation {
-                step.inject_fault(&gas, volume, inflow.mass_flow_rate * length, mutation);
+            if let Some(fault) = self.parameters.fault {
+                step.inject_fault(&gas, volume, inflow.mass_flow_rate * length, fault);
             }
             state.gas = step.state;
             state.pressure = step.pressure;
             state.works.gas += step.work;
             state.works.ambient -= gas.ambient_pressure * (volume - state.volume);
-            state.books.mass_out += step.mass_out;
-            state.books.enthalpy_in += step.enthalpy_in;
-            state.books.enthalpy_out += step.enthalpy_out;
-            state.books.heat += step.heat;
+            state.gas_balance.mass_out += step.mass_out;
+            state.gas_balance.enthalpy_in += step.enthalpy_in;
+            state.gas_balance.enthalpy_out += step.enthalpy_out;
+            state.gas_balance.heat += step.heat;
         }
         state.volume = volume;
     }
 
-    /// p − `p_ambient`, Pa.
+    /// Overpressure p − `p_ambient`, Pa.
     pub fn overpressure(&self) -> f64 {
-        match self.setting.interior {
+        match self.parameters.pressure_load {
             PressureLoad::Gas(gas) => {
-                let ambient = gas.ambient_pressure * self.setting.fault(Term::Ambient);
+                let ambient = gas.ambient_pressure * self.parameters.fault_factor(Term::Ambient);
                 self.state.pressure - ambient
             }
             PressureLoad::Overpressure(pressure) => pressure,
         }
     }
 
-    /// Force on a node now, N.
+    /// Sum of all forces on a node now, N.
     #[inline]
     pub fn force(&self, node: usize) -> Vector3<f64> {
         self.forces.film(node)
             + self.forces.contact.get(node)
             + self.forces.area(node) * self.overpressure()
-            + self.setting.gravity * (self.model.mass[node] * self.setting.fault(Term::Gravity))
+            + self.parameters.gravity
+                * (self.model.mass[node] * self.parameters.fault_factor(Term::Gravity))
     }
 
-    /// Forces at the places now, which are those of `time` (s), `step` (s) after they were last asked for.
-    fn pass_at(&mut self, time: f64, step: f64, stopwatch: &mut dyn Stopwatch) -> MembraneSums {
+    /// Computes all forces at the positions now. `time` (s) is the time of these positions, `step` (s) the
+    /// time since the last call; 0 leaves the viscous stress unchanged.
+    fn assemble_forces(
+        &mut self,
+        time: f64,
+        step: f64,
+        stopwatch: &mut dyn Stopwatch,
+    ) -> MembraneSums {
         stopwatch.begins(Stage::Membrane);
-        let (model, path) = (&self.model, self.setting.path);
-        let State { places, past, .. } = &mut self.state;
-        let mut sums = assemble_membrane(path, model, places, step, past, &mut self.forces);
-        sums.six_volumes += add_closure(model, places, &mut self.forces);
-        if self.setting.mutation.is_some() {
-            self.suffer(&mut sums);
+        let (model, instruction_set) = (&self.model, self.parameters.instruction_set);
+        let State { positions, viscous_history, .. } = &mut self.state;
+        let mut sums = assemble_membrane(
+            instruction_set,
+            model,
+            positions,
+            step,
+            viscous_history,
+            &mut self.forces,
+        );
+        sums.six_volumes += add_closure(model, positions, &mut self.forces);
+        if self.parameters.fault.is_some() {
+            self.inject_fault(&mut sums);
         }
         stopwatch.begins(Stage::Pairs);
         self.update_contact_forces(time);
         sums
     }
 
-    /// Faults of the forces: tests only.
-    fn suffer(&mut self, sums: &mut MembraneSums) {
+    /// Applies a deliberate fault to the forces: tests only.
+    fn inject_fault(&mut self, sums: &mut MembraneSums) {
         let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
-            .map(|term| self.setting.fault(term));
-        let drags = viscous_forces(&self.model, &self.state.places, &self.state.past);
+            .map(|term| self.parameters.fault_factor(term));
+        let drags = viscous_forces(&self.model, &self.state.positions, &self.state.viscous_history);
         for (node, drag) in drags.iter().enumerate() {
-            let rest = self.forces.film(node) - drag;
-            self.forces.set_film(node, rest * elastic + drag * viscous);
+            let elastic_force = self.forces.film(node) - drag;
+            self.forces.set_film(node, elastic_force * elastic + drag * viscous);
             self.forces.scale_area(node, area);
         }
-        sums.six_volumes *= self.setting.fault(Term::Volume);
+        sums.six_volumes *= self.parameters.fault_factor(Term::Volume);
     }
 
     fn unstable(&self) -> Failure {
         let bound = self.model.wave_speed();
-        let sound = |node: &usize| self.state.velocities.get(*node).norm() < bound;
-        let node = (0..self.model.nodes()).find(|node| !sound(node));
+        let subsonic = |node: &usize| self.state.velocities.get(*node).norm() < bound;
+        let node = (0..self.model.nodes()).find(|node| !subsonic(node));
         let place = match node {
-            Some(node) => format!("node {node}, faster than the film's waves ({bound:.0} m/s)"),
-            None => "volume not finite".to_owned(),
+            Some(node) => format!("node {node} is faster than the film's waves ({bound:.0} m/s)"),
+            None => "the volume is not finite".to_owned(),
         };
         self.failure(FailureKind::Unstable, &place)
     }

@@ -1,4 +1,4 @@
-//! What is constant while film moves, beside the film itself.
+//! Everything that is constant while film moves, except the film model itself.
 
 use nalgebra::Vector3;
 
@@ -9,66 +9,68 @@ use crate::platform::fault_injection::{Fault, Term};
 use crate::platform::simd::InstructionSet;
 use crate::scene::monitor_settings::MonitorSettings;
 
-/// CFL number to use where nobody asks for another: over the deployment of the paper's capsule
-/// without contact it keeps the energy ledger well inside its bound.
+/// CFL number where the scene gives none. Chosen: the energy ledger of the paper's capsule without
+/// contact stays well inside its bound.
 pub const DEFAULT_CFL: f64 = 0.45;
 
-/// What presses on the film from inside.
+/// The pressure on the inside of the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PressureLoad {
     /// Gas in the closed volume.
     Gas(Gas),
-    /// This overpressure, Pa, whatever the volume; film may be open.
+    /// A fixed overpressure, Pa, whatever the volume. The film may be open.
     Overpressure(f64),
 }
 
-/// What is constant during a run, beside the film itself.
+/// Everything that is constant during a run, except the film model itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
-    /// What presses from inside.
-    pub interior: PressureLoad,
-    /// What is held.
+    /// Pressure on the inside.
+    pub pressure_load: PressureLoad,
+    /// Supports.
     pub supports: Supports,
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
-    /// ζ of the film's viscosity, for the stable step.
+    /// Damping ratio ζ of the film's viscosity; the stable step depends on it.
     pub viscosity: f64,
-    /// c, 1/s: nought but in statics and where a scene asks for it.
+    /// Mass damping c, 1/s. A capsule's scene sets 0; a film scene and [`crate::statics::Relaxation`]
+    /// may set more.
     pub mass_damping: f64,
-    /// Share of the stable step.
+    /// CFL number: the step as a fraction of the stable step.
     pub cfl: f64,
-    /// Accepted steps after which a run stops.
+    /// Accepted steps after which a run fails with `step_limit`.
     pub step_limit: u64,
-    /// Instruction set; the bits are the same on each.
-    pub path: InstructionSet,
-    /// Film against film; none lets film pass through film.
+    /// Instruction set. Every one gives the same bits.
+    pub instruction_set: InstructionSet,
+    /// Contact of film with film; without it film passes through film.
     pub contact: Option<ContactModel>,
-    /// How closely passages are watched for; `None`: not at all.
-    pub watch: Option<MonitorSettings>,
+    /// Settings of the tunnelling monitor; `None` switches it off.
+    pub monitor: Option<MonitorSettings>,
     /// A deliberate fault: tests only.
-    pub mutation: Option<Fault>,
+    pub fault: Option<Fault>,
 }
 
 impl Parameters {
-    /// Film without supports, gravity, viscosity or mass damping, at the default step.
-    pub fn free(interior: PressureLoad, nodes: usize) -> Self {
+    /// Film without supports, gravity, viscosity, mass damping or contact, at the default CFL number,
+    /// on the widest instruction set of this machine.
+    pub fn free(pressure_load: PressureLoad, nodes: usize) -> Self {
         Self {
-            interior,
+            pressure_load,
             supports: Supports::none(nodes),
             gravity: Vector3::zeros(),
             viscosity: 0.0,
             mass_damping: 0.0,
             cfl: DEFAULT_CFL,
             step_limit: u64::MAX,
-            path: InstructionSet::detect(),
+            instruction_set: InstructionSet::detect(),
             contact: None,
-            watch: None,
-            mutation: None,
+            monitor: None,
+            fault: None,
         }
     }
 
-    /// The factor of a term: 1 but in tests.
-    pub(super) fn fault(&self, term: Term) -> f64 {
-        self.mutation.filter(|mutation| mutation.term == term).map_or(1.0, |m| m.factor)
+    /// The factor a deliberate fault puts on this term; 1 without a fault.
+    pub(super) fn fault_factor(&self, term: Term) -> f64 {
+        self.fault.filter(|fault| fault.term == term).map_or(1.0, |fault| fault.factor)
     }
 }

@@ -1,99 +1,111 @@
-//! When film is calm, and takes longer steps.
+//! Quiescence: a film that hardly moves takes longer steps.
 //!
 //! ```text
-//! calm: for 20 ms ½ Σ m v⁻·v⁻ has been below 5 % of its largest, no film has pressed on film, and no phase begun
+//! quiescent: for QUIET_TIME, ½ Σ m v⁻·v⁻ < 5 % of its largest value so far,
+//!            no contact is active, and no phase begins
 //! Δt ≤ min(16/9 CFL, 0.8) (√(1+ζ²) − ζ) 2/√(ω_film² + ω_gas²)
 //! ```
 //!
-//! What central differences miss of the energy they miss where stiffness bends: where film gets taut or
-//! slack at speed, or meets film. A capsule that stands and fills does neither, and stability alone bounds
-//! its step. Only film with contact is ever calm: there somebody tells when film meets film, and contact's
-//! own bound holds from that step on. Film without contact is looked at for its vibrations, which are at rest
-//! twice a period.
+//! The CFL number bounds the energy error of central differences, and that error arises where the
+//! stiffness changes within a step: film becomes taut or slack at speed, or touches film. A quiescent
+//! film does neither, so stability alone bounds its step.
 //!
-//! It is looked at where a way begins and every 250 steps of it, so not only where samples are taken.
+//! Only film with contact can be quiescent: contact reports the first pair that touches, and from
+//! that step on contact's bound holds. Without contact film is used to study vibrations, whose
+//! kinetic energy is small twice in every period.
+//!
+//! The kinetic energy is checked when a step interval is planned and after every
+//! [`CHECK_INTERVAL`] steps of it, so the decision does not depend on the sample times alone.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Explicit, StepInterval};
 use crate::scene::timeline::Phase;
 
-/// Kinetic energy of calm film at most, of its largest.
-const SHARE: f64 = 0.05;
-/// For how long, s: longer than a capsule that turns round stays slow.
-const AWHILE: f64 = 0.02;
-/// Steps of calm film over those of film in motion.
-const LONGER: f64 = 16.0 / 9.0;
-/// Share of the stable step it takes at most.
-const MOST: f64 = 0.8;
-/// Steps after which film is looked at again.
-const BETWEEN_LOOKS: f64 = 250.0;
+/// Upper bound of the kinetic energy of a quiescent film, as a fraction of its largest value so far.
+/// Chosen.
+const MAX_ENERGY_FRACTION: f64 = 0.05;
+/// Time for which the film must be slow and without contact, s. Chosen on the paper's capsule: longer
+/// than that capsule stays slow when its motion reverses. It does not scale with the film: a much
+/// larger or heavier capsule may reverse more slowly and count as quiescent too early. The energy
+/// ledger then shows the error.
+const QUIET_TIME: f64 = 0.02;
+/// Step of a quiescent film over the step of a film in motion. Chosen.
+const STEP_RATIO: f64 = 16.0 / 9.0;
+/// Upper bound of the CFL number of a quiescent film. Chosen below the stability limit of 1.
+const MAX_CFL: f64 = 0.8;
+/// Number of steps between two checks within an interval. Chosen.
+const CHECK_INTERVAL: u64 = 250;
 
-/// What tells whether film is calm.
+/// What decides whether film is quiescent.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quiescence {
-    /// Largest ½ Σ m v⁻·v⁻ seen, J.
+    /// Largest ½ Σ m v⁻·v⁻ so far, J.
     pub largest_kinetic_energy: f64,
-    /// When film was last seen to move, film to press on film, or a phase to begin, s.
-    pub lively: f64,
-    /// Whether film was packed on the last way.
+    /// Last time at which the film was in motion or in contact, or a phase began, s.
+    pub last_active: f64,
+    /// Whether the film was packed in the last interval.
     packed: bool,
-    /// Gas let in on the last way, kg/s.
+    /// Mass flow rate of the inflow in the last interval, kg/s.
     mass_flow_rate: f64,
 }
 
 impl Explicit {
-    /// The way to a target (s) from here under a phase, in steps as long as they may be; `None` where a
-    /// step would not advance time.
-    pub(super) fn way_to(&mut self, target: f64, phase: &Phase) -> Option<StepInterval> {
-        let (time, calm) = (self.state.time, &mut self.state.calm);
+    /// Plans equal steps from now to `target` (s) under a phase, as long as the stable step allows.
+    /// `None` if a step would not advance time.
+    pub(super) fn plan_interval(&mut self, target: f64, phase: &Phase) -> Option<StepInterval> {
+        let (time, quiescence) = (self.state.time, &mut self.state.quiescence);
         let rate = phase.inflow.mass_flow_rate;
-        if calm.packed != phase.packed || calm.mass_flow_rate.to_bits() != rate.to_bits() {
-            (calm.packed, calm.mass_flow_rate, calm.lively) = (phase.packed, rate, time);
+        if quiescence.packed != phase.packed
+            || quiescence.mass_flow_rate.to_bits() != rate.to_bits()
+        {
+            (quiescence.packed, quiescence.mass_flow_rate, quiescence.last_active) =
+                (phase.packed, rate, time);
         }
-        self.way_on_to(target)
+        self.replan_interval(target)
     }
 
-    /// The same on the way.
-    pub(super) fn way_on_to(&mut self, target: f64) -> Option<StepInterval> {
-        let calm = self.look_whether_calm();
-        let longest = if calm { self.calm_step() } else { self.stable_step() };
-        StepInterval::new(self.state.time, target, longest, calm)
+    /// [`Self::plan_interval`] within a phase.
+    pub(super) fn replan_interval(&mut self, target: f64) -> Option<StepInterval> {
+        let quiescent = self.update_quiescence();
+        let max_step = if quiescent { self.quiescent_step() } else { self.stable_step() };
+        StepInterval::new(self.state.time, target, max_step, quiescent)
     }
 
-    /// Whether film that was calm on its way no longer is, or its steps are too long by now, so that it
-    /// needs another way; asked after every step.
-    pub(super) fn stirred(&mut self, stretch: &StepInterval) -> bool {
+    /// Whether an interval of a quiescent film must be planned again: the film is active, or the steps
+    /// are too long by now. Call it after every step.
+    pub(super) fn activity_detected(&mut self, interval: &StepInterval) -> bool {
         if self.in_contact() {
-            self.state.calm.lively = self.state.time;
-            return stretch.calm;
+            self.state.quiescence.last_active = self.state.time;
+            return interval.quiescent;
         }
-        if stretch.index % BETWEEN_LOOKS >= 0.5 {
+        if !interval.index.is_multiple_of(CHECK_INTERVAL) {
             return false;
         }
-        let calm = self.look_whether_calm();
-        stretch.calm && (!calm || stretch.length > self.calm_step() * (1.0 + 1e-9))
+        let quiescent = self.update_quiescence();
+        interval.quiescent && (!quiescent || interval.length > self.quiescent_step() * (1.0 + 1e-9))
     }
 
-    /// The longest step of calm film now, s. Who asks for longer ones than 0.8 has them in motion too, with
-    /// contact's own bound.
-    fn calm_step(&self) -> f64 {
-        if self.setting.cfl >= MOST {
+    /// The longest step of a quiescent film now, s. A scene whose CFL number is already [`MAX_CFL`] or
+    /// more keeps its usual step, with contact's bound.
+    fn quiescent_step(&self) -> f64 {
+        if self.parameters.cfl >= MAX_CFL {
             return self.stable_step();
         }
-        self.longest_step((LONGER * self.setting.cfl).min(MOST), false)
+        self.max_step((STEP_RATIO * self.parameters.cfl).min(MAX_CFL), false)
     }
 
-    /// Whether film presses on film, or a plate is there to.
+    /// Whether film touches film, or a plate is present.
     fn in_contact(&self) -> bool {
-        let Some(law) = &self.setting.contact else { return false };
-        let plates = law.plates.iter().any(|plate| self.state.time < plate.removal_time);
-        plates || !self.state.meeting.contacts.is_empty()
+        let Some(contact_model) = &self.parameters.contact else { return false };
+        let plates = contact_model.plates.iter().any(|plate| self.state.time < plate.removal_time);
+        plates || !self.state.contact_state.contacts.is_empty()
     }
 
-    fn look_whether_calm(&mut self) -> bool {
-        if self.setting.contact.is_none() {
+    /// Checks the kinetic energy now; whether the film is quiescent.
+    fn update_quiescence(&mut self) -> bool {
+        if self.parameters.contact.is_none() {
             return false;
         }
         let velocities = &self.state.velocities;
@@ -101,14 +113,14 @@ impl Explicit {
         let energy: f64 =
             nodes.map(|(node, mass)| mass * velocities.get(node).norm_squared()).sum();
         let energy = 0.5 * energy;
-        let (time, calm) = (self.state.time, &mut self.state.calm);
-        calm.largest_kinetic_energy = calm.largest_kinetic_energy.max(energy);
-        // Film that has not moved yet is not calm: nobody knows how fast it will be. Nor is what is no number.
-        let slow = energy < SHARE * calm.largest_kinetic_energy;
+        let (time, quiescence) = (self.state.time, &mut self.state.quiescence);
+        quiescence.largest_kinetic_energy = quiescence.largest_kinetic_energy.max(energy);
+        // False before the first motion, when no scale of the energy is known, and for NaN.
+        let slow = energy < MAX_ENERGY_FRACTION * quiescence.largest_kinetic_energy;
         if !slow {
-            calm.lively = time;
+            quiescence.last_active = time;
         }
-        time - self.state.calm.lively >= AWHILE && !self.in_contact()
+        time - self.state.quiescence.last_active >= QUIET_TIME && !self.in_contact()
     }
 }
 
@@ -128,36 +140,41 @@ mod tests {
     use crate::scene::inflow::Inflow;
     use crate::scene::plate::Plate;
 
-    /// Two triangles far apart, at rest for 50 ms after they moved.
-    fn calm() -> Explicit {
+    /// Two triangles far apart, at rest for 50 ms after a motion.
+    fn quiescent_film() -> Explicit {
         let film = Film::PAPER;
         let flat = [Vector2::new(0.0, 0.0), Vector2::new(0.1, 0.0), Vector2::new(0.0, 0.1)];
         let triangles = [[0, 1, 2], [3, 4, 5]];
         let model = FilmModel::new(&film, 6, &triangles, &[flat, flat]).expect("a film");
-        let place = |height: f64| flat.map(|x| Vector3::new(x.x, x.y, height));
-        let places = Field::of(&[place(0.0), place(0.1)].concat());
+        let at_height = |height: f64| flat.map(|x| Vector3::new(x.x, x.y, height));
+        let positions = Field::of(&[at_height(0.0), at_height(0.1)].concat());
         let omega = model.largest_frequency();
-        let mesh = CollisionMesh::new(6, &triangles);
-        let law = ContactModel::new(mesh, 1e-3, omega, 0.1, InstructionSet::detect());
-        let setting = Parameters {
-            contact: Some(law),
+        let contact_model = ContactModel::new(
+            CollisionMesh::new(6, &triangles),
+            1e-3,
+            omega,
+            0.1,
+            InstructionSet::detect(),
+        );
+        let parameters = Parameters {
+            contact: Some(contact_model),
             viscosity: 0.1,
             ..Parameters::free(PressureLoad::Overpressure(0.0), 6)
         };
         let still = Field::zeros(6);
-        let mut film = Explicit::new(model, setting, places, still, GasState::default());
-        film.state.calm.largest_kinetic_energy = 1.0;
+        let mut film = Explicit::new(model, parameters, positions, still, GasState::default());
+        film.state.quiescence.largest_kinetic_energy = 1.0;
         film.state.time = 0.05;
         film
     }
 
-    fn is_calm(mut film: Explicit, phase: &Phase) -> bool {
-        let careful = film.stable_step();
-        let way = film.way_to(0.06, phase).expect("a way");
-        let longer = way.length > 1.5 * careful;
-        assert!(longer || way.length <= careful);
-        assert_eq!(longer, way.calm);
-        way.calm
+    fn is_quiescent(mut film: Explicit, phase: &Phase) -> bool {
+        let stable_step = film.stable_step();
+        let interval = film.plan_interval(0.06, phase).expect("an interval");
+        let longer = interval.length > 1.5 * stable_step;
+        assert!(longer || interval.length <= stable_step);
+        assert_eq!(longer, interval.quiescent);
+        interval.quiescent
     }
 
     fn plate(until: f64) -> Plate {
@@ -179,47 +196,47 @@ mod tests {
     }
 
     #[test]
-    fn film_is_calm_that_is_slow_for_a_while_and_alone() {
+    fn film_is_quiescent_after_quiet_time_without_motion_or_contact() {
         let still = Phase::default();
-        assert!(is_calm(calm(), &still));
+        assert!(is_quiescent(quiescent_film(), &still));
         let with = |change: &dyn Fn(&mut Explicit)| {
-            let mut film = calm();
+            let mut film = quiescent_film();
             change(&mut film);
-            is_calm(film, &still)
+            is_quiescent(film, &still)
         };
-        assert!(!with(&|film| film.state.calm.lively = 0.035));
-        assert!(with(&|film| film.state.calm.lively = 0.025));
-        assert!(!with(&|film| film.state.calm.largest_kinetic_energy = 0.0));
+        assert!(!with(&|film| film.state.quiescence.last_active = 0.035));
+        assert!(with(&|film| film.state.quiescence.last_active = 0.025));
+        assert!(!with(&|film| film.state.quiescence.largest_kinetic_energy = 0.0));
         assert!(!with(&|film| film.state.velocities.x[2] = f64::NAN));
-        assert!(!with(&|film| film.state.meeting.contacts.push(contact())));
+        assert!(!with(&|film| film.state.contact_state.contacts.push(contact())));
         let plates = |film: &mut Explicit, until: f64| {
-            film.setting.contact.iter_mut().for_each(|law| law.plates.push(plate(until)));
+            film.parameters.contact.iter_mut().for_each(|model| model.plates.push(plate(until)));
         };
         assert!(!with(&|film| plates(film, 0.2)));
         assert!(with(&|film| plates(film, 0.04)));
-        assert!(!with(&|film| film.setting.contact = None));
+        assert!(!with(&|film| film.parameters.contact = None));
         let inflow = Inflow { mass_flow_rate: 1e-3, temperature_flow: 0.3 };
-        assert!(!is_calm(calm(), &Phase { packed: false, inflow }));
-        assert!(!is_calm(calm(), &Phase { packed: true, ..still }));
+        assert!(!is_quiescent(quiescent_film(), &Phase { packed: false, inflow }));
+        assert!(!is_quiescent(quiescent_film(), &Phase { packed: true, ..still }));
     }
 
     #[test]
-    fn contact_stirs_calm_film_at_once_and_motion_at_the_next_look() {
-        let mut film = calm();
-        let mut way = film.way_to(0.06, &Phase::default()).expect("a way");
-        way.index = 3.0;
-        assert!(!film.stirred(&way));
+    fn contact_ends_quiescence_at_once_and_motion_at_the_next_check() {
+        let mut film = quiescent_film();
+        let mut interval = film.plan_interval(0.06, &Phase::default()).expect("an interval");
+        interval.index = 3;
+        assert!(!film.activity_detected(&interval));
         film.state.velocities.x[0] = 100.0;
-        assert!(!film.stirred(&way));
-        way.index = 250.0;
-        assert!(film.stirred(&way));
-        assert!(film.way_on_to(0.06).is_some_and(|way| !way.calm));
+        assert!(!film.activity_detected(&interval));
+        interval.index = CHECK_INTERVAL;
+        assert!(film.activity_detected(&interval));
+        assert!(film.replan_interval(0.06).is_some_and(|interval| !interval.quiescent));
 
-        let mut film = calm();
-        way.index = 3.0;
-        film.state.meeting.contacts.push(contact());
-        assert!(film.stirred(&way));
-        assert_eq!(film.state.calm.lively.to_bits(), film.state.time.to_bits());
-        assert!(film.way_on_to(0.06).is_some_and(|way| !way.calm));
+        let mut film = quiescent_film();
+        interval.index = 3;
+        film.state.contact_state.contacts.push(contact());
+        assert!(film.activity_detected(&interval));
+        assert_eq!(film.state.quiescence.last_active.to_bits(), film.state.time.to_bits());
+        assert!(film.replan_interval(0.06).is_some_and(|interval| !interval.quiescent));
     }
 }

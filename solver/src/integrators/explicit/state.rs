@@ -1,4 +1,4 @@
-//! All that changes while film moves.
+//! Everything that changes while film moves.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,123 +9,128 @@ use crate::mechanics::forces::membrane::ViscousHistory;
 use crate::mechanics::gas::GasState;
 use crate::output::ledger::GasBalance;
 
-/// All that changes while film moves. With the constants of the run it says all that follows.
+/// Everything that changes while film moves. State, film model and parameters together determine
+/// the rest of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct State {
     /// Time, s.
     pub time: f64,
-    /// Node places, m.
-    pub places: Field,
-    /// Node velocities half a step ago, m/s; those of the start before the first step.
+    /// Positions of the nodes, m.
+    pub positions: Field,
+    /// Velocities of the nodes half a step ago, m/s; before the first step those of the start.
     pub velocities: Field,
-    /// What the film's elements remember of the last step, as its passes want it.
-    pub past: Vec<[ViscousHistory; 2]>,
-    /// Velocities of the rigid planes along their normals, as those of the nodes, m/s.
+    /// Strain and viscous stress of every element at the end of the last step, in the layout of the
+    /// element loop.
+    pub viscous_history: Vec<[ViscousHistory; 2]>,
+    /// Velocities of the rigid planes along their normals half a step ago, m/s.
     pub planes: Vec<f64>,
     /// Length of the last step, s; 0 before the first.
     pub last_step: f64,
-    /// V, m³.
+    /// Enclosed volume V, m³.
     pub volume: f64,
-    /// p inside (gas) or overpressure, Pa.
+    /// Gas: pressure p. Fixed overpressure: that overpressure. Pa.
     pub pressure: f64,
-    /// Gas inside.
+    /// Mass and internal energy of the gas.
     pub gas: GasState,
     /// Accepted steps.
     pub steps: u64,
     /// Largest principal second Piola-Kirchhoff stress so far, Pa.
     pub film_stress: f64,
-    /// Works so far.
+    /// Works since time 0.
     pub works: Works,
-    /// Gas balances so far.
-    pub books: GasBalance,
-    /// Σ m x at the start, kg m.
+    /// Mass, enthalpy and heat exchanged by the gas since time 0.
+    pub gas_balance: GasBalance,
+    /// Σ m x at time 0, kg m.
     pub start_moment: [f64; 3],
-    /// Contact of film with film.
-    pub meeting: ContactState,
-    /// Whether film is calm.
-    pub calm: Quiescence,
-    /// The way to the target being headed for, where a run was paused on it.
-    pub stretch: Option<StepInterval>,
+    /// Contact of film with film and with plates.
+    pub contact_state: ContactState,
+    /// Whether the film is quiescent, and since when.
+    pub quiescence: Quiescence,
+    /// The current step interval, if the run was paused within one.
+    pub step_interval: Option<StepInterval>,
 }
 
-/// Works so far, J.
+/// Works since time 0, J. Positive: energy given to the film; for `viscous` and `damping`: energy
+/// dissipated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Works {
-    /// Of the gas, or the overpressure, on the film.
+    /// Work of the gas, or of the fixed overpressure, on the film.
     pub gas: f64,
-    /// Of the ambient pressure on the film.
+    /// Work of the ambient pressure on the film.
     pub ambient: f64,
-    /// Of what holds or pushes the film and moves.
+    /// Work of moving supports, rigid planes and plates on the film.
     pub support: f64,
-    /// Of contact on the film.
+    /// Work of contact forces on the film. Minus this is the stored contact energy.
     pub contact: f64,
-    /// Taken by viscosity.
+    /// Energy dissipated by viscosity.
     pub viscous: f64,
-    /// Taken by mass damping.
+    /// Energy dissipated by mass damping.
     pub damping: f64,
 }
 
-/// The way to the next target, in equal steps; what stirs calm film begins another.
+/// Equal steps from now to the next target. The integrator plans a new interval earlier if a
+/// quiescent film becomes active.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepInterval {
-    /// Its beginning, s.
+    /// Time of its start, s.
     pub start: f64,
-    /// Its end, s.
+    /// Time of its end, s.
     pub target: f64,
     /// Length of a step, s.
     pub length: f64,
-    /// Number of steps.
-    pub count: f64,
-    /// Steps taken.
-    pub index: f64,
-    /// Whether they are those of calm film.
-    pub calm: bool,
+    /// Number of steps in the interval.
+    pub count: u64,
+    /// Number of steps taken.
+    pub index: u64,
+    /// Whether the steps are the longer ones of a quiescent film.
+    pub quiescent: bool,
 }
 
 impl StepInterval {
-    /// Equal steps from `start` to `target` (s), none longer than `longest`; `None` where a step
-    /// would not advance time.
-    pub(super) fn new(start: f64, target: f64, longest: f64, calm: bool) -> Option<Self> {
+    /// Equal steps from `start` to `target` (s), each at most `max_step` (s). `None` if a step would
+    /// not advance time.
+    pub(super) fn new(start: f64, target: f64, max_step: f64, quiescent: bool) -> Option<Self> {
         if target <= start {
-            return Some(Self { start, target, length: 0.0, count: 0.0, index: 0.0, calm });
+            return Some(Self { start, target, length: 0.0, count: 0, index: 0, quiescent });
         }
-        let count = ((target - start) / longest * (1.0 - 1e-12)).ceil().max(1.0);
+        let count = ((target - start) / max_step * (1.0 - 1e-12)).ceil().max(1.0);
         let length = (target - start) / count;
-        // Written so that what is no number is refused too.
+        // Written so that NaN is refused too.
         let advances = start + length > start;
-        advances.then_some(Self { start, target, length, count, index: 0.0, calm })
+        // A count beyond u64 saturates: no run takes so many steps.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
+        let count = count as u64;
+        advances.then_some(Self { start, target, length, count, index: 0, quiescent })
     }
 
-    /// When the next step ends, s; `None` after the last.
+    /// Time at which the next step ends, s; `None` after the last step.
     pub(super) fn next_end(&self) -> Option<f64> {
-        let after = self.index + 1.0;
-        if after > self.count {
-            None
-        } else if after < self.count {
-            Some(self.start + after * self.length)
-        } else {
-            Some(self.target)
+        if self.index >= self.count {
+            return None;
         }
+        let next = self.index + 1;
+        let last = next == self.count;
+        Some(if last { self.target } else { self.start + next as f64 * self.length })
     }
 }
 
 impl State {
-    /// The start at time 0.
+    /// The state at time 0.
     pub(super) fn start(
-        places: Field,
+        positions: Field,
         velocities: Field,
-        past: Vec<[ViscousHistory; 2]>,
+        viscous_history: Vec<[ViscousHistory; 2]>,
         planes: Vec<f64>,
         gas: GasState,
     ) -> Self {
         Self {
             time: 0.0,
-            places,
+            positions,
             velocities,
-            past,
+            viscous_history,
             planes,
             last_step: 0.0,
             volume: 0.0,
@@ -134,11 +139,11 @@ impl State {
             steps: 0,
             film_stress: 0.0,
             works: Works::default(),
-            books: GasBalance::default(),
+            gas_balance: GasBalance::default(),
             start_moment: [0.0; 3],
-            meeting: ContactState::default(),
-            calm: Quiescence::default(),
-            stretch: None,
+            contact_state: ContactState::default(),
+            quiescence: Quiescence::default(),
+            step_interval: None,
         }
     }
 }

@@ -185,16 +185,16 @@ fn drift_kernel(velocities: &Field, time: f64, positions: [&mut [f64]; 3]) -> f6
     let [vx, vy, vz] = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
     let [x, y, z] = [&mut x[..nodes], &mut y[..nodes], &mut z[..nodes]];
     let in_blocks = nodes - nodes % WIDTH;
-    let mut lanes = Lanes::default();
+    let mut max_lanes = Lanes::default();
     for first in (0..in_blocks).step_by(WIDTH) {
         let [u, v, w] = [Lanes::load(vx, first), Lanes::load(vy, first), Lanes::load(vz, first)];
         (Lanes::load(x, first) + u * time).store(x, first);
         (Lanes::load(y, first) + v * time).store(y, first);
         (Lanes::load(z, first) + w * time).store(z, first);
         let squared = u * u + v * v + w * w;
-        lanes = squared.max(lanes);
+        max_lanes = squared.max(max_lanes);
     }
-    let mut largest = lanes.largest();
+    let mut largest = max_lanes.largest();
     for node in in_blocks..nodes {
         let [u, v, w] = [vx[node], vy[node], vz[node]];
         x[node] += u * time;
@@ -230,13 +230,13 @@ fn speed_kernel(velocities: &Field) -> f64 {
     let nodes = velocities.len();
     let [vx, vy, vz] = [&velocities.x[..nodes], &velocities.y[..nodes], &velocities.z[..nodes]];
     let in_blocks = nodes - nodes % WIDTH;
-    let mut lanes = Lanes::default();
+    let mut max_lanes = Lanes::default();
     for first in (0..in_blocks).step_by(WIDTH) {
         let [u, v, w] = [Lanes::load(vx, first), Lanes::load(vy, first), Lanes::load(vz, first)];
         let squared = u * u + v * v + w * w;
-        lanes = squared.max(lanes);
+        max_lanes = squared.max(max_lanes);
     }
-    let mut largest = lanes.largest();
+    let mut largest = max_lanes.largest();
     for node in in_blocks..nodes {
         largest = largest.max(vx[node] * vx[node] + vy[node] * vy[node] + vz[node] * vz[node]);
     }

@@ -1,4 +1,4 @@
-//! A capsule as film: mesh, supports and places of its rings.
+//! A capsule as film: mesh, imperfection, supports, contact, plates.
 
 use nalgebra::Vector3;
 
@@ -19,42 +19,52 @@ use crate::scene::film_support::{FilmSupport, Hold};
 use crate::scene::plate::Plate;
 use crate::scene::{Film, Scene, Support, SupportLocation};
 
-/// Amplitude of the imperfection of a stowed capsule, as a share of its smallest gap.
-const IMPERFECTION: f64 = 0.1;
+/// Amplitude of the imperfection of a stowed capsule over its smallest gap. Chosen.
+const IMPERFECTION_OVER_GAP: f64 = 0.1;
 
-/// Puts the imperfection of a seed on a stowed capsule; 0 is none.
+/// Adds the imperfection of a seed to a stowed capsule; seed 0 adds none.
 ///
 /// # Errors
-/// [`SceneError::Invalid`] when the capsule makes no film.
-pub fn imperfect(mesh: &mut Mesh, film: &Film, seed: u64) -> Result<(), SceneError> {
+/// [`SceneError::Invalid`] if the mesh is not a film.
+pub fn imperfect(
+    instruction_set: InstructionSet,
+    mesh: &mut Mesh,
+    film: &Film,
+    seed: u64,
+) -> Result<(), SceneError> {
     if seed == 0 {
         return Ok(());
     }
-    let places = Field::of(&mesh.positions);
+    let positions = Field::of(&mesh.positions);
     let model = FilmModel::of_shell(film, &Shell::of_mesh(mesh)).map_err(|error| {
         SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
     })?;
-    let gap = ContactModel::of_film(&model, &places, None, InstructionSet::detect()).distance
+    let gap = ContactModel::of_film(&model, &positions, None, instruction_set).distance
         / contact::DISTANCE_PER_GAP;
-    imperfection::imperfect(&mut mesh.positions, seed, IMPERFECTION * gap);
+    imperfection::imperfect(&mut mesh.positions, seed, IMPERFECTION_OVER_GAP * gap);
     Ok(())
 }
 
-/// Name of the plate that holds film packed from above.
+/// Name of the plate above packed film.
 pub const LID: &str = "lid";
-/// Name of the plate that holds film packed from below.
+/// Name of the plate below packed film.
 pub const BASE: &str = "base";
 
-/// A scene's capsule in one of its shapes, without contact, at this share of the stable step; and its mesh.
+/// The capsule of a scene in one of its shapes, without contact, at this CFL number; and its mesh.
 ///
 /// # Errors
-/// [`SceneError`] when the scene is not sound or the capsule cannot be made.
-pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, Mesh), SceneError> {
+/// [`SceneError`] if the scene is invalid or the capsule cannot be built.
+pub fn film_scene(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    shape: Shape,
+    cfl: f64,
+) -> Result<(FilmScene, Mesh), SceneError> {
     scene.validate()?;
     let pattern = FoldPattern::new(&scene.design)?;
     let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
     if matches!(shape, Shape::Stowed(_)) {
-        imperfect(&mut mesh, &scene.film, scene.seed)?;
+        imperfect(instruction_set, &mut mesh, &scene.film, scene.seed)?;
     }
     let film = FilmScene {
         shell: Shell::of_mesh(&mesh),
@@ -74,7 +84,7 @@ pub fn film_scene(scene: &Scene, shape: Shape, cfl: f64) -> Result<(FilmScene, M
             statics: false,
             mass_damping: 0.0,
             step_limit: scene.solver.step_limit,
-            instruction_set: InstructionSet::detect(),
+            instruction_set,
         },
         outputs: FilmOutputs {
             sample_interval: scene.outputs.sample_interval,
@@ -97,10 +107,10 @@ fn on_capsule(support: &Support, mesh: &Mesh) -> FilmSupport {
     FilmSupport { name: name.to_owned(), nodes, hold: Hold::Components(held), motion: None }
 }
 
-/// Nodes of a piece of film, in ascending order.
+/// Nodes of a part of the film, ascending.
 pub fn part_nodes(mesh: &Mesh, part: Part) -> Vec<u32> {
-    let own = mesh.triangles.iter().zip(&mesh.parts).filter(|(_, own)| **own == part);
-    sorted(own.flat_map(|(triangle, _)| *triangle).collect())
+    let elements = mesh.triangles.iter().zip(&mesh.parts).filter(|(_, of)| **of == part);
+    sorted(elements.flat_map(|(triangle, _)| *triangle).collect())
 }
 
 fn sorted(mut nodes: Vec<u32>) -> Vec<u32> {
@@ -109,21 +119,21 @@ fn sorted(mut nodes: Vec<u32>) -> Vec<u32> {
     nodes
 }
 
-/// A scene's film at time 0.
+/// The film of a scene at time 0.
 ///
 /// # Errors
-/// [`SceneError::Invalid`] when the film is none, or a number is out of range.
+/// [`SceneError::Invalid`] if the mesh is not a film, or a number is out of range.
 pub fn start(scene: &FilmScene) -> Result<Explicit, SceneError> {
-    let (model, setting, gas) = constants(scene)?;
-    let places = Field::of(&scene.shell.positions);
-    let mut velocities = Field::zeros(places.len());
+    let (model, parameters, gas) = constants(scene)?;
+    let positions = Field::of(&scene.shell.positions);
+    let mut velocities = Field::zeros(positions.len());
     for (node, velocity) in scene.velocities.iter().enumerate() {
         velocities.set(node, *velocity);
     }
-    Ok(Explicit::new(model, setting, places, velocities, gas))
+    Ok(Explicit::new(model, parameters, positions, velocities, gas))
 }
 
-/// What is constant in a scene's run, and the gas it starts with.
+/// The film model and parameters of a scene, and its gas at time 0.
 ///
 /// # Errors
 /// As [`start`].
@@ -134,44 +144,44 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
     scene.shell.check().map_err(|error| invalid("mesh", error.to_string()))?;
     let model = FilmModel::of_shell(&scene.film, &scene.shell)
         .map_err(|error| invalid("mesh", error.to_string()))?;
-    let places = Field::of(&scene.shell.positions);
-    let (interior, gas) = match &scene.filling {
+    let positions = Field::of(&scene.shell.positions);
+    let (pressure_load, gas) = match &scene.filling {
         Filling::Pressure(pressure) => (PressureLoad::Overpressure(*pressure), GasState::default()),
         Filling::Gas { supply, initial_temperature } => {
             let gas = Gas::new(supply, scene.film.temperature, scene.shell.reference_area());
             (PressureLoad::Gas(gas), gas.at_temperature(supply.initial_mass, *initial_temperature))
         }
     };
-    let setting = Parameters {
-        interior,
-        supports: Supports::new(&scene.supports, &places),
+    let parameters = Parameters {
+        pressure_load,
+        supports: Supports::new(&scene.supports, &positions),
         gravity: scene.gravity,
         viscosity: scene.film.viscosity,
         mass_damping: solver.mass_damping,
         cfl: solver.cfl,
         step_limit: solver.step_limit,
-        path: solver.instruction_set,
-        contact: scene.contact.as_ref().map(|_| law(scene, &model, &places)),
-        watch: scene.contact.as_ref().map(|contact| contact.monitor),
-        mutation: None,
+        instruction_set: solver.instruction_set,
+        contact: scene.contact.as_ref().map(|_| contact_model(scene, &model, &positions)),
+        monitor: scene.contact.as_ref().map(|contact| contact.monitor),
+        fault: None,
     };
-    Ok((model, setting, gas))
+    Ok((model, parameters, gas))
 }
 
-/// The law of a scene's contact; until its release the film lies packed between base and lid.
-fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> ContactModel {
+/// The contact model of a scene. Until its release the film lies packed between base and lid.
+fn contact_model(scene: &FilmScene, model: &FilmModel, positions: &Field) -> ContactModel {
     let contact = scene.contact.clone().unwrap_or_default();
-    let mut law =
-        ContactModel::of_film(model, places, contact.distance, scene.solver.instruction_set);
-    law.soften(scene.solver.cfl);
-    law.friction = contact.friction;
+    let mut contact_model =
+        ContactModel::of_film(model, positions, contact.distance, scene.solver.instruction_set);
+    contact_model.soften(scene.solver.cfl);
+    contact_model.friction = contact.friction;
     if contact.adhesion > 0.0 {
-        let range = contact.adhesion_range.unwrap_or(law.distance);
-        law.adhesion = Adhesion { pressure: contact.adhesion, range };
+        let range = contact.adhesion_range.unwrap_or(contact_model.distance);
+        contact_model.adhesion = Adhesion { pressure: contact.adhesion, range };
     }
-    law.plates = contact.plates;
+    contact_model.plates = contact.plates;
     if scene.release_time > 0.0 {
-        let (low, high) = places
+        let (low, high) = positions
             .z
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)));
@@ -182,16 +192,16 @@ fn law(scene: &FilmScene, model: &FilmModel, places: &Field) -> ContactModel {
             motion: None,
             removal_time: scene.release_time,
         };
-        law.plates.push(plate(BASE, low - law.distance, Vector3::z()));
-        law.plates.push(plate(LID, high + law.distance, -Vector3::z()));
+        contact_model.plates.push(plate(BASE, low - contact_model.distance, Vector3::z()));
+        contact_model.plates.push(plate(LID, high + contact_model.distance, -Vector3::z()));
     }
-    law
+    contact_model
 }
 
 fn check_cfl(cfl: f64) -> Result<(), SceneError> {
     if cfl > 0.0 && cfl <= 1.0 {
         return Ok(());
     }
-    let problem = format!("{cfl} is not allowed; above 0, at most 1");
+    let problem = format!("{cfl} is not allowed; allowed: above 0, at most 1");
     Err(SceneError::Invalid { key: "cfl".to_owned(), problem })
 }

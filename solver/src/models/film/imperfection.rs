@@ -1,53 +1,54 @@
-//! The imperfection of a stowed capsule: a smooth field across the layers, told by a seed.
+//! The imperfection of a stowed capsule: a smooth random field, determined by a seed.
 //!
 //! ```text
 //! Δz = a z/h Σ_k c_k sin(q_k·(x, y) + φ_k)          a: so that max |Δz| is the amplitude
 //! ```
 //!
 //! Symbols: h height of the stack, m; q wave vectors of one to four waves over the capsule's width.
-//! Nodes on top of each other move alike, so no layer comes nearer another than it was by more
-//! than the stretch of the stack; the bottom ring stays where it is held. Seed 0 is none.
+//! Nodes above each other move alike, so layers approach each other only as much as the stack is
+//! compressed. The bottom ring (z = 0) does not move. Seed 0 means no imperfection.
 
 use nalgebra::Vector3;
 
-/// Waves in the field.
+/// Number of waves in the field. Chosen.
 const WAVES: usize = 6;
 
-/// Adds the imperfection of a seed to stowed places (m); `amplitude`: its largest value, m.
-pub fn imperfect(places: &mut [Vector3<f64>], seed: u64, amplitude: f64) {
-    let size = places.iter().map(|x| x.xy().norm()).fold(0.0, f64::max);
-    let height = places.iter().map(|x| x.z).fold(0.0, f64::max);
-    let sound = seed != 0 && size > 0.0 && height > 0.0;
-    if !sound {
+/// Adds the imperfection of a seed to stowed positions (m); `amplitude`: its largest value, m.
+pub fn imperfect(positions: &mut [Vector3<f64>], seed: u64, amplitude: f64) {
+    let size = positions.iter().map(|x| x.xy().norm()).fold(0.0, f64::max);
+    let height = positions.iter().map(|x| x.z).fold(0.0, f64::max);
+    // Also false for NaN.
+    let valid = seed != 0 && size > 0.0 && height > 0.0;
+    if !valid {
         return;
     }
     let mut state = seed;
     let mut draw = || {
-        // SplitMix64; 53 bits to [0, 1).
+        // SplitMix64 (G. Steele, D. Lea, C. Flood, 2014); 53 bits to [0, 1).
         state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = state;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     };
-    let turn = 2.0 * core::f64::consts::PI;
+    let full_turn = 2.0 * core::f64::consts::PI;
     let waves: Vec<[f64; 4]> = (0..WAVES)
         .map(|_| {
-            let (length, angle) = (1.0 + 3.0 * draw(), turn * draw());
-            let wave = 0.5 * turn * length / size;
+            let (length, angle) = (1.0 + 3.0 * draw(), full_turn * draw());
+            let wave = 0.5 * full_turn * length / size;
             let (sin, cos) = libm::sincos(angle);
-            [wave * cos, wave * sin, turn * draw(), 2.0 * draw() - 1.0]
+            [wave * cos, wave * sin, full_turn * draw(), 2.0 * draw() - 1.0]
         })
         .collect();
     let field = |x: &Vector3<f64>| {
         let sum: f64 = waves.iter().map(|[p, q, r, c]| c * libm::sin(p * x.x + q * x.y + r)).sum();
         sum * x.z / height
     };
-    let values: Vec<f64> = places.iter().map(field).collect();
+    let values: Vec<f64> = positions.iter().map(field).collect();
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     if largest > 0.0 {
-        for (place, value) in places.iter_mut().zip(values) {
-            place.z += amplitude * value / largest;
+        for (position, value) in positions.iter_mut().zip(values) {
+            position.z += amplitude * value / largest;
         }
     }
 }
@@ -57,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_seed_tells_a_field_of_its_amplitude() {
+    fn a_seed_determines_a_field_of_the_given_amplitude() {
         let flat: Vec<Vector3<f64>> = (0..200)
             .map(|k| {
                 let (x, y) = (f64::from(k % 20) * 0.05 - 0.5, f64::from(k / 20) * 0.1 - 0.5);
@@ -65,9 +66,9 @@ mod tests {
             })
             .collect();
         let with = |seed: u64| {
-            let mut places = flat.clone();
-            imperfect(&mut places, seed, 1e-4);
-            places
+            let mut positions = flat.clone();
+            imperfect(&mut positions, seed, 1e-4);
+            positions
         };
         assert_eq!(with(0), flat);
         assert_eq!(with(3), with(3));

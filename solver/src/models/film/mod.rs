@@ -1,19 +1,20 @@
-//! Film of any shape, explicit in time, with contact or without.
+//! Model `film`: film of any shape, explicit in time, with or without contact.
 //!
-//! Tension-field triangles ([`crate::mechanics::forces`]), a pressure or one gas volume, central differences
-//! ([`crate::integrators::explicit`]), film against film ([`crate::collision::contact`]). A capsule is one such
-//! film, with rings. Passages are counted by an audit of its own and intersections at every sample;
-//! the first of either ends the run as `interpenetrated`. Without contact film passes through film:
-//! for unfolded shapes and for checks of energy; both counts come out as `None`.
+//! Tension-field triangles ([`crate::mechanics::forces`]), a pressure or one gas volume, central
+//! differences ([`crate::integrators::explicit`]), contact of film with film
+//! ([`crate::collision::contact`]). A capsule is such a film, with rings. The tunnelling monitor counts
+//! passages of film through film, and every sample counts the intersections of the mesh. The first
+//! passage or intersection ends the run as `interpenetrated`. Without contact film passes through film,
+//! for unfolded shapes and for checks of energy; both counts are then `None`.
 //!
-//! While packed, film with contact lies between a base and a lid, two plates at the contact distance
-//! from it, and moves between them as the gas lets it; the lid's force is what it bears. Without
-//! contact every node is held where it is stowed, and the lid's force is the one that does the work of
-//! a uniform stretch of the stack, Σ `f_z` z/h; film that is no capsule has then no lid to press on.
+//! **Packed film.** With contact the film lies between a base and a lid, two plates at the contact
+//! distance from it, and moves between them under the gas; the lid force is the force on the lid plate.
+//! Without contact every node is fixed at its stowed position, and the lid force is the force that does
+//! the work of a uniform stretch of the stack, Σ `f_z` z/h. Film that is not a capsule then has no lid.
 
 use nalgebra::Vector3;
 
-use super::Cost;
+use super::{Cost, ModelEntry, ReferenceEntry};
 use crate::geometry::field::Field;
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::integrators::explicit::{Explicit, PressureLoad, State};
@@ -24,6 +25,7 @@ use crate::output::frames::Frame;
 use crate::output::history::{Sample, Track};
 use crate::output::measures::Reference;
 use crate::output::outcome::{Deployment, Failure};
+use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
 use crate::scene::film_scene::{FilmContact, FilmScene};
 use crate::scene::timeline::{Phase, Timeline};
@@ -40,76 +42,88 @@ pub use statics::{
     static_states,
 };
 
-/// Runs a scene as film with this contact, at this share of the stable step, judged against
-/// `reference` ([`static_reference`], or a stored one of the same design, film and supports).
+/// The entry in the table of models.
+pub(super) const ENTRY: ModelEntry = ModelEntry {
+    name: "film",
+    check,
+    cost,
+    reference: Some(ReferenceEntry { scene: reference_scene, solve: static_reference_while }),
+    solve: solve_scene,
+};
+
+/// Runs a scene as film with this contact and CFL number, judged against `reference`
+/// ([`static_reference`], or a stored one of the same design, film and supports).
 ///
 /// # Errors
-/// [`SceneError`] when the scene cannot be started.
+/// [`SceneError`] if the scene cannot be started.
 pub fn solve(
+    instruction_set: InstructionSet,
     scene: &Scene,
     cfl: f64,
     contact: Option<FilmContact>,
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let mut run = FilmRun::from_scene(scene, cfl, contact, reference)?;
+    let mut run = FilmRun::from_scene(instruction_set, scene, cfl, contact, reference)?;
     Ok(run::run(&mut run, &Timeline::new(scene), observer))
 }
 
-/// Runs a scene with the contact and the share of the stable step it names.
+/// Runs a scene with the contact and the CFL number of the scene.
 ///
 /// # Errors
-/// As [`check`], and what shows only with the capsule made.
+/// As [`check`], or if the capsule cannot be built.
 pub fn solve_scene(
+    instruction_set: InstructionSet,
     scene: &Scene,
     reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
     let contact = FilmContact::of(&scene.contact);
-    let mut run = FilmRun::from_scene(scene, stable_share(scene)?, Some(contact), reference)?;
-    Ok(run::run(&mut run, &Timeline::new(scene), observer))
+    solve(instruction_set, scene, cfl_of(scene)?, Some(contact), reference, observer)
 }
 
-/// Whether a scene is sound for this model, as far as that shows without its pattern.
+/// Checks a scene for this model, as far as possible without its fold pattern.
 ///
 /// # Errors
 /// [`SceneError::Invalid`].
 pub fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
-    stable_share(scene).map(|_| ())
+    cfl_of(scene).map(|_| ())
 }
 
-/// Elements and steps of a run whose film never gets calm: the stable step of the film alone, to which
-/// gas adds little.
+/// Elements and steps of a run whose film is never quiescent. The steps are those of the film without
+/// gas; gas changes them little.
 ///
 /// # Errors
 /// As [`solve_scene`].
 pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     let stowed = Shape::Stowed(scene.design.stowed_height);
-    let (film, _) = capsule::film_scene(scene, stowed, stable_share(scene)?)?;
+    // Nothing runs here, and every instruction set gives the same bits.
+    let instruction_set = InstructionSet::detect();
+    let (film, _) = capsule::film_scene(instruction_set, scene, stowed, cfl_of(scene)?)?;
     let model = FilmModel::of_shell(&film.film, &film.shell).map_err(|error| {
         SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
     })?;
-    let share = damping::stable_share(scene.film.viscosity);
-    let step = film.solver.cfl * share * 2.0 / model.largest_frequency();
+    let factor = damping::stable_share(scene.film.viscosity);
+    let step = film.solver.cfl * factor * 2.0 / model.largest_frequency();
     let interval = scene.outputs.sample_interval;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts above 0")]
     let steps = (libm::ceil(interval / step) * (scene.solver.end_time / interval)) as u64;
     Ok(Cost { elements: model.elements() as u64, steps })
 }
 
-fn stable_share(scene: &Scene) -> Result<f64, SceneError> {
+/// The CFL number of a scene.
+fn cfl_of(scene: &Scene) -> Result<f64, SceneError> {
     match scene.solver.stepping {
-        Stepping::Stable(share) => Ok(share),
+        Stepping::Stable(cfl) => Ok(cfl),
         Stepping::Adaptive(_) | Stepping::Fixed(_) => Err(SceneError::Invalid {
             key: "solver.stepping".to_owned(),
-            problem: "model `film` takes a share of its stable step; allowed: solver.cfl"
-                .to_owned(),
+            problem: "model `film` steps by a CFL number; allowed: solver.cfl".to_owned(),
         }),
     }
 }
 
-/// Film in the middle of a run.
+/// Film during a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmRun {
     /// The film.
@@ -118,13 +132,13 @@ pub struct FilmRun {
     reference: Option<Reference>,
     nodes: Vec<u32>,
     elements: Vec<u32>,
-    /// Boundary loops of an open film with what their fans are spun about, m.
+    /// Boundary loops of an open film, each with the apex (m) of the fan that closes it.
     fans: Vec<(Vector3<f64>, Vec<u32>)>,
     /// `T_film`, K.
     temperature: f64,
 }
 
-/// What makes film a capsule.
+/// The rings that make a film a capsule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rings {
     /// Nodes of the top ring.
@@ -138,7 +152,7 @@ pub struct Rings {
 }
 
 impl Rings {
-    /// The rings of a capsule's mesh, packed at this height (m).
+    /// The rings of a capsule's mesh with this stowed height (m).
     pub fn of(mesh: &Mesh, stowed_height: f64) -> Self {
         let lateral = mesh.parts.iter().filter_map(|part| match part {
             Part::Storey(storey) => Some(storey + 1),
@@ -160,34 +174,34 @@ impl Rings {
 }
 
 impl FilmRun {
-    /// A scene's film at time 0; with `rings` a capsule.
+    /// The film of a scene at time 0; with `rings` a capsule.
     ///
     /// # Errors
-    /// [`SceneError::Invalid`] when the film is none, or a number is out of range.
+    /// [`SceneError::Invalid`] if the mesh is not a film, or a number is out of range.
     pub fn of(scene: &FilmScene, rings: Option<Rings>) -> Result<Self, SceneError> {
         Ok(Self::with(capsule::start(scene)?, scene, rings))
     }
 
-    /// A scene's film in a state stored of it, to go on bit for bit.
+    /// The film of a scene in a stored state. The run continues with the same bits.
     ///
     /// # Errors
-    /// As [`Self::of`]; a state of another film.
+    /// As [`Self::of`], or if the state is that of another film.
     pub fn resume(
         scene: &FilmScene,
         rings: Option<Rings>,
         state: State,
     ) -> Result<Self, SceneError> {
-        let (model, setting, _) = capsule::constants(scene)?;
-        let bodies = setting.supports.bodies.len();
-        let fits = [&state.places, &state.velocities].iter().all(|field| {
+        let (model, parameters, _) = capsule::constants(scene)?;
+        let bodies = parameters.supports.bodies.len();
+        let fits = [&state.positions, &state.velocities].iter().all(|field| {
             [&field.x, &field.y, &field.z].iter().all(|column| column.len() == model.nodes())
         });
-        let fits = fits && state.past.len() == model.constants.len();
+        let fits = fits && state.viscous_history.len() == model.constants.len();
         if !fits || state.planes.len() != bodies {
-            let problem = "the state is that of another film".to_owned();
+            let problem = "the stored state belongs to another film".to_owned();
             return Err(SceneError::Invalid { key: "mesh".to_owned(), problem });
         }
-        Ok(Self::with(Explicit::resume(model, setting, state), scene, rings))
+        Ok(Self::with(Explicit::resume(model, parameters, state), scene, rings))
     }
 
     fn with(film: Explicit, scene: &FilmScene, rings: Option<Rings>) -> Self {
@@ -197,18 +211,19 @@ impl FilmRun {
         Self { film, rings, reference: None, nodes, elements, fans, temperature }
     }
 
-    /// The scene's capsule, stowed, at time 0, with this contact.
+    /// The capsule of a scene, stowed, at time 0, with this contact.
     ///
     /// # Errors
     /// As [`solve`].
     pub fn from_scene(
+        instruction_set: InstructionSet,
         scene: &Scene,
         cfl: f64,
         contact: Option<FilmContact>,
         reference: Option<Reference>,
     ) -> Result<Self, SceneError> {
         let stowed = Shape::Stowed(scene.design.stowed_height);
-        let (film, mesh) = capsule::film_scene(scene, stowed, cfl)?;
+        let (film, mesh) = capsule::film_scene(instruction_set, scene, stowed, cfl)?;
         let film = FilmScene { contact, ..film };
         let run = Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))?;
         Ok(Self { reference, ..run })
@@ -216,36 +231,44 @@ impl FilmRun {
 
     /// Force on the lid while packed, N.
     fn lid_force(&self, rings: &Rings) -> f64 {
-        if let Some(law) = &self.film.setting.contact {
-            let plates = law.plates.iter().zip(&self.film.state.meeting.plates);
-            return plates.filter(|(p, _)| p.name == capsule::LID).map(|(_, own)| own.force).sum();
+        if let Some(contact_model) = &self.film.parameters.contact {
+            let plates = contact_model.plates.iter().zip(&self.film.state.contact_state.plates);
+            return plates
+                .filter(|(p, _)| p.name == capsule::LID)
+                .map(|(_, state)| state.force)
+                .sum();
         }
         let lift: f64 = (0..self.film.model.nodes())
-            .map(|node| self.film.force(node).z * self.film.state.places.z[node])
+            .map(|node| self.film.force(node).z * self.film.state.positions.z[node])
             .sum();
         (lift / rings.stowed_height).max(0.0)
     }
 
-    /// Enclosed volume, m³; that of an open film between it and the fans over its free edges.
+    /// Enclosed volume, m³. An open film is closed by fans over its free edges.
     pub fn volume(&self) -> f64 {
-        let place = |node: u32| self.film.state.places.get(node as usize);
-        let fan = |(apex, path): &(Vector3<f64>, Vec<u32>)| -> f64 {
-            let edge =
-                |k: usize| place(path[k]).dot(&place(path[(k + 1) % path.len()]).cross(apex));
-            (0..path.len()).map(edge).sum()
+        let position = |node: u32| self.film.state.positions.get(node as usize);
+        let fan = |(apex, boundary): &(Vector3<f64>, Vec<u32>)| -> f64 {
+            let edge = |k: usize| {
+                position(boundary[k]).dot(&position(boundary[(k + 1) % boundary.len()]).cross(apex))
+            };
+            (0..boundary.len()).map(edge).sum()
         };
-        let own = self.film.state.volume;
-        if self.fans.is_empty() { own } else { own + self.fans.iter().map(fan).sum::<f64>() / 6.0 }
+        let volume = self.film.state.volume;
+        if self.fans.is_empty() {
+            volume
+        } else {
+            volume + self.fans.iter().map(fan).sum::<f64>() / 6.0
+        }
     }
 
-    /// Largest height of any node with mass, m.
+    /// Largest z of any node with mass, m.
     fn largest_height(&self) -> f64 {
-        let masses = self.film.model.mass.iter().zip(self.film.state.places.z.iter());
+        let masses = self.film.model.mass.iter().zip(self.film.state.positions.z.iter());
         masses.filter(|(mass, _)| **mass > 0.0).map(|(_, z)| *z).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// Mean of a field's z over these nodes.
+/// Mean z of these nodes, m.
 fn mean_z(field: &Field, nodes: &[u32]) -> f64 {
     nodes.iter().map(|node| field.z[*node as usize]).sum::<f64>() / nodes.len() as f64
 }
@@ -266,12 +289,12 @@ impl Model for FilmRun {
 
     fn sample(&self, phase: &Phase) -> Sample {
         let film = &self.film;
-        let places = &film.state.places;
+        let positions = &film.state.positions;
         let (mut sample, mut lid_force) = (Sample::default(), 0.0);
         if let Some(rings) = &self.rings {
             let centre = rings.top_centre as usize;
-            sample.z_centre = places.z[centre];
-            sample.z_rim = mean_z(places, &rings.top_ring);
+            sample.z_centre = positions.z[centre];
+            sample.z_rim = mean_z(positions, &rings.top_ring);
             sample.vz = mean_z(&film.velocities(), &rings.top_ring);
             lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
         }
@@ -282,13 +305,13 @@ impl Model for FilmRun {
             z_max: self.largest_height(),
             volume: self.volume(),
             pressure: film.state.pressure,
-            temperature: match film.setting.interior {
+            temperature: match film.parameters.pressure_load {
                 PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
                 PressureLoad::Overpressure(_) => self.temperature,
             },
             lid_force,
             ledger: film.ledger(),
-            gas: film.books(),
+            gas: film.gas_balance(),
             ..sample
         }
     }
@@ -335,10 +358,10 @@ impl Model for FilmRun {
     }
 
     fn counts_passages(&self) -> bool {
-        self.film.setting.contact.is_some()
+        self.film.parameters.contact.is_some()
     }
 
     fn passages(&self) -> u64 {
-        self.film.watch.as_ref().map_or(0, |watch| watch.passages)
+        self.film.monitor.as_ref().map_or(0, |monitor| monitor.passages)
     }
 }

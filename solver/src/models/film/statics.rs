@@ -1,10 +1,9 @@
-//! Static states of a capsule, from the erected shape.
+//! Static equilibria of a capsule, from its erected shape.
 //!
-//! The bottom ring starts on its erected circle and is moved to the stowed N-gon it is held on, so
-//! that deployed and erected shape see the same supports. Pressures are taken falling, each from
-//! the state of the one before. Gravity is left out, so that a design has one reference on the
-//! ground and in orbit. The film's compression fraction is 0. Each state is one of
-//! [`crate::statics::settle`].
+//! The bottom ring starts on its erected circle and moves to the stowed polygon on which a run holds it,
+//! so both have the same supports. Pressures descend; each equilibrium starts from the previous one.
+//! Without gravity, so that a design has the same reference on the ground and in orbit. The film's
+//! compression fraction is 0. [`crate::statics::settle`] finds each equilibrium.
 
 use core::ops::ControlFlow;
 
@@ -27,80 +26,82 @@ use crate::scene::motion::{Motion, Profile};
 use crate::scene::{
     Contact, Film, GasSupply, HeatTransfer, Outputs, Scene, Solver, Stepping, Thresholds,
 };
-use crate::statics::{Loaded, Settling, StaticFailure, settle};
+use crate::statics::{Loaded, StaticFailure, Tolerances, settle};
 
-/// One static state.
+/// One static equilibrium.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticState {
     /// Overpressure, Pa.
     pub overpressure: f64,
-    /// V, m³.
+    /// Enclosed volume V, m³.
     pub volume: f64,
     /// Mean height of the top ring, m.
     pub z_rim: f64,
     /// Strain energy, J.
     pub strain_energy: f64,
-    /// Newton steps it took.
+    /// Newton steps taken.
     pub iterations: u32,
-    /// Residual force over the load.
+    /// Residual force over the load, a fraction.
     pub residual: f64,
-    /// Places of the nodes, m.
-    pub places: Field,
+    /// Positions of the nodes, m.
+    pub positions: Field,
 }
 
-/// A capsule erected: its film, what holds it, and its mesh.
+/// An erected capsule: film, supports and mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Erected {
     /// The film, of compression fraction 0.
     pub model: FilmModel,
-    /// What holds it; movers bring what is held to where it is held stowed.
+    /// Supports; movers bring held nodes to their stowed positions.
     pub supports: Supports,
-    /// Where the nodes are, m.
-    pub places: Field,
+    /// Positions of the nodes, m.
+    pub positions: Field,
     /// The mesh.
     pub mesh: Mesh,
-    /// Overpressure the places are a state of rest under, Pa.
-    pub rests_under: Option<f64>,
+    /// Overpressure at which the positions are a static equilibrium, Pa; `None` before the first one.
+    pub equilibrium_at: Option<f64>,
+    /// Instruction set. Every one gives the same bits.
+    pub instruction_set: InstructionSet,
 }
 
-/// A scene's capsule erected, with what is held on the way to where it is held stowed.
+/// The erected capsule of a scene. Its held nodes still have to move to their stowed positions.
 ///
 /// # Errors
-/// [`SceneError`] when the capsule cannot be made.
-pub fn erected(scene: &Scene) -> Result<Erected, SceneError> {
+/// [`SceneError`] if the capsule cannot be built.
+pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected, SceneError> {
     scene.validate()?;
-    let still =
+    let reference =
         Scene { film: Film { compression: 0.0, ..scene.film }, gravity: 0.0, ..scene.clone() };
-    let (mut capsule, mesh) = film_scene(&still, Shape::Erected, 1.0)?;
+    let (mut capsule, mesh) = film_scene(instruction_set, &reference, Shape::Erected, 1.0)?;
     capsule.filling = Filling::Pressure(0.0);
     let invalid = |problem: String| SceneError::Invalid { key: "design".to_owned(), problem };
     let model = FilmModel::of_shell(&capsule.film, &capsule.shell)
         .map_err(|error| invalid(error.to_string()))?;
-    let places = Field::of(&capsule.shell.positions);
-    let mut supports = Supports::new(&capsule.supports, &places);
+    let positions = Field::of(&capsule.shell.positions);
+    let mut supports = Supports::new(&capsule.supports, &positions);
     if !capsule.supports.is_empty() {
         let pattern = FoldPattern::new(&scene.design)?;
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let stowed = Mesh::new(&pattern, scene.design.subdivisions, stowed)?;
-        let place = |node: &u32| places.get(*node as usize);
-        let way = |node: &u32| stowed.positions[*node as usize] - place(node);
+        let position = |node: &u32| positions.get(*node as usize);
+        let displacement = |node: &u32| stowed.positions[*node as usize] - position(node);
         supports.movers = capsule
             .supports
             .iter()
             .map(|support| PrescribedNodes {
                 nodes: support.nodes.clone(),
-                start: support.nodes.iter().map(place).collect(),
+                start: support.nodes.iter().map(position).collect(),
                 held: support.hold.projector(),
-                motion: WHOLE,
-                displacements: support.nodes.iter().map(way).collect(),
+                motion: UNIT_MOTION,
+                displacements: support.nodes.iter().map(displacement).collect(),
             })
             .collect();
     }
-    Ok(Erected { model, supports, places, mesh, rests_under: None })
+    Ok(Erected { model, supports, positions, mesh, equilibrium_at: None, instruction_set })
 }
 
-/// A motion whose own translation is nought: the way of each node stands beside it.
-const WHOLE: Motion = Motion {
+/// A motion without translation: each node has its own displacement ([`Mover::beside`]).
+const UNIT_MOTION: Motion = Motion {
     from: 0.0,
     to: 1.0,
     profile: Profile::Linear,
@@ -109,8 +110,8 @@ const WHOLE: Motion = Motion {
 };
 
 impl Erected {
-    /// The capsule's static state at this overpressure (Pa), from where its nodes are; leaves them
-    /// there.
+    /// The static equilibrium of the capsule at this overpressure (Pa), searched from the positions now.
+    /// Moves the nodes there.
     ///
     /// # Errors
     /// [`StaticFailure`].
@@ -118,68 +119,79 @@ impl Erected {
         self.settle_while(overpressure, &mut || true)
     }
 
-    /// The same, for as long as `goes_on` says so, which is asked at every iteration.
+    /// [`Self::settle`]; calls `continues` at every iteration and ends when it returns `false`.
     ///
     /// # Errors
-    /// [`StaticFailure`], of kind `Impulses` where it said no.
+    /// [`StaticFailure`], of kind `Stopped` if `continues` returned `false`.
     pub fn settle_while(
         &mut self,
         overpressure: f64,
-        goes_on: &mut dyn FnMut() -> bool,
+        continues: &mut dyn FnMut() -> bool,
     ) -> Result<StaticState, StaticFailure> {
         let loaded = Loaded {
             model: &self.model,
             supports: &self.supports,
             overpressure,
             gravity: Vector3::zeros(),
-            path: InstructionSet::detect(),
+            instruction_set: self.instruction_set,
         };
-        let watch = &mut |_: &_| {
-            if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        let observer = &mut |_: &_| {
+            if continues() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        let rest = settle(&loaded, &self.places, self.rests_under, &Settling::default(), watch)?;
-        self.places.clone_from(&rest.places);
-        // What is held has arrived.
+        let equilibrium = settle(
+            &loaded,
+            &self.positions,
+            self.equilibrium_at,
+            &Tolerances::default(),
+            observer,
+        )?;
+        self.positions.clone_from(&equilibrium.positions);
+        // Held nodes are at their stowed positions.
         self.supports.movers.clear();
-        self.rests_under = Some(overpressure);
+        self.equilibrium_at = Some(overpressure);
         Ok(StaticState {
             overpressure,
-            volume: volume(&self.model, &rest.places),
-            z_rim: mean_z(&rest.places, &self.mesh.top_ring),
-            strain_energy: strain_energy(&self.model, &rest.places),
-            iterations: rest.iterations,
-            residual: rest.residual,
-            places: rest.places,
+            volume: volume(&self.model, &equilibrium.positions),
+            z_rim: mean_z(&equilibrium.positions, &self.mesh.top_ring),
+            strain_energy: strain_energy(&self.model, &equilibrium.positions),
+            iterations: equilibrium.iterations,
+            residual: equilibrium.residual,
+            positions: equilibrium.positions,
         })
     }
 }
 
-/// Static states of a scene's capsule at these overpressures (Pa), in the order given; falling
-/// pressures settle soonest.
+/// Static equilibria of a scene's capsule at these overpressures (Pa), in the given order. Descending
+/// pressures need the fewest steps.
 ///
 /// # Errors
-/// [`SceneError`] when the capsule cannot be made, or has no such state.
-pub fn static_states(scene: &Scene, overpressures: &[f64]) -> Result<Vec<StaticState>, SceneError> {
-    states_while(scene, overpressures, &mut || true)
+/// [`SceneError`] if the capsule cannot be built, or has no such equilibrium.
+pub fn static_states(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    overpressures: &[f64],
+) -> Result<Vec<StaticState>, SceneError> {
+    states_while(instruction_set, scene, overpressures, &mut || true)
 }
 
 fn states_while(
+    instruction_set: InstructionSet,
     scene: &Scene,
     overpressures: &[f64],
-    goes_on: &mut dyn FnMut() -> bool,
+    continues: &mut dyn FnMut() -> bool,
 ) -> Result<Vec<StaticState>, SceneError> {
-    let mut capsule = erected(scene)?;
-    let no_state = |failure: StaticFailure| SceneError::Invalid {
+    let mut capsule = erected(instruction_set, scene)?;
+    let no_equilibrium = |failure: StaticFailure| SceneError::Invalid {
         key: "design".to_owned(),
         problem: failure.to_string(),
     };
-    let mut settle = |pressure: &f64| capsule.settle_while(*pressure, goes_on).map_err(no_state);
+    let mut settle =
+        |pressure: &f64| capsule.settle_while(*pressure, continues).map_err(no_equilibrium);
     overpressures.iter().map(&mut settle).collect()
 }
 
-/// A scene of which all that does not matter to its static states is at its default: gas, contact,
-/// lid, gravity, imperfection, what is stored, how long it runs, and of the film compression and
-/// viscosity.
+/// A scene in which everything that does not affect static equilibria has its default: gas, contact, lid,
+/// gravity, imperfection, outputs, end time, and the film's compression fraction and viscosity.
 pub fn reference_scene(scene: &Scene) -> Scene {
     Scene {
         design: scene.design.clone(),
@@ -208,25 +220,29 @@ pub fn reference_scene(scene: &Scene) -> Scene {
     }
 }
 
-/// `V_ref` and `H_ref` of a scene's capsule, at [`REFERENCE_PRESSURES`].
+/// The static reference of a scene's capsule: `V_ref` and `H_ref` at [`REFERENCE_PRESSURES`].
 ///
 /// # Errors
 /// As [`static_states`].
-pub fn static_reference(scene: &Scene) -> Result<Reference, SceneError> {
-    static_reference_while(scene, &mut || true)
+pub fn static_reference(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+) -> Result<Reference, SceneError> {
+    static_reference_while(instruction_set, scene, &mut || true)
 }
 
-/// The same, for as long as `goes_on` says so, which is asked now and then.
+/// [`static_reference`]; calls `continues` at every iteration and ends when it returns `false`.
 ///
 /// # Errors
-/// As [`static_states`], and where it said no.
+/// As [`static_states`], or if `continues` returned `false`.
 pub fn static_reference_while(
+    instruction_set: InstructionSet,
     scene: &Scene,
-    goes_on: &mut dyn FnMut() -> bool,
+    continues: &mut dyn FnMut() -> bool,
 ) -> Result<Reference, SceneError> {
-    let mut falling = REFERENCE_PRESSURES;
-    falling.reverse();
-    let mut states = states_while(scene, &falling, goes_on)?;
+    let mut descending = REFERENCE_PRESSURES;
+    descending.reverse();
+    let mut states = states_while(instruction_set, scene, &descending, continues)?;
     states.reverse();
     Ok(Reference::new(states.iter().map(|s| [s.overpressure, s.volume, s.z_rim]).collect()))
 }

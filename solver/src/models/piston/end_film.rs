@@ -1,4 +1,4 @@
-//! The film at full height: it stops the top as a spring that only pulls.
+//! The film at full height: a spring and damper that can only pull.
 //!
 //! ```text
 //! k = 2π E t cos³φh (r2 − r1)/(H ln(r2/r1))         cylinder: 2π r E t/H
@@ -7,37 +7,37 @@
 //! S = (p − p_ambient) max(r1, r2)/(t cosφh)         hoop, while z ≥ H
 //! ```
 //!
-//! k is that of a uniaxial conical membrane, the strips between its rings in series: an axial force
-//! F puts F/(2π r cosφh) on a strip, whose energies add to F²/(2k). The hoop stress is the
-//! membrane resultant of a cone under pressure. Where the damper would push (c ż < −k (z − H)) the
-//! film goes slack and its strain energy is dissipated: the end force never pushes, and viscosity
-//! never gives.
+//! k is the stiffness of a conical membrane in uniaxial tension, as strips in series: an axial force F
+//! gives a strip the membrane force F/(2π r cosφh), and the energies of all strips add up to F²/(2k).
+//! The hoop stress is the membrane stress of a cone under pressure. Where the damper would push
+//! (c ż < −k (z − H)) the force is 0 and the film's strain energy is dissipated. So the end force never
+//! pushes, and viscosity never adds energy.
 
 use std::f64::consts::PI;
 
-/// The end film's constants.
+/// Constants of the end film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndFilm {
-    /// H, m: height at which it is taut.
+    /// H, m: height above which it is taut.
     pub free_length: f64,
     /// k, N/m.
     pub stiffness: f64,
     /// c, N s/m.
     pub damping: f64,
-    /// Meridional stress a newton of tension makes, Pa/N.
+    /// Meridional stress per tension, Pa/N.
     pub meridional_stress: f64,
-    /// Hoop stress a pascal of overpressure makes, Pa/Pa.
+    /// Hoop stress per overpressure, Pa/Pa.
     pub hoop_stress: f64,
 }
 
-/// What the end film does.
+/// State of the end film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndState {
-    /// z below H: nothing.
+    /// z ≤ H: no force.
     Slack,
-    /// Pulls as spring and damper.
+    /// Spring and damper pull.
     Taut,
-    /// Still stretched, but shortening faster than it could pull: no force.
+    /// Stretched, but it shortens so fast that the damper would push: no force.
     Recoiling,
 }
 
@@ -65,7 +65,7 @@ impl EndFilm {
         }
     }
 
-    /// No end film: a piston that runs on for ever.
+    /// No end film: a piston with unlimited travel.
     pub fn none() -> Self {
         Self {
             free_length: f64::INFINITY,
@@ -76,7 +76,7 @@ impl EndFilm {
         }
     }
 
-    /// Elastic and viscous part of the pull towards H, N, at height z (m) and speed ż (m/s).
+    /// Elastic and viscous part of the force towards H, N, at height z (m) and speed ż (m/s).
     pub fn pull(&self, state: EndState, z: f64, speed: f64) -> (f64, f64) {
         let elastic = self.stiffness * (z - self.free_length);
         match state {
@@ -86,7 +86,7 @@ impl EndFilm {
         }
     }
 
-    /// Positive while the state lasts, N.
+    /// Margin of a state, N: positive within the state, 0 at its end.
     pub fn margin(&self, state: EndState, z: f64, speed: f64) -> f64 {
         if self.stiffness == 0.0 {
             return f64::INFINITY;
@@ -100,25 +100,26 @@ impl EndFilm {
         }
     }
 
-    /// The state entered by leaving `state`.
+    /// The state after `state` has ended.
     pub fn next(&self, state: EndState, z: f64, speed: f64) -> EndState {
         let stretched = z > self.free_length;
         match state {
             EndState::Slack => EndState::Taut,
             EndState::Taut if stretched && self.damping * speed < 0.0 => EndState::Recoiling,
-            // By which of its two edges is nearer, for rounding leaves neither exactly at 0.
+            // Recoil ends at one of two edges. Rounding leaves neither margin exactly at 0, so the
+            // nearer edge decides.
             EndState::Recoiling if self.recoil_ends_taut(z, speed) => EndState::Taut,
             EndState::Taut | EndState::Recoiling => EndState::Slack,
         }
     }
 
-    /// Whether a recoil that ends here ends because the film pulls again, not because it is slack.
+    /// Whether a recoil that ends here becomes taut, not slack.
     fn recoil_ends_taut(&self, z: f64, speed: f64) -> bool {
         let elastic = self.stiffness * (z - self.free_length);
         -self.margin(EndState::Taut, z, speed) < elastic
     }
 
-    /// The state of a top at height z (m) with speed ż (m/s) that nothing is known of.
+    /// The state at height z (m) and speed ż (m/s) without a previous state.
     pub fn state_at(&self, z: f64, speed: f64) -> EndState {
         if z <= self.free_length {
             EndState::Slack
@@ -142,7 +143,7 @@ impl EndFilm {
         meridional.max(hoop).max(0.0)
     }
 
-    /// z − H, m, where it is above 0.
+    /// Stretch z − H, m; 0 below H.
     fn stretch(&self, z: f64) -> f64 {
         (z - self.free_length).max(0.0)
     }
@@ -164,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cylinder_is_the_limit() {
+    fn the_stiffness_of_a_cone_tends_to_that_of_a_cylinder() {
         let cylinder = 2.0 * PI * 0.5 * 3.45e9 * 25.4e-6;
         assert!((film(0.5, 0.5).stiffness / cylinder - 1.0).abs() < 1e-15);
         for gap in [1e-15, 1e-12, 1e-9, 1e-6] {
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cone_is_its_strips_in_series() {
+    fn the_stiffness_of_a_cone_is_that_of_its_strips_in_series() {
         // Energy of a unit axial force, by the midpoint rule over the height.
         let (bottom, top, modulus) = (0.5, 0.2, 3.45e9 * 25.4e-6);
         let cos = 1.0 / (1.0 + 0.3 * 0.3_f64).sqrt();
@@ -205,7 +206,7 @@ mod tests {
         }
 
         #[test]
-        fn the_end_never_pushes_and_viscosity_never_gives(
+        fn the_end_film_never_pushes_and_viscosity_never_adds_energy(
             z in 0.9..1.1_f64,
             speed in -50.0..50.0_f64,
         ) {

@@ -1,4 +1,4 @@
-//! From a scene and its pattern to a piston.
+//! Builds the piston of a scene.
 
 use super::{EndFilm, MovingMass, Piston, PistonRun, PistonState, Stroke, VolumeLaw};
 use crate::geometry::fold::FoldPattern;
@@ -7,7 +7,7 @@ use crate::mechanics::gas::Gas;
 use crate::scene::error::SceneError;
 use crate::scene::{Scene, SupportLocation};
 
-/// A piston's bottom is held along z and its top is free along it.
+/// Checks the supports: the bottom is held along z and the top is free along z.
 pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
     let invalid =
         |key: String, problem: &str| Err(SceneError::Invalid { key, problem: problem.to_owned() });
@@ -19,8 +19,8 @@ pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
             SupportLocation::TopRing | SupportLocation::TopCap if along_z => {
                 return invalid(
                     format!("supports[{index}].fix"),
-                    "model `piston` moves the top along z, so it cannot be held along z; allowed \
-                     there: letters of \"xy\"",
+                    "model `piston` moves the top along z, so a support cannot hold it along z; \
+                     allowed there: letters of \"xy\"",
                 );
             }
             SupportLocation::TopRing | SupportLocation::TopCap => {}
@@ -31,12 +31,12 @@ pub(super) fn check_supports(scene: &Scene) -> Result<(), SceneError> {
     }
     invalid(
         "supports".to_owned(),
-        "model `piston` stands on its bottom ring; allowed: at least one support on bottom_ring or \
+        "model `piston` needs a fixed bottom; allowed: at least one support on bottom_ring or \
          bottom_cap that fixes z",
     )
 }
 
-/// The piston of a validated scene, stowed, with the gas that is there at time 0.
+/// The piston of a valid scene, stowed, with its gas at time 0.
 pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, SceneError> {
     let film = &scene.film;
     let mass = MovingMass::new(pattern, film.area_density());

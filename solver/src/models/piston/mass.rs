@@ -1,31 +1,31 @@
-//! The mass that moves.
+//! The moving mass.
 //!
 //! ```text
 //! m_eff = ∫ ξ² dm           ∫_triangle ξ² dA = A/6 (Σ ξ_i² + Σ_{i<j} ξ_i ξ_j)
 //! m_1   = ∫ ξ dm            ∫_triangle ξ dA  = A/3 Σ ξ_i
 //! ```
 //!
-//! ξ is a film point's share of the erected height: that of its ring at ring vertices
-//! ([`FoldPattern::height_fraction`]), linear over each facet, 1 on the top cap, 0 on the bottom
-//! cap. With velocities ξ ż the kinetic energy is `m_eff` ż²/2 and gravity's force g `m_1`.
+//! ξ is the height of a film point over the erected height: at ring vertices that of the ring
+//! ([`FoldPattern::height_fraction`]), linear over each facet, 1 on the top cap, 0 on the bottom cap.
+//! Points move with ξ ż, so the kinetic energy is `m_eff` ż²/2 and the force of gravity g `m_1`.
 
 use crate::geometry::fold::FoldPattern;
 
-/// What the film weighs and how it moves with the top.
+/// Mass of the film and its moments over height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingMass {
-    /// All of the film, kg.
+    /// Mass of the whole film, kg.
     pub total: f64,
-    /// ∫ξ dm, kg: what gravity acts on.
+    /// ∫ξ dm, kg: gravity acts on it.
     pub first_moment: f64,
-    /// ∫ξ² dm, kg: what is accelerated.
+    /// ∫ξ² dm, kg: the accelerated mass.
     pub effective: f64,
-    /// Lateral film and both caps, m².
+    /// Area of the lateral film and both caps, m².
     pub area: f64,
 }
 
 impl MovingMass {
-    /// That of a pattern whose film weighs `area_density` (kg/m²).
+    /// Of a pattern whose film has the mass `area_density` per area (kg/m²).
     pub fn new(pattern: &FoldPattern, area_density: f64) -> Self {
         let panels = f64::from(pattern.design.panels);
         let storeys = pattern.design.storeys;
@@ -38,10 +38,10 @@ impl MovingMass {
             // ABE has two vertices on the outer ring, AED two on the inner.
             let [abe, aed] = pattern.facet_areas(storey);
             for (facet, corners) in [(abe, [outer, outer, inner]), (aed, [outer, inner, inner])] {
-                let [one, two] = moments(corners);
+                let [mean, square] = moments(corners);
                 area += panels * facet;
-                first += panels * facet * one;
-                second += panels * facet * two;
+                first += panels * facet * mean;
+                second += panels * facet * square;
             }
         }
         Self {
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_are_those_of_a_fine_subdivision() {
+    fn moments_agree_with_a_fine_subdivision() {
         let corners = [0.2, 0.5, 0.9];
         let n = 400_i32;
         let (mut count, mut one, mut two) = (0.0, 0.0, 0.0);

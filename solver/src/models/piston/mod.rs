@@ -1,30 +1,30 @@
-//! Model `piston`: one moving mass on one gas volume. Honest physics at the least cost.
+//! Model `piston`: one moving mass on one gas volume. The cheapest model.
 //!
 //! ```text
 //! m_eff z̈ = (p − p_ambient) dV/dz + g ∫ξ dm − k ⟨z − H⟩ − c ż
-//! m_eff = ∫ ξ² dm                                   v(ξ) = ξ ż, ξ share of the erected height
+//! m_eff = ∫ ξ² dm                                   v(ξ) = ξ ż, ξ height over erected height
 //! V(z): Hermite cubic from (z_s, V_s) to (H, V_e), dV/dz = V/z at both ends
 //! k = 2π E t cos³φh (r2 − r1)/(H ln(r2/r1)),        c = 2ζ √(k m_eff) while z > H
 //! ```
 //!
 //! Symbols: z height of the top ring above the bottom ring, m; `z_s` stowed, H erected height, m;
 //! V volume, m³; p pressure of [`crate::mechanics::gas`], Pa; g gravity along z, m/s²; E, t, ζ film modulus,
-//! thickness and damping ratio; r2, r1 bottom and top radius, m; φh half top angle. The sources of
-//! each are in the rooms below.
+//! thickness and damping ratio; r2, r1 bottom and top radius, m; φh half top angle. The modules
+//! below give the source of each equation.
 //!
-//! One degree of freedom: every point of the film rises in proportion to its place on the erected
-//! cone. The three heights of a history are one and the same here.
+//! One degree of freedom: every point of the film rises in proportion to its height on the erected cone.
+//! The three heights of a history are equal.
 //!
-//! **Limits.** No shape on the way: no rebound of single storeys, no wrinkles, no locking by folds
-//! that stick, no contact and so no film that holds the stack up from below (a capsule pressed
-//! below z = 0 stops as `inverted_volume`). Twist carries no inertia. Film compression, contact,
-//! friction, adhesion, mesh subdivisions and the seed change nothing, so that the same scene can be
-//! compared along the ladder. Against the film model on the paper's capsule
-//! (5 g/s from 0) times are early by up to 25 %; peak speed comes out 65-75 % too high and peak
-//! kinetic energy 40-60 %, because a lone mass spends nothing on twist, radial motion and the
-//! viscosity of opening folds: read both as upper bounds. A piston deploys whenever it is given gas
-//! enough, so it answers how fast, not whether.
+//! **Limits.** The model has no shape: no rebound of single storeys, no wrinkles, no folds that stick. It
+//! has no contact, so nothing supports the stack from below; a capsule pressed below z = 0 stops as
+//! `inverted_volume`. Twist has no inertia. Film compression, contact, friction, adhesion, mesh
+//! subdivisions and the seed have no effect, so the same scene runs on every model. Compared with the
+//! film model on the paper's capsule (5 g/s from time 0), times are up to 25 % too early, the peak speed
+//! is 65-75 % too high and the peak kinetic energy 40-60 % too high: a single mass spends no energy on
+//! twist, radial motion and the viscosity of opening folds. Read both as upper bounds. A piston deploys
+//! whenever it has enough gas, so the model answers how fast, not whether.
 
+use super::{Cost, ModelEntry};
 use crate::geometry::fold::FoldPattern;
 use crate::models::run::{self, Observer};
 use crate::output::outcome::Deployment;
@@ -43,18 +43,27 @@ pub use mass::MovingMass;
 pub use motion::{Motion, Piston, PistonRun, PistonState};
 pub use volume::{Stroke, VolumeLaw};
 
+/// The entry in the table of models. The piston has no vector code and computes its own reference.
+pub(super) const ENTRY: ModelEntry = ModelEntry {
+    name: "piston",
+    check,
+    cost: |_| Ok(Cost { elements: 0, steps: 0 }),
+    reference: None,
+    solve: |_, scene, _, observer| solve(scene, observer),
+};
+
 /// Runs a scene as a piston.
 ///
 /// # Errors
-/// [`SceneError`] when the scene cannot be started: the design is none, a value is out of range, or
-/// the supports are not those of a piston (bottom held along z, top free along it).
+/// [`SceneError`] if the scene cannot be started: the design is infeasible, a value is out of range, or
+/// the supports are not those of a piston (bottom held along z, top free along z).
 pub fn solve(scene: &Scene, observer: &mut dyn Observer) -> Result<Deployment, SceneError> {
     let mut run = PistonRun::from_scene(scene)?;
     Ok(run::run(&mut run, &Timeline::new(scene), observer))
 }
 
-/// Whether a scene is sound and its supports are those of a piston.
-pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+/// Checks a scene, its stepping and its supports for this model.
+fn check(scene: &Scene) -> Result<(), SceneError> {
     scene.validate()?;
     if let Stepping::Stable(_) = scene.solver.stepping {
         return Err(SceneError::Invalid {
@@ -67,7 +76,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
 }
 
 impl PistonRun {
-    /// The scene's piston, stowed, at time 0.
+    /// The piston of a scene, stowed, at time 0.
     ///
     /// # Errors
     /// As [`solve`].

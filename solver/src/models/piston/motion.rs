@@ -1,4 +1,4 @@
-//! The motion: a piston's constants, its state, and its run.
+//! The motion of a piston: constants, state, equations, run.
 
 use super::{EndFilm, EndState, VolumeLaw};
 use crate::integrators::dormand_prince::{Control, Integrator, System};
@@ -10,15 +10,15 @@ use crate::output::measures::{REFERENCE_PRESSURES, Reference};
 use crate::output::outcome::{Failure, FailureKind};
 use crate::scene::timeline::Phase;
 
-/// A piston's constants: plain data, so that an injected piston, a rigid tank and a gas spring run
-/// through the same functions as a capsule.
+/// Constants of a piston. Plain data, so that a piston in a tube, a rigid tank and a gas spring use the
+/// same functions as a capsule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piston {
     /// V(z).
     pub volume: VolumeLaw,
-    /// What is accelerated, kg.
+    /// Accelerated mass, kg.
     pub mass: f64,
-    /// Constant force along z, N: gravity.
+    /// Weight: constant force along z, N.
     pub weight: f64,
     /// The film at full height.
     pub end: EndFilm,
@@ -26,7 +26,7 @@ pub struct Piston {
     pub gas: Gas,
 }
 
-/// Where a piston stands.
+/// State of a piston.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PistonState {
     /// z, m.
@@ -53,20 +53,20 @@ const VISCOUS_WORK: usize = 11;
 const STRAIN_WORK: usize = 12;
 const COMPONENTS: usize = 13;
 
-/// A piston under one phase: what is integrated.
+/// The equations of a piston during one phase.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion<'a> {
     piston: &'a Piston,
     phase: &'a Phase,
-    /// Volume that counts as none, m³.
-    least_volume: f64,
+    /// A smaller volume counts as zero, m³.
+    min_volume: f64,
 }
 
 impl System<COMPONENTS> for Motion<'_> {
     type Branch = EndState;
 
-    // Lengths, speeds, masses, energies of the gas, works on the film: an error in the work of
-    // viscosity is judged by all the work done, not by a first trickle of its own.
+    // Error scales: lengths, speeds, masses, energies of the gas, works on the film. All works share one
+    // scale, so a small work, as that of viscosity at its start, needs no small step.
     const GROUPS: [usize; COMPONENTS] = [0, 1, 2, 3, 2, 3, 3, 3, 4, 4, 4, 4, 4];
 
     fn rates(&self, branch: EndState, state: &[f64; COMPONENTS]) -> [f64; COMPONENTS] {
@@ -111,26 +111,26 @@ impl System<COMPONENTS> for Motion<'_> {
         if state[HEIGHT] <= 0.0 {
             return Err((FailureKind::InvertedVolume, "height of the top ring"));
         }
-        if self.piston.volume.volume(state[HEIGHT]) <= self.least_volume {
+        if self.piston.volume.volume(state[HEIGHT]) <= self.min_volume {
             return Err((FailureKind::InvertedVolume, "gas volume"));
         }
         Ok(())
     }
 }
 
-/// Share of the starting volume that counts as none: a leaking capsule pressed shut would take ever
-/// smaller steps towards a volume of 0 and never reach it.
-const NO_VOLUME: f64 = 1e-9;
+/// Lower bound of the volume, as a fraction of the initial volume. Chosen. Below it the run ends as
+/// `inverted_volume`: a leaking capsule under pressure would take ever smaller steps towards volume 0.
+const MIN_VOLUME_FRACTION: f64 = 1e-9;
 
-/// Gas of this share of the moving mass is the least that errors are judged by.
+/// Lower bound of the gas mass that scales errors, as a fraction of the moving mass. Chosen.
 ///
-/// An empty capsule that begins to fill is the same at every scale: at time t the gas warms at the
-/// rate (h A/(ṁ cv))/t, so without a least scale a fast exchange would leave no step short enough.
-const LEAST_GAS: f64 = 1e-9;
+/// An empty capsule that begins to fill has no time scale: at time t the gas warms at the rate
+/// (h A/(ṁ cv))/t. Without this bound no step would be short enough for a fast heat exchange.
+const MIN_GAS_FRACTION: f64 = 1e-9;
 
-/// Error scales of a run that starts from nothing, by group.
-fn least_scales(piston: &Piston) -> [f64; COMPONENTS] {
-    let mass = LEAST_GAS * piston.mass;
+/// Initial error scales of a run, by group.
+fn initial_scales(piston: &Piston) -> [f64; COMPONENTS] {
+    let mass = MIN_GAS_FRACTION * piston.mass;
     let energy = mass * piston.gas.cp * piston.gas.film_temperature;
     let speed = (2.0 * energy / piston.mass).sqrt();
     let mut scales = [0.0; COMPONENTS];
@@ -138,18 +138,18 @@ fn least_scales(piston: &Piston) -> [f64; COMPONENTS] {
     scales
 }
 
-/// A piston in the middle of a run.
+/// A piston during a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PistonRun {
     piston: Piston,
     control: Control,
     integrator: Integrator<COMPONENTS, EndState>,
     film_stress: f64,
-    least_volume: f64,
+    min_volume: f64,
 }
 
 impl PistonRun {
-    /// Starts at a time (s) from a state.
+    /// A piston at this time (s) in this state.
     pub fn new(piston: Piston, time: f64, start: PistonState, control: Control) -> Self {
         let mut state = [0.0; COMPONENTS];
         state[HEIGHT] = start.height;
@@ -157,12 +157,12 @@ impl PistonRun {
         state[MASS] = start.gas.mass;
         state[INTERNAL_ENERGY] = start.gas.internal_energy;
         let branch = piston.end.state_at(start.height, start.speed);
-        let integrator = Integrator::new(time, state, branch, least_scales(&piston));
-        let least_volume = NO_VOLUME * piston.volume.volume(start.height);
-        Self { piston, control, integrator, film_stress: 0.0, least_volume }
+        let integrator = Integrator::new(time, state, branch, initial_scales(&piston));
+        let min_volume = MIN_VOLUME_FRACTION * piston.volume.volume(start.height);
+        Self { piston, control, integrator, film_stress: 0.0, min_volume }
     }
 
-    /// Where it stands.
+    /// Its state now.
     pub fn state(&self) -> PistonState {
         let state = &self.integrator.state;
         let gas = GasState { mass: state[MASS], internal_energy: state[INTERNAL_ENERGY] };
@@ -174,8 +174,8 @@ impl PistonRun {
         &self.piston
     }
 
-    /// Work done on the end spring, J, from its force and displacement; its strain energy, if both
-    /// are right.
+    /// Work done on the end spring, J, integrated from force and speed. Equal to its strain energy if both
+    /// are correct.
     pub fn strain_work(&self) -> f64 {
         self.integrator.state[STRAIN_WORK]
     }
@@ -189,16 +189,15 @@ impl PistonRun {
             ambient_work: state[AMBIENT_WORK],
             gravity_work: state[GRAVITY_WORK],
             viscous_work: state[VISCOUS_WORK],
-            // Neither contact nor friction; the bottom ring and the lid hold what does not move,
-            // and so do no work.
+            // No contact; bottom ring and lid hold film that does not move, so they do no work.
             contact: 0.0,
-            friction_work: 0.0,
+            contact_dissipation: 0.0,
             damping_work: 0.0,
             support_work: 0.0,
         }
     }
 
-    fn books(&self) -> GasBalance {
+    fn gas_balance(&self) -> GasBalance {
         let state = &self.integrator.state;
         GasBalance {
             mass: state[MASS],
@@ -217,7 +216,7 @@ impl Model for PistonRun {
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
         let piston = &self.piston;
         let film_stress = &mut self.film_stress;
-        let motion = Motion { piston, phase, least_volume: self.least_volume };
+        let motion = Motion { piston, phase, min_volume: self.min_volume };
         let mut accepted = |state: &[f64; COMPONENTS]| {
             let z = state[HEIGHT];
             let gas = GasState { mass: state[MASS], internal_energy: state[INTERNAL_ENERGY] };
@@ -243,17 +242,17 @@ impl Model for PistonRun {
             volume,
             pressure,
             temperature: self.piston.gas.temperature(gas),
-            // The lid only pushes; what presses the stack down is borne by the stack.
+            // The lid can only push down. A force that presses the stack down acts on the stack.
             lid_force: if phase.packed { push.max(0.0) } else { 0.0 },
             ledger: self.ledger(),
-            gas: self.books(),
+            gas: self.gas_balance(),
             passages: 0,
             intersections: 0,
         }
     }
 
-    /// z = H + p (dV/dz)/k: above H the volume is linear. Gravity is left out, so that a design has
-    /// one reference on the ground and in orbit.
+    /// z = H + p (dV/dz)/k: above H the volume is linear in z. Without gravity, so that a design has the
+    /// same reference on the ground and in orbit.
     fn reference(&self) -> Option<Reference> {
         let end = &self.piston.end;
         let slope = self.piston.volume.slope(end.free_length);

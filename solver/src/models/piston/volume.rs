@@ -1,4 +1,4 @@
-//! V(z): the volume under the moving top.
+//! V(z): the volume below the moving top.
 //!
 //! ```text
 //! z ≤ z_s:      V = V_s z/z_s
@@ -8,7 +8,7 @@
 //!
 //! At both ends the shape stretches uniformly along its axis, so dV/dz = V/z there.
 
-/// The law of a volume that depends on one height.
+/// A volume as a function of one height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VolumeLaw {
     /// V = A z + V0: a piston in a tube; a rigid tank for A = 0.
@@ -18,7 +18,7 @@ pub enum VolumeLaw {
         /// V0, m³.
         offset: f64,
     },
-    /// From a stowed to an erected capsule.
+    /// From a stowed to an erected capsule: [`Stroke`].
     Stroke(Stroke),
 }
 
@@ -52,16 +52,16 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// The stroke between two shapes, each height (m) and volume (m³).
+    /// The stroke between two shapes, each with its height (m) and volume (m³).
     ///
     /// # Errors
-    /// Why, in words, when there is no such stroke, or its volume does not rise throughout.
+    /// A message if there is no such stroke, or if the volume does not rise throughout.
     pub fn new(
         (stowed_height, stowed_volume): (f64, f64),
         (erected_height, erected_volume): (f64, f64),
     ) -> Result<Self, String> {
-        let sound = stowed_height > 0.0 && stowed_volume > 0.0 && erected_volume > 0.0;
-        if !(sound && stowed_height < erected_height) {
+        let positive = stowed_height > 0.0 && stowed_volume > 0.0 && erected_volume > 0.0;
+        if !(positive && stowed_height < erected_height) {
             return Err(format!(
                 "no stroke from {stowed_height} m, {stowed_volume} m³ to {erected_height} m, \
                  {erected_volume} m³; the stowed height must be above 0 and below the erected one"
@@ -74,25 +74,25 @@ impl Stroke {
         let rise = erected_volume - stowed_volume;
         let cubic = [b, 3.0 * rise - 2.0 * b - e, b + e - 2.0 * rise];
         let stroke = Self { stowed_height, erected_height, stowed_slope, erected_slope, cubic };
-        let least = stroke.least_slope();
-        if least <= 0.0 {
+        let min_slope = stroke.min_slope();
+        if min_slope <= 0.0 {
             return Err(format!(
                 "the volume does not rise throughout the stroke from {stowed_height} m, \
                  {stowed_volume} m³ to {erected_height} m, {erected_volume} m³: its slope falls to \
-                 {least} m²; a stowed shape nearer to the erected one has a stroke"
+                 {min_slope} m²; allowed: a stowed shape nearer to the erected one"
             ));
         }
         Ok(stroke)
     }
 
     /// Smallest dV/dz between the ends, m².
-    fn least_slope(&self) -> f64 {
+    fn min_slope(&self) -> f64 {
         let length = self.erected_height - self.stowed_height;
         let ends = self.stowed_slope.min(self.erected_slope);
         let [_, c, d] = self.cubic;
-        let turn = -c / (3.0 * d);
-        if d > 0.0 && turn > 0.0 && turn < 1.0 {
-            ends.min(self.slope(self.stowed_height + turn * length))
+        let extremum = -c / (3.0 * d);
+        if d > 0.0 && extremum > 0.0 && extremum < 1.0 {
+            ends.min(self.slope(self.stowed_height + extremum * length))
         } else {
             ends
         }
@@ -132,7 +132,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_stroke_that_would_fall_is_refused() {
+    fn a_stroke_whose_volume_falls_is_refused() {
         let error = Stroke::new((0.1, 0.5), (1.0, 0.51)).unwrap_err();
         assert!(error.contains("does not rise"), "{error}");
         assert!(Stroke::new((1.0, 0.1), (0.5, 0.2)).is_err());
@@ -142,7 +142,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn joins_are_smooth_and_the_slope_is_the_derivative(
+        fn the_volume_is_smooth_and_the_slope_is_its_derivative(
             stowed_height in 0.01..0.2_f64,
             stowed_volume in 0.002..0.05_f64,
             height in 0.5..2.0_f64,

@@ -1,8 +1,7 @@
-//! The course of a run, whatever model computes it: step, sample, audit, stop; and what it gives
-//! back.
+//! The run loop, the same for every model: advance, sample, audit, stop.
 //!
-//! [`run`] goes from start to end in one call. A [`Run`] is the same loop held in the hand: it can be
-//! paused after any step, stored ([`crate::output::checkpoint`]), and goes on to the same bits.
+//! [`run`] goes from start to end in one call. A [`Run`] is the same loop as a value: a caller can pause it
+//! after any step, store it ([`crate::output::checkpoint`]) and continue it with the same bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,17 +12,17 @@ use crate::output::measures::{self, Measures, Reference};
 use crate::output::outcome::{Deployment, Failure, FailureKind, Stop};
 use crate::scene::timeline::{Phase, Timeline};
 
-/// A model in the middle of a run. [`Run`] asks it for nothing else, so every rung of the ladder
-/// has the same windows, samples, ledger, measures and verdict.
+/// A model during a run. [`Run`] uses nothing else of a model, so every model has the same inflow windows,
+/// samples, ledger, measures and verdict.
 pub trait Model {
-    /// Advances to the time `target` (s) exactly, during which the phase does not change.
+    /// Advances to exactly the time `target` (s). The phase is constant until then.
     ///
     /// # Errors
-    /// [`Failure`] when the run stops short; the state is that of the last accepted step.
+    /// [`Failure`] if the run stops early; the state is that of the last accepted step.
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure>;
 
-    /// Advances towards `target` as [`Self::advance`], by at most `steps` steps, which it counts
-    /// down; whether it got there. A model that cannot be paused goes on to the target.
+    /// Advances towards `target` as [`Self::advance`], by at most `steps` steps, and subtracts the steps
+    /// taken from `steps`. Returns whether it reached the target. A model that cannot pause always does.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -36,32 +35,32 @@ pub trait Model {
         self.advance(target, phase).map(|()| true)
     }
 
-    /// Itself now. The mass let in ([`crate::output::ledger::GasBalance::mass_in`]) is left to the loop,
-    /// which takes it from the schedule.
+    /// The sampled quantities now, except the mass let in ([`crate::output::ledger::GasBalance::mass_in`]):
+    /// the run loop takes it from the inflow schedule.
     fn sample(&self, phase: &Phase) -> Sample;
 
-    /// Static states of its design; a film that is no capsule has none, and so no verdict.
+    /// The static reference. A film that is not a capsule has none, and so no verdict.
     fn reference(&self) -> Option<Reference>;
 
-    /// Whether it has a bottom and a top ring, and so their heights in its samples.
+    /// Whether it has a bottom and a top ring, so that its samples have ring heights.
     fn has_rings(&self) -> bool {
         true
     }
 
-    /// Names of what it follows beside its samples.
+    /// Its tracks, without values.
     fn tracks(&self) -> Vec<Track> {
         Vec::new()
     }
 
-    /// Values of what it follows now, in the order of [`Self::tracks`].
+    /// Appends the values of its tracks now, in the order of [`Self::tracks`].
     fn follow(&self, _values: &mut Vec<f64>) {}
 
-    /// Its shape now; none for a model without one.
+    /// Its shape now; `None` for a model without a mesh.
     fn frame(&self) -> Option<Frame> {
         None
     }
 
-    /// What its frames are shapes of: nodes and storey of each element.
+    /// The surface of its frames: nodes and storey of each element.
     fn surface(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
         (Vec::new(), Vec::new())
     }
@@ -72,70 +71,68 @@ pub trait Model {
     /// Accepted steps so far.
     fn steps(&self) -> u64;
 
-    /// Elements of its mesh.
+    /// Number of elements of its mesh.
     fn elements(&self) -> usize;
 
-    /// Whether it counts film passing through film, and intersections. A model without film has
-    /// none to count, one without contact cannot.
+    /// Whether it counts passages and intersections. A model without a mesh or without contact does not.
     fn counts_passages(&self) -> bool;
 
-    /// Film through film counted so far.
+    /// Passages of film through film counted so far.
     fn passages(&self) -> u64 {
         0
     }
 }
 
-/// Runs a model through a course, from time 0.
+/// Runs a model from time 0 to the end of its timeline.
 ///
-/// A run whose energy ledger leaves [`audit::RESIDUAL_BOUND`] at any sample has
-/// [failed](FailureKind::Drifted) at that sample, whatever it computed afterwards: the divisor of
-/// the residual is known only at the end. Its history is kept whole for whoever looks for the
-/// cause; it has no verdict.
-pub fn run(model: &mut dyn Model, course: &Timeline, observer: &mut dyn Observer) -> Deployment {
+/// A run whose ledger residual is above [`audit::MAX_LEDGER_RESIDUAL`] at any sample fails at that sample
+/// with [`FailureKind::EnergyDrift`]. This is decided at the end, when the divisor of the residual is known;
+/// so the history is complete, but there is no verdict.
+pub fn run(model: &mut dyn Model, timeline: &Timeline, observer: &mut dyn Observer) -> Deployment {
     let mut run = Run::default();
     loop {
-        if let Some(stop) = run.advance(model, course, u64::MAX, observer) {
-            return run.finish(model, course, stop);
+        if let Some(stop) = run.advance(model, timeline, u64::MAX, observer) {
+            return run.finish(model, timeline, stop);
         }
     }
 }
 
-/// How far a run is: with the model's own state it says all that follows.
+/// Progress of a run. Together with the model's state it determines the rest of the run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
     /// Samples so far.
     samples: Vec<Sample>,
-    /// What the model follows, at each of them.
+    /// Values of the tracks at each sample.
     tracks: Vec<Vec<f64>>,
-    /// Shapes kept so far.
+    /// Frames so far.
     frames: Vec<Frame>,
-    /// The last break or sample landed on, s.
+    /// Last breakpoint or sample time reached, s.
     time: f64,
 }
 
 impl Run {
-    /// Goes on by about `steps` steps of the model; how the run ended, or `None` where it pauses.
-    /// Pausing changes no bit of what follows.
+    /// Advances by at most `steps` steps of the model. Returns how the run ended, or `None` if it pauses. A
+    /// pause changes no bit of the run.
     pub fn advance(
         &mut self,
         model: &mut dyn Model,
-        course: &Timeline,
+        timeline: &Timeline,
         mut steps: u64,
         observer: &mut dyn Observer,
     ) -> Option<Stop> {
-        let breaks = course.breakpoints();
-        let frames = course.frame_samples();
-        // A pause never lies between a landing and its sample, so but for the first sample the phase
-        // is that of the way just gone.
-        let mut phase = course.phase(0.0, next_break(&breaks, 0.0, course.end_time));
+        let breakpoints = timeline.breakpoints();
+        let frames = timeline.frame_samples();
+        // The phase of a sample is that of the interval before it, except for the first sample. A pause
+        // never lies between the end of that interval and the sample.
+        let mut phase = timeline.phase(0.0, next_breakpoint(&breakpoints, 0.0, timeline.end_time));
         loop {
-            let target = course.sample_time(self.samples.len() as u64);
+            let target = timeline.sample_time(self.samples.len() as u64);
             while self.time < target {
-                let to = next_break(&breaks, self.time, target).min(target);
-                phase = course.phase(self.time, to);
-                match model.advance_at_most(to, &phase, &mut steps) {
-                    Ok(true) => self.time = to,
+                let end = next_breakpoint(&breakpoints, self.time, target).min(target);
+                phase = timeline.phase(self.time, end);
+                match model.advance_at_most(end, &phase, &mut steps) {
+                    Ok(true) => self.time = end,
                     Ok(false) => return None,
                     Err(failure) => return Some(Stop::Failed(failure)),
                 }
@@ -144,15 +141,15 @@ impl Run {
                 self.frames.extend(model.frame());
             }
             let mut sample = model.sample(&phase);
-            sample.gas.mass_in = course.schedule.mass_until(target);
-            let mut followed = Vec::new();
-            model.follow(&mut followed);
+            sample.gas.mass_in = timeline.schedule.mass_until(target);
+            let mut values = Vec::new();
+            model.follow(&mut values);
             self.samples.push(sample);
-            self.tracks.push(followed);
+            self.tracks.push(values);
             let height = if model.has_rings() { sample.z_centre } else { sample.z_max };
             let progress = Progress {
                 time: target,
-                end_time: course.end_time,
+                end_time: timeline.end_time,
                 z_centre: height,
                 pressure: sample.pressure,
             };
@@ -164,7 +161,7 @@ impl Run {
                 let kind = FailureKind::Interpenetrated;
                 return Some(Stop::Failed(Failure { kind, time: target, place }));
             }
-            if target >= course.end_time {
+            if target >= timeline.end_time {
                 return Some(Stop::Done);
             }
         }
@@ -175,19 +172,19 @@ impl Run {
         &self.samples
     }
 
-    /// What a run that ended so leaves.
-    pub fn finish(self, model: &dyn Model, course: &Timeline, mut stop: Stop) -> Deployment {
+    /// The result of a run that ended with `stop`.
+    pub fn finish(self, model: &dyn Model, timeline: &Timeline, mut stop: Stop) -> Deployment {
         let mut history = History::of(&self.samples);
         if !model.has_rings() {
             history = history.without_rings();
         }
         let mut audit = Audit::of(&history, model.counts_passages());
-        // A passage ends a run before the next sample could tell of it.
+        // A passage ends a run before the next sample can count it.
         audit.passages = audit.passages.map(|counted| counted.max(model.passages()));
         if stop == Stop::Done
             && let Some(time) = audit::first_drift(&history)
         {
-            let place = format!("energy ledger, residual above {}", audit::RESIDUAL_BOUND);
+            let place = format!("energy ledger: residual above {}", audit::MAX_LEDGER_RESIDUAL);
             stop = Stop::Failed(Failure { kind: FailureKind::EnergyDrift, time, place });
         }
         let measures = match stop {
@@ -195,12 +192,12 @@ impl Run {
             Stop::Done | Stop::Failed(_) => {
                 let stress = model.film_stress();
                 let done = stop == Stop::Done;
-                measures::measure(&history, model.reference().as_ref(), course, stress, done)
+                measures::measure(&history, model.reference().as_ref(), timeline, stress, done)
             }
         };
         let mut tracks = model.tracks();
-        for (at, track) in tracks.iter_mut().enumerate() {
-            track.values = self.tracks.iter().map(|row| row[at]).collect();
+        for (index, track) in tracks.iter_mut().enumerate() {
+            track.values = self.tracks.iter().map(|row| row[index]).collect();
         }
         let (steps, elements) = (model.steps(), model.elements());
         let frames = (!self.frames.is_empty()).then(|| {
@@ -211,30 +208,30 @@ impl Run {
     }
 }
 
-fn next_break(breaks: &[f64], time: f64, end: f64) -> f64 {
-    breaks.iter().copied().find(|at| *at > time).unwrap_or(end)
+fn next_breakpoint(breakpoints: &[f64], time: f64, end: f64) -> f64 {
+    breakpoints.iter().copied().find(|at| *at > time).unwrap_or(end)
 }
 
-/// Watches a run. It can see and stop it; it can never change it.
+/// Observes a run. It can stop the run but never change it.
 pub trait Observer {
     /// Called at every sample. Returning `false` ends the run with [`Stop::Cancelled`].
     fn sample(&mut self, progress: Progress) -> bool;
 }
 
-/// Where a run stands.
+/// Where a run is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
     /// Simulated time, s.
     pub time: f64,
     /// Simulated time at the end, s.
     pub end_time: f64,
-    /// Height of the top centre, or of the highest node where there is none, m.
+    /// Height of the top centre, m; of the highest node if the film has no rings.
     pub z_centre: f64,
     /// Gas pressure, Pa.
     pub pressure: f64,
 }
 
-/// Sees nothing, stops nothing.
+/// An observer that does nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Unobserved;
 

@@ -4,31 +4,31 @@ use crate::scene::InflowWindow;
 use crate::scene::Thresholds;
 use crate::scene::inflow::Schedule;
 
-/// A model that computes nothing: it writes down what it is asked, and shows the energy it is told.
+/// A model that computes nothing: it records the calls and returns a given energy.
 struct Recorder {
-    asked: Vec<(f64, Phase)>,
+    calls: Vec<(f64, Phase)>,
     energy: fn(f64) -> f64,
     fails_after: f64,
 }
 
 impl Recorder {
     fn new(energy: fn(f64) -> f64) -> Self {
-        Self { asked: Vec::new(), energy, fails_after: f64::INFINITY }
+        Self { calls: Vec::new(), energy, fails_after: f64::INFINITY }
     }
 
     fn time(&self) -> f64 {
-        self.asked.last().map_or(0.0, |(time, _)| *time)
+        self.calls.last().map_or(0.0, |(time, _)| *time)
     }
 }
 
 impl Model for Recorder {
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
-        assert!(target > self.time(), "time goes on");
+        assert!(target > self.time(), "time increases");
         if target > self.fails_after {
             let (kind, place) = (FailureKind::Unstable, "a test".to_owned());
             return Err(Failure { kind, time: self.fails_after, place });
         }
-        self.asked.push((target, *phase));
+        self.calls.push((target, *phase));
         Ok(())
     }
 
@@ -48,7 +48,7 @@ impl Model for Recorder {
     }
 
     fn steps(&self) -> u64 {
-        self.asked.len() as u64
+        self.calls.len() as u64
     }
 
     fn elements(&self) -> usize {
@@ -60,7 +60,7 @@ impl Model for Recorder {
     }
 }
 
-fn course() -> Timeline {
+fn timeline() -> Timeline {
     let window =
         |from, to, rate| InflowWindow { from, to, mass_flow_rate: rate, temperature: 300.0 };
     Timeline {
@@ -75,19 +75,19 @@ fn course() -> Timeline {
 }
 
 #[test]
-fn samples_are_even_and_breaks_are_landed_on() {
+fn samples_are_evenly_spaced_and_breakpoints_are_reached() {
     let mut model = Recorder::new(|time| time);
-    let deployment = run(&mut model, &course(), &mut Unobserved);
+    let deployment = run(&mut model, &timeline(), &mut Unobserved);
     assert_eq!(deployment.stop, Stop::Done);
     let mut samples: Vec<f64> = (0..=10).map(|k| f64::from(k) * 0.1).collect();
     samples.push(1.05);
     assert_eq!(deployment.history.column("time"), samples);
 
-    let targets: Vec<f64> = model.asked.iter().map(|(target, _)| *target).collect();
+    let targets: Vec<f64> = model.calls.iter().map(|(target, _)| *target).collect();
     for expected in samples[1..].iter().chain(&[0.25, 0.33]) {
         assert!(targets.contains(expected), "{expected} {targets:?}");
     }
-    for (target, phase) in &model.asked {
+    for (target, phase) in &model.calls {
         assert_eq!(phase.packed, *target <= 0.25, "{target}");
         let first = if *target <= 0.5 { 1.0 } else { 0.0 };
         let second = if *target > 0.33 { 0.5 } else { 0.0 };
@@ -101,32 +101,32 @@ fn samples_are_even_and_breaks_are_landed_on() {
 }
 
 #[test]
-fn an_end_on_the_grid_is_sampled_once() {
-    let exact = Timeline { end_time: 0.3, ..course() };
+fn an_end_at_a_sample_time_is_sampled_once() {
+    let exact = Timeline { end_time: 0.3, ..timeline() };
     let deployment = run(&mut Recorder::new(|time| time), &exact, &mut Unobserved);
     assert_eq!(deployment.history.len(), 4);
     assert_eq!(deployment.history.column("time")[3].to_bits(), 0.3_f64.to_bits());
 }
 
 #[test]
-fn energy_from_nowhere_is_a_drift_with_its_time_and_no_verdict() {
+fn an_energy_error_is_energy_drift_at_its_time_without_verdict() {
     let mut model = Recorder::new(|time| if time > 0.45 { 1.1 * time } else { time });
-    let deployment = run(&mut model, &course(), &mut Unobserved);
+    let deployment = run(&mut model, &timeline(), &mut Unobserved);
     let Stop::Failed(failure) = &deployment.stop else { panic!("{:?}", deployment.stop) };
     assert_eq!(
         (failure.kind, failure.time.to_bits()),
         (FailureKind::EnergyDrift, 0.5_f64.to_bits())
     );
     assert_eq!(deployment.measures.verdict, None);
-    assert_eq!(deployment.history.len(), 12, "kept whole for whoever looks for the cause");
-    assert!(deployment.audit.ledger_residual > audit::RESIDUAL_BOUND);
+    assert_eq!(deployment.history.len(), 12, "the history is complete");
+    assert!(deployment.audit.ledger_residual > audit::MAX_LEDGER_RESIDUAL);
 }
 
 #[test]
-fn a_failure_keeps_what_came_before_it() {
+fn a_failure_keeps_the_history_before_it() {
     let mut model = Recorder::new(|time| time);
     model.fails_after = 0.61;
-    let deployment = run(&mut model, &course(), &mut Unobserved);
+    let deployment = run(&mut model, &timeline(), &mut Unobserved);
     let Stop::Failed(failure) = &deployment.stop else { panic!("{:?}", deployment.stop) };
     assert_eq!(failure.kind, FailureKind::Unstable);
     assert_eq!(deployment.history.len(), 7);

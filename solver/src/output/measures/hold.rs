@@ -1,8 +1,8 @@
-//! When a series reaches a threshold and stays there.
+//! The time at which a series reaches a threshold and stays above it.
 
-/// First time (s) from which `value ≥ threshold` holds for `hold` seconds; `None` if never. The
-/// series is linear between samples, so a crossing lies between them. A stay cut off by the end of
-/// the series before its time does not count.
+/// First time (s) from which `value ≥ threshold` holds for `hold` seconds; `None` if never. The series is
+/// linear between samples, so a crossing lies between them. The end of the series must not cut the
+/// `hold` seconds short.
 pub(super) fn first_hold(time: &[f64], value: &[f64], threshold: f64, hold: f64) -> Option<f64> {
     let mut since: Option<f64> = None;
     for (index, (now, reached)) in time.iter().zip(value).enumerate() {
@@ -25,7 +25,7 @@ pub(super) fn first_hold(time: &[f64], value: &[f64], threshold: f64, hold: f64)
     None
 }
 
-/// Whether `from` to `to` is at least `hold`, but for the rounding of sample times.
+/// Whether `from` to `to` is at least `hold`, except for the rounding of sample times.
 fn lasts(from: f64, to: f64, hold: f64) -> bool {
     to - from >= hold * (1.0 - 1e-9)
 }
@@ -46,34 +46,34 @@ mod tests {
     }
 
     #[test]
-    fn crossing_lies_between_samples() {
+    fn the_crossing_is_interpolated() {
         let found = find(&[0.0, 0.5, 1.5, 2.0, 2.0, 2.0, 2.0, 2.0]).unwrap();
         assert!((found - 0.0015).abs() < 1e-15);
     }
 
     #[test]
-    fn a_short_visit_does_not_count() {
-        // From 0.5 ms to 4.5 ms: 4 ms. Then for good from 5.5 ms on.
+    fn a_stay_shorter_than_the_hold_does_not_count() {
+        // Above from 0.5 ms to 4.5 ms, and again from 5.5 ms to the end.
         let found = find(&[0.0, 2.0, 2.0, 2.0, 2.0, 0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0]).unwrap();
         assert!((found - 0.0055).abs() < 1e-15, "{found}");
     }
 
     #[test]
-    fn exactly_the_hold_counts() {
+    fn a_stay_of_exactly_the_hold_counts() {
         // From 0.5 ms to 5.5 ms.
         let found = find(&[0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 0.0, 0.0]).unwrap();
         assert!((found - 0.0005).abs() < 1e-15);
     }
 
     #[test]
-    fn never_and_not_long_enough_are_none() {
+    fn no_stay_of_that_length_is_none() {
         assert_eq!(find(&[0.0; 20]), None);
         assert_eq!(find(&[0.0, 0.0, 0.0, 2.0, 2.0, 2.0]), None);
         assert_eq!(find(&[]), None);
     }
 
     #[test]
-    fn there_from_the_start() {
+    fn a_series_above_the_threshold_reaches_it_at_its_start() {
         assert_eq!(find(&[1.0; 6]), Some(0.0));
     }
 }

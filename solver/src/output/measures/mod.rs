@@ -1,7 +1,7 @@
-//! What a history says, in single numbers, and the verdict.
+//! Measures: single numbers computed from a history, and the verdict.
 //!
-//! `V_ref` and `H_ref` are those at the **final overpressure** (last p less ambient) everywhere, in
-//! the verdict and in the thresholds of times alike. Series are linear between samples.
+//! `V_ref` and `H_ref` are always those at the **final overpressure** (last p minus ambient pressure), both
+//! in the verdict and in the thresholds of times. Series are linear between samples.
 
 use crate::output::history::History;
 use crate::scene::timeline::Timeline;
@@ -15,62 +15,62 @@ use hold::first_hold;
 pub use reference::{REFERENCE_PRESSURES, Reference};
 use verdict::LastTenth;
 
-/// How long a height or volume must hold to have been reached, s.
-const REACHED_HOLD: f64 = 0.005;
-/// How long both deployed thresholds must hold, s.
-const DEPLOYED_HOLD: f64 = 0.02;
-/// How long the kinetic energy must stay low, s.
-const SETTLED_HOLD: f64 = 0.05;
-/// Share of its peak below which the kinetic energy has settled.
-const SETTLED_SHARE: f64 = 1e-4;
+/// Time for which a height or volume must stay above its threshold to count as reached, s. Chosen.
+const MIN_REACHED_TIME: f64 = 0.005;
+/// Time for which both thresholds of `deployed` must hold for `t_deployed`, s. Chosen.
+const MIN_DEPLOYED_TIME: f64 = 0.02;
+/// Time for which the kinetic energy must stay low for `t_settled`, s. Chosen.
+const MIN_SETTLED_TIME: f64 = 0.05;
+/// Upper bound of the kinetic energy of a settled film, as a fraction of its peak. Chosen.
+const MAX_SETTLED_FRACTION: f64 = 1e-4;
 
-/// The answer of a finished run: did it deploy?
+/// The verdict of a finished run: did the capsule deploy?
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Full: V and `z_rim` at or above their thresholds over the last tenth of the run.
+    /// V and `z_rim` are at or above their thresholds throughout the last tenth of the run.
     Deployed,
     /// Neither deployed nor stalled.
     Partial,
-    /// Mean V of the last tenth below its threshold.
+    /// The mean V of the last tenth is below its threshold.
     Stalled,
 }
 
-/// Measures of one run. `None` where the thing measured never happened.
+/// Measures of one run. `None`: the event did not happen, or there is no reference.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measures {
-    /// Verdict; `None` unless the run is done.
+    /// Verdict; `None` unless the run is done and has a reference.
     pub verdict: Option<Verdict>,
-    /// Whether a change of the ratios by less than `close_margin` would change the verdict.
-    pub close: bool,
-    /// Mean V over the last tenth over `V_ref` at the final pressure.
+    /// Whether a change of the ratios by less than the near-threshold margin would change the verdict.
+    pub near_threshold: bool,
+    /// Mean V of the last tenth divided by `V_ref`.
     pub volume_ratio: Option<f64>,
-    /// Smallest `z_rim` over the last tenth over `H_ref` at the final pressure.
+    /// Smallest `z_rim` of the last tenth divided by `H_ref`.
     pub height_ratio: Option<f64>,
-    /// Static volume at the final pressure, m³.
+    /// `V_ref`: static volume at the final overpressure, m³.
     pub reference_volume: Option<f64>,
-    /// Static `z_rim` at the final pressure, m.
+    /// `H_ref`: static `z_rim` at the final overpressure, m.
     pub reference_height: Option<f64>,
-    /// First time at half of `H_ref` that holds 5 ms, s.
+    /// First time from which `z_rim` stays above 0.5 `H_ref` for 5 ms, s.
     pub t_50_z_rim: Option<f64>,
-    /// The same at nine tenths, s.
+    /// The same for 0.9 `H_ref`, s.
     pub t_90_z_rim: Option<f64>,
-    /// First time at half of `V_ref` that holds 5 ms, s.
+    /// First time from which V stays above 0.5 `V_ref` for 5 ms, s.
     pub t_50_volume: Option<f64>,
-    /// The same at nine tenths, s.
+    /// The same for 0.9 `V_ref`, s.
     pub t_90_volume: Option<f64>,
-    /// First time from which both deployed thresholds hold 20 ms, s.
+    /// First time from which both thresholds of `deployed` hold for 20 ms, s.
     pub t_deployed: Option<f64>,
     /// Largest vz, m/s.
     pub peak_vz: Option<f64>,
-    /// Its time, s.
+    /// Time of the largest vz, s.
     pub t_peak_vz: Option<f64>,
     /// Largest kinetic energy, J.
     pub peak_kinetic_energy: Option<f64>,
-    /// Largest `z_rim` over `H_ref`, less 1.
+    /// Largest `z_rim` divided by `H_ref`, minus 1.
     pub overshoot: Option<f64>,
     /// Root mean square of vz over 0.2 s after `t_deployed`, m/s.
     pub ringing_rms: Option<f64>,
-    /// Its largest spectral line, Hz.
+    /// Frequency of the largest spectral line of vz in that window, Hz.
     pub ringing_frequency: Option<f64>,
     /// First time after the peak of the kinetic energy from which it stays below 1e-4 of that peak
     /// for 50 ms, s.
@@ -100,12 +100,12 @@ impl Verdict {
     }
 }
 
-/// Measures a history against its reference; without one, what needs none. `film_stress` (Pa) is the
-/// model's own, taken at every step; ratios and verdict exist only for a run that is `done`.
+/// Computes the measures of a history. Without a reference, those that need one are `None`. `film_stress`
+/// (Pa): the model's largest stress over all steps. Ratios and verdict exist only for a run that is `done`.
 pub fn measure(
     history: &History,
     reference: Option<&Reference>,
-    course: &Timeline,
+    timeline: &Timeline,
     film_stress: f64,
     done: bool,
 ) -> Measures {
@@ -115,9 +115,9 @@ pub fn measure(
     let Some(final_pressure) = last("pressure") else { return Measures::default() };
     let peak_vz = peak(vz);
     let peak_kinetic = peak(kinetic);
-    let overpressure = final_pressure - course.ambient_pressure;
+    let overpressure = final_pressure - timeline.ambient_pressure;
     let judged =
-        reference.map(|reference| judge(history, reference.at(overpressure), course, done));
+        reference.map(|reference| judge(history, reference.at(overpressure), timeline, done));
     Measures {
         peak_vz: peak_vz.map(|(_, value)| value),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),
@@ -133,21 +133,26 @@ pub fn measure(
     }
 }
 
-/// What a history says against `V_ref` and `H_ref`.
-fn judge(history: &History, (v_ref, h_ref): (f64, f64), course: &Timeline, done: bool) -> Measures {
+/// The measures that need `V_ref` and `H_ref`.
+fn judge(
+    history: &History,
+    (v_ref, h_ref): (f64, f64),
+    timeline: &Timeline,
+    done: bool,
+) -> Measures {
     let column = |name: &str| history.column(name);
     let (time, volume, z_rim) = (column("time"), column("volume"), column("z_rim"));
     let reached =
-        |values: &[f64], threshold: f64| first_hold(time, values, threshold, REACHED_HOLD);
-    let t_deployed = deployed_since(time, volume, z_rim, course, (v_ref, h_ref));
+        |values: &[f64], threshold: f64| first_hold(time, values, threshold, MIN_REACHED_TIME);
+    let t_deployed = deployed_since(time, volume, z_rim, timeline, (v_ref, h_ref));
     let ringing = t_deployed.and_then(|start| ringing::ringing(time, column("vz"), start));
     let judged = done.then(|| LastTenth::new(time, volume, z_rim, (v_ref, h_ref)));
-    let verdict = judged.map(|tenth| tenth.judge(&course.thresholds));
+    let verdict = judged.map(|tenth| tenth.judge(&timeline.thresholds));
     Measures {
         verdict: verdict.map(|(verdict, _)| verdict),
-        close: verdict.is_some_and(|(_, close)| close),
+        near_threshold: verdict.is_some_and(|(_, near)| near),
         volume_ratio: judged.map(|tenth| tenth.mean_volume),
-        height_ratio: judged.map(|tenth| tenth.least_height),
+        height_ratio: judged.map(|tenth| tenth.min_height),
         reference_volume: Some(v_ref),
         reference_height: Some(h_ref),
         t_50_z_rim: reached(z_rim, 0.5 * h_ref),
@@ -162,7 +167,7 @@ fn judge(history: &History, (v_ref, h_ref): (f64, f64), course: &Timeline, done:
     }
 }
 
-/// Index and value of the first largest value.
+/// Index and value of the largest value; the first of several.
 fn peak(values: &[f64]) -> Option<(usize, f64)> {
     values
         .iter()
@@ -171,28 +176,28 @@ fn peak(values: &[f64]) -> Option<(usize, f64)> {
         .reduce(|best, next| if next.1 > best.1 { next } else { best })
 }
 
-/// First time from which both deployed thresholds hold.
+/// First time from which both thresholds of `deployed` hold, s.
 fn deployed_since(
     time: &[f64],
     volume: &[f64],
     z_rim: &[f64],
-    course: &Timeline,
+    timeline: &Timeline,
     (v_ref, h_ref): (f64, f64),
 ) -> Option<f64> {
-    let v = v_ref * course.thresholds.deployed_volume;
-    let h = h_ref * course.thresholds.deployed_height;
-    let worse: Vec<f64> =
+    let v = v_ref * timeline.thresholds.deployed_volume;
+    let h = h_ref * timeline.thresholds.deployed_height;
+    let smaller_ratio: Vec<f64> =
         volume.iter().zip(z_rim).map(|(volume, z_rim)| (volume / v).min(z_rim / h)).collect();
-    first_hold(time, &worse, 1.0, DEPLOYED_HOLD)
+    first_hold(time, &smaller_ratio, 1.0, MIN_DEPLOYED_TIME)
 }
 
-/// First time after the peak from which the kinetic energy stays low; `None` where nothing moved.
+/// First time after the peak from which the kinetic energy stays low, s; `None` if nothing moved.
 fn settled(time: &[f64], kinetic: &[f64], peak: usize, largest: f64) -> Option<f64> {
     if largest <= 0.0 {
         return None;
     }
-    let below: Vec<f64> = kinetic[peak..].iter().map(|energy| -energy).collect();
-    first_hold(&time[peak..], &below, -SETTLED_SHARE * largest, SETTLED_HOLD)
+    let negated: Vec<f64> = kinetic[peak..].iter().map(|energy| -energy).collect();
+    first_hold(&time[peak..], &negated, -MAX_SETTLED_FRACTION * largest, MIN_SETTLED_TIME)
 }
 
 #[cfg(test)]

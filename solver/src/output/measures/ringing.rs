@@ -1,4 +1,4 @@
-//! Ringing: how the top still moves after deployment.
+//! Ringing: the motion of the top ring after deployment.
 //!
 //! ```text
 //! rms = √(1/n Σ v_j²)
@@ -6,33 +6,33 @@
 //! ```
 //!
 //! The line is the `f_k` of the largest |`X_k`|, k ≥ 1, up to half the sampling rate and at most
-//! [`HIGHEST_LINE`]; it is as fine as 1/(n Δt): 5 Hz.
+//! [`MAX_FREQUENCY`]. Its resolution is 1/(n Δt): 5 Hz.
 
 use std::f64::consts::TAU;
 
-/// Length of the window after `t_deployed`, s.
+/// Length of the window after `t_deployed`, s. Chosen.
 pub(super) const WINDOW: f64 = 0.2;
-/// Highest line looked for, Hz.
-const HIGHEST_LINE: f64 = 2000.0;
+/// Highest frequency of a line, Hz. Chosen.
+const MAX_FREQUENCY: f64 = 2000.0;
 
 /// Root mean square (m/s) and largest line (Hz) of `vz` over the window that starts at `start` (s).
-/// `None` where the history ends before the window does; no line where nothing rings.
+/// `None` if the history ends before the window does; no line if vz is constant.
 pub(super) fn ringing(time: &[f64], vz: &[f64], start: f64) -> Option<(f64, Option<f64>)> {
     let end = start + WINDOW;
     if time.last().is_none_or(|last| *last < end - 1e-9) {
         return None;
     }
     let first = time.partition_point(|t| *t < start);
-    let mut past = time.partition_point(|t| *t <= end + 1e-9);
-    if past < first + 4 {
+    let mut end_index = time.partition_point(|t| *t <= end + 1e-9);
+    if end_index < first + 4 {
         return None;
     }
     let interval = time[first + 1] - time[first];
-    // Only the sample at the end of a run can lie off the even grid.
-    if (time[past - 1] - time[past - 2] - interval).abs() > 1e-6 * interval {
-        past -= 1;
+    // Only the last sample of a run can have another interval.
+    if (time[end_index - 1] - time[end_index - 2] - interval).abs() > 1e-6 * interval {
+        end_index -= 1;
     }
-    let window = &vz[first..past];
+    let window = &vz[first..end_index];
     let count = window.len();
     let rms = (window.iter().map(|v| v * v).sum::<f64>() / count as f64).sqrt();
     Some((rms, largest_line(window, interval)))
@@ -41,21 +41,21 @@ pub(super) fn ringing(time: &[f64], vz: &[f64], start: f64) -> Option<(f64, Opti
 fn largest_line(values: &[f64], interval: f64) -> Option<f64> {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count as f64;
-    let turns: Vec<(f64, f64)> =
+    let sin_cos: Vec<(f64, f64)> =
         (0..count).map(|j| libm::sincos(TAU * j as f64 / count as f64)).collect();
-    let weighed: Vec<f64> =
-        values.iter().zip(&turns).map(|(v, (_, cos))| 0.5 * (1.0 - cos) * (v - mean)).collect();
+    let weighted: Vec<f64> =
+        values.iter().zip(&sin_cos).map(|(v, (_, cos))| 0.5 * (1.0 - cos) * (v - mean)).collect();
     let resolution = 1.0 / (count as f64 * interval);
     let mut largest = (0.0, None);
-    for k in (1..=count / 2).take_while(|k| *k as f64 * resolution <= HIGHEST_LINE) {
-        let (mut real, mut imaginary, mut turn) = (0.0, 0.0, 0);
-        for value in &weighed {
-            let (sin, cos) = turns[turn];
+    for k in (1..=count / 2).take_while(|k| *k as f64 * resolution <= MAX_FREQUENCY) {
+        let (mut real, mut imaginary, mut phase) = (0.0, 0.0, 0);
+        for value in &weighted {
+            let (sin, cos) = sin_cos[phase];
             real += value * cos;
             imaginary -= value * sin;
-            turn += k;
-            if turn >= count {
-                turn -= count;
+            phase += k;
+            if phase >= count {
+                phase -= count;
             }
         }
         let power = real * real + imaginary * imaginary;
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tone_is_found_with_its_strength() {
+    fn a_sine_is_found_with_its_frequency_and_rms() {
         for tone in [35.0, 85.0, 290.0] {
             let (time, vz) = series(500, 1e-3, |t| 3.0 * libm::sin(TAU * tone * t + 0.4));
             let (rms, line) = ringing(&time, &vz, 0.05).unwrap();
@@ -87,14 +87,14 @@ mod tests {
     }
 
     #[test]
-    fn drift_is_no_line() {
+    fn a_constant_velocity_is_not_a_line() {
         let (time, vz) = series(500, 1e-3, |t| 5.0 + 0.5 * libm::sin(TAU * 60.0 * t));
         let (_, line) = ringing(&time, &vz, 0.0).unwrap();
         assert!((line.unwrap() - 60.0).abs() <= 5.0);
     }
 
     #[test]
-    fn silence_has_no_line_and_a_short_history_no_ringing() {
+    fn zero_velocity_has_no_line_and_a_short_history_no_ringing() {
         let (time, vz) = series(500, 1e-3, |_| 0.0);
         assert_eq!(ringing(&time, &vz, 0.1), Some((0.0, None)));
         assert_eq!(ringing(&time, &vz, 0.4), None);

@@ -4,7 +4,7 @@ use crate::output::ledger::Ledger;
 use crate::scene::Thresholds;
 use crate::scene::inflow::Schedule;
 
-fn course() -> Timeline {
+fn timeline() -> Timeline {
     Timeline {
         end_time: 1.0,
         sample_interval: 1e-3,
@@ -47,7 +47,7 @@ fn history(volume: impl Fn(f64) -> f64, height: impl Fn(f64) -> f64) -> History 
 }
 
 fn measured(volume: impl Fn(f64) -> f64, height: impl Fn(f64) -> f64) -> Measures {
-    measure(&history(volume, height), Some(&reference()), &course(), 1e6, true)
+    measure(&history(volume, height), Some(&reference()), &timeline(), 1e6, true)
 }
 
 fn ramp(time: f64) -> f64 {
@@ -55,9 +55,9 @@ fn ramp(time: f64) -> f64 {
 }
 
 #[test]
-fn a_plain_deployment() {
+fn a_ramp_has_the_expected_measures() {
     let m = measured(ramp, ramp);
-    assert_eq!((m.verdict, m.close), (Some(Verdict::Deployed), false));
+    assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Deployed), false));
     let near = |value: Option<f64>, expected: f64| {
         assert!((value.unwrap() - expected).abs() < 1e-9, "{value:?} {expected}");
     };
@@ -86,14 +86,14 @@ fn a_plain_deployment() {
 }
 
 #[test]
-fn a_visit_under_five_milliseconds_is_no_arrival() {
+fn a_height_held_less_than_five_milliseconds_is_not_reached() {
     let peak = |width: f64| move |t: f64| if (t - 0.2).abs() < 0.5 * width { 0.6 } else { 0.1 };
     assert_eq!(measured(peak(0.003), peak(0.003)).t_50_z_rim, None);
     assert!(measured(peak(0.007), peak(0.007)).t_50_z_rim.is_some());
 }
 
 #[test]
-fn deployed_needs_both_for_twenty_milliseconds() {
+fn t_deployed_needs_both_thresholds_for_twenty_milliseconds() {
     let late = |t: f64| if t < 0.3 { 0.5 } else { 1.0 };
     let t = measured(ramp, late).t_deployed.unwrap();
     assert!((0.299..=0.3).contains(&t), "{t}");
@@ -105,9 +105,9 @@ fn deployed_needs_both_for_twenty_milliseconds() {
 }
 
 #[test]
-fn what_never_happens_is_none() {
+fn events_that_do_not_happen_are_none() {
     let m = measured(|_| 0.01, |_| 0.04);
-    assert_eq!((m.verdict, m.close), (Some(Verdict::Stalled), false));
+    assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Stalled), false));
     assert_eq!([m.t_50_z_rim, m.t_90_z_rim, m.t_50_volume, m.t_90_volume], [None; 4]);
     assert_eq!([m.t_deployed, m.ringing_rms, m.ringing_frequency, m.t_settled], [None; 4]);
     assert!((m.overshoot.unwrap() + 0.96).abs() < 1e-12);
@@ -115,27 +115,27 @@ fn what_never_happens_is_none() {
 
 #[test]
 fn a_run_that_is_not_done_has_no_verdict() {
-    let m = measure(&history(ramp, ramp), Some(&reference()), &course(), 0.0, false);
-    assert_eq!((m.verdict, m.close), (None, false));
+    let m = measure(&history(ramp, ramp), Some(&reference()), &timeline(), 0.0, false);
+    assert_eq!((m.verdict, m.near_threshold), (None, false));
     assert_eq!([m.volume_ratio, m.height_ratio], [None; 2]);
     assert!(m.t_90_z_rim.is_some() && m.final_z_rim.is_some());
-    let empty = measure(&History::new(), Some(&reference()), &course(), 0.0, false);
+    let empty = measure(&History::new(), Some(&reference()), &timeline(), 0.0, false);
     assert_eq!(empty, Measures::default());
 }
 
 #[test]
-fn partial_and_close() {
+fn partial_and_near_threshold_verdicts() {
     assert_eq!(measured(|_| 0.9, |_| 1.0).verdict, Some(Verdict::Partial));
     let m = measured(|_| 0.935, |_| 1.0);
-    assert_eq!((m.verdict, m.close), (Some(Verdict::Deployed), true));
+    assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Deployed), true));
     let m = measured(|_| 0.845, |_| 1.0);
-    assert_eq!((m.verdict, m.close), (Some(Verdict::Stalled), true));
+    assert_eq!((m.verdict, m.near_threshold), (Some(Verdict::Stalled), true));
 }
 
 #[test]
-fn the_reference_is_that_of_the_overpressure() {
+fn the_reference_depends_on_the_overpressure() {
     let table = Reference::new(vec![[1.0, 2.0, 1.0], [10.0, 4.0, 2.0]]);
-    let mut ground = course();
+    let mut ground = timeline();
     let history = history(ramp, ramp);
     let orbit = measure(&history, Some(&table), &ground, 0.0, true);
     assert!(orbit.reference_volume.unwrap() > 2.0);
@@ -145,7 +145,7 @@ fn the_reference_is_that_of_the_overpressure() {
 }
 
 #[test]
-fn ringing_after_deployment() {
+fn ringing_is_measured_after_deployment() {
     let ring = |t: f64| {
         if t < 0.1 {
             t / 0.1

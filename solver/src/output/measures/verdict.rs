@@ -1,42 +1,47 @@
-//! The verdict: did it deploy?
+//! The verdict: did the capsule deploy?
 //!
-//! Over the last tenth of the run, against `V_ref` and `H_ref` at the final overpressure, in this
-//! order: deployed if V and `z_rim` keep to their thresholds throughout; stalled if the mean V is
-//! below its own; else partial. A verdict is close if a change of the ratios by less than
-//! `close_margin` would have made it another.
+//! It compares the last tenth of the run with `V_ref` and `H_ref` at the final overpressure, in this
+//! order:
+//!
+//! - deployed, if V and `z_rim` stay at or above their thresholds throughout;
+//! - stalled, if the mean V is below its threshold;
+//! - partial otherwise.
+//!
+//! A verdict is near its threshold if a change of the ratios by less than the near-threshold margin
+//! would change it.
 
 use super::Verdict;
 use crate::scene::Thresholds;
 
-/// The last tenth of a run, over its static reference.
+/// The last tenth of a run, divided by its static reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LastTenth {
-    /// Mean V over `V_ref`.
+    /// Mean V divided by `V_ref`.
     pub(super) mean_volume: f64,
-    /// Smallest V over `V_ref`.
-    pub(super) least_volume: f64,
-    /// Smallest `z_rim` over `H_ref`.
-    pub(super) least_height: f64,
+    /// Smallest V divided by `V_ref`.
+    pub(super) min_volume: f64,
+    /// Smallest `z_rim` divided by `H_ref`.
+    pub(super) min_height: f64,
 }
 
 impl LastTenth {
-    /// Of a run that has at least one sample.
+    /// Of a run with at least one sample.
     pub(super) fn new(time: &[f64], volume: &[f64], height: &[f64], (v, h): (f64, f64)) -> Self {
         let (first, last) = (time[0], time[time.len() - 1]);
         let start = last - 0.1 * (last - first) - 1e-12 * last;
         let from = time.partition_point(|t| *t < start);
-        let least = |values: &[f64]| values[from..].iter().copied().fold(f64::INFINITY, f64::min);
+        let min = |values: &[f64]| values[from..].iter().copied().fold(f64::INFINITY, f64::min);
         Self {
             mean_volume: mean(&time[from..], &volume[from..]) / v,
-            least_volume: least(volume) / v,
-            least_height: least(height) / h,
+            min_volume: min(volume) / v,
+            min_height: min(height) / h,
         }
     }
 
-    /// The verdict, and whether it is close.
+    /// The verdict, and whether it is near a threshold.
     pub(super) fn judge(&self, thresholds: &Thresholds) -> (Verdict, bool) {
-        let volume_margin = self.least_volume - thresholds.deployed_volume;
-        let height_margin = self.least_height - thresholds.deployed_height;
+        let volume_margin = self.min_volume - thresholds.deployed_volume;
+        let height_margin = self.min_height - thresholds.deployed_height;
         let deployed_margin = volume_margin.min(height_margin);
         let stalled_margin = thresholds.stalled_volume - self.mean_volume;
         let (verdict, margin) = if deployed_margin >= 0.0 {
@@ -50,7 +55,7 @@ impl LastTenth {
     }
 }
 
-/// Mean in time, linear between samples.
+/// Mean over time of a series that is linear between samples.
 fn mean(time: &[f64], values: &[f64]) -> f64 {
     let span = time[time.len() - 1] - time[0];
     if span <= 0.0 {
@@ -66,12 +71,12 @@ fn mean(time: &[f64], values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    fn judge(mean_volume: f64, least_volume: f64, least_height: f64) -> (Verdict, bool) {
-        LastTenth { mean_volume, least_volume, least_height }.judge(&Thresholds::default())
+    fn judge(mean_volume: f64, min_volume: f64, min_height: f64) -> (Verdict, bool) {
+        LastTenth { mean_volume, min_volume, min_height }.judge(&Thresholds::default())
     }
 
     #[test]
-    fn every_rule_and_edge() {
+    fn every_rule_holds_at_its_threshold() {
         assert_eq!(judge(1.0, 1.0, 1.0), (Verdict::Deployed, false));
         assert_eq!(judge(0.94, 0.93, 1.0), (Verdict::Deployed, true));
         assert_eq!(judge(1.0, 1.0, 0.95), (Verdict::Deployed, true));
@@ -85,15 +90,15 @@ mod tests {
     }
 
     #[test]
-    fn deployed_comes_before_stalled() {
+    fn deployed_takes_precedence_over_stalled() {
         let odd = Thresholds { stalled_volume: 2.0, ..Thresholds::default() };
-        let tenth = LastTenth { mean_volume: 1.0, least_volume: 1.0, least_height: 1.0 };
+        let tenth = LastTenth { mean_volume: 1.0, min_volume: 1.0, min_height: 1.0 };
         assert_eq!(tenth.judge(&odd).0, Verdict::Deployed);
     }
 
     #[test]
-    fn a_partial_far_from_deployed_in_one_ratio_alone_is_not_close() {
-        // Volume misses by a hair, height by far: no small change makes it deployed.
+    fn a_partial_verdict_far_from_one_threshold_is_not_near_threshold() {
+        // The volume misses its threshold by little, the height by much: no small change helps.
         assert_eq!(judge(0.94, 0.925, 0.5), (Verdict::Partial, false));
     }
 
@@ -102,15 +107,15 @@ mod tests {
         let time: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
         let volume: Vec<f64> = time.iter().map(|t| if *t < 0.895 { 0.0 } else { 2.0 }).collect();
         let tenth = LastTenth::new(&time, &volume, &volume, (2.0, 1.0));
-        assert_eq!(tenth, LastTenth { mean_volume: 1.0, least_volume: 1.0, least_height: 2.0 });
+        assert_eq!(tenth, LastTenth { mean_volume: 1.0, min_volume: 1.0, min_height: 2.0 });
         let dip: Vec<f64> = time.iter().map(|t| if *t > 0.995 { 0.0 } else { 2.0 }).collect();
         let tenth = LastTenth::new(&time, &dip, &volume, (2.0, 1.0));
-        assert_eq!(tenth.least_volume, 0.0);
+        assert_eq!(tenth.min_volume, 0.0);
         assert!((tenth.mean_volume - 0.95).abs() < 1e-12);
     }
 
     #[test]
-    fn the_mean_is_one_in_time() {
+    fn the_mean_is_weighted_by_time() {
         assert!((mean(&[0.0, 1.0, 1.5], &[0.0, 2.0, 2.0]) - 2.0 / 1.5).abs() < 1e-15);
         assert_eq!(mean(&[3.0], &[7.0]), 7.0);
     }

@@ -48,7 +48,7 @@ fn every_outcome_is_told_and_none_is_dropped() {
         (6, 1.0, "pending", None),
         (1, 2.0, "infeasible", None),
         (2, 2.0, "done", Some(1.0)),
-        (3, 2.0, "drifted", None),
+        (3, 2.0, "energy_drift", None),
         (9, 3.0, "done", Some(1.0)),
     ]);
     assert_eq!(

@@ -145,8 +145,8 @@ fn ways(stored: &StoredFrames) -> Result<Vec<f64>> {
         let square = |(a, b): (&[f32; 3], &[f32; 3])| {
             (0..3).map(|k| f64::from(a[k] - b[k]) * f64::from(a[k] - b[k])).sum::<f64>()
         };
-        let sum: f64 = before.places.iter().zip(&frame.places).map(square).sum();
-        ways.push((sum / frame.places.len().max(1) as f64).sqrt());
+        let sum: f64 = before.positions.iter().zip(&frame.positions).map(square).sum();
+        ways.push((sum / frame.positions.len().max(1) as f64).sqrt());
         before = frame;
     }
     Ok(ways)

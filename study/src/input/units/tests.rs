@@ -102,7 +102,7 @@ fn every_unit_offered_is_read() {
 }
 
 proptest! {
-    /// Moving the decimal point and naming the prefix is the same number, bit for bit.
+    /// FilmMotion the decimal point and naming the prefix is the same number, bit for bit.
     #[test]
     fn prefixes_shift_the_point(digits in 1_u64..10_000_000_000_000_000, shift in -20_i32..20) {
         let written = format!("{digits}e{shift}");

@@ -150,7 +150,7 @@ impl Cells {
         let measures = &deployment.measures;
         self.set("verdict", measures.verdict.map(Verdict::name));
         if measures.verdict.is_some() {
-            self.set("close", measures.close);
+            self.set("close", measures.near_threshold);
         }
         for (name, value) in [
             ("volume_ratio", measures.volume_ratio),

@@ -28,7 +28,7 @@ impl Layout {
         for frame in strip.frames {
             let mut top = f64::NEG_INFINITY;
             for node in strip.triangles.as_flattened() {
-                let [x, y] = strip.view.project(frame.places[*node as usize]);
+                let [x, y] = strip.view.project(frame.positions[*node as usize]);
                 low = [low[0].min(x), low[1].min(y)];
                 (right, top) = (right.max(x), top.max(y));
             }

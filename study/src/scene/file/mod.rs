@@ -136,7 +136,7 @@ impl SceneFile {
         settings.read("", tree, &reader.source)?;
         let mut notes = Vec::new();
         let statics = settings.flag("solver.static");
-        let mut shape = shape::read(tree, &settings, reader)?;
+        let mut shape = shape::read(tree, &settings, reader, simd)?;
         let filling = filling::read(tree, &settings, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &settings, &shape, &reader.source)?;
         conflicts::check(&supports, &shape, &reader.source)?;

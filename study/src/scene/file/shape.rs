@@ -6,6 +6,7 @@ use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::models::film::Rings;
 use billow_solver::models::film::capsule::{imperfect, part_nodes};
+use billow_solver::platform::simd::InstructionSet;
 use nalgebra::Vector3;
 
 use super::{Reader, mesh};
@@ -63,9 +64,14 @@ impl Numbering {
 }
 
 /// Reads `design` or `mesh`.
-pub(super) fn read(tree: &Json, settings: &Settings, reader: &mut Reader) -> Result<Shape> {
+pub(super) fn read(
+    tree: &Json,
+    settings: &Settings,
+    reader: &mut Reader,
+    instruction_set: InstructionSet,
+) -> Result<Shape> {
     match (tree.get("design"), tree.get("mesh")) {
-        (Some(_), None) => Ok(capsule(settings, &reader.source)?),
+        (Some(_), None) => Ok(capsule(settings, &reader.source, instruction_set)?),
         (None, Some(json)) => mesh::read(json, reader),
         (given, _) => {
             let problem = if given.is_some() {
@@ -82,7 +88,11 @@ pub(super) fn read(tree: &Json, settings: &Settings, reader: &mut Reader) -> Res
 /// Most elements of a capsule.
 const MOST_ELEMENTS: u64 = 4_000_000;
 
-fn capsule(settings: &Settings, source: &Source) -> std::result::Result<Shape, InputError> {
+fn capsule(
+    settings: &Settings,
+    source: &Source,
+    instruction_set: InstructionSet,
+) -> std::result::Result<Shape, InputError> {
     let design = design(settings, source)?;
     let statics = settings.flag("solver.static");
     let word = settings.maybe_text("design.shape");
@@ -123,7 +133,7 @@ fn capsule(settings: &Settings, source: &Source) -> std::result::Result<Shape, I
     let mut mesh = Mesh::new(&pattern, design.subdivisions, state).map_err(fold_error)?;
     if !erected {
         let seed = unsigned(settings, "seed", source)?;
-        imperfect(&mut mesh, &film(settings, source)?, seed)
+        imperfect(instruction_set, &mut mesh, &film(settings, source)?, seed)
             .map_err(|error| source.error("seed", "", error.to_string(), ""))?;
     }
     let seats = if erected && design.caps == Caps::Polygon {

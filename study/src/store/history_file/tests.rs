@@ -48,7 +48,7 @@ fn a_failed_run_keeps_its_history_and_says_when_and_where() {
     });
     let bytes = encode(&job, &deployment, "").unwrap();
     let (_folder, path) = path_with(&bytes);
-    assert_eq!(read(&path).unwrap().status, "drifted");
+    assert_eq!(read(&path).unwrap().status, "energy_drift");
     let file = File::open(&path).unwrap();
     assert_eq!(read_number::<f64>(&file, "stop_time").unwrap().to_bits(), 0.25_f64.to_bits());
     assert_eq!(read_text(&file, "stop_place").unwrap(), "gas volume");

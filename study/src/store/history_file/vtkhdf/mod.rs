@@ -49,7 +49,7 @@ fn connectivity(frames: &Frames) -> impl Iterator<Item = i64> {
 }
 
 fn places(frames: &Frames) -> impl Iterator<Item = f32> {
-    frames.frames.iter().flat_map(|frame| frame.places.as_flattened()).copied()
+    frames.frames.iter().flat_map(|frame| frame.positions.as_flattened()).copied()
 }
 
 fn regimes(frames: &Frames) -> impl Iterator<Item = u8> {
@@ -59,7 +59,7 @@ fn regimes(frames: &Frames) -> impl Iterator<Item = u8> {
 /// Takes everything that is no mere layout into a content hash, by the paths it is stored at.
 pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
     let (count, elements) = (frames.frames.len(), frames.triangles.len());
-    let nodes = frames.frames.first().map_or(0, |frame| frame.places.len());
+    let nodes = frames.frames.first().map_or(0, |frame| frame.positions.len());
     let ids = connectivity(frames).map(i64::to_le_bytes);
     contents.take("VTKHDF/Connectivity", 3 * elements, ids);
     let storeys = frames.storeys.iter().map(|storey| storey.to_le_bytes());
@@ -74,8 +74,8 @@ pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
 /// Writes the group.
 pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     let (count, elements) = (frames.frames.len(), frames.triangles.len());
-    let nodes = frames.frames.first().map_or(0, |frame| frame.places.len());
-    let fits = |frame: &Frame| frame.places.len() == nodes && frame.regimes.len() == elements;
+    let nodes = frames.frames.first().map_or(0, |frame| frame.positions.len());
+    let fits = |frame: &Frame| frame.positions.len() == nodes && frame.regimes.len() == elements;
     if frames.storeys.len() != elements || !frames.frames.iter().all(fits) {
         return Err("frames of different sizes".into());
     }
@@ -226,7 +226,7 @@ impl StoredFrames {
         let regime = |code: &u8| REGIMES.get(usize::from(*code)).copied();
         let regimes: Option<Vec<Regime>> = codes.iter().map(regime).collect();
         let regimes = regimes.ok_or_else(|| format!("frame {number} has regimes unknown"))?;
-        Ok(Frame { time, places: places.to_vec(), regimes })
+        Ok(Frame { time, positions: places.to_vec(), regimes })
     }
 }
 

@@ -112,7 +112,7 @@ fn the_content_hash_sees_every_frame() {
         edited(&|frames| frames.triangles[1][0] = 0),
         edited(&|frames| frames.storeys[0] = 2),
         edited(&|frames| frames.frames[2].time = 0.3),
-        edited(&|frames| frames.frames[2].places[3][2] = 0.0),
+        edited(&|frames| frames.frames[2].positions[3][2] = 0.0),
         edited(&|frames| frames.frames[0].regimes[0] = Regime::Taut),
         edited(&|frames| drop(frames.frames.pop())),
     ];
@@ -179,7 +179,7 @@ proptest! {
             time += steps[number];
             Frame {
                 time,
-                places: bits[4 * number..4 * number + 4].iter().map(finite).collect(),
+                positions: bits[4 * number..4 * number + 4].iter().map(finite).collect(),
                 regimes: codes[2 * number..2 * number + 2].iter().map(|code| REGIMES[*code]).collect(),
             }
         };
