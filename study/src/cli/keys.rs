@@ -52,12 +52,15 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 fn search(file: FileKind, word: Option<&str>) -> Result<Vec<Entry>> {
     let all = entries(file);
     let Some(word) = word else { return Ok(all) };
-    let lower = word.to_lowercase();
-    let has = |entry: &Entry| {
-        entry.path.to_lowercase().contains(&lower) || entry.meaning.to_lowercase().contains(&lower)
-    };
-    let (found, others): (Vec<Entry>, Vec<Entry>) = all.into_iter().partition(has);
+    let (found, others): (Vec<Entry>, Vec<Entry>) =
+        all.into_iter().partition(|entry| has(entry, word));
     if found.is_empty() { Err(not_found(file, word, &others).into()) } else { Ok(found) }
+}
+
+/// Whether a key has a word in its name or meaning, in upper or lower case.
+fn has(entry: &Entry, word: &str) -> bool {
+    let word = word.to_lowercase();
+    entry.path.to_lowercase().contains(&word) || entry.meaning.to_lowercase().contains(&word)
 }
 
 /// The error of a word that no key has, with the nearest names.
@@ -75,7 +78,7 @@ fn not_found(file: FileKind, word: &str, known: &[Entry]) -> InputError {
         FileKind::Study => (FileKind::Scene, format!("billow keys --scene {word}")),
         FileKind::Scene => (FileKind::Study, format!("billow keys {word}")),
     };
-    let hint = if near.is_empty() && search(other, Some(word)).is_ok() {
+    let hint = if near.is_empty() && entries(other).iter().any(|entry| has(entry, word)) {
         format!("the {} file has such a key: {command}", other.name())
     } else if near.is_empty() {
         "billow keys prints every key".to_owned()

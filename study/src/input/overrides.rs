@@ -59,11 +59,11 @@ fn apply_one(
         return Ok(note);
     }
     let path = table.find(name).map_or(name, |index| table.keys[index].path);
-    let mut place = &mut *tree;
+    let mut target = &mut *tree;
     for part in path.split('.') {
-        place = member(place, part).ok_or_else(|| refuse("names no place in the file"))?;
+        target = member(target, part).ok_or_else(|| refuse("names no place in the file"))?;
     }
-    *place = value;
+    *target = value;
     source.sets.push((path.to_owned(), flag));
     Ok(note)
 }
@@ -82,7 +82,7 @@ fn set_axis(tree: &mut Json, axis: &str, value: Json) {
 
 /// The member of an object that one part of a path names; a new empty object where there is none.
 /// `None` beyond the end of a list, or for a part that names nothing.
-fn member<'a>(place: &'a mut Json, part: &str) -> Option<&'a mut Json> {
+fn member<'a>(object: &'a mut Json, part: &str) -> Option<&'a mut Json> {
     let (name, index) = match part.split_once('[') {
         Some((name, index)) => (name, Some(index.strip_suffix(']')?.parse::<usize>().ok()?)),
         None => (part, None),
@@ -90,17 +90,16 @@ fn member<'a>(place: &'a mut Json, part: &str) -> Option<&'a mut Json> {
     if name.is_empty() {
         return None;
     }
-    if !matches!(place, Json::Object(_)) {
-        *place = Json::Object(Vec::new());
+    if !matches!(object, Json::Object(_)) {
+        *object = Json::Object(Vec::new());
     }
-    let Json::Object(members) = place else { return None };
+    let Json::Object(members) = object else { return None };
     let position = members.iter().position(|(key, _)| key == name).unwrap_or_else(|| {
         members.push((name.to_owned(), Json::Object(Vec::new())));
         members.len() - 1
     });
-    let place = &mut members[position].1;
-    match (index, place) {
-        (None, place) => Some(place),
+    match (index, &mut members[position].1) {
+        (None, value) => Some(value),
         (Some(index), Json::List(items)) => items.get_mut(index),
         (Some(_), _) => None,
     }

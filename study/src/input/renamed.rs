@@ -22,9 +22,9 @@ pub(crate) fn update(tree: &mut Json, source: &Source) -> Result<Vec<String>, In
     let mut notes = Vec::new();
     for (old, new) in RENAMED_KEYS {
         let mut found = Vec::new();
-        rename(tree, old, leaf(new), &mut found).map_err(|place| {
+        rename(tree, old, leaf(new), &mut found).map_err(|path| {
             source.error(
-                &format!("{place}{}", leaf(old)),
+                &format!("{path}{}", leaf(old)),
                 "",
                 format!("is the old name of {}, which is given as well", leaf(new)),
                 format!("{} alone", leaf(new)),
@@ -89,7 +89,7 @@ fn matches_pattern(pattern: &str, path: &str) -> bool {
 /// Renames the last part of every path of the tree that fits the pattern, and lists those paths.
 ///
 /// # Errors
-/// The place, with a dot after it, of an object that has both names.
+/// The path, with a dot after it, of an object that has both names.
 fn rename(
     tree: &mut Json,
     pattern: &str,
@@ -103,7 +103,7 @@ fn rename(
 fn descend(
     json: &mut Json,
     parts: &[&str],
-    place: &str,
+    path: &str,
     new: &str,
     found: &mut Vec<String>,
 ) -> Result<(), String> {
@@ -112,9 +112,9 @@ fn descend(
         let has_new = members.iter().any(|(name, _)| name == new);
         if let Some((name, _)) = members.iter_mut().find(|(name, _)| name == part) {
             if has_new {
-                return Err(place.to_owned());
+                return Err(path.to_owned());
             }
-            found.push(format!("{place}{name}"));
+            found.push(format!("{path}{name}"));
             new.clone_into(name);
         }
         return Ok(());
@@ -127,10 +127,10 @@ fn descend(
         match (value, is_list) {
             (Json::List(items), true) => {
                 for (index, item) in items.iter_mut().enumerate() {
-                    descend(item, rest, &format!("{place}{member}[{index}]."), new, found)?;
+                    descend(item, rest, &format!("{path}{member}[{index}]."), new, found)?;
                 }
             }
-            (value, _) => descend(value, rest, &format!("{place}{member}."), new, found)?,
+            (value, _) => descend(value, rest, &format!("{path}{member}."), new, found)?,
         }
     }
     Ok(())
@@ -155,9 +155,9 @@ fn rename_axes(grid: &mut Json, found: &mut Vec<String>) {
     }
 }
 
-fn rename_axis(name: &mut String, place: &str, found: &mut Vec<String>) {
+fn rename_axis(name: &mut String, path: &str, found: &mut Vec<String>) {
     if let Some(new) = current(name) {
-        found.push(format!("{place}{name}"));
+        found.push(format!("{path}{name}"));
         *name = new;
     }
 }

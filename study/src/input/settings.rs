@@ -126,8 +126,8 @@ pub(crate) fn missing_key(key: &Key, source: &Source) -> InputError {
     error
 }
 
-/// The gas of a draft: a named one, or one by its constants; a constant given beside a name replaces
-/// that of the named gas.
+/// The gas of a draft: a named one, or one by its constants; a constant given in addition to a name
+/// replaces that of the named gas.
 ///
 /// # Errors
 /// When a constant is missing, or cp is not above the gas constant.

@@ -14,7 +14,7 @@ pub(crate) fn place_name(place: SupportPlace) -> &'static str {
     SUPPORT_PLACES.iter().find(|known| known.value == place).map_or("", |known| known.name)
 }
 
-/// Whether a text names displacement components: letters of xyz, each at most once.
+/// Whether a text names displacement components: letters of xyz, each path most once.
 pub(crate) fn are_components(text: &str) -> bool {
     !text.is_empty()
         && text.chars().all(|c| matches!(c, 'x' | 'y' | 'z'))
@@ -44,14 +44,14 @@ pub(crate) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<Support>,
 }
 
 /// Position in [`SUPPORT_PLACES`] of a support's place, and its components.
-fn support(item: &Json, at: &str, source: &Source) -> Result<(usize, String), InputError> {
+fn support(item: &Json, path: &str, source: &Source) -> Result<(usize, String), InputError> {
     let (mut on, mut fix) = (None, None);
     let Json::Object(members) = item else {
         let problem = format!("is {}, not an object", item.kind());
-        return Err(source.error(at, &item.brief(), problem, ALLOWED));
+        return Err(source.error(path, &item.brief(), problem, ALLOWED));
     };
     for (name, value) in members {
-        let key = format!("{at}.{name}");
+        let key = format!("{path}.{name}");
         match name.as_str() {
             "on" => {
                 let place = named_place(value, &key, source)?;
@@ -79,13 +79,13 @@ fn support(item: &Json, at: &str, source: &Source) -> Result<(usize, String), In
     }
     match (on, fix) {
         (Some(on), Some(fix)) => Ok((on, fix)),
-        (None, _) => Err(source.error(at, &item.brief(), "has no `on`", ALLOWED)),
-        (_, None) => Err(source.error(at, &item.brief(), "has no `fix`", ALLOWED)),
+        (None, _) => Err(source.error(path, &item.brief(), "has no `on`", ALLOWED)),
+        (_, None) => Err(source.error(path, &item.brief(), "has no `fix`", ALLOWED)),
     }
 }
 
-fn named_place(value: &Json, at: &str, source: &Source) -> Result<String, InputError> {
-    read_key(const { named(CAPSULE_SUPPORT_KEYS, "on") }, value, at, source).map(text)
+fn named_place(value: &Json, path: &str, source: &Source) -> Result<String, InputError> {
+    read_key(const { named(CAPSULE_SUPPORT_KEYS, "on") }, value, path, source).map(text)
 }
 
 fn text(value: Value) -> String {

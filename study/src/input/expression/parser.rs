@@ -72,8 +72,8 @@ impl Parser<'_> {
         Ok(Tree { span, depth, kind })
     }
 
-    /// An expression of operators with at least the precedence `least`.
-    fn binary(&mut self, least: u8) -> Result<Tree, ExpressionError> {
+    /// An expression of operators with at least this precedence.
+    fn binary(&mut self, min_precedence: u8) -> Result<Tree, ExpressionError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             return Err(self.refuse(self.peek().1, "nested too deeply"));
@@ -81,7 +81,7 @@ impl Parser<'_> {
         let mut left = self.operand()?;
         while let (&Token::Operator(operator), span) = self.peek() {
             let precedence = precedence(operator);
-            if precedence < least {
+            if precedence < min_precedence {
                 break;
             }
             if operator.compares()

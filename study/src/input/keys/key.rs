@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::draft::Draft;
 use super::nearest::nearest;
+use super::words::Word;
 use crate::input::study_file::Json;
 use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, short_number};
@@ -48,15 +49,6 @@ pub enum KeyKind {
     Flag,
     /// Three such quantities, x, y, z: [`Key::read_vector`].
     Vector(Quantity),
-}
-
-/// One word that a key may hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Word {
-    /// The word.
-    pub name: &'static str,
-    /// What it stands for; empty where the word says it.
-    pub meaning: &'static str,
 }
 
 /// The numbers a quantity may take.
@@ -119,9 +111,9 @@ pub(super) const fn above(dimension: Dimension, min: f64, max: f64) -> KeyKind {
     KeyKind::Quantity(Quantity { dimension, min, above: true, max, words: &[] })
 }
 
-/// Three quantities, each from −`most` to `most`.
-pub(super) const fn vector(dimension: Dimension, most: f64) -> KeyKind {
-    KeyKind::Vector(Quantity { dimension, min: -most, above: false, max: most, words: &[] })
+/// Three quantities, each from −`max` to `max`.
+pub(super) const fn vector(dimension: Dimension, max: f64) -> KeyKind {
+    KeyKind::Vector(Quantity { dimension, min: -max, above: false, max, words: &[] })
 }
 
 /// Position of a key in a table. In a `const` block, a name that the table does not have is a compile

@@ -13,7 +13,7 @@ mod table;
 mod words;
 
 pub(crate) use key::whole;
-pub use key::{Default, Key, KeyKind, Quantity, Refusal, Word, named, position};
+pub use key::{Default, Key, KeyKind, Quantity, Refusal, named, position};
 pub use nearest::nearest;
 pub use objects::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE_WINDOW_KEYS,
@@ -23,7 +23,7 @@ pub(crate) use objects::{FLAT, GRAVITY, NEAR, object_meaning};
 pub(crate) use study::GRID_MEANINGS;
 pub use study::{CAPSULE_SUPPORT_KEYS, KEYS, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};
-pub use words::{MODELS, Model, model};
+pub use words::{MODELS, Model, Word, model};
 pub(crate) use words::{PROFILES, SUPPORT_PLACES};
 
 #[cfg(test)]

@@ -4,9 +4,9 @@
 //! a name without a row does not compile ([`super::key::named`]).
 
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{self, Key, KeyKind, above, from, key, vector};
+use super::key::{Key, KeyKind, above, from, key, same_text, vector};
 use super::study::{CLOCK, KELVIN};
-use super::words::{PROFILES, words};
+use super::words::{self, PROFILES, explained, plain, words};
 use crate::input::units::Dimension;
 
 /// A position, m.
@@ -16,24 +16,19 @@ const DIRECTION: KeyKind = vector(Dimension::Number, 1e6);
 /// A velocity, m/s.
 const VELOCITY: KeyKind = vector(Dimension::Velocity, 1e5);
 
-/// A word whose name says its meaning.
-const fn plain(name: &'static str) -> key::Word {
-    key::Word { name, meaning: "" }
-}
-
 /// What a support of a scene acts on.
-const SUPPORT_TARGETS: &[key::Word] = &[
-    key::Word { name: "ring", meaning: "a ring of a design; with which" },
-    key::Word { name: "cap", meaning: "a cap of a design; with which" },
+const SUPPORT_TARGETS: &[words::Word] = &[
+    explained("ring", "a ring of a design; with which"),
+    explained("cap", "a cap of a design; with which"),
     plain("bottom_ring"),
     plain("top_ring"),
     plain("bottom_cap"),
     plain("top_cap"),
-    key::Word { name: "box", meaning: "nodes with min <= position <= max at the start" },
-    key::Word { name: "nodes", meaning: "nodes by number" },
-    key::Word { name: "plane", meaning: "nodes within tolerance of a plane at the start" },
-    key::Word { name: "boundary", meaning: "nodes on free edges of the film" },
-    key::Word { name: "all", meaning: "every node of the film" },
+    explained("box", "nodes with min <= position <= max at the start"),
+    explained("nodes", "nodes by number"),
+    explained("plane", "nodes within tolerance of a plane at the start"),
+    explained("boundary", "nodes on free edges of the film"),
+    explained("all", "every node of the film"),
 ];
 
 /// The keys of a scene's inflow window.
@@ -202,7 +197,7 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
 pub(crate) const fn object_meaning(path: &str) -> &'static str {
     let mut index = 0;
     while index < OBJECT_MEANINGS.len() {
-        if key::same_text(OBJECT_MEANINGS[index].0, path) {
+        if same_text(OBJECT_MEANINGS[index].0, path) {
             return OBJECT_MEANINGS[index].1;
         }
         index += 1;

@@ -2,9 +2,9 @@
 
 use super::draft::{choose, flag, number, optional};
 use super::key::Default::{Absent, Integer, Number, Word};
-use super::key::{self, Key, KeyKind, above, from, key};
+use super::key::{Key, KeyKind, above, from, key};
 use super::study::{CLOCK, KELVIN};
-use super::words::{CAPS, SHAPES, pick, words};
+use super::words::{CAPS, SHAPES, pick, plain, words};
 use crate::input::units::Dimension;
 
 /// The objects of a scene file that hold single values, in the order of the documentation.
@@ -42,7 +42,7 @@ pub(crate) const SCENE_STRUCTURED: &[(&str, &str)] = &[
 /// Keys of a scene's sections that a study does not have, or has with another meaning.
 #[rustfmt::skip]
 pub(super) static SCENE_KEYS: &[Key] = &[
-    key("format", KeyKind::Choice(&[key::Word { name: "billow-scene", meaning: "" }]),
+    key("format", KeyKind::Choice(&[plain("billow-scene")]),
         Word("billow-scene"), "\"billow-scene\"", "Name of the file format."),
     key("version", KeyKind::Integer(1, 1), Integer(1), "1",
         "Version of the file format; a newer one is refused."),

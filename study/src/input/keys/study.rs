@@ -8,9 +8,9 @@ use billow_solver::integrators::explicit::DEFAULT_CFL;
 
 use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{self, Key, KeyKind, Quantity, above, from, key};
+use super::key::{Key, KeyKind, Quantity, above, from, key};
 use super::words::{
-    CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, SUPPORT_PLACES, pick, words,
+    CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, SUPPORT_PLACES, pick, plain, words,
 };
 use crate::input::units::Dimension;
 
@@ -53,7 +53,7 @@ pub(super) const CLOCK: KeyKind = from(Dimension::Time, 0.0, 1e6);
 /// Every key that holds one value.
 #[rustfmt::skip]
 pub static KEYS: &[Key] = &[
-    key("format", KeyKind::Choice(&[key::Word { name: "billow-study", meaning: "" }]),
+    key("format", KeyKind::Choice(&[plain("billow-study")]),
         Word("billow-study"), "\"billow-study\"", "Name of the file format.")
         .study_only(),
     key("version", KeyKind::Integer(1, 1), Integer(1), "1",

@@ -5,8 +5,26 @@ use billow_solver::geometry::fold::{Caps, Chirality, Fit};
 use billow_solver::scene::motion::Profile;
 use billow_solver::scene::{ModelKind, Species, SupportPlace};
 
-use super::key::Word;
 use crate::input::value::Value;
+
+/// One word that a key may hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Word {
+    /// The word.
+    pub name: &'static str,
+    /// What it stands for; empty where the word says it.
+    pub meaning: &'static str,
+}
+
+/// A word that says its meaning.
+pub(super) const fn plain(name: &'static str) -> Word {
+    Word { name, meaning: "" }
+}
+
+/// A word with its meaning.
+pub(super) const fn explained(name: &'static str, meaning: &'static str) -> Word {
+    Word { name, meaning }
+}
 
 /// A word and the value it stands for.
 #[derive(Debug, Clone, Copy)]
@@ -25,10 +43,10 @@ const fn word<T>(name: &'static str, value: T, meaning: &'static str) -> Named<T
 
 /// The words of a table, for a key.
 pub(super) const fn words<T: Copy, const N: usize>(table: &[Named<T>; N]) -> [Word; N] {
-    let mut words = [Word { name: "", meaning: "" }; N];
+    let mut words = [plain(""); N];
     let mut index = 0;
     while index < N {
-        words[index] = Word { name: table[index].name, meaning: table[index].meaning };
+        words[index] = explained(table[index].name, table[index].meaning);
         index += 1;
     }
     words

@@ -17,7 +17,7 @@ const COMPOUND: &str = r"[^\s0-9][^\s]*[/^*·0-9 ].*";
 /// Displacement components: letters of xyz, each at most once.
 pub(super) const COMPONENTS: &str = "^(?!.*(.).*\\1)[xyz]{1,3}$";
 
-/// The definitions of a schema, by name: what several keys share stands there once.
+/// The definitions of a schema, by name: each part that several keys use, once.
 #[derive(Default)]
 pub(super) struct Definitions(Map<String, Json>);
 

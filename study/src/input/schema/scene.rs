@@ -22,12 +22,12 @@ pub fn scene_schema() -> Json {
         properties.insert((*section).to_owned(), schema);
     }
     let window = definitions.table("inflow window", "One inflow window.", SCENE_WINDOW_KEYS, []);
-    properties["gas"]["properties"]["windows"] = list("gas.windows", window);
+    properties["gas"]["properties"]["windows"] = list("gas.windows", &window);
     let plate = plate(&mut definitions);
-    properties["contact"]["properties"]["plates"] = list("contact.plates", plate);
+    properties["contact"]["properties"]["plates"] = list("contact.plates", &plate);
     properties.insert("mesh".to_owned(), mesh(&mut definitions));
     let support = support(&mut definitions);
-    properties.insert("supports".to_owned(), list("supports", support));
+    properties.insert("supports".to_owned(), list("supports", &support));
     properties.insert("start".to_owned(), start(&mut definitions));
     properties.insert("gravity".to_owned(), gravity(&mut definitions));
     properties.insert("outputs".to_owned(), outputs(&mut definitions));
@@ -69,7 +69,7 @@ impl Definitions {
 }
 
 /// A list of such items.
-fn list(path: &str, items: Json) -> Json {
+fn list(path: &str, items: &Json) -> Json {
     json!({
         "title": title(path),
         "description": SCENE.meaning(path),

@@ -3,6 +3,7 @@
 
 use billow_solver::geometry::mesh_io::obj_reader::{self, Face, Surface};
 use billow_solver::geometry::shell::{Shell, ShellError};
+use nalgebra::Vector3;
 
 use super::object::Object;
 use super::reader::Reader;
@@ -32,25 +33,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     let tolerance = object.number(const { named(MESH_KEYS, "weld") })?;
     let joined = weld::joined(&surface.vertices, tolerance);
     let closes = closing_groups(&object, &surface)?;
-    let outside = match object.given("closure") {
-        Some(Json::Text(name)) if is_file(name) => Some((
-            name.clone(),
-            self::surface(reader, "mesh.closure", name, surface.vertices.len())?,
-        )),
-        _ => None,
-    };
-    if let Some((name, other)) = &outside
-        && !other.vertices.is_empty()
-        && other.vertices.len() != surface.vertices.len()
-    {
-        let problem = format!(
-            "has {} vertices, {file} has {}: its faces must use the same vertices",
-            other.vertices.len(),
-            surface.vertices.len()
-        );
-        let allowed = "the same vertices in the same order, or no vertices";
-        return Err(refuse(name, "mesh.closure", problem, allowed, &source).into());
-    }
+    let outside = closing_file(&object, &surface, &file, reader)?;
     let film: Vec<bool> = surface.faces.iter().map(|face| !closes[face.names]).collect();
     if !film.contains(&true) {
         let problem = "names every face, so no face is film";
@@ -58,26 +41,24 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     }
     let closing = surface.faces.iter().zip(&film).filter(|(_, film)| !**film).map(|(face, _)| face);
     let closing: Vec<&Face> =
-        closing.chain(outside.iter().flat_map(|(_, other)| &other.faces)).collect();
+        closing.chain(outside.iter().flat_map(|other| &other.faces)).collect();
     let node = weld::nodes(&surface, &joined, &film, &closing);
-    let corner = |vertex: u32| node[vertex as usize];
     let reference = reference(&object, &surface, &film, scale, reader)?;
-    let mut shell = Shell::default();
-    let mut vertices: Vec<(u32, u32)> =
-        (0_u32..).zip(&node).filter_map(|(vertex, node)| Some(((*node)?, vertex))).collect();
-    vertices.sort_unstable();
-    vertices.dedup_by_key(|(node, _)| *node);
-    shell.positions = vertices.iter().map(|(_, v)| surface.vertices[*v as usize]).collect();
+    let mut shell = Shell { positions: positions(&surface, &node), ..Shell::default() };
+    let corners = |face: &Face, fan: [usize; 3]| -> Result<[u32; 3]> {
+        let node = |k: usize| node[face.corners[k] as usize].unwrap_or_default();
+        let triangle = fan.map(node);
+        check_triangle(&file, face, triangle, &source)?;
+        Ok(triangle)
+    };
     let mut element = Vec::new();
     let mut next = 0;
     for (index, (face, film)) in surface.faces.iter().zip(&film).enumerate() {
         for (part, fan) in face.fan().enumerate() {
-            let triangle = fan.map(|k| corner(face.corners[k]).unwrap_or_default());
-            check_triangle(&file, face, triangle, &source)?;
+            let triangle = corners(face, fan)?;
             if *film {
                 shell.triangles.push(triangle);
-                let corners = reference[index][part];
-                shell.reference.push(flattened(corners, face, &object)?);
+                shell.reference.push(flattened(reference[index][part], face, &object)?);
                 element.push(Some(next));
                 next += 1;
             } else {
@@ -87,9 +68,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     }
     for face in closing {
         for fan in face.fan() {
-            let triangle = fan.map(|k| corner(face.corners[k]).unwrap_or_default());
-            check_triangle(&file, face, triangle, &source)?;
-            shell.closure.push(triangle);
+            shell.closure.push(corners(face, fan)?);
         }
     }
     let numbering = Numbering { surface, node, element };
@@ -106,6 +85,40 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
     })
 }
 
+/// Position of each node: that of its first vertex, m.
+fn positions(surface: &Surface, node: &[Option<u32>]) -> Vec<Vector3<f64>> {
+    let mut vertices: Vec<(u32, u32)> =
+        (0_u32..).zip(node).filter_map(|(vertex, node)| Some(((*node)?, vertex))).collect();
+    vertices.sort_unstable();
+    vertices.dedup_by_key(|(node, _)| *node);
+    vertices.iter().map(|(_, vertex)| surface.vertices[*vertex as usize]).collect()
+}
+
+/// The surface of the file that closes the volume, where `closure` names one.
+fn closing_file(
+    object: &Object<'_>,
+    surface: &Surface,
+    file: &str,
+    reader: &mut Reader,
+) -> Result<Option<Surface>> {
+    let name = match object.given("closure") {
+        Some(Json::Text(name)) if is_file(name) => name,
+        _ => return Ok(None),
+    };
+    let other = self::surface(reader, "mesh.closure", name, surface.vertices.len())?;
+    if !other.vertices.is_empty() && other.vertices.len() != surface.vertices.len() {
+        let problem = format!(
+            "has {} vertices, {file} has {}: its faces must use the same vertices",
+            other.vertices.len(),
+            surface.vertices.len()
+        );
+        let allowed = "the same vertices in the same order, or no vertices";
+        return Err(refuse(name, "mesh.closure", problem, allowed, &reader.source).into());
+    }
+    Ok(Some(other))
+}
+
+/// Whether a name is that of an OBJ file.
 fn is_file(name: &str) -> bool {
     name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("obj"))
 }
