@@ -7,19 +7,21 @@ mod key;
 pub mod listing;
 mod nearest;
 mod objects;
+mod quantity;
 mod scene;
 mod study;
 mod table;
 mod words;
 
-pub(crate) use key::whole;
-pub use key::{Default, Key, KeyKind, Quantity, Refusal, named, position};
+pub use key::{Default, Key, KeyKind, Refusal, named, position};
 pub use nearest::nearest;
 pub use objects::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE_WINDOW_KEYS,
     SPIN_KEYS, START_KEYS, SUPPORT_KEYS,
 };
 pub(crate) use objects::{FLAT, GRAVITY, NEAR, object_meaning};
+pub use quantity::Quantity;
+pub(crate) use quantity::whole;
 pub(crate) use study::GRID_MEANINGS;
 pub use study::{CAPSULE_SUPPORT_KEYS, KEYS, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};

@@ -8,7 +8,8 @@ use billow_solver::integrators::explicit::DEFAULT_CFL;
 
 use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{Key, KeyKind, Quantity, above, from, key};
+use super::key::{Key, KeyKind, above, from, key};
+use super::quantity::Quantity;
 use super::words::{
     CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, SUPPORT_PLACES, pick, plain, words,
 };
