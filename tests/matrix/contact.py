@@ -74,7 +74,7 @@ def sound(run, told):
         and told["passages"] == 0
         and told["intersections"] == 0
         and told["ledger"]["residual"] <= RESIDUAL[run[2]]
-        and abs(told["contact"]["not_returned"]) <= NOT_RETURNED * peak
+        and abs(told["contact"]["unrecovered_contact_energy"]) <= NOT_RETURNED * peak
     )
 
 
@@ -88,8 +88,8 @@ def line(run, told):
         f"{told['nodes']['top_centre'][2]:.4f} {told['pressure']:7.1f} "
         f"{measures['peak_vz'] or float('nan'):7.2f} {peak:6.2f} {told['passages']:8} "
         f"{told['intersections']:13} {told['ledger']['residual']:.2e} "
-        f"{contact['not_returned'] / peak:+.1e} {contact['smallest_gap'] * 1e3:.4f} "
-        f"{contact['impulses']:8} {cost:.0f}"
+        f"{contact['unrecovered_contact_energy'] / peak:+.1e} {contact['smallest_gap'] * 1e3:.4f} "
+        f"{contact['collision_impulses']:8} {cost:.0f}"
         + ("" if sound(run, told) else "  OUT OF BAND")
     )
 

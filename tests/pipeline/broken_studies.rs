@@ -9,7 +9,7 @@ use billow_study::study::plan::next_jobs;
 use billow_study::study::{Limits, Study};
 use serde_json::{Value as Json, json};
 
-/// A sound study with one place changed.
+/// A valid study with one value changed.
 fn changed(pointer: &str, value: Json) -> Vec<u8> {
     let mut study = json!({
         "design": {"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
@@ -27,7 +27,7 @@ fn every_broken_file_gives_one_clear_error() {
     let long = |text: &str| text.repeat(200_000);
     // Content of the file; what the error says: key, value, problem, what is allowed.
     let cases: Vec<(Vec<u8>, &[&str])> = vec![
-        (b"".to_vec(), &["empty", "allowed: JSON"]),
+        (b"".to_vec(), &["is empty", "allowed: JSON"]),
         (b"\xEF\xBB\xBF{}".to_vec(), &["byte order mark", "plain UTF-8"]),
         (b"{\"question\": \"\xFF\"}".to_vec(), &["not UTF-8 from byte 14"]),
         (b"{\"design\": {\"N\": 6,}}".to_vec(), &["design", "trailing comma, line 1 column 20"]),
@@ -87,11 +87,11 @@ fn every_broken_file_gives_one_clear_error() {
         (changed("/version", json!(2)), &["version = 2", "newer format", "allowed: 1"]),
         (
             changed("/name", json!("../escape")),
-            &["name = \"../escape\"", "cannot name a results folder"],
+            &["name = \"../escape\"", "cannot be the name of a results folder"],
         ),
         (
             changed("/strategy", json!("delaid")),
-            &["strategy = \"delaid\"", "no strategy", "direct"],
+            &["strategy = \"delaid\"", "not a strategy", "direct"],
         ),
         (
             changed(
@@ -128,7 +128,7 @@ fn every_broken_file_gives_one_clear_error() {
         ),
         (
             changed("/grid", json!({"mass_flow": [1]})),
-            &["grid.mass_flow = [1]", "no key a grid can vary"],
+            &["grid.mass_flow = [1]", "not a key that a grid can vary"],
         ),
         (
             changed("/grid", json!({"N": [5], "design.N": [6]})),
@@ -140,7 +140,7 @@ fn every_broken_file_gives_one_clear_error() {
         ),
         (
             changed("/grid", json!({"mass_flow_rate": {"bisect": [0, 1]}})),
-            &["bisect", "not part of this version"],
+            &["bisect", "does not exist in this version"],
         ),
         (
             changed("/grid", json!({"seed": {"from": 0, "to": 1e15, "step": 1}})),
@@ -182,7 +182,7 @@ fn every_broken_file_gives_one_clear_error() {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_says_so() {
+fn an_unreadable_file_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["absent.json", "."] {
         let output = Command::new(env!("CARGO_BIN_EXE_billow"))

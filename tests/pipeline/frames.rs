@@ -177,7 +177,8 @@ fn a_scene_solved_by_itself_keeps_frames_as_well() {
     }
     scene["format"] = json!("billow-scene");
     scene["version"] = json!(1);
-    scene["gas"] = json!({ "species": "nitrogen", "windows": [{ "from": 0, "rate": "5 g/s" }] });
+    scene["gas"] =
+        json!({ "species": "nitrogen", "windows": [{ "from": 0, "mass_flow_rate": "5 g/s" }] });
     scene["solver"] = json!({ "end_time": "4 ms" });
     scene["outputs"]["frames"] = json!(3);
     fs::write(desk.path().join("scene.json"), scene.to_string()).unwrap();

@@ -18,6 +18,7 @@ mod mutations;
 mod physics_version;
 mod planning;
 mod reading;
+mod reference;
 mod resume;
 mod running;
 mod scene_files;

@@ -1,4 +1,4 @@
-//! From study text to jobs: ids, grids, filters, overrides, generations.
+//! From study text to jobs: ids, grids, filters, overrides, old names, generations.
 #![expect(clippy::float_cmp, reason = "planning moves numbers, it computes none: they are equal")]
 
 use std::time::Instant;
@@ -78,7 +78,7 @@ fn spelling_does_not_change_a_job() {
         ("/gravity", json!(-0.0)),
         ("/strategy", json!("direct")),
         ("/strategies", json!({"direct": {"inflow": [{"from": 0, "to": 0.5}]}})),
-        ("/strategies", json!({"direct": {"inflow": [{"to": "9 s"}, {"rate": 0}]}})),
+        ("/strategies", json!({"direct": {"inflow": [{"to": "9 s"}, {"mass_flow_rate": 0}]}})),
         ("/supports", json!([{"on": "bottom_ring", "fix": "zyx"}])),
         (
             "/supports",
@@ -248,7 +248,7 @@ fn strategies_resolve_to_windows() {
     let mut study = capsule();
     study["gas"]["residual_gas_mass"] = "0.05 g".into();
     study["strategies"] = json!({
-        "delayed": {"release_time": 0.1, "inflow": [{"from": 0.3, "to": 0.4, "rate": "1 g/s"}]},
+        "delayed": {"release_time": 0.1, "inflow": [{"from": 0.3, "to": 0.4, "mass_flow_rate": "1 g/s"}]},
         "preinflate": {"preinflation_mass": "0.15 g", "inflow": []},
     });
     study["strategy"] = "delayed".into();
@@ -269,13 +269,13 @@ fn strategies_resolve_to_windows() {
     let stored = &generation.points[1].job.scene;
     assert_eq!((stored.gas.initial_mass, stored.gas.windows.len()), (5e-5, 1));
 
-    study["grid"] = json!({"strategies.delayed.inflow[0].rate": ["1 g/s", "2 g/s"],
+    study["grid"] = json!({"strategies.delayed.inflow[0].mass_flow_rate": ["1 g/s", "2 g/s"],
         "strategies.delayed.release_time": [0, 0.1]});
     let generation = plan(&study, &[]);
     assert_eq!(generation.points.len(), 4);
     let names: Vec<&str> =
         generation.points[0].job.parameters.iter().map(|(name, _)| name.as_str()).collect();
-    assert!(names.contains(&"strategies.delayed.inflow[0].rate"), "{names:?}");
+    assert!(names.contains(&"strategies.delayed.inflow[0].mass_flow_rate"), "{names:?}");
 
     study["grid"] = json!({"strategy": ["preinflate"], "residual_gas": ["stored"]});
     let mass = plan(&study, &[]).points[0].job.scene.gas.initial_mass;
@@ -374,4 +374,47 @@ fn ten_thousand_jobs_are_planned() {
     let many: Vec<i64> = (0..1000).collect();
     let huge = with_grid(json!({"seed": many, "step_limit": (1..1000).collect::<Vec<i64>>()}));
     assert!(try_study(&huge, &[]).unwrap_err().problem.contains("999000 points"));
+}
+
+#[test]
+fn old_names_of_keys_give_the_same_jobs_with_a_note() {
+    let study = |margin: &str, rate: &str, grid: Json| {
+        let mut study = capsule();
+        study["outputs"] = json!({"thresholds": {margin: 0.05}});
+        study["strategies"] = json!({"late": {"inflow": [{"from": 0.1, rate: "1 g/s"}]}});
+        study["strategy"] = "late".into();
+        study["grid"] = grid;
+        study
+    };
+    let (old, new) = (("close_margin", "rate"), ("near_threshold_margin", "mass_flow_rate"));
+    let grid = |(margin, rate): (&str, &str)| {
+        json!({
+            format!("strategies.late.inflow[0].{rate}"): ["1 g/s", "2 g/s"],
+            margin: [0.01, 0.02],
+            "filter": format!("{margin} < 0.5"),
+        })
+    };
+    let [old_study, new_study] = [old, new].map(|names| study(names.0, names.1, grid(names)));
+    let sets = ["outputs.thresholds.stalled_volume=0.8"];
+    assert_eq!(plan(&old_study, &sets), plan(&new_study, &sets));
+
+    let folder = tempfile::tempdir().unwrap();
+    let stderr = |study: &Json, arguments: &[&str]| {
+        std::fs::write(folder.path().join("study.json"), study.to_string()).unwrap();
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_billow"));
+        command.args(["plan", "study.json"]).args(arguments).current_dir(folder.path());
+        String::from_utf8(command.output().unwrap().stderr).unwrap()
+    };
+    let notes = stderr(&old_study, &[]);
+    for note in ["is now called near_threshold_margin", "is now called mass_flow_rate"] {
+        assert_eq!(notes.matches(note).count(), 1, "{note}: {notes}");
+    }
+    let notes = stderr(&capsule(), &["--set", "close_margin=0.03"]);
+    assert!(notes.contains("close_margin is now called near_threshold_margin"), "{notes}");
+    assert!(!stderr(&new_study, &[]).contains("is now called"));
+
+    let mut both = new_study;
+    both["outputs"]["thresholds"]["close_margin"] = json!(0.01);
+    let error = try_study(&both, &[]).unwrap_err().to_string();
+    assert!(error.contains("outputs.thresholds.close_margin: is the old name of"), "{error}");
 }

@@ -57,7 +57,7 @@ fn the_schema_has_every_key() {
 }
 
 #[test]
-fn meshes_of_other_programs_are_taken() {
+fn meshes_of_other_programs_are_read() {
     let gas = json!({"initial_pressure": "0.1 Pa"});
     let volume = |mesh: &Value, files: &[(&str, &str)]| {
         let scene = cube(mesh, &gas);
@@ -105,7 +105,7 @@ fn meshes_of_other_programs_are_taken() {
 }
 
 #[test]
-fn what_is_wrong_is_said_once_and_where() {
+fn every_error_names_its_key_once() {
     let inward: String = CUBE
         .lines()
         .map(|line| match line.strip_prefix("f ") {
@@ -159,11 +159,15 @@ fn what_is_wrong_is_said_once_and_where() {
         ("/mesh/reference", json!([[[0, 0], [1, 0], [1, 1]]]), &["has 1 faces", "6 of film"]),
         ("/mesh/postions", json!("x"), &["did you mean positions?"]),
         ("/design", json!({}), &["both design and mesh"]),
-        ("/gas/pressure", json!(5), &["stands beside a fixed pressure"]),
+        ("/gas/pressure", json!(5), &["given beside a fixed pressure"]),
         ("/gas/presure", json!(5), &["did you mean pressure?"]),
         ("/gas/initial_mass", json!(1), &["beside initial_mass"]),
-        ("/gas/windows", json!([{"from": 2, "to": 1, "rate": 1}]), &["windows[0].to", "before"]),
-        ("/gas/windows", json!([{"from": 0}]), &["windows[0].rate", "missing"]),
+        (
+            "/gas/windows",
+            json!([{"from": 2, "to": 1, "mass_flow_rate": 1}]),
+            &["windows[0].to", "before"],
+        ),
+        ("/gas/windows", json!([{"from": 0}]), &["windows[0].mass_flow_rate", "missing"]),
         ("/film", json!({"thickness": "1 kg"}), &["film.thickness", "is a mass", "next: write it"]),
         ("/supports", json!([{"on": "ring", "which": "top", "fix": "x"}]), &["no rings"]),
         ("/supports", json!([{"on": "box", "min": [5, 5, 5], "fix": "x"}]), &["selects nothing"]),
@@ -181,14 +185,14 @@ fn what_is_wrong_is_said_once_and_where() {
         ("/supports", moved_twice, &["\"lid\"", "vertex 4", "along [1.0"]),
         ("/outputs/nodes", json!([99]), &["outputs.nodes", "vertex 99"]),
         ("/outputs/elements", json!({"a": 99}), &["outputs.elements", "triangle 99 of 12"]),
-        ("/outputs/nodes", json!([{"a b": 1}]), &["is no name"]),
-        ("/solver/static", json!(true), &["no fixed pressure"]),
+        ("/outputs/nodes", json!([{"a b": 1}]), &["is not a name"]),
+        ("/solver/static", json!(true), &["not a fixed pressure"]),
         ("/solver/static", json!("yes"), &["solver.static", "true or false"]),
         ("/solver/cfl", json!(2), &["solver.cfl"]),
-        ("/gravity", json!([0, 0]), &["gravity", "2 of three"]),
+        ("/gravity", json!([0, 0]), &["gravity", "2 components instead of three"]),
         ("/version", json!(2), &["newer format"]),
         ("/start", json!({"velocities": "none.obj"}), &["has 1 vertices; the mesh has 9"]),
-        ("/sead", json!(1), &["is no key of a scene"]),
+        ("/sead", json!(1), &["is not a key of a scene"]),
     ];
     for (pointer, value, expected) in cases {
         let mut scene = sound.clone();
@@ -207,7 +211,7 @@ fn what_is_wrong_is_said_once_and_where() {
 }
 
 #[test]
-fn flags_that_cannot_be_are_refused() {
+fn invalid_flags_are_refused() {
     let folder = desk(&capsule(), &[("rest.json", ""), ("broken", "{\"format\": 1}")]);
     for (arguments, simd, expected) in [
         (&["scene.json"][..], "neon", "scalar"),
@@ -261,20 +265,20 @@ fn a_flat_bag_opens_under_a_pressure_and_holds_no_gas() {
     let folder = desk(&scene(&json!({"initial_mass": "1 g"})), &files);
     let output = solve(folder.path(), &["scene.json"], "");
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("encloses no volume: its layers lie on each other"));
+    assert!(stderr(&output).contains("encloses no volume: its layers touch each other"));
 }
 
 #[test]
-fn what_decides_nothing_is_told() {
+fn keys_without_effect_are_noted() {
     let mut scene = capsule();
     scene["outputs"]["nodes"] = json!({"off": [200, 0, 500]});
     scene["release_time"] = json!("1 s");
-    scene["gas"] = json!({"windows": [{"rate": "5 g/s"}]});
+    scene["gas"] = json!({"windows": [{"mass_flow_rate": "5 g/s"}]});
     scene["outputs"]["sample_interval"] = json!("10 ms");
     scene["solver"] = json!({"end_time": "10 ms"});
     let folder = desk(&scene, &[]);
     let summary = done(folder.path(), &["scene.json", "-q"], "");
     let notes = summary["notes"].to_string();
     assert!(notes.contains("the node nearest to [200.0, 0.0, 500.0] m is"), "{notes}");
-    assert!(notes.contains("release_time releases nothing: it is packed to the end"), "{notes}");
+    assert!(notes.contains("release_time has no effect: the film stays packed"), "{notes}");
 }

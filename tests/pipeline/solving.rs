@@ -69,7 +69,7 @@ pub(crate) fn capsule() -> Value {
             "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": 1,
             "subdivisions": 2,
         },
-        "gas": {"windows": [{"from": "2 ms", "to": "30 ms", "rate": "5 g/s"}], "leak_area": "1 cm2"},
+        "gas": {"windows": [{"from": "2 ms", "to": "30 ms", "mass_flow_rate": "5 g/s"}], "leak_area": "1 cm2"},
         "release_time": "5 ms",
         "solver": {"end_time": "40 ms"},
         "outputs": {"nodes": [0, {"side": [0.5, 0, 0.02]}], "elements": {"first": 0}},

@@ -18,6 +18,7 @@ mod doctor;
 mod fold;
 mod frames;
 mod instruction_set;
+mod keys;
 mod memory;
 mod notes;
 mod picture;
@@ -120,6 +121,8 @@ pub enum Command {
     Table(table::Args),
     /// Draw charts of a study's results.
     Chart(chart::Args),
+    /// List the keys of a study or scene file, with unit, default, range and meaning.
+    Keys(keys::Args),
     /// Print the JSON Schema of the study file or the scene file.
     Schema(schema::Args),
     /// Run the reference cases and judge them; exit code 1 if one is out of band.
@@ -169,6 +172,7 @@ fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
         Command::Solve(args) => solve::run(args, &cli.global, out),
         Command::Table(args) => table::run(args, &cli.global, out),
         Command::Chart(args) => chart::run(args, &cli.global, out),
+        Command::Keys(args) => keys::run(args, &cli.global, out),
         Command::Schema(args) => schema::run(args, &cli.global, out),
         Command::Validate(args) => validate::run(args, &cli.global, out),
         Command::Bench(args) => bench::run(args, &cli.global, out),

@@ -1,6 +1,10 @@
-//! `billow schema`.
+//! `billow schema`: the JSON Schema of the study file or the scene file.
 
 use std::io::Write;
+
+use serde::Serialize;
+use serde_json::Serializer;
+use serde_json::ser::PrettyFormatter;
 
 use super::{Global, output_error};
 use crate::input::schema;
@@ -9,15 +13,15 @@ use crate::platform::error::Result;
 /// Arguments of `billow schema`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Of which file.
+    /// The file to describe.
     #[arg(value_enum, default_value_t = Of::Study)]
     pub of: Of,
-    /// The same as `billow schema scene`.
+    /// Same as `billow schema scene`.
     #[arg(long)]
     pub scene: bool,
 }
 
-/// A file that has a schema.
+/// A file with a schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Of {
     /// The study file of `billow run`.
@@ -26,7 +30,7 @@ pub enum Of {
     Scene,
 }
 
-/// Runs `billow schema`: the JSON Schema of the study file or the scene file, indented.
+/// Runs `billow schema`: prints the schema, indented.
 ///
 /// # Errors
 /// When the output cannot be written.
@@ -35,5 +39,10 @@ pub fn run(args: &Args, _: &Global, out: &mut dyn Write) -> Result<()> {
         Of::Study if !args.scene => schema::study_schema(),
         Of::Study | Of::Scene => schema::scene_schema(),
     };
-    writeln!(out, "{schema:#}").map_err(output_error)
+    // One space for each level keeps it readable and small.
+    let formatter = PrettyFormatter::with_indent(b" ");
+    let mut text = Vec::new();
+    let mut serializer = Serializer::with_formatter(&mut text, formatter);
+    let written = schema.serialize(&mut serializer).map_err(std::io::Error::from);
+    written.and_then(|()| out.write_all(&text)).and_then(|()| writeln!(out)).map_err(output_error)
 }

@@ -157,7 +157,7 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
 fn unit(path: &str) -> &'static str {
     let key = KEYS.iter().find(|key| key.path == path);
     match key.map(|key| key.kind) {
-        Some(keys::Kind::Quantity(quantity)) => quantity.dimension.si(),
+        Some(keys::KeyKind::Quantity(quantity)) => quantity.dimension.si(),
         _ => match path.rsplit('.').next().unwrap_or(path) {
             "from" | "to" | "release_time" | "end_time" | "sample_interval" => "s",
             "rate" => "kg/s",

@@ -15,7 +15,7 @@ use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, check_place, disk_error, write_atomic};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
-use crate::scene::solve::{self, Ended, Pauses, Solved};
+use crate::scene::solve::{self, Ended, PAUSED, Pauses, Solved};
 use crate::scene::summary;
 use crate::store::history_file;
 
@@ -81,11 +81,11 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         format => print_rows(&["quantity", "value"], &summary::rows(&summary), format, out)?,
     }
     write_files(args, &scene, &solved)?;
-    if let ("paused", Some(path), false) = (solved.status, &args.checkpoint, global.quiet) {
+    if let (PAUSED, Some(path), false) = (solved.status, &args.checkpoint, global.quiet) {
         let without = if args.out.is_some() { "; --out is written when it is done" } else { "" };
         eprintln!("billow: paused; go on with --resume {}{without}", path.display());
     }
-    if matches!(solved.status, row::DONE | "paused") {
+    if matches!(solved.status, row::DONE | PAUSED) {
         return Ok(());
     }
     let place = summary["stop"]["place"].as_str().unwrap_or_default();
@@ -123,7 +123,7 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
         write_atomic(&Disk, path, bytes).map_err(|error| disk_error(path, &error))
     };
     if let (Some(path), Ended::Motion(motion)) = (&args.out, &solved.end)
-        && solved.status != "paused"
+        && solved.status != PAUSED
     {
         let deployment = &motion.1;
         let hash = history_file::content_hash(deployment);
@@ -136,8 +136,8 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
     if let Some(path) = &args.shape {
         let places = match &solved.end {
             Ended::Motion(motion) => &motion.0.film.state.positions,
-            Ended::Rest(rest) => &rest.positions,
-            Ended::NoRest(_) => return Ok(()),
+            Ended::Equilibrium(solution) => &solution.positions,
+            Ended::NoEquilibrium(_) => return Ok(()),
         };
         let numbering = &scene.numbering;
         let vertices = numbering.node.iter().zip(&numbering.surface.vertices);

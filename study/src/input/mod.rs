@@ -1,8 +1,10 @@
-//! What a user writes: the study file, its keys, units and expressions, and the JSON Schema of both
-//! file kinds.
+//! What a user writes: study files, scene files, their keys, units and expressions, and the JSON
+//! Schema of both file kinds.
 
 pub mod expression;
 pub mod keys;
+pub(crate) mod overrides;
+pub mod renamed;
 pub mod schema;
 pub(crate) mod settings;
 pub(crate) mod source;

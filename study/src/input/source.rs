@@ -1,13 +1,13 @@
-//! Where a value came from: the file, or a `--set` flag; errors name it.
+//! Where a value comes from, for errors: the file, or a `--set` flag.
 
 use crate::platform::error::InputError;
 
-/// Origin of the values of a study or a scene.
+/// The file and the flags that give the values of a study or a scene.
 #[derive(Debug, Clone)]
 pub(crate) struct Source {
-    /// The file, as errors call it.
+    /// Name of the file in errors.
     pub file: String,
-    /// Dotted key and the flag that set it.
+    /// Dotted keys, and the flag that sets each.
     pub sets: Vec<(String, String)>,
 }
 
@@ -16,7 +16,7 @@ impl Source {
         Self { file: file.to_owned(), sets: Vec::new() }
     }
 
-    /// An error about a key; named after the flag where a flag set it.
+    /// An error about a key. It names the flag where a flag sets the key, the file otherwise.
     pub fn error(
         &self,
         key: &str,
@@ -40,7 +40,7 @@ impl Source {
     }
 }
 
-/// A number as a study file would have it: in shortest digits, small ones with an exponent.
+/// A number as a study file has it: shortest digits, small ones with an exponent.
 pub(crate) fn shown(number: f64) -> String {
     let text = format!("{number:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()

@@ -1,7 +1,7 @@
-//! Exactly what a study file says: its JSON as a tree, in file order, before any meaning.
+//! A study or scene file as a JSON tree, in file order, before its keys get a meaning.
 //!
-//! Refused here, with line and column: what is no JSON, a key given twice, a number no `f64` holds,
-//! nesting beyond 128 levels, text that is not UTF-8, a file beyond [`LARGEST_FILE`].
+//! Refused here, with line and column: invalid JSON, a key given twice, a number beyond `f64`, nesting
+//! beyond 128 levels, text that is not UTF-8, a file larger than [`MAX_FILE_SIZE`].
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -13,18 +13,18 @@ use serde::ser::{Serialize, Serializer};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files;
 
-/// Largest study file read, bytes. A study is written by hand; a grid of a million points fits in a
-/// few lines.
-pub const LARGEST_FILE: u64 = 16 << 20;
+/// Largest study or scene file read, bytes (chosen: such a file is written by hand, and a grid of a
+/// million points takes a few lines).
+pub const MAX_FILE_SIZE: u64 = 16 << 20;
 
-/// A JSON value: objects in file order, no key twice, whole numbers told from others.
+/// A JSON value: objects in file order, no key twice, whole numbers distinct from others.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Json {
     /// `null`.
     Null,
     /// `true`, `false`.
     Bool(bool),
-    /// A number written as a whole one.
+    /// A number written without fraction and exponent.
     Integer(i64),
     /// Any other number; finite.
     Number(f64),
@@ -43,16 +43,25 @@ impl Json {
         members.iter().find(|(name, _)| name == key).map(|(_, value)| value)
     }
 
-    /// Sets a key of an object: in its place where it is there, else as the last one.
+    /// The value of a key of an object, to change it.
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Self> {
+        let Self::Object(members) = self else { return None };
+        members.iter_mut().find(|(name, _)| name == key).map(|(_, value)| value)
+    }
+
+    /// Sets a key of an object: replaces its value, or adds it as the last one.
     pub fn set(&mut self, key: &str, value: Self) {
-        let Self::Object(members) = self else { return };
-        match members.iter_mut().find(|(name, _)| name == key) {
-            Some((_, place)) => *place = value,
-            None => members.push((key.to_owned(), value)),
+        match self.get_mut(key) {
+            Some(member) => *member = value,
+            None => {
+                if let Self::Object(members) = self {
+                    members.push((key.to_owned(), value));
+                }
+            }
         }
     }
 
-    /// What it is, with its article, as errors say it.
+    /// Name of its type, with its article, for errors.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Null => "null",
@@ -65,22 +74,23 @@ impl Json {
         }
     }
 
-    /// The value as written, on one line, cut to a length an error can show.
+    /// The value as written, on one line, cut to the length of an error's line.
     pub fn brief(&self) -> String {
-        const LONGEST: usize = 60;
+        /// Characters of a value in an error (chosen: key and value fit on one line).
+        const MAX_LENGTH: usize = 60;
         let mut text = String::new();
-        write_json(self, &mut text, LONGEST);
-        if text.chars().count() > LONGEST {
-            text = text.chars().take(LONGEST - 1).collect();
+        write_json(self, &mut text, MAX_LENGTH);
+        if text.chars().count() > MAX_LENGTH {
+            text = text.chars().take(MAX_LENGTH - 1).collect();
             text.push('…');
         }
         text
     }
 }
 
-/// Writes compact JSON, stopping soon after `longest` bytes.
-fn write_json(value: &Json, text: &mut String, longest: usize) {
-    if text.len() > longest {
+/// Writes compact JSON; stops soon after `max_length` bytes.
+fn write_json(value: &Json, text: &mut String, max_length: usize) {
+    if text.len() > max_length {
         return;
     }
     match value {
@@ -91,10 +101,10 @@ fn write_json(value: &Json, text: &mut String, longest: usize) {
         Json::Text(value) => text.push_str(&serde_json::Value::from(value.as_str()).to_string()),
         Json::List(items) => {
             text.push('[');
-            for (at, item) in items.iter().enumerate() {
-                text.push_str(if at > 0 { ", " } else { "" });
-                write_json(item, text, longest);
-                if text.len() > longest {
+            for (index, item) in items.iter().enumerate() {
+                text.push_str(if index > 0 { ", " } else { "" });
+                write_json(item, text, max_length);
+                if text.len() > max_length {
                     return;
                 }
             }
@@ -102,12 +112,12 @@ fn write_json(value: &Json, text: &mut String, longest: usize) {
         }
         Json::Object(members) => {
             text.push('{');
-            for (at, (key, item)) in members.iter().enumerate() {
-                text.push_str(if at > 0 { ", " } else { "" });
+            for (index, (key, item)) in members.iter().enumerate() {
+                text.push_str(if index > 0 { ", " } else { "" });
                 text.push_str(&serde_json::Value::from(key.as_str()).to_string());
                 text.push_str(": ");
-                write_json(item, text, longest);
-                if text.len() > longest {
+                write_json(item, text, max_length);
+                if text.len() > max_length {
                     return;
                 }
             }
@@ -116,7 +126,7 @@ fn write_json(value: &Json, text: &mut String, longest: usize) {
     }
 }
 
-/// In file order, as it was read.
+/// In file order.
 impl Serialize for Json {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         match self {
@@ -215,7 +225,7 @@ impl<'de> Visitor<'de> for JsonVisitor {
 /// Reads JSON text.
 ///
 /// # Errors
-/// Names the file, line and column, and the key reached.
+/// When the text is not JSON; the error names file, line and column, and the last key read.
 pub fn parse(text: &str, file: &str) -> std::result::Result<Json, InputError> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let mut track = serde_path_to_error::Track::new();
@@ -223,11 +233,11 @@ pub fn parse(text: &str, file: &str) -> std::result::Result<Json, InputError> {
     read.and_then(|json| reader.end().map(|()| json)).map_err(|error| {
         let key = track.path().to_string();
         let mut message = error.to_string();
-        if let Some(place) = message.rfind(" at line ") {
-            message.truncate(place);
+        if let Some(end) = message.rfind(" at line ") {
+            message.truncate(end);
         }
         let problem =
-            format!("not sound JSON: {message}, line {} column {}", error.line(), error.column());
+            format!("invalid JSON: {message}, line {} column {}", error.line(), error.column());
         InputError {
             file: file.to_owned(),
             key: if key == "." { String::new() } else { key },
@@ -243,7 +253,7 @@ pub fn parse(text: &str, file: &str) -> std::result::Result<Json, InputError> {
 /// Reads text from bytes.
 ///
 /// # Errors
-/// Empty, not UTF-8, or opened by a byte order mark.
+/// When the bytes are empty, not UTF-8, or start with a byte order mark.
 pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, InputError> {
     let refuse = |problem: String, hint: &str| InputError {
         file: file.to_owned(),
@@ -258,25 +268,26 @@ pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, 
         || bytes.starts_with(&[0xFE, 0xFF])
     {
         return Err(refuse(
-            "opens with a byte order mark".to_owned(),
+            "starts with a byte order mark".to_owned(),
             "save it as plain UTF-8 (\"UTF-8 without BOM\")",
         ));
     }
-    let text = std::str::from_utf8(bytes)
-        .map_err(|error| refuse(format!("not UTF-8 from byte {} on", error.valid_up_to()), ""))?;
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        refuse(format!("is not UTF-8 from byte {} on", error.valid_up_to()), "")
+    })?;
     if text.trim().is_empty() {
         return Err(refuse(
-            "empty".to_owned(),
-            "start from a file in studies/ (or, for one scene, scenes/)",
+            "is empty".to_owned(),
+            "start from a file in studies/ (or, for a scene, in scenes/)",
         ));
     }
     Ok(text)
 }
 
-/// The bytes of a study or scene file; `what` it is to be, `example` one that ships.
+/// The bytes of a study or scene file; `what` names the kind of file, `example` one that ships.
 ///
 /// # Errors
-/// [`Error::Disk`] when it cannot be read, or is larger than [`LARGEST_FILE`].
+/// [`Error::Disk`] when it cannot be read, or is larger than [`MAX_FILE_SIZE`].
 pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
     let disk = |problem: String| Error::Disk { path: path.to_owned(), problem };
     let unreadable = |error: std::io::Error| {
@@ -288,8 +299,8 @@ pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
         };
         disk(format!("cannot read the {what}: {error}{next}"))
     };
-    files::read_at_most(path, LARGEST_FILE).map_err(unreadable)?.ok_or_else(|| {
-        disk(format!("larger than the {} MiB a {what} may have", LARGEST_FILE >> 20))
+    files::read_at_most(path, MAX_FILE_SIZE).map_err(unreadable)?.ok_or_else(|| {
+        disk(format!("is larger than {} MiB, the limit of a {what}", MAX_FILE_SIZE >> 20))
     })
 }
 
@@ -298,7 +309,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn objects_keep_their_order_and_numbers_their_kind() {
+    fn objects_keep_their_order_and_numbers_their_type() {
         let json = parse(r#"{"b": 8, "a": [8.0, "x", null, true]}"#, "f").unwrap();
         let Json::Object(members) = &json else { panic!("{json:?}") };
         assert_eq!(members[0], ("b".to_owned(), Json::Integer(8)));
@@ -308,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_carry_line_column_and_key() {
+    fn errors_name_line_column_and_key() {
         for (text, key, problem) in [
             ("{\"a\": {\"b\": 1,\n \"b\": 2}}", "a", "key \"b\" is given twice, line 2 column"),
             ("{\"a\": 1e999}", "a", "number out of range, line 1"),
@@ -325,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_text_are_refused() {
+    fn bytes_that_are_not_text_are_refused() {
         for bytes in
             [&b""[..], b" \n", b"\xEF\xBB\xBF{}", b"\xFF\xFE{\0}\0", b"{\"a\": \"\xC3\x28\"}"]
         {

@@ -1,80 +1,96 @@
-//! Supports: where the capsule is held, in one order whatever the file's.
+//! Supports of a study: where the capsule is held, in one order whatever the order of the file.
 
 use billow_solver::scene::{Support, SupportLocation};
 
-use crate::input::settings::list;
+use crate::input::keys::{CAPSULE_SUPPORT_KEYS, SUPPORT_PLACES, named};
+use crate::input::settings::{list, read as read_key};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
+use crate::input::value::Value;
 use crate::platform::error::InputError;
 
-/// Names of the places a support acts on.
-pub(crate) const PLACES: [(&str, SupportLocation); 4] = [
-    ("bottom_ring", SupportLocation::BottomRing),
-    ("top_ring", SupportLocation::TopRing),
-    ("bottom_cap", SupportLocation::BottomCap),
-    ("top_cap", SupportLocation::TopCap),
-];
-
+/// Name of a place that a support acts on.
 pub(crate) fn place_name(place: SupportLocation) -> &'static str {
-    PLACES.iter().find(|(_, known)| *known == place).map_or("", |(name, _)| name)
+    SUPPORT_PLACES.iter().find(|known| known.value == place).map_or("", |known| known.name)
 }
 
-/// Supports in the order of [`PLACES`], one a place, components in the order x y z: the same
-/// supports are the same job.
+/// Whether a text names displacement components: letters of xyz, each path most once.
+pub(crate) fn are_components(text: &str) -> bool {
+    !text.is_empty()
+        && text.chars().all(|c| matches!(c, 'x' | 'y' | 'z'))
+        && "xyz".chars().all(|c| text.matches(c).count() <= 1)
+}
+
+/// What a support must look like, for errors.
+const ALLOWED: &str = "a list of {\"on\": \"bottom_ring\", \"fix\": \"xyz\"}";
+
+/// Supports in the order of [`SUPPORT_PLACES`], one for each place, components in the order x y z:
+/// equal supports give equal jobs.
 pub(crate) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<Support>, InputError> {
     let Some(json) = json else {
         return Ok(vec![Support { on: SupportLocation::BottomRing, fix: "xyz".to_owned() }]);
     };
-    let allowed = "a list of {\"on\": \"bottom_ring\", \"fix\": \"xyz\"}";
     let mut fixed = [""; 4].map(str::to_owned);
-    for (at, item) in list(json, "supports", source, allowed)?.iter().enumerate() {
-        let key = format!("supports[{at}]");
-        let (mut on, mut fix) = (None, None);
-        let Json::Object(members) = item else {
-            let problem = format!("is {}, not an object", item.kind());
-            return Err(source.error(&key, &item.brief(), problem, allowed));
-        };
-        for (name, value) in members {
-            let key = format!("{key}.{name}");
-            match (name.as_str(), value) {
-                ("on", Json::Text(word)) => {
-                    on = PLACES.iter().position(|(known, _)| known == word);
-                    if on.is_none() {
-                        let known = PLACES.map(|(known, _)| known).join(", ");
-                        let problem = "is no place of a capsule";
-                        return Err(source.error(&key, &value.brief(), problem, known));
-                    }
+    for (index, item) in list(json, "supports", source, ALLOWED)?.iter().enumerate() {
+        let (place, components) = support(item, &format!("supports[{index}]"), source)?;
+        fixed[place].push_str(&components);
+    }
+    let support = |(place, axes): (SupportLocation, String)| {
+        let fix: String = "xyz".chars().filter(|c| axes.contains(*c)).collect();
+        (!fix.is_empty()).then_some(Support { on: place, fix })
+    };
+    let places = SUPPORT_PLACES.iter().map(|place| place.value);
+    Ok(places.zip(fixed).filter_map(support).collect())
+}
+
+/// Position in [`SUPPORT_PLACES`] of a support's place, and its components.
+fn support(item: &Json, path: &str, source: &Source) -> Result<(usize, String), InputError> {
+    let (mut on, mut fix) = (None, None);
+    let Json::Object(members) = item else {
+        let problem = format!("is {}, not an object", item.kind());
+        return Err(source.error(path, &item.brief(), problem, ALLOWED));
+    };
+    for (name, value) in members {
+        let key = format!("{path}.{name}");
+        match name.as_str() {
+            "on" => {
+                let place = named_place(value, &key, source)?;
+                on = SUPPORT_PLACES.iter().position(|known| known.name == place);
+            }
+            "fix" => {
+                let text = text(read_key(
+                    const { named(CAPSULE_SUPPORT_KEYS, "fix") },
+                    value,
+                    &key,
+                    source,
+                )?);
+                if !are_components(&text) {
+                    let problem = "does not name displacement components";
+                    let allowed = "letters of \"xyz\", each once";
+                    return Err(source.error(&key, &value.brief(), problem, allowed));
                 }
-                ("fix", Json::Text(axes)) => {
-                    let sound = !axes.is_empty()
-                        && axes.chars().all(|c| matches!(c, 'x' | 'y' | 'z'))
-                        && "xyz".chars().all(|c| axes.matches(c).count() <= 1);
-                    if !sound {
-                        let problem = "names no displacement components";
-                        let allowed = "letters of \"xyz\", each once";
-                        return Err(source.error(&key, &value.brief(), problem, allowed));
-                    }
-                    fix = Some(axes);
-                }
-                ("on" | "fix", other) => {
-                    let problem = format!("is {}, not a text", other.kind());
-                    return Err(source.error(&key, &other.brief(), problem, allowed));
-                }
-                _ => {
-                    let problem = "is no key of a support";
-                    return Err(source.error(&key, &value.brief(), problem, "on, fix"));
-                }
+                fix = Some(text);
+            }
+            _ => {
+                let problem = "is not a key of a support";
+                return Err(source.error(&key, &value.brief(), problem, "on, fix"));
             }
         }
-        match (on, fix) {
-            (Some(on), Some(fix)) => fixed[on].push_str(fix),
-            (None, _) => return Err(source.error(&key, &item.brief(), "has no `on`", allowed)),
-            (_, None) => return Err(source.error(&key, &item.brief(), "has no `fix`", allowed)),
-        }
     }
-    let support = |(&(_, on), axes): (&(&str, SupportLocation), String)| {
-        let fix: String = "xyz".chars().filter(|c| axes.contains(*c)).collect();
-        (!fix.is_empty()).then_some(Support { on, fix })
-    };
-    Ok(PLACES.iter().zip(fixed).filter_map(support).collect())
+    match (on, fix) {
+        (Some(on), Some(fix)) => Ok((on, fix)),
+        (None, _) => Err(source.error(path, &item.brief(), "has no `on`", ALLOWED)),
+        (_, None) => Err(source.error(path, &item.brief(), "has no `fix`", ALLOWED)),
+    }
+}
+
+fn named_place(value: &Json, path: &str, source: &Source) -> Result<String, InputError> {
+    read_key(const { named(CAPSULE_SUPPORT_KEYS, "on") }, value, path, source).map(text)
+}
+
+fn text(value: Value) -> String {
+    match value {
+        Value::Text(text) => text,
+        _ => String::new(),
+    }
 }

@@ -1,11 +1,11 @@
-//! A value of a parameter or a table cell, and how it is written.
+//! A value of a key, a parameter or a table cell, and its text.
 
 use std::fmt;
 
-/// One value: what an axis takes and what a table cell holds.
+/// One value of a key, an axis or a table cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// Nothing: not given, or never happened.
+    /// No value: not given, or it never happened.
     Null,
     /// True or false.
     Bool(bool),
@@ -29,7 +29,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// A value as JSON; a number JSON cannot hold is `null`.
+/// A value as JSON; a non-finite number is `null`.
 pub fn json_value(value: &Value) -> serde_json::Value {
     match value {
         Value::Null => serde_json::Value::Null,
@@ -40,8 +40,8 @@ pub fn json_value(value: &Value) -> serde_json::Value {
     }
 }
 
-/// A number to six significant digits, without trailing zeros; powers of ten where plain digits
-/// would be long.
+/// A number to six significant digits, without trailing zeros; with a power of ten below 1e-4 and
+/// from 1e7 on.
 pub fn short_number(number: f64) -> String {
     if !number.is_finite() {
         return number.to_string();
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_short_and_true() {
+    fn short_numbers_keep_six_digits() {
         for (number, text) in [
             (0.0, "0"),
             (-0.0, "0"),

@@ -1,4 +1,4 @@
-//! One scene without a study: the scene file, its run, its summary.
+//! One scene without a study: its file, its run, its summary.
 
 pub mod file;
 pub mod solve;

@@ -1,4 +1,4 @@
-//! Running one scene by itself: in motion, with checkpoints, or at rest.
+//! Solves one scene: motion, with checkpoints, or static equilibrium.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -17,49 +17,55 @@ use crate::platform::files::{Files, disk_error, write_atomic};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 
-/// Where a run pauses, where it is stored and where it goes on from.
+/// When a run is stored, where, and which checkpoint it resumes from.
 #[derive(Debug, Clone, Default)]
 pub struct Pauses {
     /// File of the checkpoint.
     pub checkpoint: Option<PathBuf>,
-    /// Steps between two checkpoints.
+    /// Number of steps between two checkpoints.
     pub every: Option<u64>,
-    /// Steps after which this call ends.
+    /// Number of steps after which this call ends.
     pub stop_after: Option<u64>,
-    /// Checkpoint to go on from.
+    /// Checkpoint to resume from.
     pub resume: Option<PathBuf>,
 }
 
-/// A scene that was solved.
+/// Status of a run that has not reached its end.
+pub const PAUSED: &str = "paused";
+
+/// Status of a scene without static equilibrium.
+pub const NO_EQUILIBRIUM: &str = "no_equilibrium";
+
+/// A solved scene.
 #[derive(Debug)]
 pub struct Solved {
-    /// `done`, `paused`, or why there is no result.
+    /// [`row::DONE`], [`PAUSED`], [`NO_EQUILIBRIUM`], or the name of a [`FailureKind`].
     pub status: &'static str,
     /// The state at the end.
     pub end: Ended,
-    /// Wall time of this call, s. A cost, never a reason.
+    /// Wall time of this call, s. No result depends on it.
     pub wall_seconds: f64,
 }
 
-/// How it was solved, and what it left.
+/// The state at the end.
 #[derive(Debug)]
 pub enum Ended {
-    /// In motion.
+    /// A run: the film and its outputs.
     Motion(Box<(FilmRun, Deployment)>),
-    /// At rest.
-    Rest(Box<StaticSolution>),
-    /// No state of rest was found.
-    NoRest(statics::StaticFailure),
+    /// Static equilibrium.
+    Equilibrium(Box<StaticSolution>),
+    /// Static equilibrium was not found.
+    NoEquilibrium(statics::StaticFailure),
 }
 
-/// Steps after which a run looks whether it is to stop.
-const LOOK: u64 = 2_000;
+/// Number of steps between two checks for a signal (chosen: a fraction of a second).
+const STEPS_PER_CHECK: u64 = 2_000;
 
-/// Solves a scene. A signal ends it, after a checkpoint where
-/// one is asked for.
+/// Solves a scene on this number of threads; the result does not depend on it. A signal ends the run,
+/// after a checkpoint where one is asked for.
 ///
 /// # Errors
-/// A checkpoint that cannot be read or written, or is of another scene; a signal.
+/// When a checkpoint cannot be read or written, or belongs to another scene; when a signal arrives.
 pub fn solve(
     scene: &SceneFile,
     pauses: &Pauses,
@@ -69,30 +75,30 @@ pub fn solve(
 ) -> Result<Solved> {
     let start = Instant::now();
     let (status, end) = if scene.film.solver.statics {
-        rest(scene, stop)?
+        equilibrium(scene, stop)?
     } else {
         motion(scene, pauses, files, stop, report)?
     };
     Ok(Solved { status, end, wall_seconds: start.elapsed().as_secs_f64() })
 }
 
-fn rest(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
-    let mut watch = |_: &statics::Iteration| match stop.requested() {
+fn equilibrium(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
+    let mut check = |_: &statics::Iteration| match stop.requested() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
     };
-    match statics::solve(&scene.film, &mut watch) {
+    match statics::solve(&scene.film, &mut check) {
         Ok(solution) => {
-            // Closed film turned inside out rests as well, and is no answer.
+            // Closed film turned inside out has an equilibrium too, but not the wanted one.
             let inside_out = scene.film.shell.is_closed() && solution.volume <= 0.0;
             let status = if inside_out { FailureKind::InvertedVolume.name() } else { row::DONE };
-            Ok((status, Ended::Rest(Box::new(solution))))
+            Ok((status, Ended::Equilibrium(Box::new(solution))))
         }
         Err(StaticError::NoState(failure)) => match (failure.kind, stop.requested()) {
             (StaticFailureKind::Stopped, Some(signal)) => {
                 Err(Error::Interrupted { signal, next: "nothing is stored".to_owned() })
             }
-            _ => Ok(("no_equilibrium", Ended::NoRest(failure))),
+            _ => Ok((NO_EQUILIBRIUM, Ended::NoEquilibrium(failure))),
         },
         Err(error) => Err(refused("", "solver.static", &error.to_string(), "").into()),
     }
@@ -109,7 +115,7 @@ fn refused(value: &str, key: &str, problem: &str, hint: &str) -> InputError {
     }
 }
 
-/// Tells the caller of every sample.
+/// Reports every sample to the caller.
 struct Reporting<'a>(&'a mut dyn FnMut(Progress));
 
 impl Observer for Reporting<'_> {
@@ -126,19 +132,21 @@ fn motion(
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
 ) -> Result<(&'static str, Ended)> {
-    let course = Timeline::of_film(&scene.film);
+    let timeline = Timeline::of_film(&scene.film);
     let (mut model, mut run) = begin(scene, pauses, files)?;
     let first = model.steps();
     let mut observer = Reporting(report);
     let mut stored = first;
     let end = loop {
         let taken = model.steps() - first;
-        let left = |limit: Option<u64>, since: u64| limit.map(|limit| limit.saturating_sub(since));
-        let steps = [left(pauses.stop_after, taken), left(pauses.every, model.steps() - stored)]
-            .into_iter()
-            .flatten()
-            .fold(LOOK, u64::min);
-        if let Some(end) = run.advance(&mut model, &course, steps, &mut observer) {
+        let remaining =
+            |limit: Option<u64>, since: u64| limit.map(|limit| limit.saturating_sub(since));
+        let steps =
+            [remaining(pauses.stop_after, taken), remaining(pauses.every, model.steps() - stored)]
+                .into_iter()
+                .flatten()
+                .fold(STEPS_PER_CHECK, u64::min);
+        if let Some(end) = run.advance(&mut model, &timeline, steps, &mut observer) {
             break Some(end);
         }
         let due = pauses.every.is_some_and(|every| model.steps() - stored >= every);
@@ -152,9 +160,9 @@ fn motion(
             let next = match &pauses.checkpoint {
                 Some(path) => {
                     let (steps, path) = (model.steps(), path.display());
-                    format!("step {steps} is stored; go on with --resume {path}")
+                    format!("step {steps} is stored; resume with --resume {path}")
                 }
-                None => "nothing is stored without --checkpoint FILE".to_owned(),
+                None => "nothing is stored; use --checkpoint FILE to store the state".to_owned(),
             };
             return Err(Error::Interrupted { signal, next });
         }
@@ -163,10 +171,10 @@ fn motion(
         }
     };
     let paused = end.is_none();
-    let mut deployment = run.finish(&model, &course, end.unwrap_or(End::Cancelled));
-    scene.followed.name(&mut deployment.tracks);
+    let mut deployment = run.finish(&model, &timeline, end.unwrap_or(End::Cancelled));
+    scene.recorded.name(&mut deployment.tracks);
     let status = match &deployment.stop {
-        _ if paused => "paused",
+        _ if paused => PAUSED,
         End::Done => row::DONE,
         End::Cancelled => "cancelled",
         End::Failed(failure) => failure.kind.name(),
@@ -174,37 +182,37 @@ fn motion(
     Ok((status, Ended::Motion(Box::new((model, deployment)))))
 }
 
-/// The run at its start, or where its checkpoint left it.
+/// The run at its start, or at its checkpoint.
 fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmRun, Run)> {
     let rings = scene.rings.clone();
-    let unsound = |error: billow_solver::scene::error::SceneError| {
+    let invalid = |error: billow_solver::scene::error::SceneError| {
         Error::from(refused("", "", &error.to_string(), ""))
     };
     let Some(path) = &pauses.resume else {
-        let mut model = FilmRun::of(&scene.film, rings).map_err(unsound)?;
+        let mut model = FilmRun::of(&scene.film, rings).map_err(invalid)?;
         model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
         return Ok((model, Run::default()));
     };
     let refuse = |problem: String| Error::Disk { path: path.clone(), problem };
     let bytes = files.read(path).map_err(|error| {
-        let next = "name the file --checkpoint wrote, or start anew without --resume";
+        let next = "give the file that --checkpoint wrote, or start again without --resume";
         refuse(format!("cannot read the checkpoint: {error}\n  next: {next}"))
     })?;
-    let text =
-        String::from_utf8(bytes).map_err(|_| refuse("no checkpoint: not UTF-8".to_owned()))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| refuse("is not a checkpoint: not UTF-8".to_owned()))?;
     let checkpoint = Checkpoint::from_text(&text, &scene.fingerprint).map_err(|error| {
         let next = match error {
             CheckpointError::Scene => {
-                "\n  next: resume with the scene, files and --set it was made with"
+                "\n  next: resume with the scene, files and --set of the checkpoint"
             }
             CheckpointError::Version { .. } | CheckpointError::Physics { .. } => {
-                "\n  next: resume with the billow that wrote it, or start anew without --resume"
+                "\n  next: resume with the billow that wrote it, or start again without --resume"
             }
-            CheckpointError::Invalid(_) => "\n  next: start anew without --resume",
+            CheckpointError::Invalid(_) => "\n  next: start again without --resume",
         };
         refuse(format!("{error}{next}"))
     })?;
-    let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(unsound)?;
+    let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(invalid)?;
     model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
     Ok((model, checkpoint.run))
 }

@@ -1,24 +1,26 @@
-//! What `billow solve` says of a solved scene: one JSON object, SI.
+//! The summary that `billow solve` prints of a solved scene: one JSON object, SI.
 //!
 //! | key | meaning |
 //! |---|---|
-//! | `status` | `done`; `paused`; `unstable`, `energy_drift`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
-//! | `notes` | what the program decided for itself, where it did |
-//! | `stop` | kind, time and place, where there is no result |
-//! | `volume` | enclosed, m³; of open film between it and the fans over its free edges |
-//! | `pressure`, `overpressure` | inside (of a fixed pressure: the overpressure); less the ambient one, Pa |
-//! | `temperature`, `gas_mass` | of the gas: K (of the film where there is none), kg |
-//! | `extents` | x, y, z: least and largest place of the film's nodes, m |
-//! | `nodes` | place of each node followed, m |
-//! | `resultants` | principal membrane forces of each element followed, the larger first, N/m: `N1`, `N2` second Piola-Kirchhoff, per reference width; `P1`, `P2` nominal (first Piola-Kirchhoff): the force itself, per reference width, in size; `T1`, `T2` true (Cauchy): the force itself, per width as it is. `S1`, `S2`: N over thickness, Pa; `regime` taut, wrinkled, slack |
-//! | `reactions` | of each support: `force` (N) it exerts on the film and its `moment` about the origin (N m); without inertia; a node of two supports counts in both |
+//! | `status` | `done`; `paused`; `no_equilibrium` or the name of a [`FailureKind`]: no result |
+//! | `notes` | choices of the program that a reader must know; left out where there are none |
+//! | `stop` | kind, time (s) and place of the failure, where there is no result |
+//! | `volume` | enclosed volume, m³; fans over the free edges close open film |
+//! | `pressure`, `overpressure` | inside, and inside less ambient, Pa; for a fixed pressure, both are the overpressure |
+//! | `temperature`, `gas_mass` | of the gas, K and kg; film temperature where there is no gas |
+//! | `extents` | x, y, z: smallest and largest coordinate of the film's nodes, m |
+//! | `nodes` | position of each recorded node, m |
+//! | `resultants` | principal membrane forces of each recorded element, the larger first, N/m: `N1`, `N2` second Piola-Kirchhoff, per reference width; `P1`, `P2` nominal (first Piola-Kirchhoff), magnitude per reference width; `T1`, `T2` true (Cauchy), per current width. `S1`, `S2`: N over thickness, Pa; `regime` taut, wrinkled, slack |
+//! | `reactions` | of each support: `force` (N) on the film and its `moment` about the origin (N m), without inertia; a node of two supports counts in both |
 //! | `ledger` | every entry since the start, J, and its largest `residual`; `gas_residual` |
-//! | `passages`, `intersections` | film through film: counted over the run; largest number at a sample (at rest: at the end); null where contact is off |
-//! | `contact` | `distance` film is held apart at and `smallest_gap`, m; largest `interlayer_pressure`, Pa, and `contact_area_fraction`; `searches`; most `pairs` at once; `impulses` against passing; `not_returned` energy, J; force on each of `plates` at the end, N |
+//! | `passages`, `intersections` | film through film: number over the run; largest number at a sample (static: at the end); null where contact is off |
+//! | `contact` | contact `distance` and `smallest_gap` (at most the distance), m; largest `interlayer_pressure`, Pa, and `contact_area_fraction`; `broad_phase_rebuilds`; largest number of `pairs`; `collision_impulses`; `unrecovered_contact_energy`, J; force on each of `plates` at the end, N |
 //! | `measures` | largest `peak_vz` of the top ring (m/s) with its time, `peak_kinetic_energy` (J) |
-//! | `energies` | kinetic, strain and (at rest) potential, J |
-//! | `film_stress` | largest principal second Piola-Kirchhoff stress: over the run, or at rest, Pa |
-//! | `steps`, `end_time`, `elements`, `wall_seconds` | steps (at rest: Newton steps); time reached, s; elements; wall time, s |
+//! | `energies` | kinetic, strain and (static) potential, J |
+//! | `film_stress` | largest principal second Piola-Kirchhoff stress over the run or in static equilibrium, Pa |
+//! | `steps`, `end_time`, `elements`, `wall_seconds` | number of steps (static: Newton steps); time reached, s; number of elements; wall time, s |
+//!
+//! [`FailureKind`]: billow_solver::output::outcome::FailureKind
 
 use billow_solver::collision::broad_phase::collision_mesh::CollisionMesh;
 use billow_solver::collision::contact::intersections::intersections;
@@ -28,22 +30,24 @@ use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::{resultants, thickness};
 use billow_solver::models::film::FilmRun;
-use billow_solver::output::outcome::Stop;
+use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::scene::film_scene::Filling;
+use billow_solver::statics::StaticSolution;
 use nalgebra::Vector3;
 use serde_json::{Map, Value as Json, json};
 
 use crate::input::value::Value;
 use crate::scene::file::SceneFile;
-use crate::scene::solve::{Ended, Solved};
+use crate::scene::solve::{Ended, NO_EQUILIBRIUM, Solved};
 
 /// The summary of a solved scene.
 pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
     let mut summary = match &solved.end {
         Ended::Motion(motion) => in_motion(scene, &motion.0, &motion.1),
-        Ended::Rest(rest) => at_rest(scene, rest),
-        Ended::NoRest(failure) => {
+        Ended::Equilibrium(solution) => in_equilibrium(scene, solution),
+        Ended::NoEquilibrium(failure) => {
             let stop = json!({
-                "kind": "no_equilibrium",
+                "kind": NO_EQUILIBRIUM,
                 "time": null,
                 "place": format!("node {}: {failure}", node_name(scene, failure.node)),
             });
@@ -59,26 +63,26 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
     summary
 }
 
-/// A node as the user counts, 0-based vertices of the file.
+/// Number of a node in the user's file, from 0.
 fn node_name(scene: &SceneFile, node: usize) -> String {
     let vertex = u32::try_from(node).ok().and_then(|node| scene.numbering.vertex(node));
     vertex.map_or_else(|| format!("{node} of the run"), |vertex| vertex.to_string())
 }
 
-/// What any film shows: nodes, extents, resultants.
-fn film(scene: &SceneFile, model: &FilmModel, places: &Field) -> Json {
+/// What every film has: nodes, resultants, extents.
+fn film(scene: &SceneFile, model: &FilmModel, positions: &Field) -> Json {
     let nodes =
-        scene.followed.nodes.iter().zip(&scene.film.outputs.nodes).map(|(name, node)| {
-            (name.clone(), json!(<[f64; 3]>::from(places.get(*node as usize))))
+        scene.recorded.nodes.iter().zip(&scene.film.outputs.nodes).map(|(name, node)| {
+            (name.clone(), json!(<[f64; 3]>::from(positions.get(*node as usize))))
         });
-    let elements = scene.followed.elements.iter().zip(&scene.film.outputs.elements);
+    let elements = scene.recorded.elements.iter().zip(&scene.film.outputs.elements);
     let elements = elements.map(|(name, element)| {
-        let own = resultants(model, places, *element as usize);
+        let forces = resultants(model, positions, *element as usize);
         let thickness = thickness(model, *element as usize);
-        let [n1, n2] = own.principal;
-        let [p1, p2] = own.nominal;
-        let [t1, t2] = own.cauchy;
-        let regime = match own.regime {
+        let [n1, n2] = forces.principal;
+        let [p1, p2] = forces.nominal;
+        let [t1, t2] = forces.cauchy;
+        let regime = match forces.regime {
             Regime::Taut => "taut",
             Regime::Wrinkled => "wrinkled",
             Regime::Slack => "slack",
@@ -92,36 +96,32 @@ fn film(scene: &SceneFile, model: &FilmModel, places: &Field) -> Json {
     json!({
         "nodes": nodes.collect::<Map<_, _>>(),
         "resultants": elements.collect::<Map<_, _>>(),
-        "extents": extents(model, places),
+        "extents": extents(model, positions),
         "elements": model.elements(),
     })
 }
 
-/// Least and largest place of nodes that bear film, m.
-fn extents(model: &FilmModel, places: &Field) -> Json {
-    let of = |column: &[f64]| {
+/// Smallest and largest coordinates of nodes with film, m.
+fn extents(model: &FilmModel, positions: &Field) -> Json {
+    let range = |column: &[f64]| {
         let film = model.mass.iter().zip(column).filter(|(mass, _)| **mass > 0.0);
         let (low, high) = film
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, place)| {
-                (low.min(*place), high.max(*place))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, coordinate)| {
+                (low.min(*coordinate), high.max(*coordinate))
             });
         json!([low, high])
     };
-    json!({"x": of(&places.x), "y": of(&places.y), "z": of(&places.z)})
+    json!({"x": range(&positions.x), "y": range(&positions.y), "z": range(&positions.z)})
 }
 
-/// What a support exerts on the film, of what the film exerts on it.
+/// Force and moment of a support on the film, from those of the film on the support.
 fn reaction([force, moment]: [Vector3<f64>; 2]) -> Json {
-    // −0 is 0 to whoever reads it.
-    let turned = |vector: Vector3<f64>| <[f64; 3]>::from(vector.map(|part| 0.0 - part));
-    json!({"force": turned(force), "moment": turned(moment)})
+    // Subtraction from 0 gives 0, not −0.
+    let reversed = |vector: Vector3<f64>| <[f64; 3]>::from(vector.map(|part| 0.0 - part));
+    json!({"force": reversed(force), "moment": reversed(moment)})
 }
 
-fn in_motion(
-    scene: &SceneFile,
-    run: &FilmRun,
-    deployment: &billow_solver::output::outcome::Deployment,
-) -> Json {
+fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json {
     let explicit = &run.film;
     let mut summary = film(scene, &explicit.model, &explicit.state.positions);
     let ledger = explicit.ledger();
@@ -130,8 +130,8 @@ fn in_motion(
         PressureLoad::Overpressure(_) => scene.film.film.temperature,
     };
     let reactions = scene.film.supports.iter().map(|support| {
-        let borne = explicit.reaction(&support.nodes, &support.hold.projector());
-        (support.name.clone(), reaction(borne))
+        let on_support = explicit.reaction(&support.nodes, &support.hold.projector());
+        (support.name.clone(), reaction(on_support))
     });
     let more = json!({
         "volume": run.volume(),
@@ -175,65 +175,63 @@ fn in_motion(
     summary
 }
 
-/// What contact did, its extremes over the samples; `null` where it is off.
-fn contact(run: &FilmRun, deployment: &billow_solver::output::outcome::Deployment) -> Json {
-    let Some(law) = &run.film.parameters.contact else { return Json::Null };
-    let meeting = &run.film.state.contact_state;
-    let most = |name: &str| deployment.followed(name).iter().copied().fold(0.0, f64::max);
-    let plates = law.plates.iter().zip(&meeting.plates);
-    let stored = meeting.contacts.iter().map(|contact| contact.energy).sum::<f64>()
-        + meeting.plates.iter().map(|plate| plate.energy).sum::<f64>();
+/// Contact, with its extremes over the samples; `null` where it is off.
+fn contact(run: &FilmRun, deployment: &Deployment) -> Json {
+    let Some(model) = &run.film.parameters.contact else { return Json::Null };
+    let state = &run.film.state.contact_state;
+    let largest = |name: &str| deployment.followed(name).iter().copied().fold(0.0, f64::max);
+    let plates = model.plates.iter().zip(&state.plates);
+    let stored = state.contacts.iter().map(|contact| contact.energy).sum::<f64>()
+        + state.plates.iter().map(|plate| plate.energy).sum::<f64>();
     json!({
-        "distance": law.distance,
-        "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(law.distance, f64::min),
-        "interlayer_pressure": most("interlayer_pressure"),
-        "contact_area_fraction": most("contact_area_fraction"),
-        "searches": meeting.broad_phase_rebuilds,
-        "pairs": most("contact_pairs"),
-        "impulses": meeting.collision_impulses,
-        "not_returned": run.film.ledger().contact - stored + meeting.collision_dissipation,
-        "plates": plates.map(|(plate, own)| (plate.name.clone(), own.force.into()))
+        "distance": model.distance,
+        "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(model.distance, f64::min),
+        "interlayer_pressure": largest("interlayer_pressure"),
+        "contact_area_fraction": largest("contact_area_fraction"),
+        "broad_phase_rebuilds": state.broad_phase_rebuilds,
+        "pairs": largest("contact_pairs"),
+        "collision_impulses": state.collision_impulses,
+        "unrecovered_contact_energy": run.film.ledger().contact - stored + state.collision_dissipation,
+        "plates": plates.map(|(plate, state)| (plate.name.clone(), state.force.into()))
             .collect::<Map<_, _>>(),
     })
 }
 
-fn at_rest(scene: &SceneFile, rest: &billow_solver::statics::StaticSolution) -> Json {
-    let mut summary = film(scene, &rest.model, &rest.positions);
+fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
+    let mut summary = film(scene, &solution.model, &solution.positions);
     let pressure = match scene.film.filling {
-        billow_solver::scene::film_scene::Filling::Pressure(pressure) => pressure,
-        billow_solver::scene::film_scene::Filling::Gas { .. } => {
-            unreachable!("refused with statics")
-        }
+        Filling::Pressure(pressure) => pressure,
+        Filling::Gas { .. } => unreachable!("the scene file refuses gas with solver.static"),
     };
-    let reactions = rest
+    let reactions = solution
         .reactions
         .iter()
-        .map(|own| (own.name.clone(), reaction([own.force, own.moment])))
+        .map(|support| (support.name.clone(), reaction([support.force, support.moment])))
         .collect::<Map<_, _>>();
-    let stress = (0..rest.model.elements()).fold(0.0_f64, |largest, element| {
-        let own = resultants(&rest.model, &rest.positions, element);
-        largest.max(own.principal[0] / thickness(&rest.model, element))
+    let stress = (0..solution.model.elements()).fold(0.0_f64, |largest, element| {
+        let forces = resultants(&solution.model, &solution.positions, element);
+        largest.max(forces.principal[0] / thickness(&solution.model, element))
     });
-    let mesh = CollisionMesh::new(rest.model.nodes(), &rest.model.triangles);
-    if scene.film.shell.is_closed() && rest.volume <= 0.0 {
-        let place = format!("the film is turned inside out: V {:.6} m3", rest.volume);
+    let mesh = CollisionMesh::new(solution.model.nodes(), &solution.model.triangles);
+    if scene.film.shell.is_closed() && solution.volume <= 0.0 {
+        let place = format!("the film is turned inside out: V {:.6} m3", solution.volume);
         summary["stop"] = json!({"kind": "inverted_volume", "time": null, "place": place});
     }
     let more = json!({
-        "volume": rest.volume,
+        "volume": solution.volume,
         "pressure": pressure,
         "overpressure": pressure,
         "temperature": scene.film.film.temperature,
         "gas_mass": 0.0,
         "reactions": reactions,
         "passages": null,
-        "intersections": intersections(&mesh, &rest.positions).len(),
+        "intersections": intersections(&mesh, &solution.positions).len(),
         "energies": {
-            "kinetic": 0.0, "strain": rest.strain_energy, "potential": rest.potential_energy,
+            "kinetic": 0.0, "strain": solution.strain_energy, "potential": solution.potential_energy,
         },
-        "ledger": {"strain": rest.strain_energy, "residual": rest.residual},
+        "ledger": {"strain": solution.strain_energy, "residual": solution.residual},
         "film_stress": stress,
-        "steps": rest.iterations,
+        "steps": solution.iterations,
         "end_time": null,
     });
     merge(&mut summary, more);

@@ -1,11 +1,11 @@
-//! The study without its grid: every key read or defaulted, strategies, supports.
+//! The study without its grid: the value of every key, strategies, supports.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Map, json};
 
 use super::strategy::{Strategy, read_strategy};
-use crate::input::keys::{self, KEYS, STUDY};
+use crate::input::keys::{self, KEYS, STUDY, position};
 use crate::input::settings::{Settings, check_version, object};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
@@ -14,7 +14,7 @@ use crate::input::value::{Value, json_value};
 use crate::platform::error::InputError;
 use billow_solver::scene::Support;
 
-/// Everything a point starts from.
+/// What every point starts from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Base {
     pub settings: Settings,
@@ -37,12 +37,11 @@ impl Base {
                 base.strategies.insert(name.clone(), strategy);
             }
         }
-        let name = base.settings.text("strategy");
-        base.check_strategy(name, "strategy", source)?;
+        base.check_strategy(base.strategy_name(), "strategy", source)?;
         Ok(base)
     }
 
-    /// Keys that exclude each other.
+    /// Refuses a step that is both adaptive and fixed; a fixed one replaces the default tolerance.
     fn check_stepping(&mut self, tree: &Json, source: &Source) -> Result<(), InputError> {
         let stepping = tree.get("solver").and_then(|solver| solver.get("stepping"));
         if let Some(stepping) = stepping {
@@ -55,15 +54,21 @@ impl Base {
                     "one of {\"adaptive\": 1e-6}, {\"fixed\": \"10 us\"}",
                 ));
             }
-            if let (true, Some(at)) = (given("fixed"), keys::index("solver.stepping.fixed")) {
-                let fixed = self.settings.at(at).clone();
-                self.settings.set(at, fixed);
+            if given("fixed") {
+                let index = const { position(KEYS, "solver.stepping.fixed") };
+                let fixed = self.settings.value(index).clone();
+                self.settings.set(index, fixed);
             }
         }
         Ok(())
     }
 
-    /// Whether a strategy is known.
+    /// Name of the strategy.
+    pub fn strategy_name(&self) -> &str {
+        self.settings.text(const { position(KEYS, "strategy") }).unwrap_or_default()
+    }
+
+    /// Refuses a strategy that the study does not have.
     pub fn check_strategy(&self, name: &str, key: &str, source: &Source) -> Result<(), InputError> {
         if self.strategies.contains_key(name) {
             return Ok(());
@@ -74,20 +79,20 @@ impl Base {
         Err(source.error(
             key,
             &Json::Text(name.to_owned()).brief(),
-            format!("is no strategy of this study{near}"),
+            format!("is not a strategy of this study{near}"),
             known.join(", "),
         ))
     }
 
-    /// Settings, strategies and supports, spelled out.
+    /// Settings, strategies and supports, with every value they have.
     pub fn to_json(&self) -> serde_json::Value {
         let mut json = json!({});
         for (key, value) in KEYS.iter().zip(self.settings.values()) {
             if *value == Value::Null {
                 continue;
             }
-            let place = key.path.split('.').fold(&mut json, |place, part| &mut place[part]);
-            *place = json_value(value);
+            let member = key.path.split('.').fold(&mut json, |object, part| &mut object[part]);
+            *member = json_value(value);
         }
         let strategies = self.strategies.iter();
         let strategies = strategies.map(|(name, strategy)| (name.clone(), strategy.to_json()));

@@ -1,14 +1,16 @@
 //! The grid of a study: axes (single or zipped), single points, a filter.
 
-use super::Limits;
 use super::base::Base;
-use super::expand;
+use super::limits::Limits;
+use super::range::RangeInput;
+use super::target::{self, Column, Target};
+use super::variables::variables;
 use crate::input::expression::Expression;
-use crate::input::keys::{self, KEYS, Key, Kind, STRATEGY_KEYS, STUDY, WINDOW_KEYS};
+use crate::input::keys::{KEYS, STUDY, position};
 use crate::input::settings::{list, object, read};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
-use crate::input::value::Value;
+use crate::input::value::{Value, json_value};
 use crate::platform::error::InputError;
 
 /// What a study varies.
@@ -18,39 +20,10 @@ pub(super) struct Grid {
     pub columns: Vec<Column>,
     /// The axes; the first varies slowest.
     pub axes: Vec<Axis>,
-    /// Single points, after the product: positions in `columns`, values.
+    /// Single points, after the product: positions in `columns`, and values.
     pub points: Vec<Vec<(usize, Value)>>,
-    /// Which points stay.
+    /// Which points the study keeps.
     pub filter: Option<Expression>,
-}
-
-/// A varied key.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Column {
-    /// The shortest name of the key.
-    pub name: String,
-    pub target: Target,
-}
-
-/// Where the value of a column goes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Target {
-    /// Position in [`KEYS`].
-    Key(usize),
-    /// Strategy, position in [`STRATEGY_KEYS`].
-    Strategy(String, usize),
-    /// Strategy, window, position in [`WINDOW_KEYS`].
-    Window(String, usize, usize),
-}
-
-impl Target {
-    pub fn key(&self) -> &'static Key {
-        match self {
-            Self::Key(at) => &KEYS[*at],
-            Self::Strategy(_, at) => &STRATEGY_KEYS[*at],
-            Self::Window(_, _, at) => &WINDOW_KEYS[*at],
-        }
-    }
 }
 
 /// One axis: keys that vary together.
@@ -58,11 +31,11 @@ impl Target {
 pub(super) struct Axis {
     /// Positions in [`Grid::columns`].
     pub columns: Vec<usize>,
-    /// Values, one row a step, one value a column.
+    /// Values: one row for each step of the axis, one value for each column.
     pub rows: Vec<Vec<Value>>,
 }
 
-/// What an axis may be, for errors.
+/// What an axis must look like, for errors.
 const AXIS: &str =
     "a list of values, or {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}";
 
@@ -82,17 +55,17 @@ impl Grid {
                 "zip" => {
                     let allowed = "a list of objects of lists of equal length";
                     let groups = list(value, "grid.zip", source, allowed)?;
-                    for (at, group) in groups.iter().enumerate() {
-                        grid.zip(group, &format!("grid.zip[{at}]"), base, source, limits)?;
+                    for (index, group) in groups.iter().enumerate() {
+                        grid.zip(group, &format!("grid.zip[{index}]"), base, source, limits)?;
                     }
                 }
-                // Points and filter may use every column, so they are read last.
+                // Points and filter may name every column, so they are read last.
                 "points" => points = Some(value),
                 "filter" => filter = Some(value),
                 _ => {
-                    let at = format!("grid.{name}");
-                    let column = grid.column(name, &at, value, base, source)?;
-                    let values = grid.values(column, value, &at, base, source, limits)?;
+                    let path = format!("grid.{name}");
+                    let column = grid.column(name, &path, value, base, source)?;
+                    let values = grid.values(column, value, &path, base, source, limits)?;
                     let rows = values.into_iter().map(|value| vec![value]).collect();
                     grid.axes.push(Axis { columns: vec![column], rows });
                 }
@@ -112,10 +85,39 @@ impl Grid {
         self.columns.is_empty() && self.filter.is_none()
     }
 
+    /// The grid as JSON: each axis is a group of `zip`, since a list keeps the order of the axes and an
+    /// object may not.
+    pub fn resolved(&self) -> Json {
+        let name = |column: usize| self.columns[column].name.clone();
+        let json = |value: &Value| Json::from(json_value(value));
+        let mut grid = Vec::new();
+        let groups = self.axes.iter().map(|axis| {
+            let columns = axis.columns.iter().enumerate().map(|(index, column)| {
+                let values = axis.rows.iter().map(|row| json(&row[index])).collect();
+                (name(*column), Json::List(values))
+            });
+            Json::Object(columns.collect())
+        });
+        if !self.axes.is_empty() {
+            grid.push(("zip".to_owned(), Json::List(groups.collect())));
+        }
+        let points = self.points.iter().map(|point| {
+            let members = point.iter().map(|(column, value)| (name(*column), json(value)));
+            Json::Object(members.collect())
+        });
+        if !self.points.is_empty() {
+            grid.push(("points".to_owned(), Json::List(points.collect())));
+        }
+        if let Some(filter) = &self.filter {
+            grid.push(("filter".to_owned(), Json::Text(filter.text().to_owned())));
+        }
+        Json::Object(grid)
+    }
+
     fn zip(
         &mut self,
         group: &Json,
-        at: &str,
+        path: &str,
         base: &Base,
         source: &Source,
         limits: Limits,
@@ -123,26 +125,26 @@ impl Grid {
         let allowed = "an object of lists of equal length";
         let Json::Object(members) = group else {
             let problem = format!("is {}, not an object", group.kind());
-            return Err(source.error(at, &group.brief(), problem, allowed));
+            return Err(source.error(path, &group.brief(), problem, allowed));
         };
         let mut columns = Vec::new();
         let mut lists: Vec<Vec<Value>> = Vec::new();
         for (name, value) in members {
-            let at = format!("{at}.{name}");
-            let column = self.column(name, &at, value, base, source)?;
-            let values = self.values(column, value, &at, base, source, limits)?;
+            let path = format!("{path}.{name}");
+            let column = self.column(name, &path, value, base, source)?;
+            let values = self.values(column, value, &path, base, source, limits)?;
             if let Some(first) = lists.first()
                 && first.len() != values.len()
             {
                 let problem =
                     format!("has {} values, the first list {}", values.len(), first.len());
-                return Err(source.error(&at, &value.brief(), problem, allowed));
+                return Err(source.error(&path, &value.brief(), problem, allowed));
             }
             columns.push(column);
             lists.push(values);
         }
         let Some(length) = lists.first().map(Vec::len) else {
-            return Err(source.error(at, "{}", "is empty", allowed));
+            return Err(source.error(path, "{}", "is empty", allowed));
         };
         let rows = (0..length)
             .map(|row| lists.iter().map(|values| values[row].clone()).collect())
@@ -151,21 +153,21 @@ impl Grid {
         Ok(())
     }
 
-    /// The column of a key new to the axes.
+    /// Adds the column of a key; refuses a key that another axis varies.
     fn column(
         &mut self,
         name: &str,
-        at: &str,
+        path: &str,
         value: &Json,
         base: &Base,
         source: &Source,
     ) -> Result<usize, InputError> {
-        let (short, target) = target(name, at, value, base, source)?;
-        if self.columns.iter().any(|column| column.target == target) {
-            let problem = format!("varies {short}, which another axis varies already");
-            return Err(source.error(at, &value.brief(), problem, "each key once"));
+        let column = target::find(name, path, value, base, source)?;
+        if self.columns.iter().any(|known| known.target == column.target) {
+            let problem = format!("varies {}, which another axis varies already", column.name);
+            return Err(source.error(path, &value.brief(), problem, "each key once"));
         }
-        self.columns.push(Column { name: short, target });
+        self.columns.push(column);
         Ok(self.columns.len() - 1)
     }
 
@@ -173,7 +175,7 @@ impl Grid {
         &self,
         column: usize,
         json: &Json,
-        at: &str,
+        path: &str,
         base: &Base,
         source: &Source,
         limits: Limits,
@@ -183,14 +185,15 @@ impl Grid {
             Json::List(items) => items,
             Json::Object(members) => {
                 if members.iter().any(|(name, _)| name == "bisect") {
-                    let problem = "boundary search (`bisect`) is not part of this version";
-                    return Err(source.error(at, &json.brief(), problem, AXIS));
+                    let problem = "boundary search (`bisect`) does not exist in this version";
+                    return Err(source.error(path, &json.brief(), problem, AXIS));
                 }
-                return expand::range(target.key(), members, json, at, source, limits);
+                let key = target.key();
+                return RangeInput { key, members, json, path, source }.values(limits);
             }
             other => {
                 let mut error = source.error(
-                    at,
+                    path,
                     &other.brief(),
                     format!("is {}, not an axis", other.kind()),
                     AXIS,
@@ -202,36 +205,36 @@ impl Grid {
             }
         };
         if items.is_empty() {
-            return Err(source.error(at, "[]", "is an empty axis", AXIS));
+            return Err(source.error(path, "[]", "is an empty axis", AXIS));
         }
         items
             .iter()
             .enumerate()
-            .map(|(number, item)| value(target, item, &format!("{at}[{number}]"), base, source))
+            .map(|(number, item)| value(target, item, &format!("{path}[{number}]"), base, source))
             .collect()
     }
 
     fn read_points(&mut self, json: &Json, base: &Base, source: &Source) -> Result<(), InputError> {
         let allowed = "a list of objects, as in [{\"N\": 6, \"M\": 3}]";
         for (number, point) in list(json, "grid.points", source, allowed)?.iter().enumerate() {
-            let at = format!("grid.points[{number}]");
+            let path = format!("grid.points[{number}]");
             let Json::Object(members) = point else {
                 let problem = format!("is {}, not an object", point.kind());
-                return Err(source.error(&at, &point.brief(), problem, allowed));
+                return Err(source.error(&path, &point.brief(), problem, allowed));
             };
             let mut values: Vec<(usize, Value)> = Vec::new();
             for (name, json) in members {
-                let at = format!("{at}.{name}");
-                let (short, target) = target(name, &at, json, base, source)?;
-                let value = value(&target, json, &at, base, source)?;
-                let known = self.columns.iter().position(|column| column.target == target);
+                let path = format!("{path}.{name}");
+                let found = target::find(name, &path, json, base, source)?;
+                let value = value(&found.target, json, &path, base, source)?;
+                let known = self.columns.iter().position(|known| known.target == found.target);
                 let column = known.unwrap_or_else(|| {
-                    self.columns.push(Column { name: short, target });
+                    self.columns.push(found);
                     self.columns.len() - 1
                 });
                 if values.iter().any(|(other, _)| *other == column) {
                     let problem = "gives this key twice";
-                    return Err(source.error(&at, &json.brief(), problem, "each key once"));
+                    return Err(source.error(&path, &json.brief(), problem, "each key once"));
                 }
                 values.push((column, value));
             }
@@ -251,86 +254,49 @@ impl Grid {
             let allowed = "a condition, as in \"N == 6 and feasible\"";
             return Err(source.error("grid.filter", &json.brief(), problem, allowed));
         };
-        Expression::condition(text, &expand::variables(self, base)).map_err(|error| {
-            // The expression stands above the caret, so it is not repeated as the value.
+        Expression::condition(text, &variables(&self.columns, base)).map_err(|error| {
+            // The problem shows the expression, so the value does not repeat it.
             let problem = error.to_string();
             source.error("grid.filter", "", problem, error.allowed)
         })
     }
 }
 
-/// What the name of an axis means: its shortest name, and where its values go.
-fn target(
-    name: &str,
-    at: &str,
-    value: &Json,
-    base: &Base,
-    source: &Source,
-) -> Result<(String, Target), InputError> {
-    if let Some(key) = keys::find(name).filter(|key| KEYS[*key].varies()) {
-        return Ok((keys::short_name(key).to_owned(), Target::Key(key)));
-    }
-    let refuse =
-        |problem: String, allowed: String| Err(source.error(at, &value.brief(), problem, allowed));
-    if let Some(rest) = name.strip_prefix("strategies.") {
-        let allowed = "strategies.<name>.release_time, .preinflation_mass, .inflow[0].rate, …";
-        let parts: Vec<&str> = rest.split('.').collect();
-        let Some(strategy) = parts.first().and_then(|part| base.strategies.get(*part)) else {
-            base.check_strategy(parts.first().unwrap_or(&""), at, source)?;
-            return refuse("is no key of a strategy".to_owned(), allowed.to_owned());
-        };
-        let found = match parts[1..] {
-            [leaf] => STRATEGY_KEYS
-                .iter()
-                .position(|key| key.path == leaf)
-                .map(|key| Target::Strategy(parts[0].to_owned(), key)),
-            [window, leaf] => window
-                .strip_prefix("inflow[")
-                .and_then(|index| index.strip_suffix(']')?.parse::<usize>().ok())
-                .filter(|index| *index < strategy.inflow.len())
-                .zip(WINDOW_KEYS.iter().position(|key| key.path == leaf))
-                .map(|(index, key)| Target::Window(parts[0].to_owned(), index, key)),
-            _ => None,
-        };
-        return match found {
-            Some(Target::Window(strategy, index, key)) => {
-                let name =
-                    format!("strategies.{strategy}.inflow[{index}].{}", WINDOW_KEYS[key].path);
-                Ok((name, Target::Window(strategy, index, key)))
-            }
-            Some(target) => Ok((name.to_owned(), target)),
-            None => refuse("is no key of that strategy".to_owned(), allowed.to_owned()),
-        };
-    }
-    let known = || {
-        let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
-        varied.flat_map(|(at, key)| [keys::short_name(at), key.path])
-    };
-    let near = keys::nearest(name, known().chain(["zip", "points", "filter"]));
-    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
-    let twins: Vec<&str> =
-        KEYS.iter().filter(|key| key.leaf() == name).map(|key| key.path).collect();
-    if twins.len() > 1 {
-        return refuse("is the name of several keys".to_owned(), twins.join(", "));
-    }
-    let allowed = "keys of the study, as N or film.thickness; zip, points, filter".to_owned();
-    refuse(format!("is no key a grid can vary{near}"), allowed)
-}
+/// The key that names a strategy.
+const STRATEGY: usize = position(KEYS, "strategy");
 
-/// One value of a column.
+/// Reads one value of a column.
 fn value(
     target: &Target,
     json: &Json,
-    at: &str,
+    path: &str,
     base: &Base,
     source: &Source,
 ) -> Result<Value, InputError> {
     let key = target.key();
-    let value = read(key, json, at, source)?;
-    if let (Target::Key(_), Kind::Text, Value::Text(name)) = (target, key.kind, &value)
-        && key.path == "strategy"
-    {
-        base.check_strategy(name, at, source)?;
+    let value = read(key, json, path, source)?;
+    if let (Target::Key(STRATEGY), Value::Text(name)) = (target, &value) {
+        base.check_strategy(name, path, source)?;
     }
     Ok(value)
+}
+
+/// Refuses an override of a key that the grid varies: it has no effect.
+pub(super) fn refuse_varied(grid: &Grid, source: &Source) -> Result<(), InputError> {
+    for (path, _) in &source.sets {
+        let varied = grid.columns.iter().enumerate().find(|(index, column)| {
+            let on_axis = grid.axes.iter().any(|axis| axis.columns.contains(index));
+            on_axis && matches!(column.target, Target::Key(key) if KEYS[key].path == path)
+        });
+        if let Some((_, column)) = varied {
+            let name = &column.name;
+            return Err(source.error(
+                path,
+                "",
+                "the grid varies this key, so the override has no effect",
+                format!("--set 'grid.{name}=[…]'"),
+            ));
+        }
+    }
+    Ok(())
 }

@@ -1,7 +1,7 @@
-//! Which jobs a study has, and why some of its points have none.
+//! The jobs of a study.
 //!
-//! Planning is a pure function of the study and the rows already finished. A plain grid has one
-//! generation; a search has several, and a resume replays them.
+//! Planning is a pure function of the study and its finished rows. A plain grid has one generation; a
+//! search has several, and a resumed study replays them.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
@@ -11,7 +11,7 @@ use crate::job::row::Cells;
 use crate::job::{Job, JobId};
 use crate::study::Study;
 
-/// The jobs that can be planned together.
+/// Points that are planned together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Generation {
     /// 0 for the first.
@@ -20,7 +20,7 @@ pub struct Generation {
     pub points: Vec<Point>,
 }
 
-/// What planning may know of a finished job.
+/// What planning knows of a finished job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRow {
     /// The job.
@@ -32,7 +32,7 @@ pub struct FinishedRow {
 }
 
 impl FinishedRow {
-    /// Of a job that ended with these cells.
+    /// The row of a job that ended with these cells.
     pub fn of(id: &JobId, cells: &Cells) -> Self {
         let verdict = Some(cells.text("verdict")).filter(|text| !text.is_empty());
         Self {
@@ -43,13 +43,12 @@ impl FinishedRow {
     }
 }
 
-/// The next generation of a study, or `None` when nothing is left to plan. Pure: the same study and
-/// the same finished rows, in any order, give the same generation.
+/// The next generation of a study; `None` when every job is finished. The same study and the same
+/// finished rows, in any order, give the same generation.
 ///
-/// A grid has one generation. It is planned while any of its jobs has no finished row, and it is
-/// whole each time: which of its points are finished is for the runner to see. Infeasible points
-/// need no run, so they hold nothing up; but with no finished row at all the generation is always
-/// given, so that a study of infeasible points alone gets its rows.
+/// A grid has one generation, planned whole while any of its jobs has no finished row; the runner
+/// leaves out the finished ones. Infeasible points have no job to finish. Without any finished row the
+/// generation is always given, so that a study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
     let finished: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
     let generation = first_generation(study);
@@ -60,21 +59,21 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     (open || finished.is_empty()).then_some(generation)
 }
 
-/// Every point of the grid; points that resolve to the same job are one, at the place of the first.
+/// Every point of the grid. Points with the same job are merged into the first of them.
 fn first_generation(study: &Study) -> Generation {
     let mut points: Vec<Point> = Vec::with_capacity(study.points().len());
-    let mut places: HashMap<JobId, usize> = HashMap::new();
+    let mut positions: HashMap<JobId, usize> = HashMap::new();
     for point in study.points() {
         let id = JobId::of(&point.scene);
-        match places.entry(id) {
-            Entry::Occupied(place) => points[*place.get()].merged.push(point.parameters.clone()),
-            Entry::Vacant(place) => {
+        match positions.entry(id) {
+            Entry::Occupied(entry) => points[*entry.get()].merged.push(point.parameters.clone()),
+            Entry::Vacant(entry) => {
                 let job = Job {
-                    id: place.key().clone(),
+                    id: entry.key().clone(),
                     parameters: point.parameters.clone(),
                     scene: point.scene.clone(),
                 };
-                place.insert(points.len());
+                entry.insert(points.len());
                 let infeasible = point.infeasible.clone();
                 points.push(Point { job, infeasible, solved: point.solved, merged: Vec::new() });
             }

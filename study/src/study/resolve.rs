@@ -1,230 +1,184 @@
 //! From the settings of a point to its scene.
 
-use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
-use billow_solver::scene::{
-    Contact, GasSupply, InflowWindow, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
-};
+use billow_solver::geometry::fold::FoldDesign;
+use billow_solver::scene::{InflowWindow, ModelKind, Scene, Stepping};
 
 use super::base::Base;
-use super::strategy::Strategy;
-use crate::input::keys::{STRATEGY_KEYS, WINDOW_KEYS};
-use crate::input::settings::{film, gas_laws, missing, number, unsigned, whole};
+use super::strategy::{Strategy, Window};
+use crate::input::keys::draft::{Draft, SteppingDraft};
+use crate::input::keys::{KEYS, Key, named};
+use crate::input::settings::{check_sample_interval, species};
 use crate::input::source::{Source, shown};
-use crate::input::value::Value;
-use crate::job::point::Infeasible;
 use crate::platform::error::InputError;
 
-/// A design's pattern, or why it has none.
-#[derive(Debug)]
-pub(super) enum Fold {
-    Solved(Box<FoldPattern>),
-    Infeasible(Infeasible),
-    /// The request contradicts itself.
-    Invalid {
-        key: &'static str,
-        problem: String,
-    },
+/// The fold design of a point.
+///
+/// # Errors
+/// When a required key of the design is missing.
+pub(super) fn design(point: &Base, source: &Source) -> Result<FoldDesign, InputError> {
+    let of_design = |key: &Key| key.path.starts_with("design.");
+    Ok(point.settings.draft(of_design, source)?.scene.design)
 }
 
-/// Solves a design.
-pub(super) fn fold(design: &FoldDesign) -> Fold {
-    match FoldPattern::new(design) {
-        Ok(pattern) => Fold::Solved(Box::new(pattern)),
-        Err(FoldError::Infeasible { reason, nearest }) => {
-            Fold::Infeasible(Infeasible { reason, nearest })
-        }
-        Err(FoldError::Invalid { key, problem }) => Fold::Invalid { key, problem },
-    }
-}
-
-/// The bits of a design, to find one solved before.
-pub(super) type DesignKey = [u64; 12];
-
-/// The key of a design.
-pub(super) fn design_key(design: &FoldDesign) -> DesignKey {
-    // No key allows the value NaN, so its bits are free to mean absent.
-    let bits = |value: Option<f64>| value.unwrap_or(f64::NAN).to_bits();
-    [
-        design.fit as u64,
-        design.panels.into(),
-        design.storeys.into(),
-        design.bottom_radius.to_bits(),
-        bits(design.top_radius),
-        bits(design.height),
-        bits(design.half_angle),
-        bits(design.alpha1_over_phi),
-        design.chirality as u64,
-        design.stowed_height.to_bits(),
-        design.subdivisions.into(),
-        design.caps as u64,
-    ]
-}
-
-/// Most samples of one run: more would be a slip of the unit.
-const MOST_SAMPLES: f64 = billow_solver::scene::MAX_SAMPLES;
-
-/// The scene of a point.
-pub(super) fn scene(
-    point: &Base,
-    design: FoldDesign,
-    source: &Source,
-) -> Result<Scene, InputError> {
-    let settings = &point.settings;
-    let get = |path: &str| number(settings, path, source);
-    let end_time = get("solver.end_time")?;
-    let sample_interval = get("outputs.sample_interval")?;
-    if end_time / sample_interval > MOST_SAMPLES {
-        return Err(source.error(
-            "outputs.sample_interval",
-            &shown(sample_interval),
-            format!("samples a run of {end_time} s more than {MOST_SAMPLES:.0} times"),
-            format!("at least {} s for this end_time", shown(end_time / MOST_SAMPLES)),
-        ));
-    }
-    let name = settings.text("strategy");
+/// The scene of a point: the draft of its keys, completed by its strategy and its model.
+///
+/// # Errors
+/// When a key is missing, or two keys contradict each other.
+pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> {
+    let draft = point.settings.draft(|_| true, source)?;
+    let end_time = draft.scene.solver.end_time;
+    check_sample_interval(draft.scene.outputs.sample_interval, end_time, source)?;
+    let name = point.strategy_name();
     let Some(strategy) = point.strategies.get(name) else {
         point.check_strategy(name, "strategy", source)?;
-        return Err(missing(settings, "strategy", source));
+        return Err(point.settings.missing(const { named(KEYS, "strategy") }, source));
     };
-    let release_time = strategy_number(strategy, "release_time");
-    if release_time >= end_time {
-        return Err(source.error(
-            &format!("strategies.{name}.release_time"),
-            &shown(release_time),
-            "the run ends before the capsule is released",
-            format!("below solver.end_time, {end_time} s"),
-        ));
+    check_release(name, strategy, end_time, source)?;
+    let windows = Windows { point, name, strategy, draft: &draft, source };
+    let windows = windows.resolve()?;
+    let mut scene = draft.scene.clone();
+    scene.gas.species = species(&draft.species, source)?;
+    scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft);
+    scene.gas.windows = windows;
+    scene.supports.clone_from(&point.supports);
+    scene.release_time = strategy.release_time();
+    scene.solver.stepping = stepping(scene.solver.model, &draft.stepping, point, source)?;
+    if !has_shape(scene.solver.model) {
+        // Equal physics gives an equal job, whatever number of shapes is asked for.
+        scene.outputs.frames = 0;
     }
-    let model = match settings.text("solver.model") {
-        "piston" => ModelKind::Piston,
-        _ => ModelKind::Film,
-    };
-    let residual = get("gas.residual_gas_mass")?;
-    let stored = settings.text("gas.residual_gas") == "stored";
-    let windows = windows(point, name, strategy, if stored { 0.0 } else { residual }, source)?;
-    Ok(Scene {
-        design,
-        film: film(settings, source)?,
-        gas: GasSupply {
-            initial_mass: strategy_number(strategy, "preinflation_mass")
-                + if stored { residual } else { 0.0 },
-            windows,
-            ..gas_laws(settings, source)?
-        },
-        supports: point.supports.clone(),
-        contact: Contact {
-            distance: settings.number("contact.distance"),
-            friction: get("contact.friction")?,
-            adhesion: get("contact.adhesion")?,
-        },
-        gravity: get("gravity")?,
-        release_time,
-        solver: Solver {
-            model,
-            end_time,
-            stepping: match (model, settings.number("solver.stepping.fixed")) {
-                (ModelKind::Film, Some(step)) => {
-                    return Err(source.error(
-                        "solver.stepping.fixed",
-                        &shown(step),
-                        "the model film takes a share of its stable step",
-                        "solver.cfl in its place; a fixed step is the piston's",
-                    ));
-                }
-                (ModelKind::Film, None) => Stepping::Stable(get("solver.cfl")?),
-                (ModelKind::Piston, Some(step)) => Stepping::Fixed(step),
-                (ModelKind::Piston, None) => Stepping::Adaptive(get("solver.stepping.adaptive")?),
-            },
-            step_limit: unsigned(settings, "solver.step_limit", source)?,
-        },
-        outputs: Outputs {
-            sample_interval,
-            // A model without a shape keeps none, whatever is asked: equal physics, equal job.
-            frames: match model {
-                ModelKind::Film => whole(settings, "outputs.frames", source)?,
-                ModelKind::Piston => 0,
-            },
-            thresholds: Thresholds {
-                deployed_volume: get("outputs.thresholds.deployed_volume")?,
-                deployed_height: get("outputs.thresholds.deployed_height")?,
-                stalled_volume: get("outputs.thresholds.stalled_volume")?,
-                near_threshold_margin: get("outputs.thresholds.close_margin")?,
-            },
-        },
-        seed: unsigned(settings, "seed", source)?,
-    })
+    Ok(scene)
 }
 
-/// The value of a strategy's own key; those all have defaults.
-fn strategy_number(strategy: &Strategy, name: &str) -> f64 {
-    match STRATEGY_KEYS.iter().position(|key| key.path == name).map(|at| &strategy.values[at]) {
-        Some(Value::Number(number)) => *number,
-        _ => 0.0,
-    }
-}
-
-/// Inflow windows in order of time. What lets nothing in before the end is left out, and what runs
-/// on beyond the end is cut there, so that equal physics is the same job.
-fn windows(
-    point: &Base,
+/// Refuses a capsule that is released after the end of its run.
+fn check_release(
     name: &str,
     strategy: &Strategy,
-    burst_mass: f64,
+    end_time: f64,
     source: &Source,
-) -> Result<Vec<InflowWindow>, InputError> {
-    let settings = &point.settings;
-    let end_time = number(settings, "solver.end_time", source)?;
-    let release_time = strategy_number(strategy, "release_time");
-    let inflow_temperature = number(settings, "gas.inflow_temperature", source)?;
-    let mut windows = Vec::new();
-    if burst_mass > 0.0 {
-        let rate = number(settings, "gas.burst_rate", source)?;
-        windows.push(InflowWindow {
-            from: release_time,
-            to: release_time + burst_mass / rate,
-            mass_flow_rate: rate,
-            temperature: inflow_temperature,
-        });
+) -> Result<(), InputError> {
+    let release_time = strategy.release_time();
+    if release_time < end_time {
+        return Ok(());
     }
-    for (index, values) in strategy.inflow.iter().enumerate() {
-        let get = |name: &str| {
-            let at = WINDOW_KEYS.iter().position(|key| key.path == name)?;
-            match &values[at] {
-                Value::Number(number) => Some(*number),
-                _ => None,
-            }
-        };
-        let from = get("from").unwrap_or(release_time);
-        let to = get("to").unwrap_or(end_time.max(from));
-        if to <= from && (to < from || get("to").is_some()) {
-            return Err(source.error(
-                &format!("strategies.{name}.inflow[{index}].to"),
+    Err(source.error(
+        &format!("strategies.{name}.release_time"),
+        &shown(release_time),
+        "the run ends before the capsule is released",
+        format!("below solver.end_time, {end_time} s"),
+    ))
+}
+
+/// Residual gas inside from the start, kg.
+fn stored_mass(draft: &Draft) -> f64 {
+    if draft.inflow.residual_stored { draft.inflow.residual_mass } else { 0.0 }
+}
+
+/// Residual gas let in as a burst, kg.
+fn burst_mass(draft: &Draft) -> f64 {
+    if draft.inflow.residual_stored { 0.0 } else { draft.inflow.residual_mass }
+}
+
+/// Whether a model has a shape to keep.
+fn has_shape(model: ModelKind) -> bool {
+    match model {
+        ModelKind::Film => true,
+        ModelKind::Piston => false,
+    }
+}
+
+/// How a model chooses its step.
+fn stepping(
+    model: ModelKind,
+    draft: &SteppingDraft,
+    point: &Base,
+    source: &Source,
+) -> Result<Stepping, InputError> {
+    const FIXED: &Key = named(KEYS, "solver.stepping.fixed");
+    const ADAPTIVE: &Key = named(KEYS, "solver.stepping.adaptive");
+    match (model, draft.fixed) {
+        (ModelKind::Film, Some(step)) => Err(source.error(
+            FIXED.path,
+            &shown(step),
+            "the model film takes a fraction of its stable step",
+            "solver.cfl in its place; only the model piston takes a fixed step",
+        )),
+        (ModelKind::Film, None) => Ok(Stepping::Stable(draft.cfl)),
+        (ModelKind::Piston, Some(step)) => Ok(Stepping::Fixed(step)),
+        (ModelKind::Piston, None) => match draft.adaptive {
+            Some(tolerance) => Ok(Stepping::Adaptive(tolerance)),
+            None => Err(point.settings.missing(ADAPTIVE, source)),
+        },
+    }
+}
+
+/// What the inflow windows of a point follow from.
+struct Windows<'a> {
+    point: &'a Base,
+    /// Name of the strategy.
+    name: &'a str,
+    strategy: &'a Strategy,
+    draft: &'a Draft,
+    source: &'a Source,
+}
+
+impl Windows<'_> {
+    /// Inflow windows in order of time. Windows without inflow before the end are left out, and
+    /// windows that last beyond the end are cut there, so that equal physics gives an equal job.
+    fn resolve(&self) -> Result<Vec<InflowWindow>, InputError> {
+        let end_time = self.draft.scene.solver.end_time;
+        let mut windows = self.burst();
+        for (index, window) in self.strategy.windows().enumerate() {
+            windows.push(self.window(index, &window)?);
+        }
+        for window in &mut windows {
+            window.to = window.to.min(end_time);
+        }
+        windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
+        windows.sort_by(|a, b| {
+            a.from
+                .total_cmp(&b.from)
+                .then(a.to.total_cmp(&b.to))
+                .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
+                .then(a.temperature.total_cmp(&b.temperature))
+        });
+        Ok(windows)
+    }
+
+    /// The burst of residual gas from release on.
+    fn burst(&self) -> Vec<InflowWindow> {
+        let mass = burst_mass(self.draft);
+        if mass <= 0.0 {
+            return Vec::new();
+        }
+        let release_time = self.strategy.release_time();
+        let rate = self.draft.inflow.burst_rate;
+        vec![InflowWindow {
+            from: release_time,
+            to: release_time + mass / rate,
+            mass_flow_rate: rate,
+            temperature: self.draft.inflow.temperature,
+        }]
+    }
+
+    /// One window of the strategy, with the study's values where it gives none.
+    fn window(&self, index: usize, window: &Window) -> Result<InflowWindow, InputError> {
+        let from = window.from.unwrap_or(self.strategy.release_time());
+        let to = window.to.unwrap_or(self.draft.scene.solver.end_time.max(from));
+        if to <= from && (to < from || window.to.is_some()) {
+            return Err(self.source.error(
+                &format!("strategies.{}.inflow[{index}].to", self.name),
                 &shown(to),
                 "the window ends before it begins",
                 format!("above its `from`, {from} s"),
             ));
         }
-        let rate = match get("rate") {
-            Some(rate) => rate,
-            None => number(settings, "gas.mass_flow_rate", source)?,
-        };
-        windows.push(InflowWindow {
-            from,
-            to,
-            mass_flow_rate: rate,
-            temperature: get("temperature").unwrap_or(inflow_temperature),
-        });
+        let rate = window.mass_flow_rate.or(self.draft.inflow.mass_flow_rate);
+        let rate = rate.ok_or_else(|| {
+            let key = const { named(KEYS, "gas.mass_flow_rate") };
+            self.point.settings.missing(key, self.source)
+        })?;
+        let temperature = window.temperature.unwrap_or(self.draft.inflow.temperature);
+        Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
     }
-    for window in &mut windows {
-        window.to = window.to.min(end_time);
-    }
-    windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
-    windows.sort_by(|a, b| {
-        a.from
-            .total_cmp(&b.from)
-            .then(a.to.total_cmp(&b.to))
-            .then(a.mass_flow_rate.total_cmp(&b.mass_flow_rate))
-            .then(a.temperature.total_cmp(&b.temperature))
-    });
-    Ok(windows)
 }

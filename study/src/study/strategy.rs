@@ -2,7 +2,7 @@
 
 use serde_json::{Map, json};
 
-use crate::input::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::input::keys::{self, Key, STRATEGY_KEYS, WINDOW_KEYS, position};
 use crate::input::settings::{list, read};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
@@ -18,27 +18,46 @@ pub(super) struct Strategy {
     pub inflow: Vec<Vec<Value>>,
 }
 
+/// What an inflow window gives; the study or the strategy decides the rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    /// Start, s.
+    pub from: Option<f64>,
+    /// End, s.
+    pub to: Option<f64>,
+    /// Mass flow rate, kg/s.
+    pub mass_flow_rate: Option<f64>,
+    /// Temperature of the gas let in, K.
+    pub temperature: Option<f64>,
+}
+
 impl Strategy {
     /// Released at once, inflow from release to the end.
     pub fn direct() -> Self {
-        Self {
-            values: STRATEGY_KEYS.iter().map(Key::default_value).collect(),
-            inflow: vec![WINDOW_KEYS.iter().map(Key::default_value).collect()],
-        }
+        Self { values: defaults(STRATEGY_KEYS), inflow: vec![defaults(WINDOW_KEYS)] }
     }
 
-    /// When each inflow window begins and ends, s; `None` at the release, and at the end.
-    pub fn windows(&self) -> Vec<[Option<f64>; 2]> {
-        let at = |name: &str| WINDOW_KEYS.iter().position(|key| key.path == name);
-        let (from, to) = (at("from"), at("to"));
-        let time = |window: &Vec<Value>, at: Option<usize>| match at.map(|at| &window[at]) {
-            Some(Value::Number(time)) => Some(*time),
-            _ => None,
-        };
-        self.inflow.iter().map(|window| [time(window, from), time(window, to)]).collect()
+    /// Time until which the lid holds the capsule, s.
+    pub fn release_time(&self) -> f64 {
+        number(&self.values[const { position(STRATEGY_KEYS, "release_time") }]).unwrap_or(0.0)
     }
 
-    /// The strategy spelled out, without what is absent.
+    /// Gas inside from the start, kg.
+    pub fn preinflation_mass(&self) -> f64 {
+        number(&self.values[const { position(STRATEGY_KEYS, "preinflation_mass") }]).unwrap_or(0.0)
+    }
+
+    /// The inflow windows.
+    pub fn windows(&self) -> impl Iterator<Item = Window> {
+        self.inflow.iter().map(|values| Window {
+            from: number(&values[const { position(WINDOW_KEYS, "from") }]),
+            to: number(&values[const { position(WINDOW_KEYS, "to") }]),
+            mass_flow_rate: number(&values[const { position(WINDOW_KEYS, "mass_flow_rate") }]),
+            temperature: number(&values[const { position(WINDOW_KEYS, "temperature") }]),
+        })
+    }
+
+    /// The strategy with every value it has.
     pub fn to_json(&self) -> serde_json::Value {
         let members = |keys: &[Key], values: &[Value]| {
             let given = keys.iter().zip(values).filter(|(_, value)| **value != Value::Null);
@@ -53,12 +72,26 @@ impl Strategy {
     }
 }
 
-/// Names a strategy may have: they stand in paths and expressions.
+fn defaults(keys: &[Key]) -> Vec<Value> {
+    keys.iter().map(Key::default_value).collect()
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(number) => Some(*number),
+        _ => None,
+    }
+}
+
+/// Longest name of a strategy, letters (chosen: it is part of column names).
+const MAX_NAME_LENGTH: usize = 64;
+
+/// Whether a strategy may have this name: it stands in paths and expressions.
 fn is_name(name: &str) -> bool {
     let mut chars = name.chars();
     chars.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
         && chars.all(|c| c.is_ascii_alphanumeric() || c == '_')
-        && name.len() <= 64
+        && name.len() <= MAX_NAME_LENGTH
 }
 
 /// Reads the strategy of that name.
@@ -67,57 +100,65 @@ pub(super) fn read_strategy(
     json: &Json,
     source: &Source,
 ) -> Result<Strategy, InputError> {
-    let at = format!("strategies.{name}");
+    let path = format!("strategies.{name}");
     if !is_name(name) {
-        let allowed = "a letter, then letters, digits and _";
-        return Err(source.error(&at, "", "is no name for a strategy", allowed));
+        let allowed = "a letter, then letters, digits and _; up to 64";
+        return Err(source.error(&path, "", "is not a name for a strategy", allowed));
     }
-    let allowed = "release_time, preinflation_mass, inflow";
+    let allowed = names(STRATEGY_KEYS, &["inflow"]);
     let Json::Object(members) = json else {
         let problem = format!("is {}, not an object", json.kind());
-        return Err(source.error(&at, &json.brief(), problem, allowed));
+        return Err(source.error(&path, &json.brief(), problem, allowed));
     };
     let mut strategy = Strategy::direct();
     for (name, value) in members {
-        let at = format!("{at}.{name}");
+        let path = format!("{path}.{name}");
         if name == "inflow" {
-            let allowed = "a list of {\"from\": \"5 s\", \"to\": \"12 s\", \"rate\": \"1 g/s\"}";
-            strategy.inflow = list(value, &at, source, allowed)?
+            let allowed =
+                "a list of {\"from\": \"5 s\", \"to\": \"12 s\", \"mass_flow_rate\": \"1 g/s\"}";
+            strategy.inflow = list(value, &path, source, allowed)?
                 .iter()
                 .enumerate()
-                .map(|(number, value)| window(value, &format!("{at}[{number}]"), source))
+                .map(|(index, value)| window(value, &format!("{path}[{index}]"), source))
                 .collect::<Result<_, _>>()?;
         } else if let Some(key) = STRATEGY_KEYS.iter().position(|key| key.path == name) {
-            strategy.values[key] = read(&STRATEGY_KEYS[key], value, &at, source)?;
+            strategy.values[key] = read(&STRATEGY_KEYS[key], value, &path, source)?;
         } else {
-            let problem = near("a strategy", name, allowed);
-            return Err(source.error(&at, &value.brief(), problem, allowed));
+            let problem = unknown("a strategy", name, &allowed);
+            return Err(source.error(&path, &value.brief(), problem, allowed));
         }
     }
     Ok(strategy)
 }
 
-fn window(json: &Json, at: &str, source: &Source) -> Result<Vec<Value>, InputError> {
-    let allowed = "from, to, rate, temperature";
+fn window(json: &Json, path: &str, source: &Source) -> Result<Vec<Value>, InputError> {
+    let allowed = names(WINDOW_KEYS, &[]);
     let Json::Object(members) = json else {
         let problem = format!("is {}, not an object", json.kind());
-        return Err(source.error(at, &json.brief(), problem, allowed));
+        return Err(source.error(path, &json.brief(), problem, allowed));
     };
-    let mut values: Vec<Value> = WINDOW_KEYS.iter().map(Key::default_value).collect();
+    let mut values = defaults(WINDOW_KEYS);
     for (name, value) in members {
-        let at = format!("{at}.{name}");
+        let path = format!("{path}.{name}");
         let Some(key) = WINDOW_KEYS.iter().position(|key| key.path == name) else {
-            let problem = near("an inflow window", name, allowed);
-            return Err(source.error(&at, &value.brief(), problem, allowed));
+            let problem = unknown("an inflow window", name, &allowed);
+            return Err(source.error(&path, &value.brief(), problem, allowed));
         };
-        values[key] = read(&WINDOW_KEYS[key], value, &at, source)?;
+        values[key] = read(&WINDOW_KEYS[key], value, &path, source)?;
     }
     Ok(values)
 }
 
-fn near(what: &str, name: &str, allowed: &str) -> String {
+/// The names of the keys of an object, for errors.
+fn names(keys: &[Key], more: &[&str]) -> String {
+    let names = keys.iter().map(|key| key.path).chain(more.iter().copied());
+    names.collect::<Vec<_>>().join(", ")
+}
+
+/// What is wrong with a name that an object does not have.
+fn unknown(what: &str, name: &str, allowed: &str) -> String {
     match keys::nearest(name, allowed.split(", ")) {
-        Some(near) => format!("is no key of {what}; did you mean {near}?"),
-        None => format!("is no key of {what}"),
+        Some(near) => format!("is not a key of {what}; did you mean {near}?"),
+        None => format!("is not a key of {what}"),
     }
 }

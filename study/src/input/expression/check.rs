@@ -1,6 +1,8 @@
-//! Types: every operand is what its operator needs, before any row is seen.
+//! Type check: every operand has the type its operator needs, before any row is read.
 
-use super::{ExpressionError, Kind, Node, Operator, Tree, TreeKind, Type, Variable, error_at};
+use super::tree::{
+    ExpressionError, Node, Operator, Tree, TreeKind, Type, ValueKind, Variable, error_at,
+};
 use crate::input::keys;
 use crate::input::units::{self, Powers};
 
@@ -12,7 +14,7 @@ pub(super) fn condition(
 ) -> Result<Node, ExpressionError> {
     let checker = Checker { text, variables };
     let (node, kind) = checker.node(tree)?;
-    if kind != Kind::Bool {
+    if kind != ValueKind::Bool {
         return Err(checker.refuse(
             tree,
             format!("is {}, not a condition", describe(kind)),
@@ -27,13 +29,13 @@ struct Checker<'a> {
     variables: &'a [Variable],
 }
 
-fn describe(kind: Kind) -> String {
+fn describe(kind: ValueKind) -> String {
     match kind {
-        Kind::Number(None) => "a number".to_owned(),
-        Kind::Number(Some(powers)) => units::describe(powers),
-        Kind::Text => "a text".to_owned(),
-        Kind::Bool => "true or false".to_owned(),
-        Kind::Null => "null".to_owned(),
+        ValueKind::Number(None) => "a number".to_owned(),
+        ValueKind::Number(Some(powers)) => units::describe(powers),
+        ValueKind::Text => "a text".to_owned(),
+        ValueKind::Bool => "true or false".to_owned(),
+        ValueKind::Null => "null".to_owned(),
     }
 }
 
@@ -42,55 +44,57 @@ impl Checker<'_> {
         error_at(self.text, tree.span, problem, allowed)
     }
 
-    fn node(&self, tree: &Tree) -> Result<(Node, Kind), ExpressionError> {
+    fn node(&self, tree: &Tree) -> Result<(Node, ValueKind), ExpressionError> {
         Ok(match &tree.kind {
-            TreeKind::Number(number) => (Node::Number(*number), Kind::Number(None)),
-            TreeKind::Text(text) => (Node::Text(text.clone()), Kind::Text),
-            TreeKind::Bool(value) => (Node::Bool(*value), Kind::Bool),
-            TreeKind::Null => (Node::Bool(false), Kind::Null),
+            TreeKind::Number(number) => (Node::Number(*number), ValueKind::Number(None)),
+            TreeKind::Text(text) => (Node::Text(text.clone()), ValueKind::Text),
+            TreeKind::Bool(value) => (Node::Bool(*value), ValueKind::Bool),
+            TreeKind::Null => (Node::Bool(false), ValueKind::Null),
             TreeKind::Name(name) => self.variable(tree, name)?,
             TreeKind::Negate(inner) => {
                 let (node, kind) = self.number(inner, "-")?;
-                (Node::Negate(Box::new(node)), Kind::Number(kind))
+                (Node::Negate(Box::new(node)), ValueKind::Number(kind))
             }
-            TreeKind::Not(inner) => (Node::Not(Box::new(self.truth(inner, "not")?)), Kind::Bool),
+            TreeKind::Not(inner) => {
+                (Node::Not(Box::new(self.truth(inner, "not")?)), ValueKind::Bool)
+            }
             TreeKind::Binary(operator, left, right) => match operator {
                 Operator::And | Operator::Or => {
                     let word = if *operator == Operator::And { "and" } else { "or" };
                     let (left, right) = (self.truth(left, word)?, self.truth(right, word)?);
-                    (Node::Logic(*operator, Box::new(left), Box::new(right)), Kind::Bool)
+                    (Node::Logic(*operator, Box::new(left), Box::new(right)), ValueKind::Bool)
                 }
                 operator if operator.compares() => {
-                    (self.comparison(tree, *operator, left, right)?, Kind::Bool)
+                    (self.comparison(tree, *operator, left, right)?, ValueKind::Bool)
                 }
                 _ => self.arithmetic(tree, *operator, left, right)?,
             },
         })
     }
 
-    fn variable(&self, tree: &Tree, name: &str) -> Result<(Node, Kind), ExpressionError> {
-        let Some(at) = self.variables.iter().position(|variable| variable.name == name) else {
+    fn variable(&self, tree: &Tree, name: &str) -> Result<(Node, ValueKind), ExpressionError> {
+        let Some(index) = self.variables.iter().position(|variable| variable.name == name) else {
             let near = keys::nearest(name, self.variables.iter().map(|v| v.name.as_str()));
             let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
             let names: Vec<&str> = self.variables.iter().map(|v| v.name.as_str()).collect();
             return Err(self.refuse(
                 tree,
                 format!("no variable is called {name}{near}"),
-                &format!("{}; text stands in quotes", names.join(", ")),
+                &format!("{}; a text is written in quotes", names.join(", ")),
             ));
         };
-        Ok(match &self.variables[at].kind {
+        Ok(match &self.variables[index].kind {
             Type::Quantity(dimension, words) => {
-                (Node::Quantity(at, words), Kind::Number(Some(dimension.powers())))
+                (Node::Quantity(index, words), ValueKind::Number(Some(dimension.powers())))
             }
-            Type::Text(_) => (Node::TextVariable(at), Kind::Text),
-            Type::Bool => (Node::BoolVariable(at), Kind::Bool),
+            Type::Text(_) => (Node::TextVariable(index), ValueKind::Text),
+            Type::Bool => (Node::BoolVariable(index), ValueKind::Bool),
         })
     }
 
     fn truth(&self, tree: &Tree, word: &str) -> Result<Node, ExpressionError> {
         match self.node(tree)? {
-            (node, Kind::Bool) => Ok(node),
+            (node, ValueKind::Bool) => Ok(node),
             (_, kind) => Err(self.refuse(
                 tree,
                 format!("`{word}` needs a condition, this is {}", describe(kind)),
@@ -101,7 +105,7 @@ impl Checker<'_> {
 
     fn number(&self, tree: &Tree, sign: &str) -> Result<(Node, Option<Powers>), ExpressionError> {
         match self.node(tree)? {
-            (node, Kind::Number(powers)) => Ok((node, powers)),
+            (node, ValueKind::Number(powers)) => Ok((node, powers)),
             (_, kind) => Err(self.refuse(
                 tree,
                 format!("`{sign}` needs a number, this is {}", describe(kind)),
@@ -116,7 +120,7 @@ impl Checker<'_> {
         operator: Operator,
         left: &Tree,
         right: &Tree,
-    ) -> Result<(Node, Kind), ExpressionError> {
+    ) -> Result<(Node, ValueKind), ExpressionError> {
         let sign = match operator {
             Operator::Add => "+",
             Operator::Subtract => "-",
@@ -141,13 +145,13 @@ impl Checker<'_> {
                         power.checked_sub(other)
                     };
                     *power = sum.ok_or_else(|| {
-                        self.refuse(tree, "is of too high a power".to_owned(), "a simpler product")
+                        self.refuse(tree, "has too high a power".to_owned(), "a simpler product")
                     })?;
                 }
                 Some(powers)
             }
         };
-        Ok((Node::Arithmetic(operator, Box::new(a), Box::new(b)), Kind::Number(powers)))
+        Ok((Node::Arithmetic(operator, Box::new(a), Box::new(b)), ValueKind::Number(powers)))
     }
 
     fn mismatch(&self, tree: &Tree, a: Powers, b: Powers, what: &str) -> ExpressionError {
@@ -169,56 +173,52 @@ impl Checker<'_> {
         let (b, b_kind) = self.node(right)?;
         let equality = matches!(operator, Operator::Equal | Operator::Unequal);
         match (a_kind, b_kind) {
-            (kind, Kind::Null) | (Kind::Null, kind) => {
+            (kind, ValueKind::Null) | (ValueKind::Null, kind) => {
                 if !equality {
                     let problem = "null has no order".to_owned();
                     return Err(self.refuse(tree, problem, "x == null, x != null"));
                 }
-                let node = if b_kind == Kind::Null { a } else { b };
+                let node = if b_kind == ValueKind::Null { a } else { b };
                 Ok(Node::IsNull(Box::new(node), kind, operator == Operator::Equal))
             }
-            (Kind::Number(Some(a)), Kind::Number(Some(b))) if a != b => {
+            (ValueKind::Number(Some(a)), ValueKind::Number(Some(b))) if a != b => {
                 Err(self.mismatch(tree, a, b, "a comparison"))
             }
-            (Kind::Number(_), Kind::Number(_)) => {
+            (ValueKind::Number(_), ValueKind::Number(_)) => {
                 Ok(Node::CompareNumbers(operator, Box::new(a), Box::new(b)))
             }
-            (Kind::Number(Some(powers)), Kind::Text) => {
+            (ValueKind::Number(Some(powers)), ValueKind::Text) => {
                 let quantity = self.quantity(right, powers, &a)?;
                 Ok(Node::CompareNumbers(operator, Box::new(a), Box::new(quantity)))
             }
-            (Kind::Text, Kind::Number(Some(powers))) => {
+            (ValueKind::Text, ValueKind::Number(Some(powers))) => {
                 let quantity = self.quantity(left, powers, &b)?;
                 Ok(Node::CompareNumbers(operator, Box::new(quantity), Box::new(b)))
             }
-            (Kind::Text, Kind::Text) if equality => {
+            (ValueKind::Text, ValueKind::Text) if equality => {
                 self.known_word(&a, right)?;
                 self.known_word(&b, left)?;
                 Ok(Node::CompareTexts(operator, Box::new(a), Box::new(b)))
             }
-            (Kind::Bool, Kind::Bool) if equality => {
+            (ValueKind::Bool, ValueKind::Bool) if equality => {
                 Ok(Node::CompareBools(operator, Box::new(a), Box::new(b)))
             }
-            (Kind::Text, Kind::Text) | (Kind::Bool, Kind::Bool) => Err(self.refuse(
-                tree,
-                format!("{} has no order", describe(a_kind)),
-                "== and != between texts or truths",
-            )),
+            (ValueKind::Text, ValueKind::Text) | (ValueKind::Bool, ValueKind::Bool) => Err(self
+                .refuse(
+                    tree,
+                    format!("{} has no order", describe(a_kind)),
+                    "== or != between texts, or between conditions",
+                )),
             _ => Err(self.refuse(
                 tree,
                 format!("a comparison between {} and {}", describe(a_kind), describe(b_kind)),
-                "both of one kind",
+                "two values of one type",
             )),
         }
     }
 
-    /// A quoted text beside a quantity: its word, or a number with a unit.
-    fn quantity(
-        &self,
-        tree: &Tree,
-        powers: Powers,
-        beside: &Node,
-    ) -> Result<Node, ExpressionError> {
+    /// A quoted text compared with a quantity: a word of that quantity, or a number with a unit.
+    fn quantity(&self, tree: &Tree, powers: Powers, other: &Node) -> Result<Node, ExpressionError> {
         let TreeKind::Text(text) = &tree.kind else {
             return Err(self.refuse(
                 tree,
@@ -226,7 +226,7 @@ impl Checker<'_> {
                 "a number or a quantity",
             ));
         };
-        if let Node::Quantity(_, words) = beside
+        if let Node::Quantity(_, words) = other
             && let Some((_, number)) = words.iter().find(|(word, _)| word == text)
         {
             return Ok(Node::Number(*number));
@@ -240,12 +240,12 @@ impl Checker<'_> {
         })
     }
 
-    /// Refuses a quoted text that the variable beside it can never be.
-    fn known_word(&self, beside: &Node, tree: &Tree) -> Result<(), ExpressionError> {
-        let (Node::TextVariable(at), TreeKind::Text(text)) = (beside, &tree.kind) else {
+    /// Refuses a quoted text that the variable compared with it never holds.
+    fn known_word(&self, other: &Node, tree: &Tree) -> Result<(), ExpressionError> {
+        let (Node::TextVariable(index), TreeKind::Text(text)) = (other, &tree.kind) else {
             return Ok(());
         };
-        let variable = &self.variables[*at];
+        let variable = &self.variables[*index];
         match &variable.kind {
             Type::Text(Some(words)) if !words.contains(text) => {
                 let near = keys::nearest(text, words.iter().map(String::as_str));

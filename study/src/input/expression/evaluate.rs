@@ -1,20 +1,20 @@
 //! The value of a checked expression for one row; `None` is unknown.
 
-use super::{Kind, Node, Operator};
+use super::tree::{Node, Operator, ValueKind};
 use crate::input::value::Value;
 
-/// Truth of a node of type bool.
-#[expect(clippy::float_cmp, reason = "an expression asks for equality, and means it")]
+/// The value of a condition.
+#[expect(clippy::float_cmp, reason = "`==` of an expression is exact equality")]
 pub(super) fn truth(node: &Node, row: &[Value]) -> Option<bool> {
     match node {
         Node::Bool(value) => Some(*value),
-        Node::BoolVariable(at) => match row.get(*at)? {
+        Node::BoolVariable(index) => match row.get(*index)? {
             Value::Bool(value) => Some(*value),
             _ => None,
         },
         Node::Not(inner) => truth(inner, row).map(|value| !value),
         Node::Logic(operator, left, right) => {
-            // The value that decides alone, whatever the other side is.
+            // The value that decides the result, whatever the other operand is.
             let decisive = *operator == Operator::Or;
             match (truth(left, row), truth(right, row)) {
                 (Some(a), _) if a == decisive => Some(decisive),
@@ -42,10 +42,10 @@ pub(super) fn truth(node: &Node, row: &[Value]) -> Option<bool> {
         }
         Node::IsNull(inner, kind, wanted) => {
             let null = match kind {
-                Kind::Number(_) => number(inner, row).is_none(),
-                Kind::Text => text(inner, row).is_none(),
-                Kind::Bool => truth(inner, row).is_none(),
-                Kind::Null => true,
+                ValueKind::Number(_) => number(inner, row).is_none(),
+                ValueKind::Text => text(inner, row).is_none(),
+                ValueKind::Bool => truth(inner, row).is_none(),
+                ValueKind::Null => true,
             };
             Some(null == *wanted)
         }
@@ -54,9 +54,9 @@ pub(super) fn truth(node: &Node, row: &[Value]) -> Option<bool> {
 }
 
 fn number(node: &Node, row: &[Value]) -> Option<f64> {
-    let known = match node {
+    let value = match node {
         Node::Number(number) => *number,
-        Node::Quantity(at, words) => match row.get(*at)? {
+        Node::Quantity(index, words) => match row.get(*index)? {
             Value::Number(number) => *number,
             Value::Integer(number) => *number as f64,
             Value::Text(text) => words.iter().find(|(word, _)| word == text)?.1,
@@ -74,13 +74,13 @@ fn number(node: &Node, row: &[Value]) -> Option<f64> {
         }
         _ => return None,
     };
-    (!known.is_nan()).then_some(known)
+    (!value.is_nan()).then_some(value)
 }
 
 fn text<'a>(node: &'a Node, row: &'a [Value]) -> Option<&'a str> {
     match node {
         Node::Text(text) => Some(text),
-        Node::TextVariable(at) => match row.get(*at)? {
+        Node::TextVariable(index) => match row.get(*index)? {
             Value::Text(text) => Some(text),
             _ => None,
         },

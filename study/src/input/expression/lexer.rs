@@ -1,8 +1,8 @@
-//! Words of an expression.
+//! Tokens of an expression.
 
-use super::{ExpressionError, Operator, Span, error_at};
+use super::tree::{ExpressionError, Operator, Span, error_at};
 
-/// A word.
+/// A token.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Token {
     Number(f64),
@@ -15,13 +15,13 @@ pub(super) enum Token {
     End,
 }
 
-/// Splits an expression into words; the last is [`Token::End`].
+/// Splits an expression into tokens; the last is [`Token::End`].
 pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> {
     let mut tokens = Vec::new();
-    let mut at = 0;
-    while let Some(first) = text[at..].chars().next() {
-        let start = at;
-        at += first.len_utf8();
+    let mut position = 0;
+    while let Some(first) = text[position..].chars().next() {
+        let start = position;
+        position += first.len_utf8();
         let token = match first {
             _ if first.is_whitespace() => continue,
             '(' => Token::Open,
@@ -31,9 +31,9 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
             '*' => Token::Operator(Operator::Multiply),
             '/' => Token::Operator(Operator::Divide),
             '=' | '!' | '<' | '>' => {
-                let equal = text[at..].starts_with('=');
+                let equal = text[position..].starts_with('=');
                 let length = 1 + usize::from(equal);
-                at = start + length;
+                position = start + length;
                 let operator = match (first, equal) {
                     ('=', _) => Operator::Equal,
                     ('!', true) => Operator::Unequal,
@@ -41,12 +41,19 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                     ('<', false) => Operator::Less,
                     ('>', true) => Operator::GreaterEqual,
                     ('>', false) => Operator::Greater,
-                    _ => return Err(error_at(text, (start, at), "`!` alone", "`not`, or `!=`")),
+                    _ => {
+                        return Err(error_at(
+                            text,
+                            (start, position),
+                            "`!` alone",
+                            "`not`, or `!=`",
+                        ));
+                    }
                 };
                 Token::Operator(operator)
             }
             '\'' | '"' => {
-                let Some(length) = text[at..].find(first) else {
+                let Some(length) = text[position..].find(first) else {
                     return Err(error_at(
                         text,
                         (start, text.len()),
@@ -54,20 +61,20 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                         "text in single or double quotes",
                     ));
                 };
-                let quoted = text[at..at + length].to_owned();
-                at += length + 1;
+                let quoted = text[position..position + length].to_owned();
+                position += length + 1;
                 Token::Text(quoted)
             }
             '0'..='9' | '.' => {
-                at = start + number_length(&text[start..]);
-                let number = text[start..at.max(start + 1)].parse::<f64>();
-                at = at.max(start + 1);
+                position = start + number_length(&text[start..]);
+                let number = text[start..position.max(start + 1)].parse::<f64>();
+                position = position.max(start + 1);
                 match number {
                     Ok(number) if number.is_finite() => Token::Number(number),
                     _ => {
                         return Err(error_at(
                             text,
-                            (start, at),
+                            (start, position),
                             "not a number",
                             "a number in SI, or a quantity in quotes ('5 g/s')",
                         ));
@@ -77,8 +84,8 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
             _ if first.is_alphabetic() || first == '_' => {
                 let rest = text[start..]
                     .find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']')));
-                at = rest.map_or(text.len(), |length| start + length);
-                word(&text[start..at])
+                position = rest.map_or(text.len(), |length| start + length);
+                word(&text[start..position])
             }
             _ => {
                 let allowed = "and, or, not, == != < <= > >=, + - * /, ( ), numbers, quoted text, \
@@ -86,12 +93,12 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                 let problem = match first {
                     '&' => "`&` is written `and`".to_owned(),
                     '|' => "`|` is written `or`".to_owned(),
-                    other => format!("`{}` is no part of an expression", other.escape_debug()),
+                    other => format!("`{}` does not belong in an expression", other.escape_debug()),
                 };
-                return Err(error_at(text, (start, at), problem, allowed));
+                return Err(error_at(text, (start, position), problem, allowed));
             }
         };
-        tokens.push((token, (start, at)));
+        tokens.push((token, (start, position)));
     }
     tokens.push((Token::End, (text.len(), text.len())));
     Ok(tokens)
@@ -106,25 +113,25 @@ fn word(word: &str) -> Token {
     }
 }
 
-/// Bytes of the number a text opens with.
+/// Length of the number position the start of a text, bytes.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let digits = |mut at: usize| {
-        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
-            at += 1;
+    let digits = |mut position: usize| {
+        while bytes.get(position).is_some_and(u8::is_ascii_digit) {
+            position += 1;
         }
-        at
+        position
     };
-    let mut at = digits(0);
-    if bytes.get(at) == Some(&b'.') {
-        at = digits(at + 1);
+    let mut position = digits(0);
+    if bytes.get(position) == Some(&b'.') {
+        position = digits(position + 1);
     }
-    if matches!(bytes.get(at), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(at + 1), Some(b'+' | b'-')));
-        let exponent = digits(at + 1 + sign);
-        if exponent > at + 1 + sign {
-            at = exponent;
+    if matches!(bytes.get(position), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(position + 1), Some(b'+' | b'-')));
+        let exponent = digits(position + 1 + sign);
+        if exponent > position + 1 + sign {
+            position = exponent;
         }
     }
-    at
+    position
 }

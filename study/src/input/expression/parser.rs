@@ -1,23 +1,25 @@
-//! From words to a tree, by binding strength.
+//! From tokens to a tree, by operator precedence.
 
 use super::lexer::{Token, tokens};
-use super::{DEEPEST, ExpressionError, LONGEST, Operator, Span, Tree, TreeKind, error_at};
+use super::tree::{
+    ExpressionError, MAX_DEPTH, MAX_LENGTH, Operator, Span, Tree, TreeKind, error_at,
+};
 
 /// Reads an expression.
 pub(super) fn parse(text: &str) -> Result<Tree, ExpressionError> {
-    if text.len() > LONGEST {
-        let mut end = LONGEST;
+    if text.len() > MAX_LENGTH {
+        let mut end = MAX_LENGTH;
         while !text.is_char_boundary(end) {
             end -= 1;
         }
         return Err(error_at(
             &text[..end],
             (end, end),
-            format!("longer than {LONGEST} bytes"),
+            format!("longer than {MAX_LENGTH} bytes"),
             "a shorter expression",
         ));
     }
-    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
+    let mut parser = Parser { text, tokens: tokens(text)?, position: 0, depth: 0 };
     let tree = parser.binary(0)?;
     match parser.peek() {
         (Token::End, _) => Ok(tree),
@@ -29,12 +31,12 @@ pub(super) fn parse(text: &str) -> Result<Tree, ExpressionError> {
 struct Parser<'a> {
     text: &'a str,
     tokens: Vec<(Token, Span)>,
-    at: usize,
+    position: usize,
     depth: usize,
 }
 
-/// How strongly an operator binds.
-fn strength(operator: Operator) -> u8 {
+/// Precedence of an operator.
+fn precedence(operator: Operator) -> u8 {
     match operator {
         Operator::Or => 1,
         Operator::And => 2,
@@ -44,37 +46,42 @@ fn strength(operator: Operator) -> u8 {
     }
 }
 
-/// `not` binds between `and` and a comparison.
+/// Precedence of `not`: between `and` and a comparison.
 const NOT: u8 = 3;
 
 impl Parser<'_> {
     fn peek(&self) -> (&Token, Span) {
-        // The list ends in `End`, which is never passed.
-        let (token, span) = &self.tokens[self.at.min(self.tokens.len() - 1)];
+        // The list ends with `End`, and the position stays within it.
+        let (token, span) = &self.tokens[self.position.min(self.tokens.len() - 1)];
         (token, *span)
     }
 
-    fn refuse(&self, at: Span, problem: &str) -> ExpressionError {
-        error_at(self.text, at, problem, "a condition, as in N == 6 and mass_flow_rate >= '1 g/s'")
+    fn refuse(&self, span: Span, problem: &str) -> ExpressionError {
+        error_at(
+            self.text,
+            span,
+            problem,
+            "a condition, as in N == 6 and mass_flow_rate >= '1 g/s'",
+        )
     }
 
     fn node(&self, span: Span, depth: usize, kind: TreeKind) -> Result<Tree, ExpressionError> {
-        if depth > DEEPEST {
+        if depth > MAX_DEPTH {
             return Err(self.refuse(span, "nested too deeply"));
         }
         Ok(Tree { span, depth, kind })
     }
 
-    /// An expression of operators that bind at least as strongly as `least`.
-    fn binary(&mut self, least: u8) -> Result<Tree, ExpressionError> {
+    /// An expression of operators with at least this precedence.
+    fn binary(&mut self, min_precedence: u8) -> Result<Tree, ExpressionError> {
         self.depth += 1;
-        if self.depth > DEEPEST {
+        if self.depth > MAX_DEPTH {
             return Err(self.refuse(self.peek().1, "nested too deeply"));
         }
         let mut left = self.operand()?;
         while let (&Token::Operator(operator), span) = self.peek() {
-            let strength = strength(operator);
-            if strength < least {
+            let precedence = precedence(operator);
+            if precedence < min_precedence {
                 break;
             }
             if operator.compares()
@@ -83,8 +90,8 @@ impl Parser<'_> {
             {
                 return Err(self.refuse(span, "comparisons do not chain; write a < b and b < c"));
             }
-            self.at += 1;
-            let right = self.binary(strength + 1)?;
+            self.position += 1;
+            let right = self.binary(precedence + 1)?;
             let depth = 1 + left.depth.max(right.depth);
             let span = (left.span.0, right.span.1);
             let kind = TreeKind::Binary(operator, Box::new(left), Box::new(right));
@@ -94,15 +101,15 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    /// Whether the word before the one at hand is `)`.
+    /// Whether the token before the current one is `)`.
     fn closed_before(&self) -> bool {
-        self.at > 0 && self.tokens[self.at - 1].0 == Token::Close
+        self.position > 0 && self.tokens[self.position - 1].0 == Token::Close
     }
 
     fn operand(&mut self) -> Result<Tree, ExpressionError> {
         let (token, span) = self.peek();
         let token = token.clone();
-        self.at += 1;
+        self.position += 1;
         let leaf = match token {
             Token::Number(number) => TreeKind::Number(number),
             Token::Text(text) => TreeKind::Text(text),
@@ -118,7 +125,7 @@ impl Parser<'_> {
                 return self.node((span.0, end), depth, TreeKind::Not(Box::new(inner)));
             }
             Token::Operator(Operator::Subtract) => {
-                let inner = self.binary(strength(Operator::Divide) + 1)?;
+                let inner = self.binary(precedence(Operator::Divide) + 1)?;
                 let (depth, end) = (1 + inner.depth, inner.span.1);
                 return self.node((span.0, end), depth, TreeKind::Negate(Box::new(inner)));
             }
@@ -127,11 +134,11 @@ impl Parser<'_> {
                 if !matches!(self.peek().0, Token::Close) {
                     return Err(self.refuse(span, "`(` without its `)`"));
                 }
-                self.at += 1;
+                self.position += 1;
                 return Ok(inner);
             }
             Token::End => {
-                self.at -= 1;
+                self.position -= 1;
                 return Err(self.refuse(span, "something is missing here"));
             }
             Token::Operator(_) | Token::Close => {

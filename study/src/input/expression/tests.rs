@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::input::units::Dimension;
 
 fn variables() -> Vec<Variable> {
     let quantity = |name: &str, dimension| Variable {
@@ -46,7 +47,7 @@ fn holds(text: &str) -> bool {
 }
 
 #[test]
-fn conditions_hold_or_do_not() {
+fn conditions_are_evaluated() {
     for text in [
         "N == 6",
         "N = 6",
@@ -93,7 +94,7 @@ fn conditions_hold_or_do_not() {
 }
 
 #[test]
-fn the_caret_stands_under_the_place() {
+fn carets_mark_the_faulty_part() {
     for (text, caret, problem) in [
         ("N == 6 and bogus > 2", "           ^^^^^", "no variable is called bogus"),
         ("strategy == 'delay'", "            ^^^^^^^", "did you mean 'delayed'?"),
@@ -124,7 +125,7 @@ fn the_caret_stands_under_the_place() {
 }
 
 #[test]
-fn adversarial_depth_is_an_error() {
+fn excessive_depth_is_an_error() {
     for text in [
         "(".repeat(5_000),
         "-".repeat(5_000),
@@ -137,7 +138,7 @@ fn adversarial_depth_is_an_error() {
         assert!(Expression::condition(&text, &variables()).is_err());
     }
     let long = vec!["N == 6"; 150].join(" or ");
-    assert!(holds(&long), "a long list of cases is no deep nesting");
+    assert!(holds(&long), "a long list of cases is not deep nesting");
 }
 
 proptest! {
@@ -157,7 +158,7 @@ proptest! {
         let text = words.join(" ");
         match Expression::condition(&text, &variables()) {
             Ok(expression) => {
-                // The same text means the same, and a row of nothing is no reason to panic.
+                // Reading is deterministic, and an empty row causes no panic.
                 prop_assert_eq!(expression.holds(&row()), holds(&text));
                 prop_assert!(!expression.holds(&[]) || text.contains("null") || !text.is_empty());
             }
@@ -165,9 +166,9 @@ proptest! {
         }
     }
 
-    /// Printed arithmetic is computed as Rust computes it.
+    /// Arithmetic gives the result of Rust.
     #[test]
-    fn precedence_is_that_of_arithmetic(a in 1_i32..9, b in 1_i32..9, c in 1_i32..9, d in 1_i32..9) {
+    fn precedence_follows_arithmetic(a in 1_i32..9, b in 1_i32..9, c in 1_i32..9, d in 1_i32..9) {
         let value = f64::from(a) + f64::from(b) * f64::from(c) - f64::from(d) / f64::from(a);
         let text = format!("{a} + {b} * {c} - {d} / {a} == {value:?}");
         prop_assert_eq!(holds(&text), true, "{}", text);

@@ -1,29 +1,33 @@
-//! What a mistyped name was meant to be.
+//! The known name nearest to a mistyped one.
 
-/// Letters of a name by which one that begins so is meant, at least.
-const BEGINNING: usize = 4;
+/// Shortest beginning of a name that is taken for the whole name, letters (chosen: shorter ones fit
+/// too many names).
+const MIN_BEGINNING: usize = 4;
 
-/// The known name nearest to a mistyped one, if any is near.
+/// Longest name that is compared, bytes (chosen: no known name is as long).
+const MAX_LENGTH: usize = 64;
+
+/// The known name nearest to a mistyped one: at most one edit, and one more for every four letters.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    if name.len() > 64 {
+    if name.len() > MAX_LENGTH {
         return None;
     }
     let name = name.to_lowercase();
-    let furthest = 1 + name.chars().count() / 4;
+    let max_distance = 1 + name.chars().count() / 4;
     known
         .map(|known| {
-            let own = known.to_lowercase();
-            // Who stops early means what begins so.
-            let begun = name.len() >= BEGINNING && own.starts_with(&name);
-            let edits = distance(&name, &own);
-            (if begun { edits.min(furthest) } else { edits }, known)
+            let candidate = known.to_lowercase();
+            // The beginning of a name stands for the whole name.
+            let begins = name.len() >= MIN_BEGINNING && candidate.starts_with(&name);
+            let edits = distance(&name, &candidate);
+            (if begins { edits.min(max_distance) } else { edits }, known)
         })
-        .filter(|(distance, _)| *distance <= furthest)
+        .filter(|(distance, _)| *distance <= max_distance)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, known)| known)
 }
 
-/// Edits (insert, delete, replace) from one word to another.
+/// Number of edits (insert, delete, replace) from one word to another: the Levenshtein distance.
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

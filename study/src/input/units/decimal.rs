@@ -1,11 +1,11 @@
-//! Decimal arithmetic on numbers as written, so that a conversion rounds once.
+//! Decimal arithmetic on the digits as written, so that a conversion rounds once.
 
 use super::symbol::Scale;
 
-/// Sign and digits as a whole number, and the power of ten that goes with it. `None` when the digits
-/// do not fit (more than 38 of them) or the exponent is beyond reason.
+/// Sign and digits as a whole number, and its power of ten. `None` with more than 38 digits, or when
+/// the exponent overflows.
 fn exact(number: &str) -> Option<(i128, i32)> {
-    let (mantissa, exponent) = halves(number);
+    let (mantissa, exponent) = split(number);
     let mut exponent: i32 = exponent.parse().ok()?;
     let mut whole: i128 = 0;
     let mut after_point = false;
@@ -22,8 +22,8 @@ fn exact(number: &str) -> Option<(i128, i32)> {
     Some((if mantissa.starts_with('-') { -whole } else { whole }, exponent))
 }
 
-/// Mantissa and exponent texts.
-fn halves(number: &str) -> (&str, &str) {
+/// Texts of mantissa and exponent.
+fn split(number: &str) -> (&str, &str) {
     number.split_once(['e', 'E']).unwrap_or((number, "0"))
 }
 
@@ -34,14 +34,17 @@ fn float(whole: i128, exponent: i32) -> Option<f64> {
 /// `number` × `scale`, rounded once wherever the scale is decimal.
 pub(super) fn scaled(number: &str, scale: &Scale) -> Option<f64> {
     if scale.factor == 1 && scale.divisor == 1 {
-        // A power of ten alone: move the exponent of the text, whatever its length.
-        let (mantissa, exponent) = halves(number);
+        // For a power of ten, only the exponent of the text changes.
+        let (mantissa, exponent) = split(number);
         let moved = match exponent.parse::<i64>() {
             Ok(exponent) => exponent.saturating_add(i64::from(scale.exponent)),
-            // An exponent that overflows i64 is a zero or an infinity either way.
-            Err(_) => return number.parse::<f64>().ok().map(|value| scale.turned(value)),
+            // With an exponent that overflows i64 the number is 0 or infinite in any unit.
+            Err(_) => return number.parse::<f64>().ok().map(|value| scale.apply_degrees(value)),
         };
-        return format!("{mantissa}e{moved}").parse::<f64>().ok().map(|value| scale.turned(value));
+        return format!("{mantissa}e{moved}")
+            .parse::<f64>()
+            .ok()
+            .map(|value| scale.apply_degrees(value));
     }
     let product = exact(number).and_then(|(whole, exponent)| {
         float(whole.checked_mul(i128::from(scale.factor))?, exponent.checked_add(scale.exponent)?)
@@ -54,10 +57,10 @@ pub(super) fn scaled(number: &str, scale: &Scale) -> Option<f64> {
         value * scale.factor as f64 * shift
     };
     let quotient = if scale.divisor == 1 { product } else { product / scale.divisor as f64 };
-    Some(scale.turned(quotient))
+    Some(scale.apply_degrees(quotient))
 }
 
-/// `number` + `offset`, an offset given as whole number and power of ten, rounded once.
+/// `number` + `offset`, rounded once. The offset is a whole number and a power of ten.
 pub(super) fn shifted(number: &str, offset: (i128, i32)) -> Option<f64> {
     let sum = exact(number).and_then(|(whole, exponent)| {
         let low = exponent.min(offset.1);

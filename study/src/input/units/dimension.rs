@@ -1,4 +1,4 @@
-//! Dimensions: what a quantity is, as powers of the base units.
+//! Dimensions of quantities, as powers of the base units.
 
 /// Powers of m, kg, s, K, rad.
 pub type Powers = [i8; 5];
@@ -98,7 +98,7 @@ impl Dimension {
         }
     }
 
-    /// Name, as errors say it.
+    /// Name with its article, for errors.
     pub fn name(self) -> &'static str {
         match self {
             Self::Number => "a pure number",
@@ -123,7 +123,7 @@ impl Dimension {
         }
     }
 
-    /// Units to offer, the SI unit first; any other unit of the dimension is read as well.
+    /// Usual units, the SI unit first; any other unit of the dimension is read as well.
     pub fn units(self) -> &'static [&'static str] {
         match self {
             Self::Number => &["%"],
@@ -154,7 +154,7 @@ impl Dimension {
     }
 }
 
-/// Powers in words: the name of the dimension where it has one, the base units otherwise.
+/// Powers in words: the name of the dimension, or the base units where it has no name.
 pub fn describe(powers: Powers) -> String {
     if let Some(dimension) = Dimension::ALL.into_iter().find(|known| known.powers() == powers) {
         return dimension.name().to_owned();

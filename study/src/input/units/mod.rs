@@ -1,16 +1,16 @@
 //! Quantities with units: a number is SI, a text carries its unit ("5 g/s", "40 mm", "30 deg").
 //!
-//! A unit is a product of base units m, kg, s, K, rad to whole powers, times a scale. Scales that are
-//! decimal (`mm`, `g`, `bar`, `%`, and also `atm`, `in`, `h` over the line) are applied to the decimal
-//! digits as written and the result is rounded once, so "40 mm" is 0.04 and "25.4 um" is 25.4e-6 bit
-//! for bit. `deg` is converted in twice the working precision; only units under the line that are no
-//! powers of ten cost a rounding more.
+//! A unit is a product of base units m, kg, s, K, rad to whole powers, times a scale. A decimal scale
+//! (`mm`, `g`, `bar`, `%`, and also `atm`, `in`, `h` in the numerator) is applied to the decimal digits
+//! as written, and the result is rounded once: "40 mm" is 0.04 and "25.4 um" is 25.4e-6, bit for bit.
+//! `deg` is converted in twice the working precision. Only a unit in the denominator that is not a
+//! power of ten needs a second rounding.
 //!
 //! ```text
 //! quantity = number unit            unit = product [ "/" product { "/" product } ]
 //! product  = "(" product ")" | symbol [ ["^"] power ] { ["·" | "*"] symbol [ ["^"] power ] }
 //! ```
-//! Everything after the first `/` is under the line: W/m2K, W/m2 K and W/(m2 K) are the same.
+//! Everything after the first `/` is in the denominator: W/m2K, W/m2 K and W/(m2 K) are the same.
 
 mod decimal;
 mod dimension;
@@ -18,7 +18,7 @@ mod symbol;
 
 pub use dimension::{Dimension, Powers, describe};
 
-/// Why a text is no quantity of the dimension wanted.
+/// Why a text is not a quantity of a dimension.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitError {
     /// What is wrong.
@@ -30,8 +30,8 @@ pub struct UnitError {
 /// Reads a quantity with its unit, to SI.
 ///
 /// # Errors
-/// When the text is no number with a unit, the unit is unknown or of another dimension, or the
-/// number overflows; the error names the dimension wanted and its units.
+/// When the text is not a number with a unit, the unit is unknown or of another dimension, or the
+/// number overflows; the error names the dimension and its units.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     parse_powers(text, dimension.powers()).map_err(|problem| UnitError {
         problem,
@@ -39,7 +39,8 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     })
 }
 
-/// Every single symbol a text of the dimension may carry as its unit; products and powers beside.
+/// Every single symbol that may be the unit of a quantity of the dimension. Products and powers are
+/// units too.
 pub fn symbols(dimension: Dimension) -> Vec<String> {
     let mut symbols = symbol::symbols(dimension.powers());
     if dimension == Dimension::Temperature {
@@ -73,10 +74,10 @@ pub fn parse_powers(text: &str, wanted: Powers) -> Result<f64, String> {
     finite(decimal::scaled(number, &scale), text)
 }
 
-/// Units of temperature that count from 0 °C.
+/// Units of temperature with their zero at 0 °C.
 const CELSIUS: [&str; 3] = ["degC", "°C", "celsius"];
 
-/// 0 °C is 273.15 K: 27315 hundredths.
+/// 0 °C in K, 273.15: 27315 hundredths.
 const ZERO_CELSIUS: (i128, i32) = (27_315, -2);
 
 fn finite(value: Option<f64>, text: &str) -> Result<f64, String> {
@@ -89,32 +90,32 @@ fn finite(value: Option<f64>, text: &str) -> Result<f64, String> {
 /// Splits "5 g/s" into number and unit; `None` when it does not start with a number.
 fn split(text: &str) -> Option<(&str, &str)> {
     let bytes = text.as_bytes();
-    let mut at = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
-    let digits = |mut at: usize| {
-        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
-            at += 1;
+    let mut end = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let digits = |mut end: usize| {
+        while bytes.get(end).is_some_and(u8::is_ascii_digit) {
+            end += 1;
         }
-        at
+        end
     };
-    let whole = digits(at);
-    let mut count = whole - at;
-    at = whole;
-    if bytes.get(at) == Some(&b'.') {
-        let fraction = digits(at + 1);
-        count += fraction - at - 1;
-        at = fraction;
+    let whole = digits(end);
+    let mut count = whole - end;
+    end = whole;
+    if bytes.get(end) == Some(&b'.') {
+        let fraction = digits(end + 1);
+        count += fraction - end - 1;
+        end = fraction;
     }
     if count == 0 {
         return None;
     }
-    if matches!(bytes.get(at), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(at + 1), Some(b'+' | b'-')));
-        let exponent = digits(at + 1 + sign);
-        if exponent > at + 1 + sign {
-            at = exponent;
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let exponent = digits(end + 1 + sign);
+        if exponent > end + 1 + sign {
+            end = exponent;
         }
     }
-    Some((&text[..at], text[at..].trim()))
+    Some((&text[..end], text[end..].trim()))
 }
 
 #[cfg(test)]

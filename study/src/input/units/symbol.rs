@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::dimension::Powers;
 
-/// What a unit is worth: base units × `factor` × 10^`exponent` / `divisor` × (π/180)^`degrees`.
+/// A unit in base units: `factor` × 10^`exponent` / `divisor` × (π/180)^`degrees`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Scale {
     pub powers: Powers,
@@ -18,7 +18,7 @@ impl Scale {
     const ONE: Self = Self { powers: [0; 5], exponent: 0, factor: 1, divisor: 1, degrees: 0 };
 
     /// `value` × (π/180)^degrees.
-    pub fn turned(&self, value: f64) -> f64 {
+    pub fn apply_degrees(&self, value: f64) -> f64 {
         (0..self.degrees.abs()).fold(value, |value, _| {
             if self.degrees > 0 { radians(value) } else { value * 180.0 / PI }
         })
@@ -26,28 +26,29 @@ impl Scale {
 
     /// Multiplies by `other` to the power `power`; `None` on overflow.
     fn times(mut self, other: &Self, power: i32) -> Option<Self> {
-        for (mine, theirs) in self.powers.iter_mut().zip(other.powers) {
-            let sum = i32::from(*mine) + i32::from(theirs) * power;
-            *mine = i8::try_from(sum).ok()?;
+        for (exponent, added) in self.powers.iter_mut().zip(other.powers) {
+            let sum = i32::from(*exponent) + i32::from(added) * power;
+            *exponent = i8::try_from(sum).ok()?;
         }
         self.exponent = self.exponent.checked_add(other.exponent.checked_mul(power)?)?;
         self.degrees += other.degrees * power;
         for _ in 0..power.abs() {
-            let (over, under) = if power > 0 {
+            let (numerator, denominator) = if power > 0 {
                 (other.factor, other.divisor)
             } else {
                 (other.divisor, other.factor)
             };
-            self.factor = self.factor.checked_mul(over)?;
-            self.divisor = self.divisor.checked_mul(under)?;
+            self.factor = self.factor.checked_mul(numerator)?;
+            self.divisor = self.divisor.checked_mul(denominator)?;
         }
         Some(self)
     }
 }
 
-/// Symbol, powers of m kg s K rad, factor, power of ten, whether it takes SI prefixes.
+/// Symbol, powers of m kg s K rad, factor, power of ten, whether it may have an SI prefix.
 type Known = (&'static str, Powers, u64, i32, bool);
 
+/// Every known unit without a prefix; `kg` is `g` with a prefix.
 const KNOWN: &[Known] = &[
     ("m", [1, 0, 0, 0, 0], 1, 0, true),
     ("g", [0, 1, 0, 0, 0], 1, -3, true),
@@ -73,6 +74,7 @@ const KNOWN: &[Known] = &[
     ("1", [0, 0, 0, 0, 0], 1, 0, false),
 ];
 
+/// SI prefixes and their powers of ten.
 const PREFIXES: &[(&str, i32)] = &[
     ("T", 12),
     ("G", 9),
@@ -104,7 +106,7 @@ fn symbol(name: &str) -> Option<Scale> {
         return Some(found(known, 0));
     }
     if name == "kgK" {
-        // The one product commonly written without a space.
+        // A product that is often written without a space.
         return symbol("kg")?.times(&symbol("K")?, 1);
     }
     PREFIXES.iter().find_map(|&(prefix, exponent)| {
@@ -114,7 +116,7 @@ fn symbol(name: &str) -> Option<Scale> {
     })
 }
 
-/// Every single symbol, prefixes and all, of a unit with these powers.
+/// Every single symbol, with every prefix, of a unit with these powers.
 pub(super) fn symbols(powers: Powers) -> Vec<String> {
     let mut symbols = Vec::new();
     for (symbol, _, _, _, prefixed) in KNOWN.iter().filter(|known| known.1 == powers) {
@@ -129,22 +131,24 @@ pub(super) fn symbols(powers: Powers) -> Vec<String> {
     symbols
 }
 
+/// Length of the longest unit read, bytes (chosen: a unit is a few symbols).
+const MAX_UNIT_LENGTH: usize = 64;
+
 /// Reads a unit.
 ///
 /// # Errors
 /// The problem in words.
 pub(super) fn unit(text: &str) -> Result<Scale, String> {
     let unknown = || format!("has an unknown unit {text:?}");
-    // A unit is a few symbols; a long text is something else, not worth an attempt.
-    if text.len() > 64 {
+    if text.len() > MAX_UNIT_LENGTH {
         return Err("is not a number followed by a unit".to_owned());
     }
     let mut scale = Scale::ONE;
     let mut parts = text.split('/');
-    let over = parts.next().unwrap_or_default();
-    scale = product(scale, over, 1).ok_or_else(unknown)?;
-    for under in parts {
-        scale = product(scale, under, -1).ok_or_else(unknown)?;
+    let numerator = parts.next().unwrap_or_default();
+    scale = product(scale, numerator, 1).ok_or_else(unknown)?;
+    for denominator in parts {
+        scale = product(scale, denominator, -1).ok_or_else(unknown)?;
     }
     Ok(scale)
 }
@@ -160,37 +164,38 @@ fn product(mut scale: Scale, text: &str, sign: i32) -> Option<Scale> {
         return None;
     }
     let chars: Vec<char> = text.chars().map(plain).collect();
-    let mut at = 0;
-    while at < chars.len() {
-        if matches!(chars[at], ' ' | '·' | '⋅' | '*') {
-            at += 1;
+    let mut position = 0;
+    while position < chars.len() {
+        if matches!(chars[position], ' ' | '·' | '⋅' | '*') {
+            position += 1;
             continue;
         }
-        let start = at;
-        if chars[at] == '1' {
-            at += 1;
+        let start = position;
+        if chars[position] == '1' {
+            position += 1;
         } else {
-            while at < chars.len() && (chars[at].is_alphabetic() || matches!(chars[at], '%' | '°'))
+            while position < chars.len()
+                && (chars[position].is_alphabetic() || matches!(chars[position], '%' | '°'))
             {
-                at += 1;
+                position += 1;
             }
         }
-        let name: String = chars[start..at].iter().collect();
+        let name: String = chars[start..position].iter().collect();
         let known = symbol(&name)?;
         let mut power = String::new();
-        if chars.get(at) == Some(&'^') {
-            at += 1;
-            if chars.get(at) == Some(&'-') {
+        if chars.get(position) == Some(&'^') {
+            position += 1;
+            if chars.get(position) == Some(&'-') {
                 power.push('-');
-                at += 1;
+                position += 1;
             }
         }
-        while chars.get(at).is_some_and(char::is_ascii_digit) {
-            power.push(chars[at]);
-            at += 1;
+        while chars.get(position).is_some_and(char::is_ascii_digit) {
+            power.push(chars[position]);
+            position += 1;
         }
         let power: i32 = match power.as_str() {
-            "" if chars.get(at.wrapping_sub(1)) != Some(&'^') => 1,
+            "" if chars.get(position.wrapping_sub(1)) != Some(&'^') => 1,
             digits => digits.parse().ok().filter(|power: &i32| (-9..=9).contains(power))?,
         };
         scale = scale.times(&known, sign * power)?;
@@ -198,7 +203,7 @@ fn product(mut scale: Scale, text: &str, sign: i32) -> Option<Scale> {
     Some(scale)
 }
 
-/// Superscript digits as plain ones.
+/// A plain digit for a superscript one, a plain space for any other space.
 fn plain(c: char) -> char {
     match c {
         '²' => '2',
@@ -208,17 +213,17 @@ fn plain(c: char) -> char {
     }
 }
 
-/// `degrees` × π / 180 in twice the working precision, rounded at the end, so that 30° is π/6 to the
-/// last bit.
+/// `degrees` × π / 180 in twice the working precision, rounded once, so that 30° is π/6 to the last
+/// bit.
 fn radians(degrees: f64) -> f64 {
-    /// π less its nearest double.
-    const PI_REST: f64 = 1.224_646_799_147_353_2e-16;
+    /// π − its nearest double.
+    const PI_REMAINDER: f64 = 1.224_646_799_147_353_2e-16;
     if !(1e-200..1e200).contains(&degrees.abs()) {
-        // The error terms would leave the range of doubles; nobody means such an angle.
+        // The error terms leave the range of doubles; no design has such an angle.
         return degrees * (PI / 180.0);
     }
     let (product, error) = exact_product(degrees, PI);
-    let error = error + degrees * PI_REST;
+    let error = error + degrees * PI_REMAINDER;
     let quotient = product / 180.0;
     let (back, back_error) = exact_product(quotient, 180.0);
     quotient + ((product - back) - back_error + error) / 180.0

@@ -54,14 +54,14 @@ fn decimal_units_convert_bit_for_bit() {
 }
 
 #[test]
-fn a_wrong_dimension_names_both() {
+fn an_error_names_both_dimensions() {
     let error = parse("5 mm", Dimension::MassFlowRate).unwrap_err();
     assert_eq!(error.problem, "is a length, not a mass flow rate");
     assert!(error.allowed.contains("g/s"), "{}", error.allowed);
 }
 
 #[test]
-fn what_is_no_quantity_is_refused() {
+fn texts_that_are_not_quantities_are_refused() {
     for text in [
         "",
         " ",
@@ -93,7 +93,7 @@ fn what_is_no_quantity_is_refused() {
 }
 
 #[test]
-fn every_unit_offered_is_read() {
+fn every_usual_unit_is_read() {
     for dimension in Dimension::ALL {
         for unit in dimension.units() {
             assert!(si(&format!("1 {unit}"), dimension) > 0.0, "{unit}");
@@ -102,7 +102,7 @@ fn every_unit_offered_is_read() {
 }
 
 proptest! {
-    /// FilmMotion the decimal point and naming the prefix is the same number, bit for bit.
+    /// A prefix and a shifted decimal point give the same number, bit for bit.
     #[test]
     fn prefixes_shift_the_point(digits in 1_u64..10_000_000_000_000_000, shift in -20_i32..20) {
         let written = format!("{digits}e{shift}");
@@ -117,7 +117,7 @@ proptest! {
         }
     }
 
-    /// A number printed in a unit and read back is the number.
+    /// A number printed with its unit and read again is the same number.
     #[test]
     fn units_round_trip(value in 1e-6_f64..1e6) {
         for dimension in Dimension::ALL.into_iter().filter(|d| *d != Dimension::Number) {

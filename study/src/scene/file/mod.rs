@@ -1,115 +1,97 @@
-//! What a scene file means: one capsule or any mesh, resolved to the film that is run.
+//! A scene file: one capsule or any mesh, resolved to the film that is run.
 //!
 //! ```text
-//! text → Json → (--set) → settings, mesh, supports … → FilmScene, and what its nodes are called
+//! text → Json → (--set) → draft, mesh, supports … → FilmScene, and the user's names of its nodes
 //! ```
-//! Everything that can be wrong with a scene is found here, before anything runs.
+//! Every error of a scene is found here, before anything runs.
 
+mod capsule;
 mod conflicts;
 mod contact;
 mod filling;
 mod mesh;
+mod motion;
 mod object;
 mod outputs;
+mod reader;
+mod reference;
+mod selection;
 mod shape;
+mod start;
 mod supports;
+mod weld;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use billow_solver::mechanics::supports::PrescribedNodes;
 use billow_solver::models::film::Rings;
-use billow_solver::platform::simd;
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::film_scene::{FilmScene, FilmSolver};
 use nalgebra::Vector3;
 use serde_json::json;
 
-use crate::input::keys::{GRAVITY, SCENE};
-use crate::input::settings::{Settings, check_version, number, unsigned};
+use crate::input::keys::draft::Draft;
+use crate::input::keys::{GRAVITY, KEYS, Key, Refusal, SCENE, named};
+use crate::input::settings::{Settings, check_sample_interval, check_version, missing_key};
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
+use crate::input::value::Value;
+use crate::input::{overrides, renamed};
 use crate::job::canonical_json;
-use crate::platform::error::{Error, InputError, Result};
-use crate::platform::files;
+use crate::platform::error::{InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::history_file::bytes_hash;
-use crate::study::apply_overrides;
+use reader::Reader;
+use shape::Shape;
 
-pub use outputs::Followed;
+pub use outputs::Recorded;
 pub use shape::Numbering;
-
-/// Largest mesh file read, bytes.
-const LARGEST_MESH: u64 = 1 << 30;
 
 /// A scene, ready to run.
 #[derive(Debug, Clone)]
 pub struct SceneFile {
     /// What is run.
     pub film: FilmScene,
-    /// What moves beside the supports' own motions: the ring of an erected capsule to its place.
+    /// Motions beside those of the supports: the ring of an erected capsule to its stowed position.
     pub seating: Vec<PrescribedNodes>,
-    /// What makes it a capsule.
+    /// Rings of a capsule; `None` for any other mesh.
     pub rings: Option<Rings>,
-    /// What is followed, by name.
-    pub followed: Followed,
+    /// Names of what is recorded.
+    pub recorded: Recorded,
     /// From the numbers of the user's file to those of the run.
     pub numbering: Numbering,
     /// The scene as given, with its overrides and the hashes of the files it names.
     pub json: serde_json::Value,
-    /// Hash of all that decides its results.
+    /// Hash of everything that decides its results.
     pub fingerprint: String,
-    /// What a reader of its results should know.
+    /// What a reader of its results must know.
     pub notes: Vec<String>,
 }
 
-const BESIDE: &str = "\n  next: paths in a scene are relative to the scene file";
-
-/// Where a scene's values and files come from.
-pub(crate) struct Reader {
-    source: Source,
-    folder: PathBuf,
-    /// Hash of each file read, by the name the scene gives it.
-    hashes: BTreeMap<String, String>,
-}
-
-impl Reader {
-    /// The text of a file that a key names.
-    fn text(&mut self, key: &str, name: &str) -> Result<String> {
-        let path = self.folder.join(name);
-        let disk = |problem: String| Error::Disk { path: path.clone(), problem };
-        let bytes = files::read_at_most(&path, LARGEST_MESH)
-            .map_err(|error| disk(format!("cannot read what {key} names: {error}{BESIDE}")))?
-            .ok_or_else(|| disk(format!("larger than {} MiB", LARGEST_MESH >> 20)))?;
-        self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
-        String::from_utf8(bytes).map_err(|error| {
-            disk(format!("no text: not UTF-8 from byte {} on", error.utf8_error().valid_up_to()))
-        })
-    }
-}
-
 impl SceneFile {
-    /// Reads a scene file, with `--set key=value` overrides applied to it. `path` of the instruction
-    /// set is the solver's.
+    /// Reads a scene file, with `--set key=value` overrides applied to it.
     ///
     /// # Errors
-    /// [`Error::Disk`] when it, or a file it names, cannot be read; [`Error::Input`] for the first
-    /// thing found wrong, with its key, its value and what is allowed.
-    pub fn load(path: &Path, sets: &[String], simd: simd::InstructionSet) -> Result<Self> {
+    /// [`crate::platform::error::Error::Disk`] when the file, or a file it names, cannot be read;
+    /// [`crate::platform::error::Error::Input`] for the first error, with its key, its value and what
+    /// is allowed.
+    pub fn load(path: &Path, sets: &[String], instruction_set: InstructionSet) -> Result<Self> {
         let bytes = study_file::read(path, "scene file", "scenes/sphere.json")?;
         let file = path.display().to_string();
-        Self::from_text(study_file::text_of(&bytes, &file)?, path, sets, simd)
+        Self::from_text(study_file::text_of(&bytes, &file)?, path, sets, instruction_set)
     }
 
-    /// Reads a scene from its text, as if it lay at `path`.
+    /// Reads a scene from its text; `path` is where its file would be.
     ///
     /// # Errors
-    /// As [`Self::load`], but for the file of the scene itself.
+    /// As [`Self::load`], except for the file of the scene itself.
     pub fn from_text(
         text: &str,
         path: &Path,
         sets: &[String],
-        simd: simd::InstructionSet,
+        instruction_set: InstructionSet,
     ) -> Result<Self> {
         let file = path.display().to_string();
         let mut tree = study_file::parse(text, &file)?;
@@ -118,130 +100,192 @@ impl SceneFile {
             let problem = format!("is {}, not an object", tree.kind());
             return Err(source.error("", "", problem, "one JSON object: {\"mesh\": …}").into());
         }
-        let written = tree.get("format") == Some(&Json::Text("billow-study".to_owned()));
-        if written || tree.get("grid").is_some() {
-            let key = if written { "format" } else { "grid" };
-            let error = source.error(key, "", "is of a study, not of a scene", "");
-            return Err(InputError { hint: format!("billow run {file}"), ..error }.into());
-        }
-        apply_overrides(&mut tree, sets, &SCENE, &mut source)?;
+        refuse_study(&tree, &file, &source)?;
+        let notes = overrides::apply(&mut tree, sets, &SCENE, &mut source)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let mut reader = Reader { source, folder, hashes: BTreeMap::new() };
-        Self::read(&tree, &mut reader, simd)
+        Self::read(&tree, notes, &mut reader, instruction_set)
     }
 
-    fn read(tree: &Json, reader: &mut Reader, simd: simd::InstructionSet) -> Result<Self> {
+    fn read(
+        tree: &Json,
+        mut notes: Vec<String>,
+        reader: &mut Reader,
+        instruction_set: InstructionSet,
+    ) -> Result<Self> {
         check_version(tree, &reader.source)?;
         let mut settings = Settings::new(&SCENE);
         settings.read("", tree, &reader.source)?;
-        let mut notes = Vec::new();
-        let statics = settings.flag("solver.static");
-        let mut shape = shape::read(tree, &settings, reader, simd)?;
-        let filling = filling::read(tree, &settings, &mut shape, &mut notes, &reader.source)?;
-        let supports = supports::read(tree, &settings, &shape, &reader.source)?;
+        check_one_shape(tree, &reader.source)?;
+        let has_design = tree.get("design").is_some();
+        let wanted = |key: &Key| has_design || !key.path.starts_with("design.");
+        let draft = settings.draft(wanted, &reader.source)?;
+        let statics = draft.film_scene.statics;
+        let mut shape = match tree.get("mesh") {
+            Some(json) => mesh::read(json, reader)?,
+            None => capsule::read(&draft, instruction_set, &reader.source)?,
+        };
+        let filling = filling::read(tree, &draft, &mut shape, &mut notes, &reader.source)?;
+        let supports = supports::read(tree, &draft, &shape, &reader.source)?;
         conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
-            for mover in std::mem::take(&mut seating) {
-                for (node, place) in mover.positions(mover.motion.to) {
-                    let own = &mut shape.shell.positions[node as usize];
-                    *own += mover.held * (place - *own);
-                }
-            }
+            seat(&mut shape, std::mem::take(&mut seating));
         }
-        let velocities = outputs::velocities(tree.get("start"), &shape, reader)?;
-        let (outputs, followed) =
+        let velocities = start::velocities(tree.get("start"), &shape, reader)?;
+        let (outputs, recorded) =
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
-        let end_time = end_time(&settings, &reader.source)?;
-        outputs::check_interval(outputs.sample_interval, end_time, &reader.source)?;
-        let contact = contact::read(tree, &settings, &reader.source)?;
+        let end_time = end_time(&draft, &reader.source)?;
+        check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
+        let contact = contact::read(tree, &draft, &reader.source)?;
         if contact.is_none() && !statics && shape.folded {
-            notes.push("contact is off: film passes through film, uncounted".to_owned());
+            notes
+                .push("contact is off: film passes through film, and it is not counted".to_owned());
         }
-        let mut film = FilmScene {
+        let film = FilmScene {
             shell: shape.shell,
             velocities,
-            film: crate::input::settings::film(&settings, &reader.source)?,
+            film: draft.scene.film,
             filling,
             supports,
             gravity: gravity(tree.get("gravity"), &reader.source)?,
-            release_time: number(&settings, "release_time", &reader.source)?,
+            release_time: draft.scene.release_time,
             solver: FilmSolver {
-                cfl: number(&settings, "solver.cfl", &reader.source)?,
+                cfl: draft.stepping.cfl,
                 end_time,
                 statics,
-                mass_damping: number(&settings, "solver.mass_damping", &reader.source)?,
-                step_limit: unsigned(&settings, "solver.step_limit", &reader.source)?,
-                instruction_set: simd,
+                mass_damping: draft.film_scene.mass_damping,
+                step_limit: draft.scene.solver.step_limit,
+                instruction_set,
             },
             outputs,
             contact,
         };
         contact::check_plates(&film, &reader.source)?;
-        if statics && settings.number("solver.end_time").is_some() {
-            notes.push("solver.end_time has no effect: a state of rest has no time".to_owned());
-        }
-        if film.release_time > 0.0 && (statics || film.release_time >= end_time) {
-            let why =
-                if statics { "a state of rest is not packed" } else { "it is packed to the end" };
-            notes.push(format!("release_time releases nothing: {why}"));
-        }
-        // Whatever of the film is none is found before anything runs.
-        let unsound = |error| scene_error(error, &reader.source);
-        if contact::lies_on_itself(&film).map_err(unsound)? {
-            let problem = "film lies on film at the start, so contact cannot tell its sides";
-            if tree.get("contact").is_some() {
-                let allowed = "a gap between layers, however small; or contact.enabled false";
-                return Err(reader.source.error("contact", "", problem, allowed).into());
-            }
-            notes.push(format!("{problem}: it is off, and film passes through film"));
-            film.contact = None;
-        }
-        let json = json!({"scene": to_value(tree), "files": reader.hashes});
-        let identity = json!({"physics_version": PHYSICS_VERSION, "input": json});
+        notes.extend(without_effect(&film, &draft));
+        let film = check_film(film, tree, &mut notes, &reader.source)?;
+        let (json, fingerprint) = identity(tree, reader);
         Ok(Self {
             film,
             seating,
             rings: shape.rings,
-            followed,
+            recorded,
             numbering: shape.numbering,
-            fingerprint: bytes_hash(canonical_json(&identity).as_bytes()),
             json,
+            fingerprint,
             notes,
         })
     }
 }
 
-/// A value, or what is wrong with it.
+/// Refuses a study file.
+fn refuse_study(tree: &Json, file: &str, source: &Source) -> Result<()> {
+    let is_study = tree.get("format") == Some(&Json::Text("billow-study".to_owned()));
+    if !is_study && tree.get("grid").is_none() {
+        return Ok(());
+    }
+    let key = if is_study { "format" } else { "grid" };
+    let error = source.error(key, "", "belongs to a study, not to a scene", "");
+    Err(InputError { hint: format!("billow run {file}"), ..error }.into())
+}
+
+/// Refuses a scene without a film, and one with two.
+fn check_one_shape(tree: &Json, source: &Source) -> Result<()> {
+    let problem = match (tree.get("design"), tree.get("mesh")) {
+        (Some(_), None) | (None, Some(_)) => return Ok(()),
+        (Some(_), Some(_)) => "gives both design and mesh",
+        (None, None) => "gives neither design nor mesh",
+    };
+    let allowed = "one of design (a capsule) and mesh (OBJ files)";
+    Err(source.error("", "", problem, allowed).into())
+}
+
+/// Moves the nodes of a shape to the ends of their motions: static equilibrium has no time.
+fn seat(shape: &mut Shape, movers: Vec<PrescribedNodes>) {
+    for mover in movers {
+        for (node, end) in mover.positions(mover.motion.to) {
+            let position = &mut shape.shell.positions[node as usize];
+            *position += mover.held * (end - *position);
+        }
+    }
+}
+
+/// Keys that have no effect on this scene.
+fn without_effect(film: &FilmScene, draft: &Draft) -> Vec<String> {
+    let mut notes = Vec::new();
+    let statics = film.solver.statics;
+    if statics && draft.film_scene.end_time.is_some() {
+        notes.push("solver.end_time has no effect: static equilibrium has no time".to_owned());
+    }
+    if film.release_time > 0.0 && (statics || film.release_time >= film.solver.end_time) {
+        let reason = if statics {
+            "static equilibrium is solved without packing"
+        } else {
+            "the film stays packed until solver.end_time"
+        };
+        notes.push(format!("release_time has no effect: {reason}"));
+    }
+    notes
+}
+
+/// Has the solver check the film before anything runs. Film that touches itself at the start has no
+/// contact: a file that asks for it is refused.
+fn check_film(
+    mut film: FilmScene,
+    tree: &Json,
+    notes: &mut Vec<String>,
+    source: &Source,
+) -> Result<FilmScene> {
+    let touches = contact::touches_itself(&film).map_err(|error| scene_error(error, source))?;
+    if touches {
+        let problem = "film touches film at the start, so contact cannot distinguish its two sides";
+        if tree.get("contact").is_some() {
+            let allowed = "a gap between layers, however small; or contact.enabled false";
+            return Err(source.error("contact", "", problem, allowed).into());
+        }
+        notes.push(format!("{problem}: contact is off, and film passes through film"));
+        film.contact = None;
+    }
+    Ok(film)
+}
+
+/// The scene as stored, and the hash of everything that decides its results. The hash uses the old name
+/// of a renamed key, so that a new name does not change it.
+fn identity(tree: &Json, reader: &Reader) -> (serde_json::Value, String) {
+    let with_files = |tree: &Json| json!({"scene": to_value(tree), "files": reader.hashes});
+    let input = with_files(&renamed::with_old_names(tree));
+    let identity = json!({"physics_version": PHYSICS_VERSION, "input": input});
+    (with_files(tree), bytes_hash(canonical_json(&identity).as_bytes()))
+}
+
+/// A value, or its error.
 type Checked<T> = std::result::Result<T, InputError>;
 
-/// The end, s; no meaning for statics, which needs none.
-fn end_time(settings: &Settings, source: &Source) -> Checked<f64> {
-    let statics = settings.flag("solver.static");
-    match settings.number("solver.end_time") {
+/// The end of the run, s. Static equilibrium needs none and ignores it.
+fn end_time(draft: &Draft, source: &Source) -> Checked<f64> {
+    match draft.film_scene.end_time {
         Some(time) => Ok(time),
-        None if statics => Ok(1.0),
-        None => number(settings, "solver.end_time", source),
+        None if draft.film_scene.statics => Ok(1.0),
+        None => Err(missing_key(const { named(KEYS, "solver.end_time") }, source)),
     }
 }
 
 fn gravity(json: Option<&Json>, source: &Source) -> Checked<Vector3<f64>> {
     let [along, vector] = &GRAVITY;
     let Some(json) = json else { return Ok(Vector3::zeros()) };
-    let refused = |refusal: crate::input::keys::Refusal| {
-        source.error("gravity", &json.brief(), refusal.problem, refusal.allowed)
-    };
+    let refused =
+        |refusal: Refusal| source.error("gravity", &json.brief(), refusal.problem, refusal.allowed);
     if matches!(json, Json::List(_)) {
         return Ok(vector.read_vector(json).map_err(refused)?.into());
     }
     match along.read(json).map_err(refused)? {
-        crate::input::value::Value::Number(number) => Ok(Vector3::new(0.0, 0.0, number)),
+        Value::Number(number) => Ok(Vector3::new(0.0, 0.0, number)),
         _ => Ok(Vector3::zeros()),
     }
 }
 
-/// What the solver refuses, as an error of the file.
-pub(crate) fn scene_error(error: SceneError, source: &Source) -> InputError {
+/// The error of a scene that the solver refuses.
+fn scene_error(error: SceneError, source: &Source) -> InputError {
     match error {
         SceneError::Invalid { key, problem } => {
             let (problem, allowed) = problem.split_once("; allowed: ").unwrap_or((&problem, ""));

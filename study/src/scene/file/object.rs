@@ -1,4 +1,4 @@
-//! Reading an object of a scene by the table of its keys.
+//! Reads an object of a scene by the table of its keys.
 
 use nalgebra::Vector3;
 
@@ -12,47 +12,45 @@ use crate::platform::error::InputError;
 /// An object whose keys are all known.
 pub(super) struct Object<'a> {
     json: &'a Json,
-    /// Where it stands, as in `supports[0]`.
-    pub at: String,
-    keys: &'static [Key],
+    /// Its place in the file, as in `supports[0]`.
+    pub path: String,
+    /// Every key it may have.
+    names: Vec<&'a str>,
     source: &'a Source,
 }
 
 impl<'a> Object<'a> {
-    /// The object at a place. `what` it is, with its article; `more` the keys beside those of the
-    /// table.
+    /// The object at a path. `what` is its name with its article; `more` are its keys beside those of
+    /// the table.
     pub fn new(
         json: &'a Json,
-        at: &str,
+        path: &str,
         what: &str,
         keys: &'static [Key],
-        more: &[&str],
+        more: &[&'a str],
         source: &'a Source,
     ) -> Result<Self, InputError> {
-        let names = || keys.iter().map(|key| key.path).chain(more.iter().copied());
-        let allowed = || names().collect::<Vec<_>>().join(", ");
+        let names: Vec<&str> =
+            keys.iter().map(|key| key.path).chain(more.iter().copied()).collect();
         let Json::Object(members) = json else {
             let problem = format!("is {}, not an object", json.kind());
-            return Err(source.error(at, &json.brief(), problem, allowed()));
+            return Err(source.error(path, &json.brief(), problem, names.join(", ")));
         };
         for (name, value) in members {
-            if !names().any(|known| known == name) {
-                let near = keys::nearest(name, names())
+            if !names.contains(&name.as_str()) {
+                let near = keys::nearest(name, names.iter().copied())
                     .map_or_else(String::new, |near| format!("; did you mean {near}?"));
-                let problem = format!("is no key of {what}{near}");
-                return Err(source.error(
-                    &format!("{at}.{name}"),
-                    &value.brief(),
-                    problem,
-                    allowed(),
-                ));
+                let problem = format!("is not a key of {what}{near}");
+                let key = format!("{path}.{name}");
+                return Err(source.error(&key, &value.brief(), problem, names.join(", ")));
             }
         }
-        Ok(Self { json, at: at.to_owned(), keys, source })
+        Ok(Self { json, path: path.to_owned(), names, source })
     }
 
-    /// What a key is given; `null` is nothing.
+    /// The value that the file gives a key; `null` counts as not given.
     pub fn given(&self, name: &str) -> Option<&'a Json> {
+        debug_assert!(self.names.contains(&name), "{} has no key {name}", self.path);
         self.json.get(name).filter(|json| **json != Json::Null)
     }
 
@@ -64,89 +62,88 @@ impl<'a> Object<'a> {
         allowed: impl Into<String>,
     ) -> InputError {
         let value = self.given(name).map(Json::brief).unwrap_or_default();
-        self.source.error(&format!("{}.{name}", self.at), &value, problem, allowed)
+        self.source.error(&format!("{}.{name}", self.path), &value, problem, allowed)
     }
 
-    fn key(&self, name: &str) -> &'static Key {
-        match self.keys.iter().find(|key| key.path == name) {
-            Some(key) => key,
-            None => unreachable!("no key {name}"),
-        }
-    }
-
-    /// The error of a key that is not given.
-    pub fn missing(&self, name: &str) -> InputError {
-        let Some(key) = self.keys.iter().find(|key| key.path == name) else {
-            return self.error(name, "missing", "");
-        };
-        let mut error = self.error(name, "missing", key.allowed());
+    /// The error of a key that the file does not give.
+    pub fn missing(&self, key: &Key) -> InputError {
+        let mut error = self.error(key.path, "missing", key.allowed());
         error.hint = format!("give it, as in {}", key.sample());
         error
     }
 
-    fn value(&self, name: &str) -> Result<Value, InputError> {
-        let key = self.key(name);
-        match self.given(name) {
-            Some(json) => read(key, json, &format!("{}.{name}", self.at), self.source),
+    fn value(&self, key: &Key) -> Result<Value, InputError> {
+        match self.given(key.path) {
+            Some(json) => read(key, json, &format!("{}.{}", self.path, key.path), self.source),
             None => Ok(key.default_value()),
         }
     }
 
     /// A number, given or by default.
-    pub fn number(&self, name: &str) -> Result<Option<f64>, InputError> {
-        match self.value(name)? {
+    pub fn number(&self, key: &Key) -> Result<Option<f64>, InputError> {
+        match self.value(key)? {
             Value::Number(number) => Ok(Some(number)),
             _ => Ok(None),
         }
     }
 
-    /// A number that must be there.
-    pub fn needed(&self, name: &str) -> Result<f64, InputError> {
-        self.number(name)?.ok_or_else(|| self.missing(name))
+    /// A number, given or by default; an error without either.
+    pub fn needed(&self, key: &Key) -> Result<f64, InputError> {
+        self.number(key)?.ok_or_else(|| self.missing(key))
     }
 
-    /// A whole number from 0 on that must be there.
-    pub fn count(&self, name: &str) -> Result<u32, InputError> {
-        match self.value(name)? {
-            Value::Integer(number) => u32::try_from(number).map_err(|_| self.missing(name)),
-            _ => Err(self.missing(name)),
+    /// A whole number of 32 bits, given or by default; an error without either.
+    pub fn count(&self, key: &Key) -> Result<u32, InputError> {
+        match self.value(key)? {
+            Value::Integer(number) => u32::try_from(number).map_err(|_| self.missing(key)),
+            _ => Err(self.missing(key)),
         }
     }
 
     /// A word or a text, given or by default.
-    pub fn text(&self, name: &str) -> Result<Option<String>, InputError> {
-        match self.value(name)? {
+    pub fn text(&self, key: &Key) -> Result<Option<String>, InputError> {
+        match self.value(key)? {
             Value::Text(text) => Ok(Some(text)),
             _ => Ok(None),
         }
     }
 
-    fn refused(&self, name: &str, refusal: Refusal) -> InputError {
-        let mut error = self.error(name, refusal.problem, refusal.allowed);
-        error.hint = format!("write it as in {}", self.key(name).sample());
+    /// A word or a text, given or by default; an error without either.
+    pub fn needed_text(&self, key: &Key) -> Result<String, InputError> {
+        self.text(key)?.ok_or_else(|| self.missing(key))
+    }
+
+    fn refused(&self, key: &Key, refusal: Refusal) -> InputError {
+        let mut error = self.error(key.path, refusal.problem, refusal.allowed);
+        error.hint = format!("write it as in {}", key.sample());
         error
     }
 
     /// Three numbers, where given.
-    pub fn vector(&self, name: &str) -> Result<Option<Vector3<f64>>, InputError> {
-        let Some(json) = self.given(name) else { return Ok(None) };
-        let read = self.key(name).read_vector(json);
-        read.map(|vector| Some(vector.into())).map_err(|refusal| self.refused(name, refusal))
+    pub fn vector(&self, key: &Key) -> Result<Option<Vector3<f64>>, InputError> {
+        let Some(json) = self.given(key.path) else { return Ok(None) };
+        let read = key.read_vector(json);
+        read.map(|vector| Some(vector.into())).map_err(|refusal| self.refused(key, refusal))
+    }
+
+    /// Three numbers; an error where they are not given.
+    pub fn needed_vector(&self, key: &Key) -> Result<Vector3<f64>, InputError> {
+        self.vector(key)?.ok_or_else(|| self.missing(key))
     }
 
     /// Three numbers or `null`s, where given.
-    pub fn parts(&self, name: &str) -> Result<[Option<f64>; 3], InputError> {
-        let Some(json) = self.given(name) else { return Ok([None; 3]) };
-        self.key(name).read_parts(json).map_err(|refusal| self.refused(name, refusal))
+    pub fn components(&self, key: &Key) -> Result<[Option<f64>; 3], InputError> {
+        let Some(json) = self.given(key.path) else { return Ok([None; 3]) };
+        key.read_components(json).map_err(|refusal| self.refused(key, refusal))
     }
 
-    /// A direction that must be there, as a unit vector.
-    pub fn direction(&self, name: &str) -> Result<Vector3<f64>, InputError> {
-        let vector = self.vector(name)?.ok_or_else(|| self.missing(name))?;
+    /// A direction as a unit vector; an error where it is not given or zero.
+    pub fn direction(&self, key: &Key) -> Result<Vector3<f64>, InputError> {
+        let vector = self.needed_vector(key)?;
         if vector.norm() > 0.0 {
             Ok(vector.normalize())
         } else {
-            Err(self.error(name, "has no direction", "a vector of any length but 0"))
+            Err(self.error(key.path, "has no direction", "a vector of any length but 0"))
         }
     }
 }

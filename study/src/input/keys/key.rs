@@ -1,0 +1,291 @@
+//! One key of a file: its name, what it may hold, its default, its meaning, and where its value goes.
+
+use std::fmt::Write as _;
+
+use super::draft::Draft;
+use super::nearest::nearest;
+use super::quantity::{Quantity, integer};
+use super::words::Word;
+use crate::input::study_file::Json;
+use crate::input::units::Dimension;
+use crate::input::value::Value;
+
+/// Puts the value of a key into its field of the draft.
+pub type Store = fn(&mut Draft, &Value);
+
+/// One key that holds one value: one row of a table of keys.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// Dotted path, as in `film.thickness`.
+    pub path: &'static str,
+    /// What it may hold.
+    pub kind: KeyKind,
+    /// Its value when the file does not give it.
+    pub default: Default,
+    /// Meaning, one line.
+    pub doc: &'static str,
+    /// A value as a user writes it, JSON.
+    pub example: &'static str,
+    /// Where its value goes. `None` for the keys of an object in a list (a support, a plate), which
+    /// the reader of that object asks for.
+    pub store: Option<Store>,
+    /// Whether only a study file has the key; a scene file has it as well otherwise.
+    pub study_only: bool,
+    /// Paths of the keys that lose their value when this one is set.
+    pub excludes: &'static [&'static str],
+}
+
+/// What a key may hold.
+#[derive(Debug, Clone, Copy)]
+pub enum KeyKind {
+    /// A number in SI, or a text with a unit.
+    Quantity(Quantity),
+    /// A whole number, both ends allowed.
+    Integer(i64, i64),
+    /// One of these words.
+    Choice(&'static [Word]),
+    /// Any text.
+    Text,
+    /// True or false.
+    Flag,
+    /// Three such quantities, x, y, z: [`Key::read_vector`].
+    Vector(Quantity),
+}
+
+/// The value of a key that the file does not give.
+#[derive(Debug, Clone, Copy)]
+pub enum Default {
+    /// This number, SI.
+    Number(f64),
+    /// This whole number.
+    Integer(i64),
+    /// This word.
+    Word(&'static str),
+    /// No value; the text says what happens then.
+    Absent(&'static str),
+    /// The file must give it, in its section or on the grid.
+    Required,
+}
+
+/// Why a key cannot hold a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// What is wrong.
+    pub problem: String,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+/// A row of a table. [`Key::to`] adds where its value goes.
+pub(super) const fn key(
+    path: &'static str,
+    kind: KeyKind,
+    default: Default,
+    example: &'static str,
+    doc: &'static str,
+) -> Key {
+    Key { path, kind, default, doc, example, store: None, study_only: false, excludes: &[] }
+}
+
+/// A quantity from `min` to `max`, both allowed.
+pub(super) const fn from(dimension: Dimension, min: f64, max: f64) -> KeyKind {
+    KeyKind::Quantity(Quantity { dimension, min, above: false, max, words: &[] })
+}
+
+/// A quantity above `min`, up to and including `max`.
+pub(super) const fn above(dimension: Dimension, min: f64, max: f64) -> KeyKind {
+    KeyKind::Quantity(Quantity { dimension, min, above: true, max, words: &[] })
+}
+
+/// Three quantities, each from −`max` to `max`.
+pub(super) const fn vector(dimension: Dimension, max: f64) -> KeyKind {
+    KeyKind::Vector(Quantity { dimension, min: -max, above: false, max, words: &[] })
+}
+
+/// Position of a key in a table. In a `const` block, a name that the table does not have is a compile
+/// error.
+///
+/// # Panics
+/// When no key of the table has this path.
+pub const fn position(keys: &[Key], path: &str) -> usize {
+    let mut index = 0;
+    while index < keys.len() {
+        if same_text(keys[index].path, path) {
+            return index;
+        }
+        index += 1;
+    }
+    panic!("no key of this table has this path")
+}
+
+/// The key of a table with this path. In a `const` block, a name that the table does not have is a
+/// compile error.
+///
+/// # Panics
+/// When no key of the table has this path.
+pub const fn named(keys: &'static [Key], path: &str) -> &'static Key {
+    &keys[position(keys, path)]
+}
+
+/// Whether two texts are equal, at compile time.
+pub(super) const fn same_text(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    if a.len() != b.len() {
+        return false;
+    }
+    let mut index = 0;
+    while index < a.len() {
+        if a[index] != b[index] {
+            return false;
+        }
+        index += 1;
+    }
+    true
+}
+
+impl Key {
+    /// The same key, with the field its value goes to.
+    pub(super) const fn to(self, store: Store) -> Self {
+        Self { store: Some(store), ..self }
+    }
+
+    /// The same key, for study files only.
+    pub(super) const fn study_only(self) -> Self {
+        Self { study_only: true, ..self }
+    }
+
+    /// The same key; setting it removes the values of these.
+    pub(super) const fn excludes(self, excludes: &'static [&'static str]) -> Self {
+        Self { excludes, ..self }
+    }
+
+    /// The last part of the path.
+    pub fn leaf(&self) -> &'static str {
+        self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// Whether a grid may vary it: every key except those that name the file and the study.
+    pub fn varies(&self) -> bool {
+        !matches!(self.path, "format" | "version" | "name" | "question")
+    }
+
+    /// The default as a value; `Null` where there is none.
+    pub fn default_value(&self) -> Value {
+        match self.default {
+            Default::Number(number) => Value::Number(number),
+            Default::Integer(number) => Value::Integer(number),
+            Default::Word(word) => Value::Text(word.to_owned()),
+            Default::Absent(_) | Default::Required => Value::Null,
+        }
+    }
+
+    /// SI unit: "1" for a pure number, empty for a word, a text or a flag.
+    pub fn unit(&self) -> &'static str {
+        match self.kind {
+            KeyKind::Quantity(quantity) | KeyKind::Vector(quantity) => quantity.dimension.si(),
+            KeyKind::Integer(..) => "1",
+            KeyKind::Choice(_) | KeyKind::Text | KeyKind::Flag => "",
+        }
+    }
+
+    /// What the key allows, in words.
+    pub fn allowed(&self) -> String {
+        match self.kind {
+            KeyKind::Quantity(quantity) => quantity.allowed(),
+            KeyKind::Integer(min, max) => format!("a whole number, {min} to {max}"),
+            KeyKind::Choice(words) => names(words).collect::<Vec<_>>().join(", "),
+            KeyKind::Text => "a text".to_owned(),
+            KeyKind::Flag => "true or false".to_owned(),
+            KeyKind::Vector(quantity) => format!("a list of three: {}", quantity.allowed()),
+        }
+    }
+
+    /// Meaning, with the meanings of its words.
+    pub fn meaning(&self) -> String {
+        let mut meaning = self.doc.to_owned();
+        if let KeyKind::Choice(words) = self.kind {
+            let explained = words.iter().filter(|word| !word.meaning.is_empty());
+            let texts: Vec<String> =
+                explained.map(|word| format!("{}: {}", word.name, word.meaning)).collect();
+            if !texts.is_empty() {
+                let _ = write!(meaning, " {}.", texts.join("; "));
+            }
+        }
+        meaning
+    }
+
+    /// The key as a file has it, as in `"thickness": "25.4 um"`.
+    pub fn sample(&self) -> String {
+        format!("\"{}\": {}", self.leaf(), self.example)
+    }
+
+    /// Reads a value: units to SI, 8.0 as the whole number 8 and 8 as the number 8.0, −0 as 0.
+    ///
+    /// # Errors
+    /// When the value has another type or dimension, or is out of range.
+    pub fn read(&self, json: &Json) -> Result<Value, Refusal> {
+        let refuse = |problem: String| Err(Refusal { problem, allowed: self.allowed() });
+        match (self.kind, json) {
+            (KeyKind::Quantity(quantity), _) => quantity.read(json).or_else(refuse),
+            (KeyKind::Integer(min, max), _) => integer(json, min, max).or_else(refuse),
+            (KeyKind::Choice(words), Json::Text(text)) => {
+                if names(words).any(|name| name == text) {
+                    return Ok(Value::Text(text.clone()));
+                }
+                if self.path == "design.caps" && text == "circular" {
+                    return refuse(
+                        "circular caps belong to the erected shape: a disc cannot be sewn to a \
+                         flat-folded N-gon without strain"
+                            .to_owned(),
+                    );
+                }
+                let hint = nearest(text, names(words))
+                    .map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+                refuse(format!("is not one of the words of this key{hint}"))
+            }
+            (KeyKind::Text, Json::Text(text)) => Ok(Value::Text(text.clone())),
+            (KeyKind::Flag, Json::Bool(flag)) => Ok(Value::Bool(*flag)),
+            (KeyKind::Flag, other) => refuse(format!("is {}, not true or false", other.kind())),
+            (_, other) => refuse(format!("is {}, not a text", other.kind())),
+        }
+    }
+
+    /// Reads three numbers, or texts with their units; a `null` component has no value.
+    ///
+    /// # Errors
+    /// When it is not a list of three, or a component has another type or dimension or is out of
+    /// range.
+    pub fn read_components(&self, json: &Json) -> Result<[Option<f64>; 3], Refusal> {
+        let refuse = |problem: String| Refusal { problem, allowed: self.allowed() };
+        let (KeyKind::Vector(quantity), Json::List(items)) = (self.kind, json) else {
+            return Err(refuse(format!("is {}, not a list of three", json.kind())));
+        };
+        let mut components = [None; 3];
+        if items.len() != 3 {
+            return Err(refuse(format!("has {} components instead of three", items.len())));
+        }
+        for (component, item) in components.iter_mut().zip(items) {
+            if *item != Json::Null {
+                *component = quantity.number(&quantity.read(item).map_err(refuse)?);
+            }
+        }
+        Ok(components)
+    }
+
+    /// Reads three numbers, or texts with their units.
+    ///
+    /// # Errors
+    /// As [`Self::read_components`], and when a component is `null`.
+    pub fn read_vector(&self, json: &Json) -> Result<[f64; 3], Refusal> {
+        let [Some(x), Some(y), Some(z)] = self.read_components(json)? else {
+            let problem = "has a component that is null".to_owned();
+            return Err(Refusal { problem, allowed: self.allowed() });
+        };
+        Ok([x, y, z])
+    }
+}
+
+/// The names of words.
+fn names(words: &'static [Word]) -> impl Iterator<Item = &'static str> {
+    words.iter().map(|word| word.name)
+}

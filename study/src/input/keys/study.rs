@@ -1,0 +1,300 @@
+//! The keys of a study file. To add a key, add a row: reading, default, errors, `billow schema`,
+//! `billow keys` and docs/reference/keys.md follow from it.
+//!
+//! Ranges cover any plausible capsule, and catch millimetres given as metres.
+
+use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+
+use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};
+use super::key::Default::{Absent, Integer, Number, Required, Word};
+use super::key::{Key, KeyKind, above, from, key};
+use super::quantity::Quantity;
+use super::words::{
+    CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, SUPPORT_PLACES, pick, plain, words,
+};
+use crate::input::units::Dimension;
+
+/// The objects of a study file that hold single values, in the order of the documentation.
+pub const SECTIONS: &[(&str, &str)] = &[
+    ("design", "The fold design: a six-fold-line pattern of N panels and M storeys on a cone."),
+    ("film", "The film the capsule is made of."),
+    ("gas", "The gas that deploys the capsule, and its exchange with the surroundings."),
+    ("gas.species", "A gas by its constants: gas_constant and cp, both."),
+    ("contact", "Contact of film with film."),
+    ("solver", "How a job is computed."),
+    ("solver.stepping", "How the step is chosen: adaptive (a tolerance) or fixed (a step)."),
+    ("outputs", "What is stored."),
+    ("outputs.thresholds", "Thresholds of the verdict."),
+];
+
+/// Keys of a study that hold more than one value, beside the sections, and their meanings.
+pub(crate) const STRUCTURED: &[(&str, &str)] = &[
+    ("supports", "What holds the capsule. Default: its bottom ring, in xyz."),
+    (
+        "strategies",
+        "Inflation strategies: named schedules. `direct` always exists: released at once, inflow \
+         from release to the end.",
+    ),
+    ("grid", "What varies: every combination of the axes, the first varying slowest."),
+];
+
+/// Largest whole number that every JSON reader keeps exactly, 2^53 − 1.
+const MAX_EXACT_INTEGER: i64 = 9_007_199_254_740_991;
+
+/// A radius or height of a capsule, m.
+const RADIUS: KeyKind = above(Dimension::Length, 0.0, 100.0);
+/// A fraction above 0, up to 1.
+pub(super) const FRACTION: KeyKind = above(Dimension::Number, 0.0, 1.0);
+/// A temperature, K.
+pub(super) const KELVIN: KeyKind = from(Dimension::Temperature, 1.0, 5000.0);
+/// A time since the start of the run, s.
+pub(super) const CLOCK: KeyKind = from(Dimension::Time, 0.0, 1e6);
+
+/// Every key that holds one value.
+#[rustfmt::skip]
+pub static KEYS: &[Key] = &[
+    key("format", KeyKind::Choice(&[plain("billow-study")]),
+        Word("billow-study"), "\"billow-study\"", "Name of the file format.")
+        .study_only(),
+    key("version", KeyKind::Integer(1, 1), Integer(1), "1",
+        "Version of the file format; a newer one is refused.")
+        .study_only(),
+    key("name", KeyKind::Text, Absent("the name of the file without .json"), "\"first\"",
+        "Name of the study and of its results folder: letters, digits, - _ and dots.")
+        .study_only(),
+    key("question", KeyKind::Text, Word(""), "\"Which N deploys fastest?\"",
+        "The question the study answers.")
+        .study_only(),
+
+    key("design.fit", KeyKind::Choice(&words(&FITS)), Word("cone"), "\"height\"",
+        "Which quantities of the fold are given, and which follow.")
+        .to(|draft, value| choose(&mut draft.scene.design.fit, &FITS, value)),
+    key("design.N", KeyKind::Integer(4, 1000), Required, "6", "Number of panels of a ring.")
+        .to(|draft, value| draft.scene.design.panels = whole(value)),
+    key("design.M", KeyKind::Integer(1, 1000), Required, "3", "Number of storeys.")
+        .to(|draft, value| draft.scene.design.storeys = whole(value)),
+    key("design.bottom_radius", RADIUS, Required, "\"500 mm\"", "Radius of the bottom ring, r2.")
+        .to(|draft, value| draft.scene.design.bottom_radius = number(value)),
+    key("design.top_radius", RADIUS, Absent("follows from the fit, where the fit allows"),
+        "\"365 mm\"", "Radius of the top ring, r1: for cone, and nominal for angles.")
+        .to(|draft, value| draft.scene.design.top_radius = optional(value)),
+    key("design.height", RADIUS, Absent("follows from the fit, where the fit allows"), "\"1 m\"",
+        "Height of the erected cone, H: for cone and height, and nominal for angles.")
+        .to(|draft, value| draft.scene.design.height = optional(value)),
+    key("design.half_angle", from(Dimension::Angle, -1.57, 1.57),
+        Absent("follows from the fit, or from top_radius and height"), "\"7.7 deg\"",
+        "Half top angle: for angles, in place of top_radius and height.")
+        .to(|draft, value| draft.scene.design.half_angle = optional(value)),
+    key("design.alpha1_over_phi", above(Dimension::Number, 0.0, 100.0),
+        Absent("follows from the fit, where the fit allows"), "1",
+        "Ratio of the angles alpha1 and phi of a panel: for angles and height.")
+        .to(|draft, value| draft.scene.design.alpha1_over_phi = optional(value)),
+    key("design.stowed_height", above(Dimension::Length, 0.0, 10.0), Number(0.04), "\"40 mm\"",
+        "Height of the stowed stack.")
+        .to(|draft, value| draft.scene.design.stowed_height = number(value)),
+    key("design.subdivisions", KeyKind::Integer(1, 1000), Integer(8), "8",
+        "Mesh subdivisions of every facet edge. Models without a mesh ignore it.")
+        .to(|draft, value| draft.scene.design.subdivisions = whole(value)),
+    key("design.chirality", KeyKind::Choice(&words(&CHIRALITIES)), Word("same"), "\"alternate\"",
+        "Turning direction of successive storeys.")
+        .to(|draft, value| choose(&mut draft.scene.design.chirality, &CHIRALITIES, value)),
+    key("design.caps", KeyKind::Choice(&[words(&CAPS)[0]]), Word("polygon"), "\"polygon\"",
+        "Shape of the end caps.")
+        .to(|draft, value| choose(&mut draft.scene.design.caps, &CAPS, value))
+        .study_only(),
+
+    key("film.youngs_modulus", from(Dimension::Pressure, 1e3, 1e13), Number(3.45e9),
+        "\"3.45 GPa\"", "Young's modulus, E.")
+        .to(|draft, value| draft.scene.film.youngs_modulus = number(value)),
+    key("film.poisson_ratio", from(Dimension::Number, 0.0, 0.499), Number(0.3), "0.3",
+        "Poisson's ratio.")
+        .to(|draft, value| draft.scene.film.poisson_ratio = number(value)),
+    key("film.density", from(Dimension::Density, 1.0, 30_000.0), Number(1400.0),
+        "\"1400 kg/m3\"", "Density.")
+        .to(|draft, value| draft.scene.film.density = number(value)),
+    key("film.thickness", from(Dimension::Length, 1e-7, 0.01), Number(25.4e-6), "\"25.4 um\"",
+        "Thickness.")
+        .to(|draft, value| draft.scene.film.thickness = number(value)),
+    key("film.compression", from(Dimension::Number, 0.0, 1.0), Number(0.0), "0",
+        "Compression fraction c: 0 is the tension field, 1 the full membrane stiffness.")
+        .to(|draft, value| draft.scene.film.compression = number(value)),
+    key("film.viscosity", from(Dimension::Number, 0.0, 1.0), Number(0.1), "0.1",
+        "Viscous damping ratio.")
+        .to(|draft, value| draft.scene.film.viscosity = number(value)),
+    key("film.temperature", KELVIN, Number(293.0), "\"293 K\"", "Film temperature, constant.")
+        .to(|draft, value| draft.scene.film.temperature = number(value)),
+
+    key("gas.species", KeyKind::Choice(&words(&SPECIES)), Word("nitrogen"), "\"nitrogen\"",
+        "The gas: a name, or an object of gas_constant and cp.")
+        .to(|draft, value| draft.species.named = pick(&SPECIES, value))
+        .excludes(&["gas.species.gas_constant", "gas.species.cp"]),
+    key("gas.species.gas_constant", from(Dimension::SpecificHeat, 10.0, 10_000.0),
+        Absent("that of the named species"), "\"296.803052 J/(kg K)\"", "Specific gas constant, R.")
+        .to(|draft, value| draft.species.gas_constant = optional(value)),
+    key("gas.species.cp", from(Dimension::SpecificHeat, 20.0, 50_000.0),
+        Absent("that of the named species"), "\"1038.81 J/(kg K)\"",
+        "Specific heat at constant pressure; above the gas constant.")
+        .to(|draft, value| draft.species.cp = optional(value)),
+    key("gas.mass_flow_rate", from(Dimension::MassFlowRate, 0.0, 100.0),
+        Absent("needed where an inflow window gives none"), "\"5 g/s\"",
+        "Mass flow rate of every inflow window that gives none.")
+        .to(|draft, value| draft.inflow.mass_flow_rate = optional(value))
+        .study_only(),
+    key("gas.inflow_temperature", KELVIN, Number(293.0), "\"293 K\"",
+        "Temperature of the gas let in.")
+        .to(|draft, value| draft.inflow.temperature = number(value))
+        .study_only(),
+    key("gas.residual_gas_mass", from(Dimension::Mass, 0.0, 10.0), Number(0.0), "\"0.05 g\"",
+        "Residual gas in the stowed capsule.")
+        .to(|draft, value| draft.inflow.residual_mass = number(value))
+        .study_only(),
+    key("gas.residual_gas", KeyKind::Choice(&words(&RESIDUAL_GAS)), Word("burst"), "\"stored\"",
+        "How residual gas enters.")
+        .to(|draft, value| choose(&mut draft.inflow.residual_stored, &RESIDUAL_GAS, value))
+        .study_only(),
+    key("gas.burst_rate", from(Dimension::MassFlowRate, 1e-9, 100.0), Number(0.005), "\"5 g/s\"",
+        "Mass flow rate of a burst of residual gas.")
+        .to(|draft, value| draft.inflow.burst_rate = number(value))
+        .study_only(),
+    key("gas.ambient_pressure", from(Dimension::Pressure, 0.0, 1e7), Number(0.0), "\"1 atm\"",
+        "Pressure outside: 0 in orbit.")
+        .to(|draft, value| draft.scene.gas.ambient_pressure = number(value)),
+    key("gas.heat_transfer",
+        KeyKind::Quantity(Quantity {
+            dimension: Dimension::HeatTransfer,
+            min: 0.0,
+            above: false,
+            max: 1e6,
+            words: HEAT_TRANSFER_WORDS,
+        }),
+        Number(0.3), "\"0.3 W/(m2 K)\"", "Heat transfer coefficient between gas and film.")
+        .to(|draft, value| draft.scene.gas.heat_transfer = heat_transfer(value)),
+    key("gas.leak_area", from(Dimension::Area, 0.0, 100.0), Number(0.0), "\"1 mm2\"",
+        "Area of the leak orifice.")
+        .to(|draft, value| draft.scene.gas.leak_area = number(value)),
+    key("gas.discharge_coefficient", FRACTION, Number(1.0), "0.62",
+        "Discharge coefficient of the leak orifice.")
+        .to(|draft, value| draft.scene.gas.discharge_coefficient = number(value)),
+
+    key("contact.distance", above(Dimension::Length, 0.0, 0.1),
+        Absent("0.4 of the smallest stowed gap"), "\"0.6 mm\"",
+        "Distance at which contact starts to push layers of film apart.")
+        .to(|draft, value| draft.scene.contact.distance = optional(value)),
+    key("contact.friction", from(Dimension::Number, 0.0, 10.0), Number(0.0), "0.2",
+        "Coulomb friction coefficient.")
+        .to(|draft, value| draft.scene.contact.friction = number(value)),
+    key("contact.adhesion", from(Dimension::Pressure, 0.0, 1e6), Number(0.0), "\"10 Pa\"",
+        "Adhesive pull-off pressure.")
+        .to(|draft, value| draft.scene.contact.adhesion = number(value)),
+
+    key("gravity", from(Dimension::Acceleration, -1000.0, 1000.0), Number(0.0),
+        "\"-9.80665 m/s2\"",
+        "Acceleration of gravity along the axis, upward: -9.80665 for a capsule that stands on the \
+         ground.")
+        .to(|draft, value| draft.scene.gravity = number(value))
+        .study_only(),
+    key("strategy", KeyKind::Text, Word("direct"), "\"delayed\"",
+        "The inflation strategy: one named under strategies, or direct (released at once, inflow \
+         from release to the end).")
+        .study_only(),
+
+    key("solver.model", KeyKind::Choice(&words(&MODEL_KINDS)), Word("film"), "\"piston\"",
+        "Which model computes the job.")
+        .to(|draft, value| choose(&mut draft.scene.solver.model, &MODEL_KINDS, value))
+        .study_only(),
+    key("solver.end_time", above(Dimension::Time, 0.0, 1e6), Required, "\"0.5 s\"",
+        "Simulated time.")
+        .to(|draft, value| draft.scene.solver.end_time = number(value))
+        .study_only(),
+    key("solver.cfl", FRACTION, Number(DEFAULT_CFL), "0.45",
+        "Fraction of the stable step that film takes (CFL number). Quiescent film (less than 5 % of \
+         its largest kinetic energy for 20 ms) that touches nothing takes 16/9 of it, up to 0.8.")
+        .to(|draft, value| draft.stepping.cfl = number(value)),
+    key("solver.stepping.adaptive", above(Dimension::Number, 0.0, 0.1), Number(DEFAULT_TOLERANCE), "1e-9",
+        "Relative error tolerance of one step, for error-controlled steps. Model piston only.")
+        .to(|draft, value| draft.stepping.adaptive = optional(value))
+        .excludes(&["solver.stepping.fixed"])
+        .study_only(),
+    key("solver.stepping.fixed", above(Dimension::Time, 0.0, 1.0),
+        Absent("the step is error-controlled"), "\"10 us\"", "A fixed step. Model piston only.")
+        .to(|draft, value| draft.stepping.fixed = optional(value))
+        .excludes(&["solver.stepping.adaptive"])
+        .study_only(),
+    key("solver.step_limit", KeyKind::Integer(1, MAX_EXACT_INTEGER), Integer(10_000_000), "10000000",
+        "Number of steps after which a run stops with the status step_limit.")
+        .to(|draft, value| draft.scene.solver.step_limit = unsigned(value)),
+
+    key("outputs.sample_interval", above(Dimension::Time, 0.0, 1e6), Number(0.001), "\"1 ms\"",
+        "Time between samples of the history; at most a million samples in a run.")
+        .to(|draft, value| draft.scene.outputs.sample_interval = number(value))
+        .study_only(),
+    key("outputs.frames", KeyKind::Integer(0, 10_000), Integer(40), "40",
+        "Number of shapes kept of a run, densest after the release; 0 for none. Models without a \
+         shape ignore it.")
+        .to(|draft, value| draft.scene.outputs.frames = whole(value))
+        .study_only(),
+    key("outputs.thresholds.deployed_volume", FRACTION, Number(0.93), "0.93",
+        "A deployed capsule has at least this fraction of the reference volume.")
+        .to(|draft, value| draft.scene.outputs.thresholds.deployed_volume = number(value))
+        .study_only(),
+    key("outputs.thresholds.deployed_height", FRACTION, Number(0.95), "0.95",
+        "A deployed capsule has at least this fraction of the reference height.")
+        .to(|draft, value| draft.scene.outputs.thresholds.deployed_height = number(value))
+        .study_only(),
+    key("outputs.thresholds.stalled_volume", FRACTION, Number(0.85), "0.85",
+        "A stalled capsule has a mean volume below this fraction of the reference volume.")
+        .to(|draft, value| draft.scene.outputs.thresholds.stalled_volume = number(value))
+        .study_only(),
+    key("outputs.thresholds.near_threshold_margin", from(Dimension::Number, 0.0, 1.0), Number(0.02), "0.02",
+        "A verdict with a smaller margin is marked near_threshold.")
+        .to(|draft, value| draft.scene.outputs.thresholds.near_threshold_margin = number(value))
+        .study_only(),
+
+    key("seed", KeyKind::Integer(0, MAX_EXACT_INTEGER), Integer(0), "1",
+        "Seed of the imperfection of the stowed shape. Models without one ignore it.")
+        .to(|draft, value| draft.scene.seed = unsigned(value)),
+];
+
+/// The keys of a strategy; paths are those within `strategies.<name>`.
+#[rustfmt::skip]
+pub static STRATEGY_KEYS: &[Key] = &[
+    key("release_time", CLOCK, Number(0.0), "\"1 s\"",
+        "Time until which the lid holds the stowed capsule."),
+    key("preinflation_mass", from(Dimension::Mass, 0.0, 10.0), Number(0.0), "\"0.15 g\"",
+        "Gas inside from the start, at film temperature, in addition to residual gas."),
+];
+
+/// The keys of an inflow window; paths are those within `strategies.<name>.inflow[]`.
+#[rustfmt::skip]
+pub static WINDOW_KEYS: &[Key] = &[
+    key("from", CLOCK, Absent("the release time"), "\"5 s\"", "Start, since the start of the run."),
+    key("to", CLOCK, Absent("the end time of the run"), "\"12 s\"",
+        "End, since the start of the run."),
+    key("mass_flow_rate", from(Dimension::MassFlowRate, 0.0, 100.0), Absent("gas.mass_flow_rate"),
+        "\"1 g/s\"", "Mass flow rate."),
+    key("temperature", KELVIN, Absent("gas.inflow_temperature"), "\"293 K\"",
+        "Temperature of the gas let in."),
+];
+
+/// The keys of a support of a study; paths are those within `supports[]`.
+#[rustfmt::skip]
+pub static CAPSULE_SUPPORT_KEYS: &[Key] = &[
+    key("on", KeyKind::Choice(&words(&SUPPORT_PLACES)), Required, "\"bottom_ring\"", "Where it acts."),
+    key("fix", KeyKind::Text, Required, "\"xyz\"",
+        "Displacement components it holds: letters of xyz, each once."),
+];
+
+/// The keys of `grid`, and their meanings.
+pub(crate) const GRID_MEANINGS: &[(&str, &str)] = &[
+    (
+        "grid.<key>",
+        "An axis: any other key, by its last part or its whole path, with a list of values or a \
+         range {\"from\", \"to\", \"steps\" (number of values, both ends counted) or \"step\", \
+         \"spacing\": \"linear\" or \"log\"}.",
+    ),
+    ("grid.zip", "Groups of keys that vary together: lists of equal length."),
+    ("grid.points", "Single points, after the product."),
+    ("grid.filter", "Condition a point must meet, as in \"feasible and M >= 3\"."),
+    ("strategies.<name>.inflow", "Inflow windows; overlapping ones add up."),
+];

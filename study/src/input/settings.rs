@@ -1,0 +1,267 @@
+//! The keys of a file that hold one value: read from its tree, defaulted, put into a draft.
+
+use std::fmt::Write as _;
+
+use billow_solver::scene::Species;
+
+use crate::input::keys::draft::{Draft, SpeciesDraft};
+use crate::input::keys::{self, Default, KEYS, Key, Table, named};
+use crate::input::source::{Source, shown};
+use crate::input::study_file::Json;
+use crate::input::value::Value;
+use crate::platform::error::InputError;
+
+/// The value of every key of a table, in its order; `Null` where absent.
+#[derive(Debug, Clone)]
+pub(crate) struct Settings {
+    table: &'static Table,
+    values: Vec<Value>,
+}
+
+impl PartialEq for Settings {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.table, other.table) && self.values == other.values
+    }
+}
+
+impl Settings {
+    /// Every key at its default.
+    pub fn new(table: &'static Table) -> Self {
+        Self { table, values: table.keys.iter().map(|key| key.default_value()).collect() }
+    }
+
+    /// Values in the order of the table.
+    pub fn values(&self) -> &[Value] {
+        &self.values
+    }
+
+    /// The value of a key, by its position in the table.
+    pub fn value(&self, index: usize) -> &Value {
+        &self.values[index]
+    }
+
+    /// The text of a key, by its position in the table; `None` where it has none.
+    pub fn text(&self, index: usize) -> Option<&str> {
+        match &self.values[index] {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Sets a key, and removes the values of the keys it excludes.
+    pub fn set(&mut self, index: usize, value: Value) {
+        self.values[index] = value;
+        for path in self.table.keys[index].excludes {
+            if let Some(excluded) = self.table.index(path) {
+                self.values[excluded] = Value::Null;
+            }
+        }
+    }
+
+    /// Reads the keys below `prefix`.
+    pub fn read(&mut self, prefix: &str, json: &Json, source: &Source) -> Result<(), InputError> {
+        let table = self.table;
+        for (name, value) in object(json, table, prefix, source)? {
+            let path = if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
+            let section = table.is_section(&path);
+            let structured = table.structured.iter().any(|(known, _)| *known == path);
+            match table.index(&path) {
+                // A species is a word or a section.
+                Some(index) if section && matches!(value, Json::Object(_)) => {
+                    self.read(&path, value, source)?;
+                    check_species(&path, value, source)?;
+                    self.values[index] = Value::Null;
+                }
+                Some(index) => self.values[index] = read(table.keys[index], value, &path, source)?,
+                None if section => self.read(&path, value, source)?,
+                None if structured => {}
+                None => return Err(unknown(table, prefix, &path, name, value, source)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the values of the keys that `wanted` chooses into a draft.
+    ///
+    /// # Errors
+    /// When the file does not give a required key.
+    pub fn draft(
+        &self,
+        wanted: impl Fn(&Key) -> bool,
+        source: &Source,
+    ) -> Result<Draft, InputError> {
+        let mut draft = Draft::empty();
+        for (key, value) in self.table.keys.iter().zip(&self.values) {
+            if !wanted(key) {
+                continue;
+            }
+            if matches!((key.default, value), (Default::Required, Value::Null)) {
+                return Err(missing(self.table, key, source));
+            }
+            if let Some(store) = key.store {
+                store(&mut draft, value);
+            }
+        }
+        Ok(draft)
+    }
+
+    /// The error of a key that the file does not give.
+    pub fn missing(&self, key: &Key, source: &Source) -> InputError {
+        missing(self.table, key, source)
+    }
+}
+
+fn missing(table: &Table, key: &Key, source: &Source) -> InputError {
+    let mut error = missing_key(key, source);
+    if table.structured.iter().any(|(path, _)| *path == "grid") {
+        error.hint = format!("give it here, or vary {} under grid", key.leaf());
+    }
+    error
+}
+
+/// The error of a key that a file without a grid does not give.
+pub(crate) fn missing_key(key: &Key, source: &Source) -> InputError {
+    let mut error = source.error(key.path, "", "missing", key.allowed());
+    error.hint = format!("give it, as in {}", key.sample());
+    error
+}
+
+/// The gas of a draft: a named one, or one by its constants; a constant given in addition to a name
+/// replaces that of the named gas.
+///
+/// # Errors
+/// When a constant is missing, or cp is not above the gas constant.
+pub(crate) fn species(draft: &SpeciesDraft, source: &Source) -> Result<Species, InputError> {
+    const GAS_CONSTANT: &Key = named(KEYS, "gas.species.gas_constant");
+    const CP: &Key = named(KEYS, "gas.species.cp");
+    let gas_constant = draft.gas_constant.or(draft.named.map(|gas| gas.gas_constant));
+    let gas_constant = gas_constant.ok_or_else(|| missing_key(GAS_CONSTANT, source))?;
+    let cp = draft.cp.or(draft.named.map(|gas| gas.cp)).ok_or_else(|| missing_key(CP, source))?;
+    if cp <= gas_constant {
+        return Err(source.error(
+            CP.path,
+            &shown(cp),
+            "leaves no heat capacity at constant volume, cp - R",
+            format!("above the gas constant, {gas_constant} J/(kg K)"),
+        ));
+    }
+    Ok(Species { gas_constant, cp })
+}
+
+/// A gas given by its constants has both.
+fn check_species(path: &str, species: &Json, source: &Source) -> Result<(), InputError> {
+    for key in ["gas_constant", "cp"] {
+        if species.get(key).is_none() {
+            return Err(source.error(
+                &format!("{path}.{key}"),
+                "",
+                "missing: a gas given by its constants needs gas_constant and cp",
+                "a specific heat in J/(kg K)",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a newer format, before any other key is read: they may have another meaning there.
+pub(crate) fn check_version(tree: &Json, source: &Source) -> Result<(), InputError> {
+    match tree.get("version") {
+        Some(Json::Integer(version)) if *version > 1 => Err(source.error(
+            "version",
+            &version.to_string(),
+            "is a newer format than this program reads",
+            "1; or use a newer billow",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Largest number of samples of one run (chosen: more is an error in a unit).
+const MAX_SAMPLES: f64 = 1e6;
+
+/// Refuses a run with more than [`MAX_SAMPLES`] samples. Times in s.
+pub(crate) fn check_sample_interval(
+    interval: f64,
+    end_time: f64,
+    source: &Source,
+) -> Result<(), InputError> {
+    if end_time / interval <= MAX_SAMPLES {
+        return Ok(());
+    }
+    Err(source.error(
+        "outputs.sample_interval",
+        &shown(interval),
+        format!("samples a run of {end_time} s more than {MAX_SAMPLES:.0} times"),
+        format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
+    ))
+}
+
+/// Reads one value of a key; `path` is where the file gives it.
+pub(crate) fn read(
+    key: &Key,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Value, InputError> {
+    key.read(json).map_err(|refusal| {
+        let mut error = source.error(path, &json.brief(), refusal.problem, refusal.allowed);
+        error.hint = format!("write it as in {}", key.sample());
+        error
+    })
+}
+
+/// The members of an object.
+pub(crate) fn object<'a>(
+    json: &'a Json,
+    table: &Table,
+    path: &str,
+    source: &Source,
+) -> Result<&'a [(String, Json)], InputError> {
+    match json {
+        Json::Object(members) => Ok(members),
+        other => Err(source.error(
+            path,
+            &other.brief(),
+            format!("is {}, not an object", other.kind()),
+            match table.children(path) {
+                names if names.is_empty() => "an object".to_owned(),
+                names => names.join(", "),
+            },
+        )),
+    }
+}
+
+/// The items of a list.
+pub(crate) fn list<'a>(
+    json: &'a Json,
+    path: &str,
+    source: &Source,
+    allowed: &str,
+) -> Result<&'a [Json], InputError> {
+    match json {
+        Json::List(items) => Ok(items),
+        other => {
+            let problem = format!("is {}, not a list", other.kind());
+            Err(source.error(path, &other.brief(), problem, allowed))
+        }
+    }
+}
+
+/// The error of a name that no key of the table has, with the nearest name that one has.
+fn unknown(
+    table: &Table,
+    prefix: &str,
+    path: &str,
+    name: &str,
+    value: &Json,
+    source: &Source,
+) -> InputError {
+    let known = table.children(prefix);
+    let mut problem = format!("is not a key of {}", table.what);
+    if let Some(near) = keys::nearest(name, known.iter().copied()) {
+        let _ = write!(problem, "; did you mean {near}?");
+    } else if let Some(elsewhere) = table.find(name) {
+        let _ = write!(problem, "; did you mean {}?", table.keys[elsewhere].path);
+    }
+    source.error(path, &value.brief(), problem, known.join(", "))
+}

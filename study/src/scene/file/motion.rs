@@ -1,0 +1,55 @@
+//! `move`: a prescribed motion of a support or a plate.
+
+use billow_solver::scene::motion::{Motion, Profile, Rotation};
+
+use super::object::Object;
+use crate::input::keys::draft::Draft;
+use crate::input::keys::{MOVE_KEYS, PROFILES, ROTATION_KEYS, named};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::platform::error::InputError;
+
+/// Reads a prescribed motion; it ends with the run where it gives no end.
+pub(super) fn read(
+    json: &Json,
+    path: &str,
+    draft: &Draft,
+    source: &Source,
+) -> Result<Motion, InputError> {
+    let object = Object::new(json, path, "a move", MOVE_KEYS, &["rotation"], source)?;
+    let from = object.needed(const { named(MOVE_KEYS, "from") })?;
+    let to = object.number(const { named(MOVE_KEYS, "to") })?.or(draft.film_scene.end_time);
+    let to = to.ok_or_else(|| object.missing(const { named(MOVE_KEYS, "to") }))?;
+    if to <= from {
+        let problem = "the move ends before it begins";
+        return Err(object.error("to", problem, format!("above its `from`, {from} s")));
+    }
+    let rotation = object
+        .given("rotation")
+        .map(|json| read_rotation(json, &format!("{path}.rotation"), source))
+        .transpose()?;
+    let translation = object.vector(const { named(MOVE_KEYS, "translation") })?;
+    if rotation.is_none() && translation.is_none() {
+        let problem = "missing: a move needs a translation, a rotation or both";
+        return Err(object.error("translation", problem, "[0, 0, \"10 mm\"]"));
+    }
+    let word = object.text(const { named(MOVE_KEYS, "profile") })?;
+    let profile = PROFILES.iter().find(|profile| word.as_deref() == Some(profile.name));
+    Ok(Motion {
+        from,
+        to,
+        profile: profile.map_or(Profile::Smooth, |profile| profile.value),
+        translation: translation.unwrap_or_default(),
+        rotation,
+    })
+}
+
+fn read_rotation(json: &Json, path: &str, source: &Source) -> Result<Rotation, InputError> {
+    let object = Object::new(json, path, "a rotation", ROTATION_KEYS, &[], source)?;
+    let centre = object.vector(const { named(ROTATION_KEYS, "centre") })?.unwrap_or_default();
+    Ok(Rotation {
+        axis: object.direction(const { named(ROTATION_KEYS, "axis") })?,
+        centre,
+        angle: object.needed(const { named(ROTATION_KEYS, "angle") })?,
+    })
+}

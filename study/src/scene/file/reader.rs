@@ -1,0 +1,40 @@
+//! The files that a scene names, read and hashed.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use crate::input::source::Source;
+use crate::platform::error::{Error, Result};
+use crate::platform::files;
+use crate::store::history_file::bytes_hash;
+
+/// Largest mesh file read, bytes (chosen: 1 GiB holds tens of millions of vertices).
+const MAX_MESH_SIZE: u64 = 1 << 30;
+
+/// Next step after a file that cannot be read.
+const RELATIVE: &str = "\n  next: paths in a scene are relative to the scene file";
+
+/// Where a scene's values and files come from.
+pub(crate) struct Reader {
+    /// The file and flags that give its values.
+    pub source: Source,
+    /// Folder of the scene file.
+    pub folder: PathBuf,
+    /// Hash of each file read, by the name that the scene gives it.
+    pub hashes: BTreeMap<String, String>,
+}
+
+impl Reader {
+    /// The text of a file that a key names.
+    pub fn text(&mut self, key: &str, name: &str) -> Result<String> {
+        let path = self.folder.join(name);
+        let disk = |problem: String| Error::Disk { path: path.clone(), problem };
+        let bytes = files::read_at_most(&path, MAX_MESH_SIZE)
+            .map_err(|error| disk(format!("cannot read the file of {key}: {error}{RELATIVE}")))?
+            .ok_or_else(|| disk(format!("is larger than {} MiB", MAX_MESH_SIZE >> 20)))?;
+        self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
+        String::from_utf8(bytes).map_err(|error| {
+            disk(format!("is not UTF-8 from byte {} on", error.utf8_error().valid_up_to()))
+        })
+    }
+}

@@ -1,0 +1,147 @@
+//! What a grid varies: a key of the study, of a strategy or of an inflow window.
+
+use super::base::Base;
+use crate::input::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::value::Value;
+use crate::platform::error::InputError;
+
+/// A varied key.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Column {
+    /// The shortest name of the key.
+    pub name: String,
+    pub target: Target,
+}
+
+/// Where the value of a column goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Target {
+    /// Position in [`KEYS`].
+    Key(usize),
+    /// Strategy, position in [`STRATEGY_KEYS`].
+    Strategy(String, usize),
+    /// Strategy, window, position in [`WINDOW_KEYS`].
+    Window(String, usize, usize),
+}
+
+impl Target {
+    pub fn key(&self) -> &'static Key {
+        match self {
+            Self::Key(index) => &KEYS[*index],
+            Self::Strategy(_, index) => &STRATEGY_KEYS[*index],
+            Self::Window(_, _, index) => &WINDOW_KEYS[*index],
+        }
+    }
+
+    /// The value at a point.
+    pub fn value(&self, point: &Base) -> Value {
+        match self {
+            Self::Key(index) => point.settings.value(*index).clone(),
+            Self::Strategy(name, index) => point
+                .strategies
+                .get(name)
+                .map_or(Value::Null, |strategy| strategy.values[*index].clone()),
+            Self::Window(name, window, index) => point
+                .strategies
+                .get(name)
+                .and_then(|strategy| strategy.inflow.get(*window))
+                .map_or(Value::Null, |window| window[*index].clone()),
+        }
+    }
+
+    /// Sets the value at a point.
+    pub fn set(&self, point: &mut Base, value: Value) {
+        match self {
+            Self::Key(index) => point.settings.set(*index, value),
+            Self::Strategy(name, index) => {
+                if let Some(strategy) = point.strategies.get_mut(name) {
+                    strategy.values[*index] = value;
+                }
+            }
+            Self::Window(name, window, index) => {
+                let strategy = point.strategies.get_mut(name);
+                let window = strategy.and_then(|strategy| strategy.inflow.get_mut(*window));
+                if let Some(window) = window {
+                    window[*index] = value;
+                }
+            }
+        }
+    }
+}
+
+/// Finds what the name of an axis stands for: its shortest name and its target. `path` is the place of
+/// the axis in the file.
+pub(super) fn find(
+    name: &str,
+    path: &str,
+    value: &Json,
+    base: &Base,
+    source: &Source,
+) -> Result<Column, InputError> {
+    if let Some(index) = keys::find(name).filter(|index| KEYS[*index].varies()) {
+        let target = Target::Key(index);
+        return Ok(Column { name: keys::short_name(index).to_owned(), target });
+    }
+    if let Some(rest) = name.strip_prefix("strategies.") {
+        return of_strategy(name, rest, path, value, base, source);
+    }
+    Err(unknown(name, path, value, source))
+}
+
+/// The target of `strategies.<rest>`.
+fn of_strategy(
+    name: &str,
+    rest: &str,
+    path: &str,
+    value: &Json,
+    base: &Base,
+    source: &Source,
+) -> Result<Column, InputError> {
+    let allowed =
+        "strategies.<name>.release_time, .preinflation_mass, .inflow[0].mass_flow_rate, …";
+    let parts: Vec<&str> = rest.split('.').collect();
+    let Some(strategy) = parts.first().and_then(|part| base.strategies.get(*part)) else {
+        base.check_strategy(parts.first().unwrap_or(&""), path, source)?;
+        return Err(source.error(path, &value.brief(), "is not a key of a strategy", allowed));
+    };
+    let position = |keys: &[Key], leaf: &str| keys.iter().position(|key| key.path == leaf);
+    let owner = parts[0].to_owned();
+    let found = match parts[1..] {
+        [leaf] => {
+            position(STRATEGY_KEYS, leaf).map(|key| (name.to_owned(), Target::Strategy(owner, key)))
+        }
+        [window, leaf] => window
+            .strip_prefix("inflow[")
+            .and_then(|index| index.strip_suffix(']')?.parse::<usize>().ok())
+            .filter(|index| *index < strategy.inflow.len())
+            .zip(position(WINDOW_KEYS, leaf))
+            .map(|(index, key)| {
+                let name = format!("strategies.{owner}.inflow[{index}].{leaf}");
+                (name, Target::Window(owner, index, key))
+            }),
+        _ => None,
+    };
+    match found {
+        Some((name, target)) => Ok(Column { name, target }),
+        None => Err(source.error(path, &value.brief(), "is not a key of that strategy", allowed)),
+    }
+}
+
+/// The error of a name that a grid cannot vary, with the nearest name.
+fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError {
+    let same_leaf: Vec<&str> =
+        KEYS.iter().filter(|key| key.leaf() == name).map(|key| key.path).collect();
+    if same_leaf.len() > 1 {
+        let problem = "is the name of several keys";
+        return source.error(path, &value.brief(), problem, same_leaf.join(", "));
+    }
+    let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
+    let known = varied.flat_map(|(index, key)| [keys::short_name(index), key.path]);
+    let near = keys::nearest(name, known.chain(["zip", "points", "filter"]));
+    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let allowed = "keys of the study, as N or film.thickness; zip, points, filter";
+    let problem = format!("is not a key that a grid can vary{near}");
+    source.error(path, &value.brief(), problem, allowed)
+}

@@ -1,0 +1,92 @@
+//! The reference pages in docs/reference are generated from the tables of the code.
+//!
+//! After a change of a table, `BILLOW_UPDATE_REFERENCE=1 cargo test --release -p billow-study --test
+//! pipeline reference` writes them again.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use billow_study::input::keys::listing::{FileKind, entries, reference_page};
+use serde_json::Value;
+
+/// Fails when a page of docs/reference is not the generated text; writes it with the update switch.
+/// `path` is relative to the root of the repository.
+fn assert_current(path: &str, text: &str) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path);
+    if std::env::var_os("BILLOW_UPDATE_REFERENCE").is_some_and(|value| value == "1") {
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(&file, text).unwrap();
+    }
+    let stored = fs::read_to_string(&file).unwrap_or_default();
+    let line = stored.lines().zip(text.lines()).position(|(stored, new)| stored != new);
+    let line = line.unwrap_or_else(|| stored.lines().count().min(text.lines().count())) + 1;
+    assert!(
+        stored == text,
+        "{path} is stale from line {line} on; run this test with BILLOW_UPDATE_REFERENCE=1"
+    );
+}
+
+fn billow(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_billow")).args(arguments).output().unwrap()
+}
+
+fn stdout(arguments: &[&str]) -> String {
+    let output = billow(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_page_of_keys_is_current() {
+    assert_current("docs/reference/keys.md", &reference_page());
+    assert_eq!(stdout(&["keys", "--markdown"]), reference_page());
+}
+
+#[test]
+fn keys_are_found_by_name_and_by_meaning() {
+    let listed = |arguments: &[&str]| -> Vec<String> {
+        let rows: Value = serde_json::from_str(&stdout(arguments)).unwrap();
+        let rows = rows.as_array().unwrap().iter();
+        rows.map(|row| row["key"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(listed(&["keys", "thickness", "--json"]), ["film.thickness"]);
+    let elastic = listed(&["keys", "young's modulus", "--json"]);
+    assert_eq!(elastic, ["film.youngs_modulus"]);
+    assert_eq!(listed(&["keys", "--json"]).len(), entries(FileKind::Study).len());
+    let scene = listed(&["keys", "--scene", "--json"]);
+    assert_eq!(scene.len(), entries(FileKind::Scene).len());
+    assert!(scene.contains(&"supports[].move.rotation.angle".to_owned()));
+
+    let text = stdout(&["keys", "thickness"]);
+    for part in
+        ["film.thickness\n", "unit m", "default 2.54e-5", "from 1e-7 to 0.01 m", "Thickness."]
+    {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+}
+
+#[test]
+fn a_word_without_a_key_gives_the_nearest_names() {
+    for (arguments, hint) in [
+        (&["keys", "thicknes_"][..], "nearest: thickness"),
+        (&["keys", "adhesion_range"], "billow keys --scene adhesion_range"),
+        (&["keys", "xylophone"], "billow keys prints every key"),
+    ] {
+        let output = billow(arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(hint), "{error}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn the_schemas_are_small() {
+    /// Largest size of a printed schema, bytes.
+    const MAX_SCHEMA_SIZE: usize = 80_000;
+    for file in ["study", "scene"] {
+        let size = stdout(&["schema", file]).len();
+        assert!(size < MAX_SCHEMA_SIZE, "the schema of a {file} has {size} bytes");
+    }
+}
