@@ -132,7 +132,7 @@ impl Explicit {
     /// Advances to exactly `target` (s) under a phase.
     ///
     /// # Errors
-    /// [`Failure`]: `unstable`, `inverted_volume` or `step_limit`.
+    /// [`Failure`]: `unstable`, `inverted_volume`, `step_limit` or `interpenetrated`.
     pub fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
         self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
     }
