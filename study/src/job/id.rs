@@ -1,9 +1,8 @@
-//! A job: one scene to run, known by the hash of all that decides its result.
-
-pub mod executor;
-pub mod point;
-pub mod references;
-pub mod row;
+//! The id of a job.
+//!
+//! ```text
+//! id = first 16 bytes of SHA-256(canonical JSON of {physics_version, scene}), in hexadecimal digits
+//! ```
 
 use std::fmt::{self, Write as _};
 
@@ -12,9 +11,12 @@ use billow_solver::scene::Scene;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::input::value::Value;
+/// Bytes of the hash that an id keeps.
+const ID_BYTES: usize = 16;
+/// Whole numbers from here on are not all exact as `f64`: 2^53.
+const FIRST_INEXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// Name of a job: 32 lower-case hexadecimal digits, the first half of the SHA-256 of the canonical
+/// Id of a job: 32 lower-case hexadecimal digits, the first half of the SHA-256 of the canonical
 /// JSON of its scene and the physics version.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct JobId(String);
@@ -28,18 +30,18 @@ impl JobId {
             scene: &'a Scene,
         }
         let text = canonical_json(&Identity { physics_version: PHYSICS_VERSION, scene });
-        let mut digits = String::with_capacity(32);
-        for byte in &Sha256::digest(text.as_bytes())[..16] {
+        let mut digits = String::with_capacity(2 * ID_BYTES);
+        for byte in &Sha256::digest(text.as_bytes())[..ID_BYTES] {
             let _ = write!(digits, "{byte:02x}");
         }
         Self(digits)
     }
 
-    /// Wraps the digits of an id read back from disk.
+    /// The id with these digits, as read from disk; `None` for a text that is not an id.
     pub fn from_digits(digits: &str) -> Option<Self> {
-        let sound = digits.len() == 32
-            && digits.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
-        sound.then(|| Self(digits.to_owned()))
+        let valid = digits.len() == 2 * ID_BYTES
+            && digits.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte));
+        valid.then(|| Self(digits.to_owned()))
     }
 
     /// The digits.
@@ -47,7 +49,7 @@ impl JobId {
         &self.0
     }
 
-    /// The first eight digits, as tables print it; commands accept any unique prefix.
+    /// The first eight digits, as tables print them. Commands accept any unique prefix.
     pub fn short(&self) -> &str {
         &self.0[..8]
     }
@@ -59,37 +61,16 @@ impl fmt::Display for JobId {
     }
 }
 
-/// The varied parameters of a point, in the order of the study's axes: name and value (SI).
-pub type Parameters = Vec<(String, Value)>;
-
-/// Parameters as "N=5 M=2".
-pub fn label(parameters: &Parameters) -> String {
-    let texts: Vec<String> =
-        parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
-    texts.join(" ")
+/// Number of leading bytes that two ids have in common.
+pub fn common_prefix_length(a: &str, b: &str) -> usize {
+    a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count()
 }
 
-/// How many leading characters two ids have in common.
-pub fn agreement(one: &str, other: &str) -> usize {
-    one.bytes().zip(other.bytes()).take_while(|(one, other)| one == other).count()
-}
-
-/// One scene to run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Job {
-    /// Name.
-    pub id: JobId,
-    /// The parameters that tell it from its neighbours.
-    pub parameters: Parameters,
-    /// All that is computed.
-    pub scene: Scene,
-}
-
-/// Canonical JSON of plain data: no spaces, keys sorted, every number in the shortest digits that
-/// read back as it, so that 8 and 8.0, −0 and 0 are the same.
+/// Canonical JSON of plain data: no spaces, sorted keys, every number in the shortest digits that
+/// read back as the same number. So 8 and 8.0 are the same, and so are −0 and 0.
 ///
 /// # Panics
-/// For data JSON cannot hold (a map with keys that are no text): a mistake in code.
+/// For data that JSON cannot hold (a map with keys that are not texts). This is a mistake in code.
 pub fn canonical_json<T: Serialize>(data: &T) -> String {
     let value = serde_json::to_value(data).unwrap_or_else(|error| unreachable!("{error}"));
     let mut text = String::new();
@@ -100,9 +81,9 @@ pub fn canonical_json<T: Serialize>(data: &T) -> String {
 fn write_canonical(value: &serde_json::Value, text: &mut String) {
     match value {
         serde_json::Value::Number(number) => match number.as_f64() {
-            // Whole numbers beyond 2^53 keep their own digits: as floats they would collide.
-            Some(float) if float.abs() < 9_007_199_254_740_992.0 => {
-                // −0 + 0 is 0; Display writes a whole float without a point, in shortest digits.
+            // Larger whole numbers keep their digits: different ones would be equal as floats.
+            Some(float) if float.abs() < FIRST_INEXACT_INTEGER => {
+                // −0 + 0 is 0. Display writes a whole float without a decimal point.
                 let _ = write!(text, "{}", float + 0.0);
             }
             _ => {
@@ -111,19 +92,19 @@ fn write_canonical(value: &serde_json::Value, text: &mut String) {
         },
         serde_json::Value::Array(items) => {
             text.push('[');
-            for (at, item) in items.iter().enumerate() {
-                text.push_str(if at > 0 { "," } else { "" });
+            for (index, item) in items.iter().enumerate() {
+                text.push_str(if index > 0 { "," } else { "" });
                 write_canonical(item, text);
             }
             text.push(']');
         }
         serde_json::Value::Object(members) => {
-            // Sorted here, whatever order the map keeps.
+            // Sorted here: the order must not depend on the map type.
             let mut members: Vec<_> = members.iter().collect();
             members.sort_by_key(|(key, _)| *key);
             text.push('{');
-            for (at, (key, item)) in members.into_iter().enumerate() {
-                text.push_str(if at > 0 { "," } else { "" });
+            for (index, (key, item)) in members.into_iter().enumerate() {
+                text.push_str(if index > 0 { "," } else { "" });
                 let _ = write!(text, "{}:", serde_json::Value::from(key.as_str()));
                 write_canonical(item, text);
             }
@@ -148,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_read_back_are_checked() {
+    fn only_32_lower_case_hexadecimal_digits_are_an_id() {
         assert!(JobId::from_digits(&"0123456789abcdef".repeat(2)).is_some());
         for wrong in ["", "0123", &"0123456789ABCDEF".repeat(2), &"g".repeat(32)] {
             assert_eq!(JobId::from_digits(wrong), None);

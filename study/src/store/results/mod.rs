@@ -1,26 +1,23 @@
-//! A results folder: where everything of a study lies, and whether it is sound.
+//! A results folder: where the files of a study are, its lock, its jobs and its table.
 //!
 //! ```text
-//! results/<study>/study.json        the study as last run, all spelled out: a study file itself
+//! results/<study>/study.json        the study as last run, fully written out: a study file itself
 //!                 journal/*.jsonl   which jobs ended, and how (crate::store::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::store::history_file)
-//!                 references/*.json static states of the designs (crate::job::references)
-//!                 summary.parquet   the table, rebuilt from plan and journal (crate::store::table)
+//!                 references/*.json static references of the designs (crate::job::references)
+//!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
 //!                 lock              held while a command changes the folder
 //! ```
 //!
-//! Job ids are hashes of what decides a result, so a study may grow or change its grid and keep the
-//! folder: finished jobs that are still planned are kept, the others lie there unused, and the table
+//! Job ids are hashes of all that decides a result. So the grid of a study can change and the folder
+//! stays: jobs that ended and are still planned are kept, other files stay unused, and the table
 //! follows the plan.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use serde::Deserialize;
-
-use crate::input::study_file::Json;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Files, Lock, disk_error};
@@ -28,37 +25,18 @@ use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::table::{Table, parquet};
 
-/// Name of the format of study.json: it is a study file, with everything spelled out.
-const FORMAT: &str = "billow-study";
-/// Version of study.json this program writes, and the newest it reads.
-const VERSION: u64 = 1;
+mod study_json;
 
-/// Names of what a run leaves in a folder.
-pub const OURS: [&str; 7] =
+/// Names that a run writes into a results folder.
+pub const RESULT_NAMES: [&str; 7] =
     ["study.json", "journal", "jobs", "references", "summary.parquet", "charts", "lock"];
-/// How often a lock that is held is looked at before it counts as held.
-const LOOKS: u32 = 5;
+/// Attempts to take the lock before it counts as held. Chosen: a command that only checks the lock
+/// holds it for much less than the sum of the pauses.
+const MAX_LOCK_ATTEMPTS: u32 = 5;
+/// Pause between two attempts.
+const LOCK_PAUSE: Duration = Duration::from_millis(10);
 
-/// What tells whose folder it is.
-#[derive(Deserialize)]
-struct Owner {
-    format: String,
-    version: u64,
-    name: String,
-}
-
-/// study.json of a resolved study.
-fn study_bytes(name: &str, study: &Json) -> io::Result<Vec<u8>> {
-    let mut study = study.clone();
-    study.set("format", Json::Text(FORMAT.to_owned()));
-    study.set("version", Json::Integer(VERSION.cast_signed()));
-    study.set("name", Json::Text(name.to_owned()));
-    let mut bytes = serde_json::to_vec_pretty(&study).map_err(io::Error::other)?;
-    bytes.push(b'\n');
-    Ok(bytes)
-}
-
-/// A results folder on some disk.
+/// A results folder on a disk.
 #[derive(Clone)]
 pub struct Results<'a> {
     files: &'a dyn Files,
@@ -66,12 +44,12 @@ pub struct Results<'a> {
 }
 
 impl<'a> Results<'a> {
-    /// The folder at `root`; nothing is read or written yet.
+    /// The folder at `root`. Nothing is read or written yet.
     pub fn new(files: &'a dyn Files, root: &Path) -> Self {
         Self { files, root: root.to_owned() }
     }
 
-    /// The disk it lies on.
+    /// The disk of the folder.
     pub fn files(&self) -> &'a dyn Files {
         self.files
     }
@@ -81,17 +59,27 @@ impl<'a> Results<'a> {
         &self.root
     }
 
+    /// Path of study.json.
+    pub fn study_path(&self) -> PathBuf {
+        self.root.join("study.json")
+    }
+
     /// Path of the journals.
     pub fn journal_path(&self) -> PathBuf {
         self.root.join("journal")
     }
 
-    /// Path of a job's history file.
-    pub fn job_path(&self, id: &JobId) -> PathBuf {
-        self.root.join("jobs").join(&id.as_str()[..2]).join(format!("{id}.h5"))
+    /// Path of the folder of history files.
+    pub fn jobs_path(&self) -> PathBuf {
+        self.root.join("jobs")
     }
 
-    /// Path of the static states runs are judged against.
+    /// Path of a job's history file.
+    pub fn job_path(&self, id: &JobId) -> PathBuf {
+        self.jobs_path().join(&id.as_str()[..2]).join(format!("{id}.h5"))
+    }
+
+    /// Path of the static references.
     pub fn references_path(&self) -> PathBuf {
         self.root.join("references")
     }
@@ -106,23 +94,29 @@ impl<'a> Results<'a> {
         self.root.join("summary.parquet")
     }
 
-    /// Creates the folder if need be, and takes its lock.
+    fn lock_path(&self) -> PathBuf {
+        self.root.join("lock")
+    }
+
+    /// Creates the folder if it is missing, and takes its lock.
     ///
     /// # Errors
-    /// [`Error::Disk`] when it cannot be created, or when another command holds the lock.
+    /// [`Error::Disk`] when the folder cannot be created, holds other files than results, or when
+    /// another command holds the lock.
     pub fn lock(&self) -> Result<Lock> {
-        let at_root = |error: io::Error| disk_error(&self.root, &error);
-        if !self.files.create_folder(&self.root).map_err(at_root)? {
-            self.refuse_foreign()?;
+        let created =
+            self.files.create_folder(&self.root).map_err(|error| disk_error(&self.root, &error))?;
+        if !created {
+            self.refuse_other_folders()?;
         }
         let path = self.lock_path();
-        // A command that only looks whether somebody runs holds the lock for an instant.
-        for _ in 0..LOOKS {
+        // A command that only checks the lock holds it for an instant.
+        for _ in 0..MAX_LOCK_ATTEMPTS {
             let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;
             if let Some(lock) = lock {
                 return Ok(lock);
             }
-            std::thread::sleep(Duration::from_millis(10));
+            std::thread::sleep(LOCK_PAUSE);
         }
         Err(Error::Disk {
             path: self.root.clone(),
@@ -141,24 +135,20 @@ impl<'a> Results<'a> {
         self.files.is_locked(&path).map_err(|error| disk_error(&path, &error))
     }
 
-    fn lock_path(&self) -> PathBuf {
-        self.root.join("lock")
-    }
-
-    /// Refuses a folder that holds what no study left there.
-    fn refuse_foreign(&self) -> Result<()> {
-        let at_root = |error: io::Error| disk_error(&self.root, &error);
+    /// Refuses a folder without study.json that holds files no run wrote.
+    fn refuse_other_folders(&self) -> Result<()> {
         let names: Vec<String> = self
             .files
             .list(&self.root)
-            .map_err(at_root)?
+            .map_err(|error| disk_error(&self.root, &error))?
             .iter()
             .filter_map(|path| path.file_name().map(|name| name.to_string_lossy().into_owned()))
             .collect();
-        // A folder with its study.json is judged by that; hidden files may be half-written ones.
-        let foreign =
-            names.iter().find(|name| !OURS.contains(&name.as_str()) && !name.starts_with('.'));
-        match foreign {
+        // A killed process may have left hidden files.
+        let other = names
+            .iter()
+            .find(|name| !RESULT_NAMES.contains(&name.as_str()) && !name.starts_with('.'));
+        match other {
             Some(name) if !names.iter().any(|name| name == "study.json") => Err(Error::Disk {
                 path: self.root.clone(),
                 problem: format!(
@@ -170,89 +160,25 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// Removes what a killed process left half written. Only with the lock held.
+    /// Removes temporary files of killed processes. Only for the process that holds the lock.
     ///
     /// # Errors
     /// [`Error::Disk`].
-    pub fn sweep(&self) -> Result<()> {
-        let jobs = self.root.join("jobs");
+    pub fn remove_temporary_files(&self) -> Result<()> {
+        let jobs = self.jobs_path();
         let mut folders = self.files.list(&jobs).map_err(|error| disk_error(&jobs, &error))?;
-        // Job folders are named by two digits; anything else in there is not ours.
+        // The folders of histories have names of two digits.
         folders
             .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
         folders.extend([self.references_path(), self.root.clone()]);
         for folder in folders {
-            files::sweep(self.files, &folder).map_err(|error| disk_error(&folder, &error))?;
+            files::remove_temporary_files(self.files, &folder)
+                .map_err(|error| disk_error(&folder, &error))?;
         }
         Ok(())
     }
 
-    /// Path of study.json.
-    pub fn study_path(&self) -> PathBuf {
-        self.root.join("study.json")
-    }
-
-    /// Name of the study the folder belongs to, `None` where no study.json says so.
-    ///
-    /// # Errors
-    /// [`Error::Disk`] when study.json cannot be read, is none of ours, or of a newer program.
-    pub fn owner(&self) -> Result<Option<String>> {
-        let path = self.study_path();
-        let bytes = match self.files.read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(disk_error(&path, &error)),
-        };
-        let there: Owner = serde_json::from_slice(&bytes)
-            .map_err(|error| self.refused(&format!("not a study.json of billow: {error}")))?;
-        if there.format != FORMAT {
-            return Err(self.refused(&format!("format {:?} is not {FORMAT:?}", there.format)));
-        }
-        if there.version > VERSION {
-            return Err(self.refused(&format!(
-                "version {}, this program reads up to {VERSION}: written by a newer billow",
-                there.version
-            )));
-        }
-        Ok(Some(there.name))
-    }
-
-    fn refused(&self, problem: &str) -> Error {
-        Error::Disk {
-            path: self.study_path(),
-            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
-        }
-    }
-
-    /// Notes which study the folder belongs to, unless it says so already: `study` is the resolved
-    /// study, an object.
-    ///
-    /// # Errors
-    /// [`Error::Disk`] when it belongs to another study, or to a newer program.
-    pub fn write_study(&self, name: &str, study: &Json) -> Result<()> {
-        if let Some(there) = self.owner()?.filter(|there| there != name) {
-            return Err(self.refused(&format!(
-                "the folder holds results of the study {there:?}, not of {name:?}"
-            )));
-        }
-        let path = self.study_path();
-        let bytes = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
-        files::write_if_changed(self.files, &path, &bytes)
-            .map_err(|error| disk_error(&path, &error))?;
-        Ok(())
-    }
-
-    /// Whether this is the study the folder was last run for.
-    ///
-    /// # Errors
-    /// [`Error::Disk`] when study.json cannot be read.
-    pub fn holds(&self, name: &str, study: &Json) -> Result<bool> {
-        let path = self.study_path();
-        let there = self.files.read(&path).map_err(|error| disk_error(&path, &error))?;
-        Ok(there == study_bytes(name, study).map_err(|error| disk_error(&path, &error))?)
-    }
-
-    /// What the journals say.
+    /// Reads the journals.
     ///
     /// # Errors
     /// [`Error::Disk`] as [`journal::read`].
@@ -260,11 +186,11 @@ impl<'a> Results<'a> {
         journal::read(self.files, &self.journal_path())
     }
 
-    /// Why a recorded job has to run again after all: its history file is missing or not the one
-    /// recorded. `None` when all is well.
+    /// Why a recorded job must run again: its history file is missing, or is not the recorded one.
+    /// `None` for an undamaged file.
     ///
     /// # Errors
-    /// [`Error::Disk`] when the file is there but cannot be read.
+    /// [`Error::Disk`] when the file exists but cannot be read.
     pub fn damage(&self, record: &Record) -> Result<Option<String>> {
         let Some(hash) = &record.file_hash else { return Ok(None) };
         let path = self.job_path(&record.job);
@@ -287,19 +213,19 @@ impl<'a> Results<'a> {
     /// [`Error::Disk`].
     pub fn write_job(&self, id: &JobId, bytes: &[u8]) -> Result<()> {
         let path = self.job_path(id);
-        let jobs = self.root.join("jobs");
+        let jobs = self.jobs_path();
         let folder = path.parent().unwrap_or(&jobs);
-        let written = || -> io::Result<()> {
+        let write = || -> io::Result<()> {
             if self.files.create_folder(folder)? {
                 self.files.sync_folder(&jobs)?;
                 self.files.sync_folder(&self.root)?;
             }
             files::write_atomic(self.files, &path, bytes)
         };
-        written().map_err(|error| disk_error(&path, &error))
+        write().map_err(|error| disk_error(&path, &error))
     }
 
-    /// Stores the summary table, unless it is there already.
+    /// Stores the summary table. An equal file is not written again.
     ///
     /// # Errors
     /// [`Error::Disk`].
@@ -312,18 +238,18 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    /// The summary table.
+    /// Reads the summary table.
     ///
     /// # Errors
-    /// [`Error::Disk`] when there is none, or as [`parquet::decode`].
+    /// [`Error::Disk`] when there is no table, or as [`parquet::decode`].
     pub fn read_table(&self) -> Result<Table> {
         let path = self.table_path();
         match self.files.read(&path) {
             Ok(bytes) => parquet::decode(&path, &bytes),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Err(Error::Disk {
                 path,
-                problem: "no table here\n  next: `billow run STUDY` first, or name the folder of \
-                          its results"
+                problem: "no table here\n  next: run `billow run STUDY` first, or name the folder \
+                          of its results"
                     .to_owned(),
             }),
             Err(error) => Err(disk_error(&path, &error)),

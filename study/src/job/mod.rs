@@ -1,0 +1,12 @@
+//! A job: one scene to run. Its id is the hash of all that decides its result.
+
+pub mod executor;
+pub mod id;
+pub mod point;
+pub mod references;
+pub mod row;
+pub mod status;
+
+pub use id::{JobId, canonical_json};
+pub use point::{Job, Parameters, label};
+pub use status::Status;
