@@ -220,7 +220,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             let mut keys = Map::new();
             keys.insert("value".to_owned(), json_value(value));
             for (measure, median) in MEDIANS.iter().zip(medians) {
-                keys.insert((*measure).to_owned(), json!(median));
+                keys.insert(measure.name().to_owned(), json!(median));
             }
             serde_json::Value::from(keys)
         });

@@ -200,7 +200,14 @@ fn with_current_names(text: &str, table: &Table) -> String {
         let (word, after) = rest.split_at(length);
         let renamed: &[(&str, &str)] =
             if quote.is_some() { &RENAMED_STATUSES } else { &RENAMED_TABLE_COLUMNS };
-        let known = quote.is_none() && table.column(word).is_some();
+        // A parameter of the study may have the old name, or the old text as a value.
+        let known = match quote {
+            None => table.column(word).is_some(),
+            Some(_) => {
+                let mut values = table.parameters().flat_map(|column| &column.cells);
+                values.any(|value| matches!(value, Value::Text(text) if text == word))
+            }
+        };
         match renamed.iter().find(|(old, _)| *old == word && !known) {
             Some((old, current)) => {
                 eprintln!("billow: --where: {}", note(old, current));

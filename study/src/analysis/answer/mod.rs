@@ -12,7 +12,7 @@ use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
 /// Measures whose medians are given: speed of the deployment, impact.
-pub const MEDIANS: [&str; 2] = ["t_90_z_rim", "peak_vz"];
+pub const MEDIANS: [ColumnId; 2] = [ColumnId::T90ZRim, ColumnId::PeakVz];
 /// Values of a parameter whose effect is listed, at most. Chosen: more values need a chart.
 const MAX_VALUES: usize = 6;
 
@@ -112,17 +112,18 @@ impl Answer {
                 answer.counts.add(status, verdict, near);
             }
         }
-        answer.fastest = extreme(table, "t_90_z_rim", |value, best| value < best);
-        answer.hardest = extreme(table, "peak_vz", |value, best| value > best);
-        answer.most_energy = extreme(table, "peak_kinetic_energy", |value, best| value > best);
+        answer.fastest = extreme(table, ColumnId::T90ZRim, |value, best| value < best);
+        answer.hardest = extreme(table, ColumnId::PeakVz, |value, best| value > best);
+        answer.most_energy =
+            extreme(table, ColumnId::PeakKineticEnergy, |value, best| value > best);
         answer.trust = trust(table, &rows);
         answer
     }
 }
 
 /// The first done job with the best value of a measure.
-fn extreme(table: &Table, measure: &str, better: fn(f64, f64) -> bool) -> Option<Extreme> {
-    let column = table.column(measure)?;
+fn extreme(table: &Table, measure: ColumnId, better: fn(f64, f64) -> bool) -> Option<Extreme> {
+    let column = table.column(measure.name())?;
     let mut best: Option<(usize, f64)> = None;
     for row in 0..table.rows() {
         let Some(value) = compare::measured(table, column, row) else { continue };
@@ -203,8 +204,8 @@ fn effect(table: &Table, parameter: &Column, values: &[Value], zipped: &[String]
         (0..table.rows()).filter(|row| table.status(*row) == Some(Status::Done)).collect();
     let mut sets = Sets::new(table, &done, &parameter.name, zipped);
     sets.sets.retain(|set| set.len() == values.len());
-    let median = |value: &Value, measure: &str| {
-        let measure = table.column(measure)?;
+    let median = |value: &Value, measure: ColumnId| {
+        let measure = table.column(measure.name())?;
         let rows =
             sets.sets.iter().flatten().filter(|row| {
                 compare::canonical(&parameter.cells[**row]) == compare::canonical(value)

@@ -1,6 +1,7 @@
 //! What the columns of a row are taken from: the job, how it ended, its fold pattern.
 
 use billow_solver::geometry::fold::{FoldError, FoldPattern};
+use billow_solver::models::film::CONTACT_COLUMNS;
 use billow_solver::output::audit::Audit;
 use billow_solver::output::measures::{Measures, Verdict};
 use billow_solver::output::outcome::{Deployment, Failure, Stop};
@@ -67,8 +68,14 @@ impl<'a> JobEnd<'a> {
         Some(quantity(&self.deployment()?.audit))
     }
 
-    /// The largest or smallest value of a track: `pick` returns one of two values.
+    /// The largest or smallest value of a contact column of the history: `pick` returns one of two
+    /// values.
+    ///
+    /// # Panics
+    /// When contact has no column with that name. This is a mistake in the table of columns.
     pub fn extreme(&self, track: &str, pick: fn(f64, f64) -> f64) -> Option<f64> {
+        let known = CONTACT_COLUMNS.iter().any(|(name, ..)| *name == track);
+        assert!(known, "contact has no column {track:?}");
         self.deployment()?.followed(track).iter().copied().reduce(pick)
     }
 

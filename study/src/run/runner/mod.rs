@@ -1,7 +1,7 @@
 //! Runs a study: plans, skips finished jobs, runs the others, stores every job as it ends.
 //!
 //! The workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. Only
-//! the calling thread touches the disk ([`state`]). It stores the history file of a job first and its
+//! the calling thread touches the disk (`state`). It stores the history file of a job first and its
 //! journal record second, so a record always has its file. A job that was interrupted in between runs
 //! again and gives the same bits.
 //!
