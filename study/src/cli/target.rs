@@ -201,12 +201,11 @@ fn with_current_names(text: &str, table: &Table) -> String {
         let renamed: &[(&str, &str)] =
             if quote.is_some() { &RENAMED_STATUSES } else { &RENAMED_TABLE_COLUMNS };
         // A parameter of the study may have the old name, or the old text as a value.
-        let known = match quote {
-            None => table.column(word).is_some(),
-            Some(_) => {
-                let mut values = table.parameters().flat_map(|column| &column.cells);
-                values.any(|value| matches!(value, Value::Text(text) if text == word))
-            }
+        let known = if quote.is_some() {
+            let mut values = table.parameters().flat_map(|column| &column.cells);
+            values.any(|value| matches!(value, Value::Text(text) if text == word))
+        } else {
+            table.column(word).is_some()
         };
         match renamed.iter().find(|(old, _)| *old == word && !known) {
             Some((old, current)) => {
