@@ -28,20 +28,20 @@ fn status_counts_what_the_table_holds() {
     assert!((status["wall_seconds"].as_f64().unwrap() - wall).abs() < 1e-9);
     assert!(desk.stdout(&["status", "grid.json"]).starts_with("grid: finished\n"));
 
-    // A withdrawn job is open again, and the time left is the mean of those that ran.
+    // An invalidated job is pending again, and the time left is the mean of those that ran.
     let journal = desk.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
     let id = &ids(&desk, "done")[0];
-    let line = format!("{{\"kind\":\"withdrawn\",\"job\":\"{id}\"}}\n");
+    let line = format!("{{\"kind\":\"invalidated\",\"job\":\"{id}\"}}\n");
     fs::write(&journal, format!("{text}{line}")).unwrap();
     let status = json_of(&desk, &["status", "--threads", "1"]);
     assert_eq!(
-        (&status["done"], &status["pending"], &status["withdrawn"]),
+        (&status["done"], &status["pending"], &status["invalidated"]),
         (&json!(15), &json!(1), &json!(1))
     );
     assert_eq!(status["seconds_left"], status["mean_wall_seconds"]);
     let said = desk.stdout(&["status"]);
-    assert!(said.contains("15 done, 0 failed, 1 pending (1 withdrawn)"), "{said}");
+    assert!(said.contains("15 done, 0 failed, 1 pending (1 invalidated)"), "{said}");
     assert!(said.contains("left     about "), "{said}");
 }
 
@@ -81,7 +81,8 @@ fn why_gives_the_numbers_behind_a_verdict() {
     for row in desk.rows("results/grid").iter().filter(|row| row["status"] == "done") {
         let id = row["job"].as_str().unwrap();
         let why = json_of(&desk, &["why", &id[..7]]);
-        for column in ["job", "status", "verdict", "close", "ledger_residual", "passages"] {
+        for column in ["job", "status", "verdict", "near_threshold", "ledger_residual", "passages"]
+        {
             assert_eq!(why[column], row[column], "{column}");
         }
         let check = &why["checks"][0];
@@ -118,7 +119,7 @@ fn why_tells_failures_and_infeasible_points_with_time_place_and_nearest() {
     let failed = ids(&desk, "step_limit").remove(0);
     let said = desk.stdout(&["why", &failed]);
     assert!(said.contains("step_limit: it took all the steps"), "{said}");
-    assert!(said.contains("\n  time ") && said.contains("\n  place "), "{said}");
+    assert!(said.contains("\n  time ") && said.contains("\n  location "), "{said}");
     assert!(said.contains("raise solver.step_limit"), "{said}");
     let infeasible = ids(&desk, "infeasible").remove(0);
     let said = desk.stdout(&["why", &infeasible, "results/grid"]);
@@ -158,11 +159,7 @@ fn ids_are_any_unique_prefix_and_others_are_refused_with_the_nearest() {
         .unwrap();
     assert!(count > 1, "24 ids share 16 first digits");
     let output = desk.run(&["why", &first]);
-    assert!(
-        stderr(&output).contains(&format!("{count} jobs have ids that begin")),
-        "{}",
-        stderr(&output)
-    );
+    assert!(stderr(&output).contains(&format!("{count} job ids begin so")), "{}", stderr(&output));
 }
 
 #[test]

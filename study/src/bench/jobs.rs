@@ -8,9 +8,9 @@ use billow_solver::platform::simd::InstructionSet;
 
 use super::{Effort, INTERRUPTED, Line};
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::executor::Solver;
 use crate::job::references::References;
-use crate::job::row::DONE;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::scratch::Scratch;
 use crate::platform::files::{Disk, disk_error};
@@ -93,7 +93,7 @@ pub fn measure(
             results: Results::new(&Disk, &folder.path().join("results")),
             threads: NonZero::new(threads as usize),
             stop: stop.clone(),
-            again: None,
+            rerun: None,
         },
         &mut Silent,
     )?;
@@ -105,7 +105,7 @@ pub fn measure(
     Ok(JobsRow {
         threads,
         jobs: summary.ran,
-        done: summary.counts.of(DONE),
+        done: summary.counts.of(Status::Done),
         subdivisions: scene.map_or(0, |scene| scene.design.subdivisions),
         end_time: scene.map_or(0.0, |scene| scene.solver.end_time),
         wall_seconds,

@@ -5,8 +5,7 @@ use billow_solver::output::history::COLUMNS;
 use super::vary::{self, Parameter};
 use super::{Source, outcome, refused, titled, unknown};
 use crate::input::value::Value;
-use crate::job::JobId;
-use crate::job::row;
+use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
@@ -201,7 +200,7 @@ fn panel(
             .map(<[_]>::to_vec)
             .collect();
         let last = runs.last().and_then(|run| run.last()).copied();
-        let failed = row::is_failure(outcome::status(source, run.row));
+        let failed = outcome::has_failed(source, run.row);
         let visible = |point: &[f64; 2]| (time.shown(from)..=time.shown(to)).contains(&point[0]);
         let crosses = last.filter(|point| failed && visible(point)).into_iter().collect();
         Line { series: number, runs, marks: Vec::new(), sparse: true, crosses }
@@ -233,7 +232,7 @@ fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> V
         };
         let status = outcome::status(source, run.row);
         let verdict = outcome::verdict(source, run.row);
-        if status != row::DONE {
+        if status != Status::Done.name() {
             text = format!("{text} ({status})");
         } else if !matches!(verdict, "" | "deployed") {
             text = format!("{text} ({verdict})");
@@ -244,7 +243,7 @@ fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> V
         heading: vary::heading(parameters),
         entries: runs.iter().enumerate().map(entry).collect(),
     };
-    let failed = runs.iter().any(|run| row::is_failure(outcome::status(source, run.row)));
+    let failed = runs.iter().any(|run| outcome::has_failed(source, run.row));
     let crosses = if failed {
         vec![(Sample::Cross, "end of a run that failed".to_owned())]
     } else {

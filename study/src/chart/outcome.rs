@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Source;
 use crate::input::value::Value;
-use crate::job::row;
+use crate::job::Status;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::style::Fill;
 use crate::store::table::Column;
@@ -24,14 +24,14 @@ impl<'a> Outcomes<'a> {
     /// Gives every way to end without a value a letter of its own.
     pub fn new(source: &'a Source<'a>) -> Self {
         let mut kinds: Vec<&str> = source.rows.iter().map(|row| status(source, *row)).collect();
-        kinds.retain(|kind| *kind != row::DONE && *kind != row::INFEASIBLE);
+        kinds.retain(|kind| *kind != Status::Done.name() && *kind != Status::Infeasible.name());
         // The common one first, so that its letter is always the same.
-        kinds.sort_by_key(|kind| (*kind != row::PENDING, *kind));
+        kinds.sort_by_key(|kind| (*kind != Status::Pending.name(), *kind));
         kinds.dedup();
         let mut letters: BTreeMap<String, String> = BTreeMap::new();
         // An I would read as a line.
         letters.insert(NEVER.to_owned(), "–".to_owned());
-        letters.insert(row::INFEASIBLE.to_owned(), "∅".to_owned());
+        letters.insert(Status::Infeasible.name().to_owned(), "∅".to_owned());
         for kind in kinds {
             let free = |letter: &char| !letters.values().any(|used| used.starts_with(*letter));
             let own =
@@ -52,7 +52,7 @@ impl<'a> Outcomes<'a> {
     /// The letter of a job without a value.
     pub fn letter(&mut self, row: usize) -> String {
         let status = status(self.source, row);
-        let kind = if status == row::DONE { NEVER } else { status };
+        let kind = if status == Status::Done.name() { NEVER } else { status };
         *self.lettered.entry(kind.to_owned()).or_default() += 1;
         self.letters.get(kind).cloned().unwrap_or_else(|| "?".to_owned())
     }
@@ -65,7 +65,7 @@ impl<'a> Outcomes<'a> {
         });
         let letters = self.lettered.iter().map(|(kind, count)| {
             let letter = self.letters.get(kind).cloned().unwrap_or_default();
-            let text = if row::is_failure(kind) && kind != NEVER {
+            let text = if Status::from_name(kind).is_some_and(Status::is_failure) {
                 format!("failed: {kind} ({count})")
             } else {
                 format!("{kind} ({count})")
@@ -96,12 +96,17 @@ fn text<'a>(source: &Source<'a>, name: &str, row: usize) -> &'a str {
 
 /// What a job measured; `None` too for one that did not run to its end: its peak so far is no peak.
 pub fn value(source: &Source<'_>, measure: &Column, row: usize) -> Option<f64> {
-    super::number(&measure.cells[row]).filter(|_| status(source, row) == row::DONE)
+    super::number(&measure.cells[row]).filter(|_| source.table.status(row) == Some(Status::Done))
 }
 
 /// How the job of a row ended.
 pub fn status<'a>(source: &Source<'a>, row: usize) -> &'a str {
     text(source, "status", row)
+}
+
+/// Whether the job of a row failed.
+pub fn has_failed(source: &Source<'_>, row: usize) -> bool {
+    source.table.status(row).is_some_and(Status::is_failure)
 }
 
 /// The verdict of a row, empty for none.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::outcome::{self, Outcomes};
 use super::vary::{self, Group, Parameter};
 use super::{Source, number, refused, titled};
-use crate::job::row::Kind;
+use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::lane::Mark;
@@ -194,7 +194,7 @@ struct Places {
 impl Places {
     fn new(x: &Parameter<'_>, rows: &[usize]) -> Self {
         let values = x.values(rows);
-        let names = !x.is_number(rows) || x.column.kind == Kind::Bool;
+        let names = !x.is_number(rows) || x.column.cell_type == CellType::Bool;
         let at = |position: usize| {
             let si = if names { None } else { number(&values[position]) };
             si.map_or(position as f64, |si| x.unit.shown(si))

@@ -10,7 +10,7 @@ use serde_json::{Map, json};
 use super::print::count;
 use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
 use crate::input::value::{Value, brief_number, json_value, short_number};
-use crate::job::row;
+use crate::job::Status;
 
 /// Characters a line of medians may have.
 const WIDTH: usize = 120;
@@ -105,16 +105,16 @@ fn deployed(answer: &Answer) -> String {
         (of("partial"), "partial"),
         (of("stalled"), "stalled"),
         (counts.failed(), "failed"),
-        (counts.of(row::PENDING), "pending"),
+        (counts.of(Status::Pending), "pending"),
     ] {
         if number > 0 {
             let _ = write!(text, ", {number} {word}");
         }
     }
-    if counts.close > 0 {
-        let _ = write!(text, ", {} close to a threshold", counts.close);
+    if counts.near_threshold > 0 {
+        let _ = write!(text, ", {} close to a threshold", counts.near_threshold);
     }
-    let infeasible = counts.of(row::INFEASIBLE);
+    let infeasible = counts.of(Status::Infeasible);
     if infeasible > 0 {
         let _ = write!(text, "; {} infeasible", count(infeasible, "point"));
     }
@@ -220,7 +220,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             let mut keys = Map::new();
             keys.insert("value".to_owned(), json_value(value));
             for (measure, median) in MEDIANS.iter().zip(medians) {
-                keys.insert((*measure).to_owned(), json!(median));
+                keys.insert(measure.name().to_owned(), json!(median));
             }
             serde_json::Value::from(keys)
         });
@@ -246,7 +246,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
     json!({
         "question": answer.question,
         "jobs": answer.counts.jobs(),
-        "close": answer.counts.close,
+        "near_threshold": answer.counts.near_threshold,
         "fastest": extreme(&answer.fastest, "t_90_z_rim"),
         "hardest": extreme(&answer.hardest, "peak_vz"),
         "most_energy": extreme(&answer.most_energy, "peak_kinetic_energy"),

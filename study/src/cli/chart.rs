@@ -146,9 +146,17 @@ fn draw(
 /// The chart asked for, if one is.
 fn kind(args: &Args) -> Result<Option<Kind>> {
     if !args.history.is_empty() {
-        return Ok(Some(Kind::History(args.history.clone())));
+        let columns = args
+            .history
+            .iter()
+            .map(|name| target::current_name("--history", name.trim()).to_owned());
+        return Ok(Some(Kind::History(columns.collect())));
     }
-    let Some(measure) = args.measure.clone() else {
+    let measure = args
+        .measure
+        .as_deref()
+        .map(|name| target::current_name("--measure", name.trim()).to_owned());
+    let Some(measure) = measure else {
         return match &args.out {
             None => Ok(None),
             Some(path) => Err(refused(

@@ -9,12 +9,13 @@ use super::print::print_rows;
 use super::target::{filtered, find, folder};
 use super::{Format, Global, output_error};
 use crate::analysis::compare::{
-    self, Better, Compared, LARGER_IS_BETTER, Pair, SMALLER_IS_BETTER, Sets, TIE, Tally,
+    self, Better, Compared, DEFAULT_TIE, Pair, Sets, Tally, measures_with,
 };
 use crate::input::keys;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
-use crate::job::row;
+use crate::job::Status;
+use crate::job::row::BetterSide;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::Disk;
 use crate::store::results::Results;
@@ -76,7 +77,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let sets = Sets::new(&table, &rows, &by.name, &stored.study.zipped_with(&by.name));
     let (pairs, alone) = compare::pairs(&table, &sets, &by.name, &base);
     let measures = measures(&table, &args.measures, format)?;
-    let tie = args.tie.as_deref().map_or(Ok(TIE), share)?;
+    let tie = args.tie.as_deref().map_or(Ok(DEFAULT_TIE), share)?;
     let question = Question { table: &table, by, sets, pairs, measures, tie };
     if !args.summary {
         question.print_pairs(format, out)?;
@@ -145,7 +146,9 @@ fn measures<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Ve
     };
     match names {
         [] if format == Format::Table => Ok(some(&SHOWN)),
-        [] => Ok(some(&[&SMALLER_IS_BETTER[..], &LARGER_IS_BETTER].concat())),
+        [] => Ok(some(
+            &[measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat(),
+        )),
         names => names.iter().map(|name| measure(table, name.trim())).collect(),
     }
 }
@@ -176,7 +179,7 @@ impl Question<'_> {
     fn print_pairs(&self, format: Format, out: &mut dyn Write) -> Result<()> {
         let brief = format == Format::Table;
         let all_done = self.pairs.iter().all(|pair| {
-            [pair.base, pair.other].iter().all(|row| compare::status(self.table, *row) == row::DONE)
+            [pair.base, pair.other].iter().all(|row| self.table.status(*row) == Some(Status::Done))
         });
         let ends: &[&str] = match (brief, all_done) {
             (true, true) => &[],
@@ -271,7 +274,8 @@ impl Question<'_> {
             _ => String::new(),
         };
         let mut text = format!("base: {by} = {base}{unit}; ratio: other over base");
-        for (word, list) in [("less", &SMALLER_IS_BETTER[..]), ("more", &LARGER_IS_BETTER)] {
+        for (word, side) in [("less", BetterSide::Smaller), ("more", BetterSide::Larger)] {
+            let list = measures_with(side);
             let own = self.measures.iter().map(|measure| measure.name.as_str());
             let names: Vec<&str> = own.filter(|name| list.contains(name)).collect();
             if !names.is_empty() {

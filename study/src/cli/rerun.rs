@@ -11,8 +11,8 @@ use super::run::run_study;
 use super::target::{filtered, folder};
 use super::{Format, Global};
 use crate::input::value::Value;
-use crate::job::JobId;
-use crate::job::row;
+use crate::job::row::ColumnId;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::Disk;
 use crate::store::results::Results;
@@ -33,7 +33,7 @@ pub struct Args {
     pub dry_run: bool,
 }
 
-/// Runs `billow rerun`: the jobs are withdrawn in the journal and run, and nothing else is. Their old
+/// Runs `billow rerun`: the jobs are invalidated in the journal and run, and nothing else is. Their old
 /// histories stay until the new ones replace them.
 ///
 /// # Errors
@@ -136,8 +136,8 @@ fn list(
                 own.map_or(Value::Null, |(_, value)| value.clone())
             }));
             let cells = stored.cells(point);
-            row.push(Value::Text(cells.status().to_owned()));
-            row.push(cells.get("verdict").clone());
+            row.push(Value::Text(cells.status().name().to_owned()));
+            row.push(cells.get(ColumnId::Verdict).clone());
             row
         })
         .collect();
@@ -154,5 +154,5 @@ fn list(
 
 fn points_finished(stored: &Stored<'_>, jobs: &BTreeSet<JobId>) -> usize {
     let own = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
-    own.filter(|point| stored.cells(point).status() != row::PENDING).count()
+    own.filter(|point| stored.cells(point).status() != Status::Pending).count()
 }

@@ -9,10 +9,9 @@ use super::instruction_set::instruction_set;
 use super::print::count;
 use super::{Format, Global, memory, notes, output_error};
 use crate::analysis::answer::Answer;
-use crate::job::JobId;
 use crate::job::executor::Solver;
 use crate::job::references::References;
-use crate::job::row;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
@@ -74,7 +73,7 @@ pub(super) fn run_study(
             results: results.clone(),
             threads: threads(global)?,
             stop,
-            again,
+            rerun: again,
         },
         progress::reporter(loudness).as_mut(),
     )?;
@@ -84,7 +83,7 @@ pub(super) fn run_study(
         notes::print(study);
     }
     // A signal that came when all was done has ended nothing.
-    let open = summary.counts.of(row::PENDING) > 0;
+    let open = summary.counts.of(Status::Pending) > 0;
     match (summary.signal.filter(|_| open), summary.counts.failed()) {
         (Some(signal), _) => Err(Error::Signal(signal)),
         (None, _) if !summary.different.is_empty() => Err(Error::JobsFailed(format!(
@@ -96,7 +95,7 @@ pub(super) fn run_study(
         (None, 0) => Ok(()),
         (None, failed) => Err(Error::JobsFailed(format!(
             "{} failed\n  next: billow table {} --columns job,status,reason,stop_time,\
-             stop_place",
+             stop_location",
             count(failed, "job"),
             root.display()
         ))),
@@ -165,7 +164,7 @@ fn print(
         }
         return writeln!(out, "{json}");
     }
-    if summary.ran == 0 && counts.of(row::PENDING) == 0 {
+    if summary.ran == 0 && counts.of(Status::Pending) == 0 {
         writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
     } else {
         let (ran, points) = (count(summary.ran, "job"), count(counts.rows(), "point"));

@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use billow_solver::output::history::COLUMNS;
 
 use super::print::print_rows;
-use super::target::folder_of_job;
+use super::target::{current_name, folder_of_job};
 use super::{Format, Global, output_error};
 use crate::input::keys::{self, KEYS};
 use crate::input::value::Value;
-use crate::job::JobId;
-use crate::job::row::{self, Cells, RowColumn};
+use crate::job::row::{Cells, ColumnGroup};
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::Disk;
 use crate::scene::summary;
@@ -96,27 +96,8 @@ fn scene(stored: &Stored<'_>, id: &JobId) -> Result<serde_json::Value> {
     }
 }
 
-/// The part of a row a column belongs to.
-fn group(column: &RowColumn) -> &'static str {
-    match column.name {
-        "status" | "verdict" | "close" | "volume_ratio" | "height_ratio" | "reference_volume"
-        | "reference_height" | "reason" | "nearest" | "stop_time" | "stop_place"
-        | "close_margin" => "outcome",
-        name if name.ends_with("_threshold") => "outcome",
-        "phi" | "half_angle" | "top_radius" | "height" => "pattern",
-        "passages" | "intersections" | "ledger_residual" | "gas_residual" | "viscous_fraction" => {
-            "audit"
-        }
-        "steps" | "elements" => "cost",
-        "content_hash" | "program_version" | "commit" | "physics_version" => "provenance",
-        _ if !column.result => "cost",
-        _ => "measures",
-    }
-}
-
 /// One row a quantity: group, name, value, unit, meaning.
 fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
-    const GROUPS: [&str; 6] = ["outcome", "measures", "audit", "pattern", "cost", "provenance"];
     let text = |text: &str| Value::Text(text.to_owned());
     let point = stored.point(id);
     let mut rows = vec![vec![text("job"), text("job"), text(id.as_str()), text("")]];
@@ -128,15 +109,14 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
     let recorded = stored.record(id).map(|record| record.cells.clone());
     let cells = match point {
         Some(point) => stored.cells(point),
-        None => recorded.unwrap_or_else(|| Cells::new(row::PENDING)),
+        None => recorded.unwrap_or_else(|| Cells::new(Status::Pending)),
     };
-    for wanted in GROUPS {
-        let own = cells
-            .iter()
-            .filter(|(column, value)| group(column) == wanted && **value != Value::Null);
+    for wanted in ColumnGroup::ALL {
+        let own =
+            cells.iter().filter(|(column, value)| column.group == wanted && **value != Value::Null);
         rows.extend(own.map(|(column, value)| {
             let (unit, meaning) = (text(column.unit), text(column.meaning));
-            vec![text(wanted), text(column.name), value.clone(), unit, meaning]
+            vec![text(wanted.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
     // A row without its file is still worth showing: the error is one of its rows.
@@ -218,7 +198,8 @@ fn print_history(
 
 fn find<'a>(all: &[(&'a str, &'a [f64])], name: &str) -> Result<(&'a str, &'a [f64])> {
     let names = || all.iter().map(|(name, _)| *name);
-    all.iter().find(|(own, _)| *own == name).copied().ok_or_else(|| {
+    let current = current_name("--columns", name);
+    all.iter().find(|(own, _)| *own == current).copied().ok_or_else(|| {
         let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
         let allowed = names().collect::<Vec<_>>().join(", ");
         let problem = "no such column in this history";

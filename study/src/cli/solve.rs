@@ -9,13 +9,12 @@ use billow_solver::geometry::mesh_io::obj;
 use super::instruction_set::instruction_set;
 use super::print::print_rows;
 use super::{Format, Global, output_error};
-use crate::job::JobId;
-use crate::job::row;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
-use crate::platform::files::{Disk, check_place, disk_error, write_atomic};
+use crate::platform::files::{Disk, check_output_path, disk_error, write_atomic};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
-use crate::scene::solve::{self, Ended, PAUSED, Pauses, Solved};
+use crate::scene::solve::{self, Ended, Pauses, Solved};
 use crate::scene::summary;
 use crate::store::history_file;
 
@@ -81,11 +80,11 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         format => print_rows(&["quantity", "value"], &summary::rows(&summary), format, out)?,
     }
     write_files(args, &scene, &solved)?;
-    if let (PAUSED, Some(path), false) = (solved.status, &args.checkpoint, global.quiet) {
+    if let (Status::Paused, Some(path), false) = (solved.status, &args.checkpoint, global.quiet) {
         let without = if args.out.is_some() { "; --out is written when it is done" } else { "" };
         eprintln!("billow: paused; go on with --resume {}{without}", path.display());
     }
-    if matches!(solved.status, row::DONE | PAUSED) {
+    if matches!(solved.status, Status::Done | Status::Paused) {
         return Ok(());
     }
     let place = summary["stop"]["place"].as_str().unwrap_or_default();
@@ -97,7 +96,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 /// What cannot be written, or what a state of rest has none of, is not asked for.
 fn check_files(args: &Args, scene: &SceneFile) -> Result<()> {
     for path in [&args.out, &args.shape, &args.checkpoint].into_iter().flatten() {
-        check_place(path).map_err(|error| disk_error(path, &error))?;
+        check_output_path(path).map_err(|error| disk_error(path, &error))?;
     }
     let pausing = args.checkpoint.is_some() || args.resume.is_some();
     let flag = match (&args.out, pausing) {
@@ -123,7 +122,7 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
         write_atomic(&Disk, path, bytes).map_err(|error| disk_error(path, &error))
     };
     if let (Some(path), Ended::Motion(motion)) = (&args.out, &solved.end)
-        && solved.status != PAUSED
+        && solved.status != Status::Paused
     {
         let deployment = &motion.1;
         let hash = history_file::content_hash(deployment);

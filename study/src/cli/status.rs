@@ -9,8 +9,8 @@ use super::print::{count, duration, print_rows};
 use super::run::{listed, threads};
 use super::target::folder;
 use super::{Format, Global, output_error};
-use crate::input::value::Value;
-use crate::job::row::{self, Counts};
+use crate::job::Status as JobStatus;
+use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::scene::summary;
@@ -42,7 +42,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let root = folder(args.study.as_deref(), global)?;
     let results = Results::new(&Disk, &root);
     // What is broken is one of the things it says.
-    let (stored, _) = Stored::salvage(results.clone())?;
+    let (stored, _) = Stored::read_valid(results.clone())?;
     let health = doctor::examine(&results, Depth::Names);
     let mut status = Status::of(&stored);
     status.threads = match threads(global)? {
@@ -63,7 +63,7 @@ impl Status {
         for point in &stored.points {
             let cells = stored.cells(point);
             status.counts.add_cells(&cells);
-            if let Value::Number(seconds) = cells.get("wall_seconds") {
+            if let Some(seconds) = cells.number(ColumnId::WallSeconds) {
                 status.seconds += seconds;
                 status.timed += 1;
             }
@@ -78,13 +78,13 @@ impl Status {
 
     /// Wall time until all has run, s, on `threads` at once; none while nothing has run.
     fn left(&self) -> Option<f64> {
-        let pending = self.counts.of(row::PENDING);
+        let pending = self.counts.of(JobStatus::Pending);
         let at_once = self.threads.min(pending).max(1);
         self.mean().map(|mean| mean * pending as f64 / at_once as f64)
     }
 
     fn json(&self, stored: &Stored<'_>, health: &Health) -> serde_json::Value {
-        let infeasible = self.counts.of(row::INFEASIBLE);
+        let infeasible = self.counts.of(JobStatus::Infeasible);
         json!({
             "study": stored.study.name,
             "question": stored.study.question,
@@ -92,14 +92,14 @@ impl Status {
             "running": health.running,
             "points": self.counts.rows(),
             "jobs": self.counts.jobs(),
-            "done": self.counts.of(row::DONE),
+            "done": self.counts.of(JobStatus::Done),
             "failed": self.counts.failed(),
-            "pending": self.counts.of(row::PENDING),
+            "pending": self.counts.of(JobStatus::Pending),
             "infeasible": infeasible,
-            "withdrawn": stored.journal.withdrawn.len(),
+            "invalidated": stored.journal.invalidated.len(),
             "status": self.counts.status,
             "verdict": self.counts.verdict,
-            "close": self.counts.close,
+            "near_threshold": self.counts.near_threshold,
             "wall_seconds": self.seconds,
             "mean_wall_seconds": self.mean(),
             "seconds_left": self.left(),
@@ -112,8 +112,8 @@ impl Status {
     }
 
     fn print(&self, stored: &Stored<'_>, health: &Health, out: &mut dyn Write) -> Result<()> {
-        let infeasible = self.counts.of(row::INFEASIBLE);
-        let pending = self.counts.of(row::PENDING);
+        let infeasible = self.counts.of(JobStatus::Infeasible);
+        let pending = self.counts.of(JobStatus::Pending);
         let failed = self.counts.failures();
         let state = match (health.running, pending) {
             (true, _) => "running: another process holds its lock",
@@ -127,21 +127,22 @@ impl Status {
         }
         let jobs = count(self.counts.jobs(), "job");
         line("points", format!("{}: {jobs}, {infeasible} infeasible", self.counts.rows()));
-        let withdrawn = stored.journal.withdrawn.len();
-        let again = if withdrawn > 0 { format!(" ({withdrawn} withdrawn)") } else { String::new() };
+        let invalidated = stored.journal.invalidated.len();
+        let again =
+            if invalidated > 0 { format!(" ({invalidated} invalidated)") } else { String::new() };
         let number = self.counts.failed();
         line(
             "jobs",
             format!(
                 "{} done, {number} failed, {pending} pending{again}",
-                self.counts.of(row::DONE)
+                self.counts.of(JobStatus::Done)
             ),
         );
         if !failed.is_empty() {
             line("failed", format!("{}; billow why JOB says why", listed(&failed)));
         }
         if !self.counts.verdict.is_empty() {
-            let close = match self.counts.close {
+            let close = match self.counts.near_threshold {
                 0 => String::new(),
                 close => format!(" ({close} close to a threshold)"),
             };

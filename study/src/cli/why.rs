@@ -6,14 +6,15 @@ use std::path::PathBuf;
 
 use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::REFERENCE_PRESSURES;
+use billow_solver::output::outcome::FailureKind;
 use serde_json::{Map, json};
 
 use super::print::print_rows;
 use super::target::folder_of_job;
 use super::{Format, Global, output_error};
 use crate::input::value::{Value, brief_number, json_value};
-use crate::job::JobId;
-use crate::job::row::{self, Cells};
+use crate::job::row::{Cells, ColumnId};
+use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::scene::summary;
@@ -44,7 +45,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     let cells = match (stored.point(&id), stored.record(&id)) {
         (Some(point), _) => stored.cells(point),
         (None, Some(record)) => record.cells.clone(),
-        (None, None) => Cells::new(row::PENDING),
+        (None, None) => Cells::new(Status::Pending),
     };
     let lines = reasons(&stored, &id, &cells)?;
     match global.format() {
@@ -70,9 +71,13 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
 const LITTLE: f64 = 5e-3;
 
 fn headline(cells: &Cells) -> String {
-    let close = if *cells.get("close") == Value::Bool(true) { ", close" } else { "" };
-    match cells.text("verdict") {
-        "" => cells.status().to_owned(),
+    let close = if *cells.get(ColumnId::NearThreshold) == Value::Bool(true) {
+        ", near a threshold"
+    } else {
+        ""
+    };
+    match cells.text(ColumnId::Verdict) {
+        "" => cells.status().name().to_owned(),
         verdict => format!("{}, {verdict}{close}", cells.status()),
     }
 }
@@ -83,18 +88,18 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
     let root = stored.results.root().display();
     let short = id.short();
     let next = match cells.status() {
-        row::DONE => {
+        Status::Done => {
             lines.extend(verdict(cells));
-            let motion = motion(stored, id).filter(|_| cells.text("verdict") != "deployed");
+            let motion = motion(stored, id).filter(|_| cells.text(ColumnId::Verdict) != "deployed");
             let longer = "a longer solver.end_time: the run ended while the film was on its way";
             let next = motion.as_ref().map(|_| longer.to_owned());
             lines.extend(motion.map(|said| ("motion", said)));
             next.unwrap_or_else(|| format!("billow show {short} {root} --history"))
         }
-        row::PENDING => {
-            let withdrawn = stored.journal.withdrawn.contains_key(id);
-            let said = if withdrawn {
-                "withdrawn to be run again, and not run yet"
+        Status::Pending => {
+            let invalidated = stored.journal.invalidated.contains_key(id);
+            let said = if invalidated {
+                "invalidated to be run again, and not run yet"
             } else {
                 "not run yet"
             };
@@ -103,8 +108,8 @@ fn reasons(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> 
         }
         status => {
             lines.extend(failure(cells, status));
-            let energy = number(cells, "peak_kinetic_energy").unwrap_or(f64::INFINITY);
-            if matches!(status, "drifted" | "energy_drift") && energy < LITTLE {
+            let energy = cells.number(ColumnId::PeakKineticEnergy).unwrap_or(f64::INFINITY);
+            if status == Status::Failed(FailureKind::EnergyDrift) && energy < LITTLE {
                 lines.push((
                     "energy",
                     format!(
@@ -161,13 +166,9 @@ fn motion(stored: &Stored<'_>, id: &JobId) -> Option<String> {
     })
 }
 
-fn number(cells: &Cells, name: &str) -> Option<f64> {
-    if let Value::Number(number) = cells.get(name) { Some(*number) } else { None }
-}
-
 /// A ratio against its threshold: measure, value, threshold, relative margin.
-fn against(cells: &Cells, measure: &str, threshold: &str) -> Option<(f64, f64, f64)> {
-    let (value, threshold) = (number(cells, measure)?, number(cells, threshold)?);
+fn against(cells: &Cells, measure: ColumnId, threshold: ColumnId) -> Option<(f64, f64, f64)> {
+    let (value, threshold) = (cells.number(measure)?, cells.number(threshold)?);
     Some((value, threshold, value / threshold - 1.0))
 }
 
@@ -178,10 +179,10 @@ fn share(margin: f64) -> String {
 /// The numbers behind a verdict.
 fn verdict(cells: &Cells) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let full = against(cells, "volume_ratio", "deployed_volume_threshold");
-    let low = against(cells, "volume_ratio", "stalled_volume_threshold");
-    let high = against(cells, "height_ratio", "deployed_height_threshold");
-    let verdict = cells.text("verdict");
+    let full = against(cells, ColumnId::VolumeRatio, ColumnId::DeployedVolumeThreshold);
+    let low = against(cells, ColumnId::VolumeRatio, ColumnId::StalledVolumeThreshold);
+    let high = against(cells, ColumnId::HeightRatio, ColumnId::DeployedHeightThreshold);
+    let verdict = cells.text(ColumnId::Verdict);
     if let (Some((value, full, above)), Some((_, low, over))) = (full, low) {
         let mean = format!("volume_ratio {} (mean of the last tenth)", brief_number(value));
         let text = match verdict {
@@ -211,7 +212,7 @@ fn verdict(cells: &Cells) -> Vec<Line> {
         lines.push(("height", text));
     }
     let largest = REFERENCE_PRESSURES[REFERENCE_PRESSURES.len() - 1];
-    if let Some(pressure) = number(cells, "final_pressure").filter(|own| *own > largest) {
+    if let Some(pressure) = cells.number(ColumnId::FinalPressure).filter(|own| *own > largest) {
         let text = format!(
             "static states are known up to {largest} Pa and taken as constant above; the gas ends at {} Pa",
             brief_number(pressure)
@@ -222,14 +223,14 @@ fn verdict(cells: &Cells) -> Vec<Line> {
         let text = "none: the design has no static states to hold it against";
         lines.push(("verdict", text.to_owned()));
     }
-    if let Some(margin) = number(cells, "close_margin") {
-        let close = *cells.get("close") == Value::Bool(true);
+    if let Some(margin) = cells.number(ColumnId::NearThresholdMargin) {
+        let close = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
         let (said, would) = if close { ("yes", "would") } else { ("no", "would not") };
         let margin = share(margin);
         let change = format!("a change of the ratios by less than {margin}");
-        lines.push(("close", format!("{said}: {change} {would} change the verdict")));
+        lines.push(("threshold", format!("{said}: {change} {would} change the verdict")));
     }
-    if let Some(time) = number(cells, "t_deployed") {
+    if let Some(time) = cells.number(ColumnId::TDeployed) {
         let since = format!("from {} s on both thresholds held 20 ms", brief_number(time));
         let later = if verdict == "deployed" { "" } else { "; it did not stay there" };
         lines.push(("held", format!("{since}{later}")));
@@ -238,45 +239,66 @@ fn verdict(cells: &Cells) -> Vec<Line> {
 }
 
 /// Where and why there is no result.
-fn failure(cells: &Cells, status: &str) -> Vec<Line> {
+fn failure(cells: &Cells, status: Status) -> Vec<Line> {
     let what = match status {
-        row::INFEASIBLE => "no fold pattern meets this design, so nothing was run",
-        row::INVALID => "the model refused the scene before its first step",
-        row::PANICKED => "the program met a state it did not expect: a mistake in billow",
-        "unstable" => "the state left all bounds: no number, or energy out of nothing",
-        "drifted" | "energy_drift" => {
+        Status::Infeasible => "no fold pattern meets this design, so nothing was run",
+        Status::Invalid => "the model refused the scene before its first step",
+        Status::Panicked => "the program met a state it did not expect: a mistake in billow",
+        Status::Failed(FailureKind::Unstable) => {
+            "the state left all bounds: no number, or energy out of nothing"
+        }
+        Status::Failed(FailureKind::EnergyDrift) => {
             "the energy ledger did not balance, so what was computed is no result"
         }
-        "inverted_volume" => "the enclosed volume fell to nothing or turned inside out",
-        "step_limit" => "it took all the steps solver.step_limit allows before its end time",
-        "interpenetrated" => "film passed through film, or lay through film",
-        _ => "it stopped before its end time",
+        Status::Failed(FailureKind::InvertedVolume) => {
+            "the enclosed volume fell to nothing or turned inside out"
+        }
+        Status::Failed(FailureKind::StepLimit) => {
+            "it took all the steps solver.step_limit allows before its end time"
+        }
+        Status::Failed(FailureKind::Interpenetrated) => {
+            "film passed through film, or lay through film"
+        }
+        Status::Pending
+        | Status::Done
+        | Status::Cancelled
+        | Status::Paused
+        | Status::NoEquilibrium => "it stopped before its end time",
     };
     let mut lines = vec![("status", format!("{status}: {what}"))];
-    if let Some(time) = number(cells, "stop_time") {
+    if let Some(time) = cells.number(ColumnId::StopTime) {
         lines.push(("time", format!("{} s", brief_number(time))));
     }
-    for (about, name) in [("place", "stop_place"), ("reason", "reason"), ("nearest", "nearest")] {
-        if !cells.text(name).is_empty() {
-            let alone =
-                if name == "nearest" { " (each for a change of that key alone)" } else { "" };
-            lines.push((about, format!("{}{alone}", cells.text(name))));
+    for (about, column) in [
+        ("location", ColumnId::StopLocation),
+        ("reason", ColumnId::Reason),
+        ("nearest", ColumnId::Nearest),
+    ] {
+        if !cells.text(column).is_empty() {
+            let alone = if column == ColumnId::Nearest {
+                " (each for a change of that key alone)"
+            } else {
+                ""
+            };
+            lines.push((about, format!("{}{alone}", cells.text(column))));
         }
     }
     lines
 }
 
 /// What to do about a failure.
-fn advice(status: &str, short: &str, root: &str) -> String {
+fn advice(status: Status, short: &str, root: &str) -> String {
     let look = format!("billow show {short} {root} --history");
     match status {
-        row::INFEASIBLE => {
+        Status::Infeasible => {
             "take a nearest value, or leave the point out with a grid filter".to_owned()
         }
-        row::INVALID => "change the key the reason names".to_owned(),
-        row::PANICKED => format!("report the reason with {root}/study.json and the job id"),
-        "step_limit" => format!("{look}: where the steps went; then raise solver.step_limit"),
-        "unstable" | "drifted" | "energy_drift" => {
+        Status::Invalid => "change the key the reason names".to_owned(),
+        Status::Panicked => format!("report the reason with {root}/study.json and the job id"),
+        Status::Failed(FailureKind::StepLimit) => {
+            format!("{look}: where the steps went; then raise solver.step_limit")
+        }
+        Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {
             format!("{look}; then a finer step (billow schema: solver)")
         }
         _ => look,
@@ -285,14 +307,14 @@ fn advice(status: &str, short: &str, root: &str) -> String {
 
 /// What the audit says.
 fn trust(cells: &Cells) -> Vec<Line> {
-    let Some(residual) = number(cells, "ledger_residual") else { return Vec::new() };
+    let Some(residual) = cells.number(ColumnId::LedgerResidual) else { return Vec::new() };
     let sign = if residual <= MAX_LEDGER_RESIDUAL { "≤" } else { ">" };
     let residual = brief_number(residual);
     let mut ledger = format!("largest residual {residual} {sign} {MAX_LEDGER_RESIDUAL}");
-    if let Some(gas) = number(cells, "gas_residual") {
+    if let Some(gas) = cells.number(ColumnId::GasResidual) {
         let _ = write!(ledger, "; gas balance {}", brief_number(gas));
     }
-    let film = match (cells.get("passages"), cells.get("intersections")) {
+    let film = match (cells.get(ColumnId::Passages), cells.get(ColumnId::Intersections)) {
         (Value::Null, Value::Null) => {
             "passages and intersections are not counted by this model".to_owned()
         }
@@ -310,16 +332,16 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
         own.map(|(name, value)| (name.clone(), json_value(value))).collect::<Map<_, _>>()
     });
     let checks: Vec<serde_json::Value> = [
-        ("volume_ratio", "deployed_volume_threshold"),
-        ("height_ratio", "deployed_height_threshold"),
-        ("volume_ratio", "stalled_volume_threshold"),
+        (ColumnId::VolumeRatio, ColumnId::DeployedVolumeThreshold),
+        (ColumnId::HeightRatio, ColumnId::DeployedHeightThreshold),
+        (ColumnId::VolumeRatio, ColumnId::StalledVolumeThreshold),
     ]
     .into_iter()
     .filter_map(|(measure, threshold)| {
         let (value, least, margin) = against(cells, measure, threshold)?;
         Some(json!({
-            "measure": measure, "value": value, "threshold": threshold, "least": least,
-            "margin": margin,
+            "measure": measure.name(), "value": value, "threshold": threshold.name(),
+            "least": least, "margin": margin,
         }))
     })
     .collect();
@@ -330,21 +352,21 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
         "checks": checks,
         "why": lines.iter().map(|(about, text)| format!("{about}: {text}")).collect::<Vec<_>>(),
     });
-    for name in [
-        "status",
-        "verdict",
-        "close",
-        "close_margin",
-        "reason",
-        "nearest",
-        "stop_time",
-        "stop_place",
-        "ledger_residual",
-        "gas_residual",
-        "passages",
-        "intersections",
+    for column in [
+        ColumnId::Status,
+        ColumnId::Verdict,
+        ColumnId::NearThreshold,
+        ColumnId::NearThresholdMargin,
+        ColumnId::Reason,
+        ColumnId::Nearest,
+        ColumnId::StopTime,
+        ColumnId::StopLocation,
+        ColumnId::LedgerResidual,
+        ColumnId::GasResidual,
+        ColumnId::Passages,
+        ColumnId::Intersections,
     ] {
-        keys[name] = json_value(cells.get(name));
+        keys[column.name()] = json_value(cells.get(column));
     }
     keys
 }

@@ -11,7 +11,7 @@ use billow_solver::output::outcome::{Deployment, FailureKind, Stop as End};
 use billow_solver::scene::timeline::Timeline;
 use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolution};
 
-use crate::job::row;
+use crate::job::Status;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Files, disk_error, write_atomic};
 use crate::platform::stop::Stop;
@@ -30,17 +30,11 @@ pub struct Pauses {
     pub resume: Option<PathBuf>,
 }
 
-/// Status of a run that has not reached its end.
-pub const PAUSED: &str = "paused";
-
-/// Status of a scene without static equilibrium.
-pub const NO_EQUILIBRIUM: &str = "no_equilibrium";
-
 /// A solved scene.
 #[derive(Debug)]
 pub struct Solved {
-    /// [`row::DONE`], [`PAUSED`], [`NO_EQUILIBRIUM`], or the name of a [`FailureKind`].
-    pub status: &'static str,
+    /// How it ended.
+    pub status: Status,
     /// The state at the end.
     pub end: Ended,
     /// Wall time of this call, s. No result depends on it.
@@ -82,7 +76,7 @@ pub fn solve(
     Ok(Solved { status, end, wall_seconds: start.elapsed().as_secs_f64() })
 }
 
-fn equilibrium(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
+fn equilibrium(scene: &SceneFile, stop: &Stop) -> Result<(Status, Ended)> {
     let mut check = |_: &statics::Iteration| match stop.requested() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
@@ -91,14 +85,15 @@ fn equilibrium(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> 
         Ok(solution) => {
             // Closed film turned inside out has an equilibrium too, but not the wanted one.
             let inside_out = scene.film.shell.is_closed() && solution.volume <= 0.0;
-            let status = if inside_out { FailureKind::InvertedVolume.name() } else { row::DONE };
+            let status =
+                if inside_out { Status::Failed(FailureKind::InvertedVolume) } else { Status::Done };
             Ok((status, Ended::Equilibrium(Box::new(solution))))
         }
         Err(StaticError::NoState(failure)) => match (failure.kind, stop.requested()) {
             (StaticFailureKind::Stopped, Some(signal)) => {
                 Err(Error::Interrupted { signal, next: "nothing is stored".to_owned() })
             }
-            _ => Ok((NO_EQUILIBRIUM, Ended::NoEquilibrium(failure))),
+            _ => Ok((Status::NoEquilibrium, Ended::NoEquilibrium(failure))),
         },
         Err(error) => Err(refused("", "solver.static", &error.to_string(), "").into()),
     }
@@ -131,7 +126,7 @@ fn motion(
     files: &dyn Files,
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
-) -> Result<(&'static str, Ended)> {
+) -> Result<(Status, Ended)> {
     let timeline = Timeline::of_film(&scene.film);
     let (mut model, mut run) = begin(scene, pauses, files)?;
     let first = model.steps();
@@ -174,10 +169,10 @@ fn motion(
     let mut deployment = run.finish(&model, &timeline, end.unwrap_or(End::Cancelled));
     scene.recorded.name(&mut deployment.tracks);
     let status = match &deployment.stop {
-        _ if paused => PAUSED,
-        End::Done => row::DONE,
-        End::Cancelled => "cancelled",
-        End::Failed(failure) => failure.kind.name(),
+        _ if paused => Status::Paused,
+        End::Done => Status::Done,
+        End::Cancelled => Status::Cancelled,
+        End::Failed(failure) => Status::Failed(failure.kind),
     };
     Ok((status, Ended::Motion(Box::new((model, deployment)))))
 }

@@ -37,8 +37,9 @@ use nalgebra::Vector3;
 use serde_json::{Map, Value as Json, json};
 
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::scene::file::SceneFile;
-use crate::scene::solve::{Ended, NO_EQUILIBRIUM, Solved};
+use crate::scene::solve::{Ended, Solved};
 
 /// The summary of a solved scene.
 pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
@@ -47,7 +48,7 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
         Ended::Equilibrium(solution) => in_equilibrium(scene, solution),
         Ended::NoEquilibrium(failure) => {
             let stop = json!({
-                "kind": NO_EQUILIBRIUM,
+                "kind": Status::NoEquilibrium.name(),
                 "time": null,
                 "place": format!("node {}: {failure}", node_name(scene, failure.node)),
             });
@@ -58,7 +59,7 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
     if !scene.notes.is_empty() {
         summary["notes"] = scene.notes.clone().into();
     }
-    summary["status"] = solved.status.into();
+    summary["status"] = solved.status.name().into();
     summary["wall_seconds"] = solved.wall_seconds.into();
     summary
 }
