@@ -17,6 +17,7 @@ mod mutations;
 mod physics_version;
 mod planning;
 mod reading;
+mod reference_commands;
 mod resume;
 mod running;
 mod scene_files;

@@ -1,11 +1,11 @@
-//! What a reader should know of a study's answers, said on stderr beside them.
+//! Notes on the results of a study, on stderr: limits of the models, and keys that a model ignores.
 
 use billow_solver::scene::ModelKind;
 
-use crate::study::Study;
+use crate::study::{Study, StudyPoint};
 
-/// Keys that decide nothing on the piston: it has no mesh, no film that can be compressed or touch
-/// itself, no imperfection, and no stable step.
+/// Keys that the piston ignores: it has no mesh, no compression or contact of the film, no imperfection,
+/// and no stable step.
 const PISTON_IGNORES: [&str; 8] = [
     "design.subdivisions",
     "film.compression",
@@ -16,10 +16,10 @@ const PISTON_IGNORES: [&str; 8] = [
     "outputs.frames",
     "seed",
 ];
-/// Keys that decide nothing on the film: its step is a share of the stable one.
+/// Keys that the film model ignores: its step is a fraction of the stable step.
 const FILM_IGNORES: [&str; 2] = ["solver.stepping.adaptive", "solver.stepping.fixed"];
 
-/// Says what the models' answers are worth, and which axes they ignore.
+/// Prints the notes.
 pub fn print(study: &Study) {
     for line in lines(study) {
         eprintln!("{line}");
@@ -30,34 +30,34 @@ fn lines(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.scene.solver.model == model);
     let mut lines: Vec<String> =
         study.late_windows().iter().map(|late| format!("note: {late}")).collect();
-    let empty = |point: &&crate::study::StudyPoint| {
+    let empty = |point: &&StudyPoint| {
         let gas = &point.scene.gas;
         gas.windows.is_empty() && gas.initial_mass <= 0.0
     };
     let without = study.points().iter().filter(empty).count();
     if without > 0 {
         lines.push(format!(
-            "note: {without} of {} points have no gas at all; nothing deploys them",
+            "note: {without} of {} points have no gas and cannot deploy",
             study.points().len()
         ));
     }
     if has(ModelKind::Piston) {
         lines.push(
-            "model piston: how fast, not whether (it cannot lock, its speeds are upper bounds); \
-             README, Models"
+            "model piston: it gives times and upper bounds of speeds, not whether a capsule deploys \
+             (the piston cannot lock); README, Models"
                 .to_owned(),
         );
         lines.extend(ignored(study, "piston", &PISTON_IGNORES));
     }
     if has(ModelKind::Film) {
         lines.extend(ignored(study, "film", &FILM_IGNORES));
-        let stiff = |point: &crate::study::StudyPoint| {
+        let stiff = |point: &StudyPoint| {
             point.scene.solver.model == ModelKind::Film && point.scene.film.compression > 0.0
         };
         if study.points().iter().any(stiff) {
             lines.push(
-                "note: film.compression above 0 is a stand-in for bending whose effect depends on \
-                 the mesh; compare verdicts at design.subdivisions 5, 8 and 12, over several seeds"
+                "note: film.compression above 0 replaces bending stiffness and its effect depends on \
+                 the mesh; compare verdicts at design.subdivisions 5, 8 and 12 and several seeds"
                     .to_owned(),
             );
         }
@@ -66,10 +66,10 @@ fn lines(study: &Study) -> Vec<String> {
 }
 
 fn ignored(study: &Study, model: &str, keys: &[&str]) -> Option<String> {
-    let ignored: Vec<&str> = study.parameter_paths().filter(|path| keys.contains(path)).collect();
+    let ignored: Vec<&str> = study.parameter_paths().filter(|key| keys.contains(key)).collect();
     (!ignored.is_empty()).then(|| {
         format!(
-            "note: the model {model} ignores {}; jobs that differ in nothing else give equal results",
+            "note: the model {model} ignores {}; jobs that differ only in these keys give equal results",
             ignored.join(", ")
         )
     })
