@@ -180,7 +180,7 @@ fn what_cannot_be_measured_is_bad_input() {
         (&["--subdivisions", "0"], "--subdivisions"),
         (&["--subdivisions", "five"], "five"),
         (&["--quick", "--full"], "cannot be used with"),
-        (&["--quick", "--subdivisions", "32", "--only", "kernels"], "n 32"),
+        (&["--quick", "--subdivisions", "32", "--only", "kernels"], "n = 32"),
     ] {
         let output = billow(flags);
         assert_eq!(output.status.code(), Some(2), "{flags:?}: {}", said(&output));
@@ -191,7 +191,7 @@ fn what_cannot_be_measured_is_bad_input() {
         command(&["--quick"]).env("BILLOW_SIMD", "neon").output().expect("the binary runs");
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        said(&output).contains("BILLOW_SIMD = neon: is no instruction set"),
+        said(&output).contains("BILLOW_SIMD = neon: unknown instruction set"),
         "{}",
         said(&output)
     );

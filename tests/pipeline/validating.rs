@@ -72,7 +72,7 @@ fn cases_are_asked_for_by_name() {
     let table = billow(&["--case", "patch"]);
     let text = String::from_utf8_lossy(&table.stdout).into_owned();
     assert!(text.starts_with("case ") && text.contains("billow") && text.contains("yes"), "{text}");
-    assert!(said(&table).contains("1/1 patch: in band"));
+    assert!(said(&table).contains("1/1 patch: in tolerance"));
     let csv = billow(&["--case", "patch", "--format", "csv", "-q"]);
     assert!(String::from_utf8_lossy(&csv.stdout).starts_with(&KEYS.join(",")));
 }
@@ -83,7 +83,7 @@ fn an_unknown_case_is_bad_input() {
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
     let error = said(&output);
-    assert!(error.contains("--case = shear_pannel: there is no such case"), "{error}");
+    assert!(error.contains("--case = shear_pannel: unknown case"), "{error}");
     assert!(error.contains("did you mean shear_panel?"), "{error}");
     assert!(CASES.iter().all(|case| error.contains(case.name)), "{error}");
     assert_eq!(billow(&["--threads", "0"]).status.code(), Some(2));
@@ -140,11 +140,11 @@ fn a_signal_leaves_what_is_judged() {
     let mut stderr = BufReader::new(child.stderr.take().expect("piped"));
     let mut told = String::new();
     stderr.read_line(&mut told).expect("a line");
-    assert!(told.starts_with("billow: 1/2 patch: in band"), "{told}");
+    assert!(told.starts_with("billow: 1/2 patch: in tolerance"), "{told}");
     signal(&child, "-INT");
     stderr.read_to_string(&mut told).expect("its last words");
     let output = child.wait_with_output().expect("a child");
     assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("stopped by signal 2; 1 of 2 cases were judged"), "{told}");
+    assert!(told.contains("stopped by signal 2; 1 of 2 cases finished"), "{told}");
     assert!(rows(&output).iter().all(|row| row["case"] == "patch"));
 }

@@ -48,7 +48,7 @@ fn study(edit: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
         let mut cells = Cells::new(crate::job::row::DONE);
         cells.set("verdict", "deployed");
         cells.set("peak_vz", 20.0 + index as f64);
-        cells.set("content_hash", "made up");
+        cells.set("content_hash", "invented");
         edit(index, &mut cells);
         let record =
             crate::store::journal::Record { job: point.job.id.clone(), file_hash: None, cells };
@@ -74,7 +74,7 @@ fn mixed() -> Table {
             3 => {
                 *cells = Cells::new("step_limit");
                 cells.set("peak_vz", 300.0);
-                cells.set("content_hash", "made up");
+                cells.set("content_hash", "invented");
             }
             4 => *cells = Cells::new("pending"),
             5 => cells.set("peak_vz", Value::Null),

@@ -49,7 +49,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                 writeln!(out, "{}", line(finding)).map_err(output_error)?;
             }
             let running = if health.running { "; a run is active" } else { "" };
-            let state = if faults == 0 { "sound".to_owned() } else { format!("{faults} broken") };
+            let state = if faults == 0 { "no faults".to_owned() } else { count(faults, "fault") };
             writeln!(
                 out,
                 "{}: {state}: {} recorded, {} checked, {}{running}",

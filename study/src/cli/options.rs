@@ -72,7 +72,7 @@ pub struct OutputOptions {
     /// Same as --format json.
     #[arg(long, conflicts_with = "format", help_heading = HEADING)]
     pub json: bool,
-    /// Format of the output.
+    /// Format of the output [default: table; for `solve` json].
     #[arg(long, value_enum, help_heading = HEADING)]
     pub format: Option<Format>,
 }

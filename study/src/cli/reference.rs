@@ -9,8 +9,8 @@ use super::options::HEADING;
 use crate::platform::exit_code::EXIT_CODES;
 
 /// First lines of a generated page.
-const GENERATED: &str =
-    "Generated from the program; to update, run the test with `BILLOW_UPDATE_REFERENCE=1`.";
+const GENERATED: &str = "Generated from the program. To update: `BILLOW_UPDATE_REFERENCE=1 cargo test --release -p \
+     billow-study --test pipeline reference_commands`.";
 
 /// docs/reference/commands.md: every command with its usage, arguments and options.
 pub fn commands() -> String {
@@ -60,7 +60,7 @@ fn section(page: &mut String, command: &Command) {
         page,
         "\n## billow {}\n\n{}\n\n```text\n{usage}\n```\n",
         command.get_name(),
-        command.get_about().map(ToString::to_string).unwrap_or_default()
+        about(command)
     );
     let is_global = |arg: &Arg| arg.get_help_heading() == Some(HEADING);
     let builtin = |arg: &Arg| matches!(arg.get_id().as_str(), "help" | "version");
@@ -110,7 +110,7 @@ fn signature(arg: &Arg) -> String {
 /// Help text, whether the argument is required, default and possible values.
 fn meaning(arg: &Arg) -> String {
     let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
-    let mut text = help;
+    let mut text = cell(&help);
     if arg.is_required_set() {
         text.push_str(" Required.");
     }
@@ -125,17 +125,18 @@ fn meaning(arg: &Arg) -> String {
         .iter()
         .filter(|_| takes_value)
         .map(|value| match value.get_help() {
-            Some(help) => format!("`{}` ({help})", value.get_name()),
+            Some(help) => format!("`{}`: {help}", value.get_name()),
             None => format!("`{}`", value.get_name()),
         })
         .collect();
     if !possible.is_empty() {
-        let _ = write!(text, " Values: {}.", possible.join(", "));
+        let separator = if possible.iter().any(|value| value.contains(':')) { "; " } else { ", " };
+        let _ = write!(text, " Values: {}.", possible.join(separator));
     }
-    cell(&text)
+    text
 }
 
-/// A text as a cell of a Markdown table, as a sentence.
+/// A text as a cell of a Markdown table, with a full stop.
 fn cell(text: &str) -> String {
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
     // clap removes the last full stop of a doc comment.

@@ -62,7 +62,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     match args.output.format() {
         Format::Table => status.print(out),
         Format::Json => writeln!(out, "{}", status.json()).map_err(output_error),
-        format => print_rows(&["quantity", "value"], &summary::rows(&status.json()), format, out),
+        Format::Csv => {
+            let rows = summary::rows(&status.json());
+            print_rows(&["quantity", "value"], &rows, Format::Csv, out)
+        }
     }
 }
 

@@ -105,18 +105,15 @@ fn explanation(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Lin
 /// Lines and next step of a job that reached its end time.
 fn done(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> (Vec<Line>, String) {
     let mut lines = verdict::explanation(cells);
-    let deployed = verdict::is_deployed(cells);
-    match motion::at_the_end(stored, id).filter(|_| !deployed) {
-        Some(moving) => {
-            lines.push(("motion", moving));
-            let next = "a longer solver.end_time: the film was still moving at the end of the run";
-            (lines, next.to_owned())
-        }
-        None => {
-            let root = stored.results.root().display();
-            (lines, format!("billow show {} {root} --history", id.short()))
-        }
+    if !verdict::is_deployed(cells)
+        && let Some(moving) = motion::at_the_end(stored, id)
+    {
+        lines.push(("motion", moving));
+        let next = "a longer solver.end_time: the film was still moving at the end of the run";
+        return (lines, next.to_owned());
     }
+    let root = stored.results.root().display();
+    (lines, format!("billow show {} {root} --history", id.short()))
 }
 
 /// Lines and next step of a job that has not run.

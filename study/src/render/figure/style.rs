@@ -58,19 +58,25 @@ pub enum Fill {
 }
 
 /// Draws the marker of a series, about `size` mm wide.
-pub fn marker(page: &mut Page, at: Position, series: usize, fill: Fill, size: f64) {
+pub fn marker(page: &mut Page, centre: Position, series: usize, fill: Fill, size: f64) {
     let colour = colour(series);
     let inside = if fill == Fill::Filled { colour } else { "#ffffff" };
     // When the colours repeat, each one gets the shape of the next colour.
     let shape = (series + series / COLOURS.len()) % COLOURS.len();
-    draw_shape(page, at, shape, colour, (inside, fill), size);
+    draw_shape(page, centre, shape, colour, (inside, fill), size);
 }
 
 /// Draws the marker of an outcome, for no series: a circle in one colour.
-pub fn plain_marker(page: &mut Page, at: Position, colour: &'static str, fill: Fill, size: f64) {
+pub fn plain_marker(
+    page: &mut Page,
+    centre: Position,
+    colour: &'static str,
+    fill: Fill,
+    size: f64,
+) {
     draw_shape(
         page,
-        at,
+        centre,
         0,
         colour,
         (if fill == Fill::Filled { colour } else { "#ffffff" }, fill),
@@ -79,10 +85,10 @@ pub fn plain_marker(page: &mut Page, at: Position, colour: &'static str, fill: F
 }
 
 /// The same marker, transparent inside, for a coloured cell.
-pub fn map_marker(page: &mut Page, at: Position, colour: &'static str, fill: Fill, size: f64) {
+pub fn map_marker(page: &mut Page, centre: Position, colour: &'static str, fill: Fill, size: f64) {
     draw_shape(
         page,
-        at,
+        centre,
         0,
         colour,
         (if fill == Fill::Filled { colour } else { "none" }, fill),
@@ -93,7 +99,7 @@ pub fn map_marker(page: &mut Page, at: Position, colour: &'static str, fill: Fil
 /// Draws a marker shape (0 to 6) with its outline, inner colour, and the cross of [`Fill::Crossed`].
 fn draw_shape(
     page: &mut Page,
-    at: Position,
+    centre: Position,
     shape: usize,
     colour: &'static str,
     (inside, fill): (&str, Fill),
@@ -102,10 +108,10 @@ fn draw_shape(
     let stroke = Stroke::solid(colour, 0.35);
     let half = 0.5 * size;
     let corners = |corners: &[Position]| -> Vec<Position> {
-        corners.iter().map(|[x, y]| [at[0] + half * x, at[1] + half * y]).collect()
+        corners.iter().map(|[x, y]| [centre[0] + half * x, centre[1] + half * y]).collect()
     };
     match shape {
-        0 => page.circle(at, half, inside, &stroke),
+        0 => page.circle(centre, half, inside, &stroke),
         1 => page.polygon(
             &corners(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
             inside,
@@ -124,17 +130,17 @@ fn draw_shape(
     if fill == Fill::Crossed {
         let thin = Stroke::solid(colour, 0.25);
         let arm = 0.55 * half;
-        page.line([at[0] - arm, at[1] - arm], [at[0] + arm, at[1] + arm], &thin);
-        page.line([at[0] - arm, at[1] + arm], [at[0] + arm, at[1] - arm], &thin);
+        page.line([centre[0] - arm, centre[1] - arm], [centre[0] + arm, centre[1] + arm], &thin);
+        page.line([centre[0] - arm, centre[1] + arm], [centre[0] + arm, centre[1] - arm], &thin);
     }
 }
 
 /// Draws the cross at the end of a failed run.
-pub fn cross(page: &mut Page, at: Position, colour: &'static str, size: f64) {
+pub fn cross(page: &mut Page, centre: Position, colour: &'static str, size: f64) {
     let stroke = Stroke::solid(colour, 0.5);
     let arm = 0.5 * size;
-    page.line([at[0] - arm, at[1] - arm], [at[0] + arm, at[1] + arm], &stroke);
-    page.line([at[0] - arm, at[1] + arm], [at[0] + arm, at[1] - arm], &stroke);
+    page.line([centre[0] - arm, centre[1] - arm], [centre[0] + arm, centre[1] + arm], &stroke);
+    page.line([centre[0] - arm, centre[1] + arm], [centre[0] + arm, centre[1] - arm], &stroke);
 }
 
 /// Viridis (S. van der Walt, N. Smith; CC0) at 17 equal intervals, sRGB.

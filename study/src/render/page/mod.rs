@@ -291,11 +291,11 @@ mod tests {
             let svg = page.finish(50.0, 50.0, "");
             let parsed = Document::parse(&svg).unwrap();
             for line in parsed.descendants().filter(|node| node.has_tag_name("line")) {
-                let at = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
-                for x in [at("x1"), at("x2")] {
+                let attribute = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
+                for x in [attribute("x1"), attribute("x2")] {
                     prop_assert!((1.999..=width + 2.001).contains(&x));
                 }
-                for y in [at("y1"), at("y2")] {
+                for y in [attribute("y1"), attribute("y2")] {
                     prop_assert!((2.999..=height + 3.001).contains(&y));
                 }
             }

@@ -12,14 +12,20 @@ pub(super) fn along(line: &Line, (x, y): (&Scale, &Scale), start: f64, step: f64
         for pair in piece.windows(2) {
             let ends = [x.position(pair[0][0]), x.position(pair[1][0])];
             while start + f64::from(next) * step <= ends[1] {
-                let at = start + f64::from(next) * step;
+                let marker_x = start + f64::from(next) * step;
                 next += 1;
-                if at < ends[0] {
+                if marker_x < ends[0] {
                     continue;
                 }
-                let fraction =
-                    if ends[1] > ends[0] { (at - ends[0]) / (ends[1] - ends[0]) } else { 0.0 };
-                found.push([at, y.position(pair[0][1] + fraction * (pair[1][1] - pair[0][1]))]);
+                let fraction = if ends[1] > ends[0] {
+                    (marker_x - ends[0]) / (ends[1] - ends[0])
+                } else {
+                    0.0
+                };
+                found.push([
+                    marker_x,
+                    y.position(pair[0][1] + fraction * (pair[1][1] - pair[0][1])),
+                ]);
             }
         }
     }

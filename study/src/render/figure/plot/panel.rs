@@ -103,7 +103,7 @@ impl Panel {
                 let shift = (number as f64 + 0.5) / sparse as f64;
                 let start = frame.left + shift * step;
                 let positions = along(line, (&frame.x, &frame.y), start, step);
-                for position in positions.into_iter().filter(|at| frame.contains(*at)) {
+                for position in positions.into_iter().filter(|position| frame.contains(*position)) {
                     style::marker(page, position, line.series, Fill::Filled, 1.7);
                 }
             }

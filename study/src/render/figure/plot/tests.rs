@@ -94,19 +94,19 @@ proptest! {
         let marks: Vec<Mark> =
             positions.iter().flat_map(|x| (0..marks).map(move |series| mark(x, series))).collect();
         let (positions, rows) = lane::positions(&marks, &x, width);
-        for (at, place) in positions.iter().enumerate() {
-            prop_assert!(place[0] >= 11.49 && place[0] <= 8.51 + width && place[1] < rows as f64);
+        for (index, position) in positions.iter().enumerate() {
+            prop_assert!(position[0] >= 11.49 && position[0] <= 8.51 + width && position[1] < rows as f64);
             let clear = |other: &[f64; 2]| {
-                (other[0] - place[0]).abs() >= lane::LANE_LETTER - 1e-9 || (other[1] - place[1]).abs() > 0.5
+                (other[0] - position[0]).abs() >= lane::LANE_LETTER - 1e-9 || (other[1] - position[1]).abs() > 0.5
             };
-            prop_assert!(positions[..at].iter().all(clear), "{:?}", positions);
+            prop_assert!(positions[..index].iter().all(clear), "{:?}", positions);
         }
     }
 
     #[test]
     fn a_thinned_line_keeps_its_ends_and_extremes(ys in prop::collection::vec(-9.0..9.0_f64, 2..900)) {
         let positions: Vec<Position> =
-            ys.iter().enumerate().map(|(at, y)| [0.003 * at as f64, *y]).collect();
+            ys.iter().enumerate().map(|(index, y)| [0.003 * index as f64, *y]).collect();
         let kept = thinned(&positions);
         prop_assert!(kept.len() <= 4 * (1 + positions.len() * 3 / 100 + 1));
         prop_assert!(same(kept[0], positions[0]));
@@ -142,7 +142,8 @@ fn long_names_stand_alternately_on_two_lines() {
     x.names = true;
     let names =
         ["preinflate with a burst", "residual gas alone", "rapid", "delayed by five seconds", "d"];
-    x.ticks = names.iter().enumerate().map(|(at, name)| (at as f64, (*name).to_owned())).collect();
+    x.ticks =
+        names.iter().enumerate().map(|(index, name)| (index as f64, (*name).to_owned())).collect();
     let texts = check::figure(&plots(x, &[1.0, 2.0], 1, 1, 2).svg());
     assert!(texts.iter().any(|text| text == "preinflate with a burst"), "{texts:?}");
 }
@@ -154,12 +155,12 @@ fn many_letters_at_one_position_stand_in_rows() {
     let marks: Vec<Mark> = (0..20).map(mark).chain([Mark { x: 2.0, ..mark(0) }]).collect();
     let (positions, rows) = lane::positions(&marks, &x, 30.0);
     assert!(rows > 1);
-    for (at, place) in positions.iter().enumerate() {
-        assert!((11.0..=39.0).contains(&place[0]), "{place:?}");
+    for (index, position) in positions.iter().enumerate() {
+        assert!((11.0..=39.0).contains(&position[0]), "{position:?}");
         let clear = |other: &[f64; 2]| {
-            (other[0] - place[0]).abs() >= lane::LANE_LETTER - 1e-9
-                || (other[1] - place[1]).abs() > 0.5
+            (other[0] - position[0]).abs() >= lane::LANE_LETTER - 1e-9
+                || (other[1] - position[1]).abs() > 0.5
         };
-        assert!(positions[..at].iter().all(clear), "{at}");
+        assert!(positions[..index].iter().all(clear), "{index}");
     }
 }
