@@ -64,7 +64,7 @@ fn a_folded_capsule_meets_itself_and_says_so() {
         "contact_area_fraction",
         "smallest_gap",
         "contact_pairs",
-        "contact_searches",
+        "broad_phase_rebuilds",
         "vz_centre",
     ];
     for name in tracks {

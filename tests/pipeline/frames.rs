@@ -150,7 +150,7 @@ fn what_cannot_be_drawn_is_one_clear_error() {
     refused(&["ffffffffffffffff", results], &["no job has this id", &job[..8]]);
     refused(&[&job, "nowhere"], &["nowhere", "next: "]);
     refused(&["nothing.h5"], &["nothing.h5: no such file"]);
-    refused(&["grid.json"], &["grid.json", "no HDF5 file"]);
+    refused(&["grid.json"], &["grid.json", "not an HDF5 file"]);
     refused(&[&job, results, "--count", "0"], &["--count", "1 to 64"]);
     refused(&[&job, results, "--times", "5 ms"], &["--times", "5 ms", "0 to 0.004 s"]);
     refused(&[&job, results, "--times", "1 kg"], &["--times", "time"]);

@@ -35,7 +35,7 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
             fs::write(file_of(desk, id), &bytes[..bytes.len() / 2]).unwrap();
         },
         true,
-        "not the file that was written (no HDF5 file",
+        "not the file that was written (not an HDF5 file",
     ),
     (
         "another history",
@@ -44,7 +44,7 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
             fs::copy(file_of(desk, &other), file_of(desk, id)).unwrap();
         },
         true,
-        "(a whole history, but another one)",
+        "(a valid history, but another one)",
     ),
     (
         "missing table",
@@ -56,7 +56,7 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
         "foreign table",
         |desk, _| fs::write(desk.results().join("summary.parquet"), "x").unwrap(),
         true,
-        "no Parquet file",
+        "not a Parquet file",
     ),
     (
         "table behind",
@@ -72,7 +72,7 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
             .unwrap();
         },
         true,
-        "out of step with the journal in 24 rows",
+        "differs from the journal in 24 rows",
     ),
     (
         "torn last line",
@@ -92,7 +92,7 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
                 .unwrap();
         },
         false,
-        "a file left half written",
+        "an incomplete temporary file",
     ),
     (
         "foreign file",
@@ -108,7 +108,7 @@ const HURTS: [(&str, Hurt, bool, &str); 12] = [
             fs::copy(file_of(desk, id), orphan).unwrap();
         },
         false,
-        "a history no record names",
+        "a history without a record",
     ),
     (
         "study.json gone",
@@ -167,7 +167,7 @@ fn what_a_newer_program_wrote_is_named_and_refused() {
     let journal = desk.results().join("journal/000001.jsonl");
     let study = desk.results().join("study.json");
     for (path, from, to, expected) in [
-        (&journal, "\"version\":2", "\"version\":9", "journal of version 9"),
+        (&journal, "\"version\":3", "\"version\":9", "journal of version 9"),
         (&study, "\"version\": 1", "\"version\": 9", "version 9, this program reads up to 1"),
     ] {
         let sound = fs::read_to_string(path).unwrap();

@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use billow_study::input::value::Value;
-use billow_study::job::JobId;
+use billow_study::job::{JobId, Status};
 use billow_study::platform::error::InputError;
 use billow_study::study::plan::{FinishedRow, Generation, next_jobs};
 use billow_study::study::{Limits, Study};
@@ -317,11 +317,7 @@ fn generations_are_a_pure_function_of_what_is_finished() {
     let finished: Vec<FinishedRow> = all
         .points
         .iter()
-        .map(|point| FinishedRow {
-            id: point.job.id.clone(),
-            status: "done".to_owned(),
-            verdict: None,
-        })
+        .map(|point| FinishedRow { id: point.job.id.clone(), status: Status::Done, verdict: None })
         .collect();
     assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));
     let mut other_order = finished[1..].to_vec();

@@ -32,7 +32,7 @@ fn status_counts_what_the_table_holds() {
     let journal = desk.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
     let id = &ids(&desk, "done")[0];
-    let line = format!("{{\"kind\":\"withdrawn\",\"job\":\"{id}\"}}\n");
+    let line = format!("{{\"kind\":\"invalidated\",\"job\":\"{id}\"}}\n");
     fs::write(&journal, format!("{text}{line}")).unwrap();
     let status = json_of(&desk, &["status", "--threads", "1"]);
     assert_eq!(
@@ -81,7 +81,8 @@ fn why_gives_the_numbers_behind_a_verdict() {
     for row in desk.rows("results/grid").iter().filter(|row| row["status"] == "done") {
         let id = row["job"].as_str().unwrap();
         let why = json_of(&desk, &["why", &id[..7]]);
-        for column in ["job", "status", "verdict", "close", "ledger_residual", "passages"] {
+        for column in ["job", "status", "verdict", "near_threshold", "ledger_residual", "passages"]
+        {
             assert_eq!(why[column], row[column], "{column}");
         }
         let check = &why["checks"][0];
@@ -158,11 +159,7 @@ fn ids_are_any_unique_prefix_and_others_are_refused_with_the_nearest() {
         .unwrap();
     assert!(count > 1, "24 ids share 16 first digits");
     let output = desk.run(&["why", &first]);
-    assert!(
-        stderr(&output).contains(&format!("{count} jobs have ids that begin")),
-        "{}",
-        stderr(&output)
-    );
+    assert!(stderr(&output).contains(&format!("{count} job ids begin so")), "{}", stderr(&output));
 }
 
 #[test]

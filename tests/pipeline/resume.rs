@@ -95,7 +95,10 @@ fn ctrl_c_and_terminate_keep_what_is_finished() {
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
         let said = stderr(&output);
-        assert!(said.contains("what is finished is kept, the same command goes on"), "{said}");
+        assert!(
+            said.contains("finished jobs are kept, the same command runs the remaining ones"),
+            "{said}"
+        );
         let rows = desk.rows("results/grid");
         let count = |status: &str| rows.iter().filter(|row| row["status"] == status).count();
         assert_eq!(rows.len(), 120);

@@ -303,7 +303,7 @@ fn histories_hold_what_was_followed() {
     let folder = desk(&capsule(), &[]);
     done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
     let stored = history_file::read(&folder.path().join("a.h5")).unwrap();
-    assert_eq!((stored.status.as_str(), stored.history.len()), ("done", 41));
+    assert_eq!((stored.status.name(), stored.history.len()), ("done", 41));
     assert_eq!(stored.history.column("z_rim").len(), 41);
 
     let gas = json!({"initial_pressure": "0.1 Pa"});
@@ -366,7 +366,10 @@ fn a_run_that_stops_short_says_why_and_keeps_its_history() {
     assert_eq!(summary["stop"]["kind"], "step_limit");
     assert!(number(&summary, "/stop/time") < 0.04);
     assert!(stderr(&output).contains("step_limit"));
-    assert_eq!(history_file::read(&folder.path().join("a.h5")).unwrap().status, "step_limit");
+    assert_eq!(
+        history_file::read(&folder.path().join("a.h5")).unwrap().status.name(),
+        "step_limit"
+    );
     let table = solve(&scenes(), &["sphere.json", "-q", "--format", "table"], "");
     let text = String::from_utf8(table.stdout).unwrap();
     assert!(text.contains("nodes.top.2") && text.contains("status"), "{text}");

@@ -43,7 +43,7 @@ fn a_lost_table_is_written_again_and_a_foreign_one_refused() {
     fs::write(&path, b"somebody else's").unwrap();
     let output = desk.run(&["table"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("no Parquet file"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("not a Parquet file"), "{}", stderr(&output));
     for damage in [false, true] {
         if damage {
             fs::write(&path, &table[..table.len() / 2]).unwrap();
@@ -61,7 +61,7 @@ fn newer_and_foreign_journals_are_refused_by_file_and_line() {
     let path = desk.results().join("journal/000001.jsonl");
     let sound = fs::read_to_string(&path).unwrap();
     for (text, expected) in [
-        (sound.replacen("\"version\":2", "\"version\":7", 1), "journal of version 7"),
+        (sound.replacen("\"version\":3", "\"version\":7", 1), "journal of version 7"),
         (format!("{sound}not ours\n"), "line 18: not a journal record"),
         (String::from("{}\n"), "line 1: not the header"),
     ] {

@@ -85,7 +85,7 @@ impl FailureKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Unstable => "unstable",
-            Self::EnergyDrift => "drifted",
+            Self::EnergyDrift => "energy_drift",
             Self::InvertedVolume => "inverted_volume",
             Self::StepLimit => "step_limit",
             Self::Interpenetrated => "interpenetrated",

@@ -17,6 +17,8 @@ pub mod plate;
 pub mod timeline;
 mod validate;
 
+pub use validate::MAX_SAMPLES;
+
 /// Everything one run needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

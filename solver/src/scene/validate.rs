@@ -3,8 +3,9 @@
 use super::{HeatTransfer, Scene, Stepping, Support};
 use crate::scene::error::SceneError;
 
-/// Samples a history may hold; more do not fit a table, a file or a machine.
-const MOST_SAMPLES: f64 = 1e7;
+/// Samples in the history of one run, at most. Chosen: a table of this length can still be read; more
+/// samples come from a wrong unit.
+pub const MAX_SAMPLES: f64 = 1e6;
 /// Frames a run may keep in memory.
 const MOST_FRAMES: u32 = 10_000;
 
@@ -96,8 +97,8 @@ impl Scene {
         let key = "outputs.sample_interval";
         let interval = self.outputs.sample_interval;
         positive(key, interval, "s")?;
-        let few = |interval: f64| self.solver.end_time / interval <= MOST_SAMPLES;
-        number(key, interval, few, "at least a ten-millionth of solver.end_time")?;
+        let few = |interval: f64| self.solver.end_time / interval <= MAX_SAMPLES;
+        number(key, interval, few, "at least a millionth of solver.end_time")?;
         if self.outputs.frames > MOST_FRAMES {
             let problem = format!("{} is not allowed; at most {MOST_FRAMES}", self.outputs.frames);
             return Err(invalid("outputs.frames", problem));

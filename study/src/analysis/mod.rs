@@ -1,4 +1,4 @@
-//! What the rows of a study say: comparisons, statistics, the answer.
+//! What the rows of a study show: comparisons, statistics, the answer.
 
 pub mod answer;
 pub mod compare;

@@ -1,24 +1,24 @@
-//! A few numbers that stand for many: count, least, median, largest, sum.
+//! Statistics of a list of numbers: count, smallest, median, largest.
 //!
 //! ```text
 //! median of x₁ ≤ … ≤ xₙ:   x_(n+1)/2 for odd n,   ½ (x_n/2 + x_n/2+1) for even n
 //! ```
 
-/// What a list of numbers comes to.
+/// Statistics of a list of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread {
-    /// How many.
+    /// Number of values.
     pub count: usize,
-    /// The least.
+    /// The smallest value.
     pub least: f64,
-    /// The middle one, or the mean of the middle two.
+    /// The middle value, or the mean of the two middle values.
     pub median: f64,
-    /// The largest.
+    /// The largest value.
     pub largest: f64,
 }
 
 impl Spread {
-    /// Of numbers in any order; those that are no number are left out. `None` where none is left.
+    /// Statistics of numbers in any order. NaN is ignored. `None` without numbers.
     pub fn of(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = numbers.into_iter().filter(|number| !number.is_nan()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -27,7 +27,7 @@ impl Spread {
         let median = if sorted.len() % 2 == 1 {
             sorted[middle]
         } else {
-            // Halved first: the sum of two large numbers would overflow.
+            // Halved first: the sum of two large numbers could overflow.
             0.5 * sorted[middle - 1] + 0.5 * sorted[middle]
         };
         Some(Self { count: sorted.len(), least, median, largest })
@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     #[expect(clippy::float_cmp, reason = "these values are exact")]
-    fn of_few_numbers() {
+    fn the_median_ignores_nan_and_does_not_overflow() {
         assert_eq!(Spread::of([]), None);
         assert_eq!(Spread::of([f64::NAN]), None);
         assert_eq!(Spread::of([3.0, 1.0, 2.0]).unwrap().median, 2.0);
@@ -51,7 +51,7 @@ mod tests {
     }
 
     proptest! {
-        /// Against the plainest reading of the words, and blind to the order.
+        /// Compared with counting; the order of the numbers has no effect.
         #[test]
         fn agrees_with_counting(numbers in prop::collection::vec(-1e6..1e6_f64, 1..40)) {
             let spread = Spread::of(numbers.iter().copied()).unwrap();
@@ -62,9 +62,9 @@ mod tests {
             let below = numbers.iter().filter(|number| **number < spread.median).count();
             let above = numbers.iter().filter(|number| **number > spread.median).count();
             prop_assert!(2 * below <= numbers.len() && 2 * above <= numbers.len());
-            let mut turned = numbers.clone();
-            turned.reverse();
-            prop_assert_eq!(Spread::of(turned), Some(spread));
+            let mut reversed = numbers.clone();
+            reversed.reverse();
+            prop_assert_eq!(Spread::of(reversed), Some(spread));
         }
     }
 }

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use super::{Effort, INTERRUPTED, Line};
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::executor::Solver;
-use crate::job::row::DONE;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::scratch::Scratch;
 use crate::platform::files::{Disk, disk_error};
@@ -85,7 +85,7 @@ pub fn measure(threads: u32, effort: Effort, stop: &Stop) -> Result<JobsRow> {
             results: Results::new(&Disk, &folder.path().join("results")),
             threads: NonZero::new(threads as usize),
             stop: stop.clone(),
-            again: None,
+            rerun: None,
         },
         &mut Silent,
     )?;
@@ -97,7 +97,7 @@ pub fn measure(threads: u32, effort: Effort, stop: &Stop) -> Result<JobsRow> {
     Ok(JobsRow {
         threads,
         jobs: summary.ran,
-        done: summary.counts.of(DONE),
+        done: summary.counts.of(Status::Done),
         subdivisions: scene.map_or(0, |scene| scene.design.subdivisions),
         end_time: scene.map_or(0.0, |scene| scene.solver.end_time),
         wall_seconds,

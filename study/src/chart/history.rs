@@ -6,8 +6,7 @@ use billow_solver::output::measures::Verdict;
 use super::parameters::{self, Parameter};
 use super::{Source, invalid_option, outcome, title, unknown_name};
 use crate::input::value::Value;
-use crate::job::JobId;
-use crate::job::row;
+use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
@@ -213,7 +212,7 @@ fn panel(source: &Source<'_>, quantity: &Quantity, runs: &[Run], time: &TimeAxis
     let (low, high) =
         if values.is_empty() { (0.0, 1.0) } else { ticks::padded(extent[0], extent[1]) };
     let line = |(series, run): (usize, &Run)| {
-        let failed = row::is_failure(outcome::status(source, run.row));
+        let failed = outcome::has_failed(source, run.row);
         history_line(series, run, quantity, &unit, time, failed)
     };
     let message = if runs.is_empty() {
@@ -272,7 +271,7 @@ fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> V
         };
         let status = outcome::status(source, run.row);
         let verdict = outcome::verdict(source, run.row);
-        if status != row::DONE {
+        if status != Status::Done.name() {
             text = format!("{text} ({status})");
         } else if !verdict.is_empty() && verdict != Verdict::Deployed.name() {
             text = format!("{text} ({verdict})");
@@ -283,7 +282,7 @@ fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> V
         heading: parameters::heading(parameters),
         entries: runs.iter().enumerate().map(entry).collect(),
     };
-    let failed = runs.iter().any(|run| row::is_failure(outcome::status(source, run.row)));
+    let failed = runs.iter().any(|run| outcome::has_failed(source, run.row));
     let crosses = if failed {
         vec![(Sample::Cross, "end of a run that failed".to_owned())]
     } else {

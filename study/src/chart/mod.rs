@@ -7,7 +7,7 @@
 
 use crate::input::keys;
 use crate::input::value::Value;
-use crate::job::row::Kind;
+use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
@@ -55,7 +55,8 @@ impl Source<'_> {
     fn measure(&self, option: &str, name: &str) -> Result<&Column> {
         let numbers = || {
             let columns = self.table.columns.iter();
-            columns.filter(|column| matches!(column.kind, Kind::Integer | Kind::Number))
+            columns
+                .filter(|column| matches!(column.cell_type, CellType::Integer | CellType::Number))
         };
         let found = numbers().find(|column| column.name == name);
         found.ok_or_else(|| {

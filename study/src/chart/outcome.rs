@@ -6,7 +6,7 @@ use billow_solver::output::measures::Verdict;
 
 use super::Source;
 use crate::input::value::Value;
-use crate::job::row;
+use crate::job::Status;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::style::Fill;
 use crate::store::table::Column;
@@ -26,14 +26,14 @@ impl<'a> Outcomes<'a> {
     /// Gives each status its letter.
     pub fn new(source: &'a Source<'a>) -> Self {
         let mut kinds: Vec<&str> = source.rows.iter().map(|row| status(source, *row)).collect();
-        kinds.retain(|kind| *kind != row::DONE && *kind != row::INFEASIBLE);
+        kinds.retain(|kind| *kind != Status::Done.name() && *kind != Status::Infeasible.name());
         // Pending comes first, so that its letter is always P.
-        kinds.sort_by_key(|kind| (*kind != row::PENDING, *kind));
+        kinds.sort_by_key(|kind| (*kind != Status::Pending.name(), *kind));
         kinds.dedup();
         let mut letters: BTreeMap<String, String> = BTreeMap::new();
         // A letter I looks like a line; infeasible has the sign of the empty set.
         letters.insert(NOT_OCCURRED.to_owned(), "–".to_owned());
-        letters.insert(row::INFEASIBLE.to_owned(), "∅".to_owned());
+        letters.insert(Status::Infeasible.name().to_owned(), "∅".to_owned());
         for kind in kinds {
             let free = |letter: &char| !letters.values().any(|used| used.starts_with(*letter));
             let letters_of_name =
@@ -54,7 +54,7 @@ impl<'a> Outcomes<'a> {
     /// The letter of a job without a value.
     pub fn letter(&mut self, row: usize) -> String {
         let status = status(self.source, row);
-        let kind = if status == row::DONE { NOT_OCCURRED } else { status };
+        let kind = if status == Status::Done.name() { NOT_OCCURRED } else { status };
         *self.lettered.entry(kind.to_owned()).or_default() += 1;
         self.letters.get(kind).cloned().unwrap_or_else(|| "?".to_owned())
     }
@@ -67,7 +67,7 @@ impl<'a> Outcomes<'a> {
         });
         let letters = self.lettered.iter().map(|(kind, count)| {
             let letter = self.letters.get(kind).cloned().unwrap_or_default();
-            let text = if row::is_failure(kind) && kind != NOT_OCCURRED {
+            let text = if Status::from_name(kind).is_some_and(Status::is_failure) {
                 format!("failed: {kind} ({count})")
             } else {
                 format!("{kind} ({count})")
@@ -99,12 +99,17 @@ fn text<'a>(source: &Source<'a>, name: &str, row: usize) -> &'a str {
 /// The measure of a job; `None` also for a job that stopped before its end, because its peak so far is not
 /// the peak of the run.
 pub fn value(source: &Source<'_>, measure: &Column, row: usize) -> Option<f64> {
-    super::number(&measure.cells[row]).filter(|_| status(source, row) == row::DONE)
+    super::number(&measure.cells[row]).filter(|_| source.table.status(row) == Some(Status::Done))
 }
 
 /// The status of a row.
 pub fn status<'a>(source: &Source<'a>, row: usize) -> &'a str {
     text(source, "status", row)
+}
+
+/// Whether the job of a row failed.
+pub fn has_failed(source: &Source<'_>, row: usize) -> bool {
+    source.table.status(row).is_some_and(Status::is_failure)
 }
 
 /// The verdict of a row; empty without one.

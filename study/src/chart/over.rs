@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::outcome::{self, Outcomes};
 use super::parameters::{self, Facets, Group, Parameter};
 use super::{Source, invalid_option, number, title};
-use crate::job::row::Kind;
+use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::lane::Mark;
@@ -229,7 +229,7 @@ struct Positions {
 impl Positions {
     fn new(x: &Parameter<'_>, rows: &[usize]) -> Self {
         let values = x.values(rows);
-        let names = !x.is_number(rows) || x.column.kind == Kind::Bool;
+        let names = !x.is_number(rows) || x.column.cell_type == CellType::Bool;
         let position = |index: usize| {
             let si = if names { None } else { number(&values[index]) };
             si.map_or(index as f64, |si| x.unit.shown(si))

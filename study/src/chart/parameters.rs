@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::number;
 use crate::analysis::compare::{self, canonical};
 use crate::input::value::{Value, short_number};
-use crate::job::row::Kind;
+use crate::job::row::CellType;
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
 use crate::store::table::{Column, Table};
@@ -85,7 +85,7 @@ impl<'a> Parameter<'a> {
 
     /// Whether every row has a number.
     pub fn is_number(&self, rows: &[usize]) -> bool {
-        matches!(self.column.kind, Kind::Integer | Kind::Number)
+        matches!(self.column.cell_type, CellType::Integer | CellType::Number)
             && rows.iter().all(|row| number(&self.column.cells[*row]).is_some())
     }
 

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use billow_solver::output::outcome::FailureKind;
+
 use super::standard::ChartKind;
 use super::*;
 use crate::job::point::{Infeasible, Point};
-use crate::job::row::Cells;
-use crate::job::{Job, JobId};
+use crate::job::row::{Cells, ColumnId};
+use crate::job::{Job, JobId, Status};
 use crate::render::figure::check;
 use crate::run::fixture;
 use crate::store::history_file::{self, StoredHistory};
@@ -45,10 +47,10 @@ fn study(edit: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
     }
     let mut records = BTreeMap::new();
     for (index, point) in points.iter().enumerate() {
-        let mut cells = Cells::new(crate::job::row::DONE);
-        cells.set("verdict", "deployed");
-        cells.set("peak_vz", 20.0 + index as f64);
-        cells.set("content_hash", "invented");
+        let mut cells = Cells::new(Status::Done);
+        cells.set(ColumnId::Verdict, "deployed");
+        cells.set(ColumnId::PeakVz, 20.0 + index as f64);
+        cells.set(ColumnId::ContentHash, "invented");
         edit(index, &mut cells);
         let record =
             crate::store::journal::Record { job: point.job.id.clone(), file_hash: None, cells };
@@ -69,15 +71,15 @@ fn source(table: &Table) -> Source<'_> {
 fn mixed() -> Table {
     study(
         |index, cells| match index {
-            1 => cells.set("verdict", "partial"),
-            2 => cells.set("verdict", "stalled"),
+            1 => cells.set(ColumnId::Verdict, "partial"),
+            2 => cells.set(ColumnId::Verdict, "stalled"),
             3 => {
-                *cells = Cells::new("step_limit");
-                cells.set("peak_vz", 300.0);
-                cells.set("content_hash", "invented");
+                *cells = Cells::new(Status::Failed(FailureKind::StepLimit));
+                cells.set(ColumnId::PeakVz, 300.0);
+                cells.set(ColumnId::ContentHash, "invented");
             }
-            4 => *cells = Cells::new("pending"),
-            5 => cells.set("peak_vz", Value::Null),
+            4 => *cells = Cells::new(Status::Pending),
+            5 => cells.set(ColumnId::PeakVz, Value::Null),
             _ => {}
         },
         &[6, 7],
@@ -175,7 +177,7 @@ fn read(id: &JobId) -> Result<StoredHistory> {
     Ok(StoredHistory {
         job: id.clone(),
         scene: String::new(),
-        status: "done".to_owned(),
+        status: Status::Done,
         content_hash: history_file::content_hash(&deployment),
         history: deployment.history,
         tracks: BTreeMap::from([("smallest_gap".to_owned(), vec![1e-3; 900])]),
@@ -220,7 +222,7 @@ fn histories_are_labelled_by_the_varying_parameters() {
 
 #[test]
 fn an_empty_chart_says_why() {
-    let none = study(|_, cells| *cells = Cells::new("pending"), &[]);
+    let none = study(|_, cells| *cells = Cells::new(Status::Pending), &[]);
     let says_so =
         |svg: String| check::figure(&svg).iter().any(|text| text.starts_with("nothing to draw"));
     assert!(says_so(over::svg(&source(&none), "peak_vz", "N", &[]).unwrap()));

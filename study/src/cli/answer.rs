@@ -8,11 +8,10 @@ use billow_solver::output::audit::RESIDUAL_BOUND;
 use billow_solver::output::measures::Verdict;
 use serde_json::{Map, json};
 
-use super::columns;
 use super::print::count;
 use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
 use crate::input::value::{Value, brief_number, json_value, short_number};
-use crate::job::row;
+use crate::job::Status;
 
 /// Most characters in a line of medians.
 const MAX_LINE_WIDTH: usize = 120;
@@ -114,16 +113,16 @@ fn deployed(answer: &Answer) -> String {
         (with(Verdict::Partial), Verdict::Partial.name()),
         (with(Verdict::Stalled), Verdict::Stalled.name()),
         (counts.failed(), "failed"),
-        (counts.of(row::PENDING), row::PENDING),
+        (counts.of(Status::Pending), Status::Pending.name()),
     ] {
         if number > 0 {
             let _ = write!(text, ", {number} {noun}");
         }
     }
-    if counts.close > 0 {
-        let _ = write!(text, ", {} near a threshold", counts.close);
+    if counts.near_threshold > 0 {
+        let _ = write!(text, ", {} near a threshold", counts.near_threshold);
     }
-    let infeasible = counts.of(row::INFEASIBLE);
+    let infeasible = counts.of(Status::Infeasible);
     if infeasible > 0 {
         let _ = write!(text, "; {} infeasible", count(infeasible, "point"));
     }
@@ -215,7 +214,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
     json!({
         "question": answer.question,
         "jobs": answer.counts.jobs(),
-        columns::NEAR_THRESHOLD: answer.counts.close,
+        "near_threshold": answer.counts.near_threshold,
         "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),

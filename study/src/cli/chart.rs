@@ -169,9 +169,14 @@ fn draw(
 /// The chart that the options ask for; `None` for the standard charts.
 fn kind(args: &Args) -> Result<Option<ChartKind>> {
     if !args.history.is_empty() {
-        return Ok(Some(ChartKind::History(args.history.clone())));
+        let current = |name: &String| target::current_name("--history", name.trim()).to_owned();
+        return Ok(Some(ChartKind::History(args.history.iter().map(current).collect())));
     }
-    let Some(measure) = args.measure.clone() else {
+    let measure = args
+        .measure
+        .as_deref()
+        .map(|name| target::current_name("--measure", name.trim()).to_owned());
+    let Some(measure) = measure else {
         return match &args.out {
             None => Ok(None),
             Some(path) => Err(refused(

@@ -8,12 +8,13 @@ use super::print::{count, print_rows};
 use super::target::{StudyArgs, filtered, find, folder};
 use super::{Format, output_error};
 use crate::analysis::compare::{
-    self, Better, Compared, LARGER_IS_BETTER, Pair, SMALLER_IS_BETTER, Sets, TIE, Tally,
+    self, Better, Compared, DEFAULT_TIE, Pair, Sets, Tally, measures_with,
 };
 use crate::input::keys;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
-use crate::job::row;
+use crate::job::Status;
+use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
 use crate::store::results::Results;
@@ -90,7 +91,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let sets = Sets::new(&table, &rows, &by.name, &stored.study.zipped_with(&by.name));
     let (pairs, alone) = compare::pairs(&table, &sets, &by.name, &base);
     let measures = measures(&table, &args.measures, format)?;
-    let tie = args.tie.as_deref().map_or(Ok(TIE), fraction)?;
+    let tie = args.tie.as_deref().map_or(Ok(DEFAULT_TIE), fraction)?;
     let comparison = Comparison { table: &table, by, sets, pairs, measures, tie };
     if !args.summary {
         comparison.print_pairs(format, out)?;
@@ -147,7 +148,9 @@ fn measures<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Ve
     };
     match names {
         [] if format == Format::Table => Ok(existing(&DEFAULT_MEASURES)),
-        [] => Ok(existing(&[&SMALLER_IS_BETTER[..], &LARGER_IS_BETTER].concat())),
+        [] => Ok(existing(
+            &[measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat(),
+        )),
         names => names.iter().map(|name| measure(table, name.trim())).collect(),
     }
 }
@@ -178,7 +181,7 @@ impl Comparison<'_> {
     fn print_pairs(&self, format: Format, out: &mut dyn Write) -> Result<()> {
         let brief = format == Format::Table;
         let all_done = self.pairs.iter().all(|pair| {
-            [pair.base, pair.other].iter().all(|row| compare::status(self.table, *row) == row::DONE)
+            [pair.base, pair.other].iter().all(|row| self.table.status(*row) == Some(Status::Done))
         });
         let outcome: &[&str] = match (brief, all_done) {
             (true, true) => &[],
@@ -261,11 +264,12 @@ impl Comparison<'_> {
             _ => String::new(),
         };
         let mut text = format!("base: {by} = {base}{unit}; ratio: other / base");
-        for (side, list) in [("smaller", &SMALLER_IS_BETTER[..]), ("larger", &LARGER_IS_BETTER)] {
+        for (noun, side) in [("smaller", BetterSide::Smaller), ("larger", BetterSide::Larger)] {
+            let list = measures_with(side);
             let measures = self.measures.iter().map(|measure| measure.name.as_str());
             let names: Vec<&str> = measures.filter(|name| list.contains(name)).collect();
             if !names.is_empty() {
-                let _ = write!(text, "; better: {side} {}", names.join(", "));
+                let _ = write!(text, "; better: {noun} {}", names.join(", "));
             }
         }
         eprintln!("{text}");

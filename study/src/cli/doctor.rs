@@ -11,7 +11,7 @@ use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::store::doctor::{self, Depth, Finding};
-use crate::store::results::{OURS, Results};
+use crate::store::results::{RESULT_NAMES, Results};
 
 /// Arguments of `billow doctor`.
 #[derive(Debug, clap::Args)]
@@ -31,7 +31,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let names = Disk.list(&root).map_err(|error| disk_error(&root, &error))?;
     let is_ours = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        OURS.contains(&name.as_ref())
+        RESULT_NAMES.contains(&name.as_ref())
     };
     if !names.iter().any(is_ours) {
         return Err(Error::Disk {

@@ -14,7 +14,6 @@ use crate::platform::exit_code::{EXIT_CODES, Exit};
 mod answer;
 pub mod bench;
 mod chart;
-mod columns;
 mod compare;
 mod completions;
 mod doctor;

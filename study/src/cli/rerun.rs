@@ -10,8 +10,8 @@ use super::print::{count, print_rows};
 use super::run::{RunOptions, run_study};
 use super::target::{StudyArgs, filtered, folder};
 use crate::input::value::Value;
-use crate::job::JobId;
-use crate::job::row;
+use crate::job::row::ColumnId;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
 use crate::store::results::Results;
@@ -133,8 +133,8 @@ fn list(
                 parameter.map_or(Value::Null, |(_, value)| value.clone())
             }));
             let cells = stored.cells(point);
-            row.push(Value::Text(cells.status().to_owned()));
-            row.push(cells.get("verdict").clone());
+            row.push(Value::Text(cells.status().name().to_owned()));
+            row.push(cells.get(ColumnId::Verdict).clone());
             row
         })
         .collect();
@@ -151,5 +151,5 @@ fn list(
 
 fn number_finished(stored: &Stored<'_>, jobs: &BTreeSet<JobId>) -> usize {
     let chosen = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
-    chosen.filter(|point| stored.cells(point).status() != row::PENDING).count()
+    chosen.filter(|point| stored.cells(point).status() != Status::Pending).count()
 }

@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use super::options::{OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption};
 use super::print::count;
 use super::target::results_folder;
-use super::{Format, columns, memory, notes, output_error};
+use super::{Format, memory, notes, output_error};
 use crate::analysis::answer::Answer;
-use crate::job::JobId;
 use crate::job::executor::Solver;
 use crate::job::references::References;
-use crate::job::row;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
@@ -82,7 +81,7 @@ pub(super) fn run_study(
             results: results.clone(),
             threads: options.threads.count()?,
             stop,
-            again,
+            rerun: again,
         },
         progress::reporter(options.progress.loudness()).as_mut(),
     )?;
@@ -98,7 +97,7 @@ pub(super) fn run_study(
 /// The error of a run, if it has one.
 fn result(summary: &Summary, root: &Path) -> Result<()> {
     // A signal after the last job has stopped nothing.
-    let open = summary.counts.of(row::PENDING) > 0;
+    let open = summary.counts.of(Status::Pending) > 0;
     if let Some(signal) = summary.signal.filter(|_| open) {
         return Err(Error::Signal(signal));
     }
@@ -113,11 +112,9 @@ fn result(summary: &Summary, root: &Path) -> Result<()> {
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed\n  next: billow table {} --columns job,status,reason,{},{}",
+            "{} failed\n  next: billow table {} --columns job,status,reason,stop_time,stop_location",
             count(failed, "job"),
-            root.display(),
-            columns::STOP_TIME,
-            columns::STOP_LOCATION
+            root.display()
         ))),
     }
 }
@@ -149,7 +146,7 @@ fn print(
         }
         return writeln!(out, "{json}");
     }
-    if summary.ran == 0 && counts.of(row::PENDING) == 0 {
+    if summary.ran == 0 && counts.of(Status::Pending) == 0 {
         writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
     } else {
         let (ran, points) = (count(summary.ran, "job"), count(counts.rows(), "point"));

@@ -4,15 +4,14 @@ use std::io::Write;
 
 use billow_solver::output::history::COLUMNS;
 
-use super::columns::{NEAR_THRESHOLD, NEAR_THRESHOLD_MARGIN, STOP_LOCATION, STOP_TIME};
 use super::options::{OutputOptions, QuietOption};
 use super::print::print_rows;
-use super::target::{StudyArgs, folder_of_job};
+use super::target::{StudyArgs, current_name, folder_of_job};
 use super::{Format, output_error};
 use crate::input::keys::{self, KEYS};
 use crate::input::value::Value;
-use crate::job::JobId;
-use crate::job::row::{self, Cells, RowColumn};
+use crate::job::row::{Cells, ColumnGroup};
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
 use crate::scene::summary;
@@ -101,36 +100,8 @@ fn scene(stored: &Stored<'_>, id: &JobId) -> Result<serde_json::Value> {
     }
 }
 
-/// The group of a column.
-fn group(column: &RowColumn) -> &'static str {
-    match column.name {
-        "status"
-        | "verdict"
-        | NEAR_THRESHOLD
-        | NEAR_THRESHOLD_MARGIN
-        | "volume_ratio"
-        | "height_ratio"
-        | "reference_volume"
-        | "reference_height"
-        | "reason"
-        | "nearest"
-        | STOP_TIME
-        | STOP_LOCATION => "outcome",
-        name if name.ends_with("_threshold") => "outcome",
-        "phi" | "half_angle" | "top_radius" | "height" => "pattern",
-        "passages" | "intersections" | "ledger_residual" | "gas_residual" | "viscous_fraction" => {
-            "audit"
-        }
-        "steps" | "elements" => "cost",
-        "content_hash" | "program_version" | "commit" | "physics_version" => "provenance",
-        _ if !column.result => "cost",
-        _ => "measures",
-    }
-}
-
 /// One row per quantity: group, name, value, unit, meaning.
 fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
-    const GROUPS: [&str; 6] = ["outcome", "measures", "audit", "pattern", "cost", "provenance"];
     let text = |text: &str| Value::Text(text.to_owned());
     let point = stored.point(id);
     let mut rows = vec![vec![text("job"), text("job"), text(id.as_str()), text("")]];
@@ -142,15 +113,14 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
     let recorded = stored.record(id).map(|record| record.cells.clone());
     let cells = match point {
         Some(point) => stored.cells(point),
-        None => recorded.unwrap_or_else(|| Cells::new(row::PENDING)),
+        None => recorded.unwrap_or_else(|| Cells::new(Status::Pending)),
     };
-    for wanted in GROUPS {
-        let group_cells = cells
-            .iter()
-            .filter(|(column, value)| group(column) == wanted && **value != Value::Null);
+    for group in ColumnGroup::ALL {
+        let group_cells =
+            cells.iter().filter(|(column, value)| column.group == group && **value != Value::Null);
         rows.extend(group_cells.map(|(column, value)| {
             let (unit, meaning) = (text(column.unit), text(column.meaning));
-            vec![text(wanted), text(column.name), value.clone(), unit, meaning]
+            vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
     // The row is shown even if its file cannot be read: the error is then one of the rows.
@@ -227,7 +197,8 @@ fn print_history(stored: &StoredHistory, args: &Args, out: &mut dyn Write) -> Re
 
 fn find<'a>(all: &[(&'a str, &'a [f64])], name: &str) -> Result<(&'a str, &'a [f64])> {
     let names = || all.iter().map(|(name, _)| *name);
-    all.iter().find(|(known, _)| *known == name).copied().ok_or_else(|| {
+    let current = current_name("--columns", name);
+    all.iter().find(|(known, _)| *known == current).copied().ok_or_else(|| {
         let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
         let allowed = names().collect::<Vec<_>>().join(", ");
         let problem = "no such column in this history";

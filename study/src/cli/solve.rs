@@ -9,10 +9,9 @@ use billow_solver::geometry::mesh_io::obj;
 use super::options::{HEADING, OutputOptions, QuietOption, SetOption};
 use super::print::print_rows;
 use super::{Format, instruction_set, output_error};
-use crate::job::JobId;
-use crate::job::row;
+use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
-use crate::platform::files::{Disk, check_place, disk_error, write_atomic};
+use crate::platform::files::{Disk, check_output_path, disk_error, write_atomic};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 use crate::scene::solve::{self, Ended, Pauses, Solved};
@@ -75,11 +74,12 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         format => print_rows(&["quantity", "value"], &summary::rows(&summary), format, out)?,
     }
     write_files(args, &scene, &solved)?;
-    if let (PAUSED, Some(path), false) = (solved.status, &args.checkpoint, args.quiet.quiet) {
+    if let (Status::Paused, Some(path), false) = (solved.status, &args.checkpoint, args.quiet.quiet)
+    {
         let without = if args.out.is_some() { "; --out is written at the end" } else { "" };
         eprintln!("billow: paused; continue with --resume {}{without}", path.display());
     }
-    if matches!(solved.status, row::DONE | PAUSED) {
+    if matches!(solved.status, Status::Done | Status::Paused) {
         return Ok(());
     }
     let stop = &summary["stop"];
@@ -88,9 +88,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let time = stop["time"].as_f64().map_or_else(String::new, |time| format!(" at {time} s"));
     Err(Error::JobsFailed(format!("{}: {}{time}: {location}", args.scene.display(), solved.status)))
 }
-
-/// Status of a run that stopped at a checkpoint.
-const PAUSED: &str = "paused";
 
 /// Solves the scene; prints the progress on stderr.
 fn solve(args: &Args, scene: &SceneFile) -> Result<Solved> {
@@ -116,7 +113,7 @@ fn solve(args: &Args, scene: &SceneFile) -> Result<Solved> {
 /// Refuses output files that cannot be written, and files that a static equilibrium does not have.
 fn check_files(args: &Args, scene: &SceneFile) -> Result<()> {
     for path in [&args.out, &args.shape, &args.checkpoint].into_iter().flatten() {
-        check_place(path).map_err(|error| disk_error(path, &error))?;
+        check_output_path(path).map_err(|error| disk_error(path, &error))?;
     }
     let pausing = args.checkpoint.is_some() || args.resume.is_some();
     let option = match (&args.out, pausing) {
@@ -136,7 +133,7 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
         write_atomic(&Disk, path, bytes).map_err(|error| disk_error(path, &error))
     };
     if let (Some(path), Ended::Motion(motion)) = (&args.out, &solved.end)
-        && solved.status != PAUSED
+        && solved.status != Status::Paused
     {
         let deployment = &motion.1;
         let hash = history_file::content_hash(deployment);

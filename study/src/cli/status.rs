@@ -9,9 +9,9 @@ use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, print_rows};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
-use super::{Format, columns, output_error};
-use crate::input::value::Value;
-use crate::job::row::{self, Counts};
+use super::{Format, output_error};
+use crate::job::Status as JobStatus;
+use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::scene::summary;
@@ -54,7 +54,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &[])?;
     let results = Results::new(&Disk, &root);
     // Damage is part of the answer, not an error.
-    let (stored, _) = Stored::salvage(results.clone())?;
+    let (stored, _) = Stored::read_valid(results.clone())?;
     let health = doctor::examine(&results, Depth::Names);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);
@@ -76,7 +76,7 @@ impl<'a> Status<'a> {
         for point in &stored.points {
             let cells = stored.cells(point);
             counts.add_cells(&cells);
-            if let Value::Number(wall) = cells.get("wall_seconds") {
+            if let Some(wall) = cells.number(ColumnId::WallSeconds) {
                 seconds += wall;
                 timed += 1;
             }
@@ -91,7 +91,7 @@ impl<'a> Status<'a> {
 
     /// Estimated wall time until all jobs have run, s; `None` while no job has run.
     fn remaining_seconds(&self) -> Option<f64> {
-        let pending = self.counts.of(row::PENDING);
+        let pending = self.counts.of(JobStatus::Pending);
         let at_once = self.threads.min(pending).max(1);
         self.mean_seconds().map(|mean| mean * pending as f64 / at_once as f64)
     }
@@ -105,14 +105,14 @@ impl<'a> Status<'a> {
             "running": self.health.running,
             "points": counts.rows(),
             "jobs": counts.jobs(),
-            "done": counts.of(row::DONE),
+            "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
-            "pending": counts.of(row::PENDING),
-            "infeasible": counts.of(row::INFEASIBLE),
-            "invalidated": stored.journal.withdrawn.len(),
+            "pending": counts.of(JobStatus::Pending),
+            "infeasible": counts.of(JobStatus::Infeasible),
+            "invalidated": stored.journal.invalidated.len(),
             "status": counts.status,
             "verdict": counts.verdict,
-            columns::NEAR_THRESHOLD: counts.close,
+            "near_threshold": counts.near_threshold,
             "wall_seconds": self.seconds,
             "mean_wall_seconds": self.mean_seconds(),
             "remaining_seconds": self.remaining_seconds(),
@@ -125,7 +125,7 @@ impl<'a> Status<'a> {
     }
 
     fn print(&self, out: &mut dyn Write) -> Result<()> {
-        let state = match (self.health.running, self.counts.of(row::PENDING)) {
+        let state = match (self.health.running, self.counts.of(JobStatus::Pending)) {
             (true, _) => "running: another process holds its lock",
             (false, 0) => "finished",
             (false, _) => "not running",
@@ -148,15 +148,16 @@ impl<'a> Status<'a> {
     /// Numbers of points and jobs, failures and verdicts.
     fn job_lines(&self) -> Vec<Line> {
         let counts = &self.counts;
-        let (infeasible, pending) = (counts.of(row::INFEASIBLE), counts.of(row::PENDING));
+        let (infeasible, pending) =
+            (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
         let mut lines =
             vec![("points", format!("{}: {jobs}, {infeasible} infeasible", counts.rows()))];
-        let invalidated = match self.stored.journal.withdrawn.len() {
+        let invalidated = match self.stored.journal.invalidated.len() {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),
         };
-        let (done, failed) = (counts.of(row::DONE), counts.failed());
+        let (done, failed) = (counts.of(JobStatus::Done), counts.failed());
         lines.push((
             "jobs",
             format!("{done} done, {failed} failed, {pending} pending{invalidated}"),
@@ -166,7 +167,7 @@ impl<'a> Status<'a> {
             lines.push(("failed", format!("{}; billow why JOB explains one", listed(&failures))));
         }
         if !counts.verdict.is_empty() {
-            let near = match counts.close {
+            let near = match counts.near_threshold {
                 0 => String::new(),
                 near => format!(" ({near} near a threshold)"),
             };
@@ -185,7 +186,7 @@ impl<'a> Status<'a> {
                 format!("{elapsed} on one core, mean {} per job", duration(mean)),
             ));
         }
-        if self.counts.of(row::PENDING) > 0 {
+        if self.counts.of(JobStatus::Pending) > 0 {
             let text = match self.remaining_seconds() {
                 Some(remaining) => {
                     let threads = count(self.threads, "thread");

@@ -7,8 +7,9 @@ use crate::input::expression::{Expression, Type, Variable};
 use crate::input::keys;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
-use crate::job;
-use crate::job::row::Kind;
+use crate::job::id::common_prefix_length;
+use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note};
+use crate::job::status::RENAMED_STATUSES;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, Files};
 use crate::store::results::Results;
@@ -133,13 +134,25 @@ fn only_folder() -> Result<PathBuf> {
     }
 }
 
+/// The current name of a column; an old one, given with this option, gives a note on stderr.
+pub fn current_name<'a>(option: &str, name: &'a str) -> &'a str {
+    let (current, note) = current_column_name(name);
+    if let Some(note) = note {
+        eprintln!("billow: {option}: {note}");
+    }
+    current
+}
+
 /// The column with that name, which `option` asks for.
 ///
 /// # Errors
-/// When there is none; the error gives the nearest name.
+/// When there is none; the error gives the nearest name. An old name is read, with a note on stderr.
 pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column> {
     let names = || table.columns.iter().map(|column| column.name.as_str());
-    table.column(name).ok_or_else(|| {
+    if let Some(column) = table.column(name) {
+        return Ok(column);
+    }
+    table.column(current_name(option, name)).ok_or_else(|| {
         let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
         let allowed = names().collect::<Vec<_>>().join(", ");
         Error::invalid_option(option, name, "no such column", allowed, hint.unwrap_or_default())
@@ -152,6 +165,7 @@ pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column
 /// An invalid condition, or an unknown column in it.
 pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
     let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
+    let text = &with_current_names(text, table);
     let variables: Vec<Variable> = table
         .columns
         .iter()
@@ -173,12 +187,39 @@ pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
     Ok((0..table.rows()).filter(holds).collect())
 }
 
+/// A condition with the current names of columns and statuses; each old name gives a note on stderr.
+fn with_current_names(text: &str, table: &Table) -> String {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut current_text = String::with_capacity(text.len());
+    let mut quote = None;
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let length = rest.find(|c| !is_name(c)).unwrap_or(rest.len()).max(first.len_utf8());
+        let (word, after) = rest.split_at(length);
+        let renamed: &[(&str, &str)] =
+            if quote.is_some() { &RENAMED_STATUSES } else { &RENAMED_TABLE_COLUMNS };
+        let known = quote.is_none() && table.column(word).is_some();
+        match renamed.iter().find(|(old, _)| *old == word && !known) {
+            Some((old, current)) => {
+                eprintln!("billow: --where: {}", note(old, current));
+                current_text.push_str(current);
+            }
+            None => current_text.push_str(word),
+        }
+        if matches!(first, '\'' | '"') {
+            quote = if quote == Some(first) { None } else { quote.or(Some(first)) };
+        }
+        rest = after;
+    }
+    current_text
+}
+
 /// The type of a column in an expression.
 fn variable_type(column: &Column) -> Type {
-    match column.kind {
-        Kind::Bool => Type::Bool,
-        Kind::Text => Type::Text(None),
-        Kind::Integer | Kind::Number => {
+    match column.cell_type {
+        CellType::Bool => Type::Bool,
+        CellType::Text => Type::Text(None),
+        CellType::Integer | CellType::Number => {
             let known = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
             Type::Quantity(known.unwrap_or(Dimension::Number), &[])
         }
@@ -221,7 +262,7 @@ pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
 /// Ids that share the longest prefix with this one, at most six.
 fn nearest_ids(ids: &[&str], prefix: &str) -> String {
     const MAX_SHOWN: usize = 6;
-    let shared = |id: &str| job::agreement(id, prefix);
+    let shared = |id: &str| common_prefix_length(id, prefix);
     let longest = ids.iter().map(|id| shared(id)).max().unwrap_or(0);
     let mut nearest: Vec<&str> = ids
         .iter()

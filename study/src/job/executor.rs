@@ -1,4 +1,4 @@
-//! Where the jobs of a batch are computed: behind one trait, so that a fake can take its place.
+//! Computes the jobs of a batch. The trait lets a test replace the solver.
 
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
@@ -17,71 +17,80 @@ use crate::job::{Job, JobId};
 
 /// Computes jobs.
 pub trait Executor: Sync {
-    /// How many jobs it likes to get at once.
+    /// Number of jobs that one call should get.
     fn batch(&self) -> usize {
         1
     }
 
-    /// Static states found since the last call, to be kept for later runs.
+    /// Static references computed since the last call, to be stored for later runs.
     fn references(&self) -> Vec<(JobId, Reference)> {
         Vec::new()
     }
 
-    /// Runs a batch: one outcome a job, in the order of `jobs`. `watch` is told the position in
-    /// the batch and where that job stands; when it says `false` the job is to end as cancelled. A
-    /// job may take so many `threads`, which change no bit of it.
-    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome>;
+    /// Runs a batch and returns one outcome per job, in the order of `jobs`. `observer` gets the
+    /// index of a job in the batch and its progress; when it returns `false`, the job must end as
+    /// cancelled. A job may use up to `threads` threads; their number changes no bit of a result.
+    fn execute(
+        &self,
+        jobs: &[&Job],
+        threads: usize,
+        observer: &ProgressObserver<'_>,
+    ) -> Vec<Outcome>;
 }
 
-/// Sees the samples of running jobs, and may end them.
-pub type Watch<'a> = dyn Fn(usize, Progress) -> bool + Sync + 'a;
+/// Receives the progress of running jobs and can cancel them: see [`Executor::execute`].
+pub type ProgressObserver<'a> = dyn Fn(usize, Progress) -> bool + Sync + 'a;
 
 /// How a job ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// It ran, to its end or to a typed stop.
+    /// The model ran, to its end time or to a failure.
     Ran {
-        /// What it left.
+        /// The result.
         deployment: Box<Deployment>,
-        /// Wall time, s, without that of the static states. A cost, never a reason.
+        /// Wall time of the run without its static reference, s. It decides nothing.
         seconds: f64,
-        /// Why there is no verdict where there should be one.
+        /// Why there is no verdict, when the model needs a reference and has none.
         note: Option<String>,
     },
     /// The model refused the scene.
     Refused(SceneError),
-    /// It panicked, with this message.
+    /// The program panicked with this message.
     Panicked(String),
-    /// It was asked to stop; nothing of it is a result.
+    /// The job was cancelled. Nothing of it is a result.
     Cancelled,
 }
 
-/// The solver on this machine, one job at a time.
+/// The solver on this machine, one job after the other.
 #[derive(Debug, Default)]
 pub struct Solver {
-    /// Static states known so far.
+    /// Static references known so far.
     pub references: References,
 }
 
 impl Executor for Solver {
     fn references(&self) -> Vec<(JobId, Reference)> {
-        self.references.take_fresh()
+        self.references.take_new()
     }
 
-    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome> {
-        let run = |(position, job): (usize, &&Job)| {
-            let end_time = job.scene.solver.end_time;
+    fn execute(
+        &self,
+        jobs: &[&Job],
+        threads: usize,
+        observer: &ProgressObserver<'_>,
+    ) -> Vec<Outcome> {
+        let run = |(index, job): (usize, &&Job)| {
             let start = Progress {
                 time: 0.0,
-                end_time,
+                end_time: job.scene.solver.end_time,
                 z_centre: job.scene.design.stowed_height,
                 pressure: 0.0,
             };
-            let goes_on = &mut || watch(position, start);
+            let goes_on = &mut || observer(index, start);
             let (reference, note) = self.references.of(&job.scene, goes_on);
             let start = Instant::now();
-            let (workers, mut watcher) = (Workers::of(threads), Watcher { position, watch });
-            match models::solve_with(workers, &job.scene, reference, &mut watcher) {
+            let (workers, mut samples) = (Workers::of(threads), JobObserver { index, observer });
+            match models::solve_with(workers, &job.scene, reference, &mut samples) {
                 Ok(deployment) if deployment.stop == Stop::Cancelled => Outcome::Cancelled,
                 Ok(deployment) => Outcome::Ran {
                     deployment: Box::new(deployment),
@@ -95,37 +104,38 @@ impl Executor for Solver {
     }
 }
 
-struct Watcher<'a> {
-    position: usize,
-    watch: &'a Watch<'a>,
+/// Gives the samples of one job to the observer of its batch.
+struct JobObserver<'a> {
+    index: usize,
+    observer: &'a ProgressObserver<'a>,
 }
 
-impl Observer for Watcher<'_> {
+impl Observer for JobObserver<'_> {
     fn sample(&mut self, progress: Progress) -> bool {
-        (self.watch)(self.position, progress)
+        (self.observer)(self.index, progress)
     }
 }
 
-/// Runs a batch so that no panic leaves it. When a batch of several panics its jobs are run one by
-/// one, and only those that panic again are lost to it.
+/// Runs a batch and turns panics into outcomes. When a batch of several jobs panics, its jobs are
+/// run again one by one, so that only the jobs that panic are lost.
 pub fn execute_guarded(
     executor: &dyn Executor,
     jobs: &[&Job],
     threads: usize,
-    watch: &Watch<'_>,
+    observer: &ProgressObserver<'_>,
 ) -> Vec<Outcome> {
-    match guarded(|| executor.execute(jobs, threads, watch)) {
+    match catch_panic(|| executor.execute(jobs, threads, observer)) {
         Ok(outcomes) if outcomes.len() == jobs.len() => outcomes,
         Ok(outcomes) => {
             let message =
-                format!("executor gave {} outcomes to {} jobs", outcomes.len(), jobs.len());
+                format!("executor returned {} outcomes for {} jobs", outcomes.len(), jobs.len());
             vec![Outcome::Panicked(message); jobs.len()]
         }
         Err(message) if jobs.len() == 1 => vec![Outcome::Panicked(message)],
         Err(_) => {
-            let alone = |(position, job): (usize, &&Job)| {
-                let watch = |_: usize, progress| watch(position, progress);
-                execute_guarded(executor, &[*job], threads, &watch)
+            let alone = |(index, job): (usize, &&Job)| {
+                let observer = |_: usize, progress| observer(index, progress);
+                execute_guarded(executor, &[*job], threads, &observer)
             };
             jobs.iter().enumerate().flat_map(alone).collect()
         }
@@ -133,22 +143,23 @@ pub fn execute_guarded(
 }
 
 thread_local! {
-    /// `Some` while this thread runs guarded code: where its panic message goes.
+    /// `Some` while this thread runs a batch: receives the panic message.
     static MESSAGE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+/// Runs `work` and returns its result, or the message of its panic.
+fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let previous = panic::take_hook();
-        // The message becomes a table cell; printed, it would tear the progress bars.
+        // The message becomes a table cell. Printing it would break the progress bars.
         panic::set_hook(Box::new(move |info| {
             let kept = MESSAGE.with_borrow_mut(|message| {
                 let Some(message) = message else { return false };
                 let payload = info.payload_as_str().unwrap_or("no message");
                 *message = info.location().map_or_else(
                     || payload.to_owned(),
-                    |at| format!("{payload} ({}:{})", at.file(), at.line()),
+                    |location| format!("{payload} ({}:{})", location.file(), location.line()),
                 );
                 true
             });
@@ -161,9 +172,9 @@ fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     let message = MESSAGE.take().unwrap_or_default();
     result.map_err(|panic| {
-        // A panic carried over from a job's second thread has left its message there.
+        // The message of a panic in a second thread stays in that thread; the payload has it, too.
         let text = || panic.downcast_ref::<String>().map(String::as_str);
-        let carried = panic.downcast_ref::<&str>().copied().or_else(text);
-        if message.is_empty() { carried.unwrap_or("no message").to_owned() } else { message }
+        let payload = panic.downcast_ref::<&str>().copied().or_else(text);
+        if message.is_empty() { payload.unwrap_or("no message").to_owned() } else { message }
     })
 }

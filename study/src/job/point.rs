@@ -1,37 +1,60 @@
-//! A point of the grid: its job, or why it has none.
+//! A point of the grid: its job, or the reason why it has none.
 
 use billow_solver::geometry::fold::{FoldPattern, Nearest};
+use billow_solver::scene::Scene;
 
-use crate::job::{Job, Parameters};
+use crate::input::value::Value;
+use crate::job::JobId;
+
+/// The varied parameters of a point, in the order of the study's axes: name and value (SI).
+pub type Parameters = Vec<(String, Value)>;
+
+/// Parameters as text: "N=5 M=2".
+pub fn label(parameters: &Parameters) -> String {
+    let texts: Vec<String> =
+        parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    texts.join(" ")
+}
+
+/// One scene to run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Job {
+    /// Id: hash of the scene and the physics version.
+    pub id: JobId,
+    /// The varied parameters of the point.
+    pub parameters: Parameters,
+    /// All that the model reads.
+    pub scene: Scene,
+}
 
 /// One point of the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// The job; for an infeasible point it carries the id and the parameters of its row.
+    /// The job. For an infeasible point it gives id and parameters of the row.
     pub job: Job,
-    /// Set when no fold pattern meets the design: the point is a row, not a run.
+    /// Set when no fold pattern satisfies the design: the point is a row without a run.
     pub infeasible: Option<Infeasible>,
-    /// What the fold solves; `None` where no pattern meets the design.
+    /// Solved dimensions of the fold pattern; `None` for an infeasible point.
     pub solved: Option<Solved>,
     /// Parameters of later points that resolve to the same job.
     pub merged: Vec<Parameters>,
 }
 
-/// What the fold of a point solves.
+/// Dimensions that the solution of the fold pattern gives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
-    /// ϕ, rad.
+    /// Fold angle ϕ, rad.
     pub phi: f64,
     /// Half top angle, rad.
     pub half_angle: f64,
-    /// r1, m.
+    /// Radius of the top ring, m.
     pub top_radius: f64,
-    /// H, m.
+    /// Erected height, m.
     pub height: f64,
 }
 
 impl Solved {
-    /// Of a pattern.
+    /// Dimensions of a pattern.
     pub fn of(pattern: &FoldPattern) -> Self {
         Self {
             phi: pattern.angles.phi,
@@ -42,17 +65,17 @@ impl Solved {
     }
 }
 
-/// Why a point has no pattern.
+/// Why a point has no fold pattern.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Infeasible {
     /// Reason.
     pub reason: String,
-    /// Nearest feasible values, each for a change of that key alone.
+    /// Nearest feasible values. Each one is for a change of its key alone.
     pub nearest: Vec<Nearest>,
 }
 
 impl Infeasible {
-    /// The nearest feasible values in words, as a table cell has them; empty where there are none.
+    /// The nearest feasible values as a table cell shows them; empty when there are none.
     pub fn nearest_text(&self) -> String {
         let nearest = self.nearest.iter();
         let texts: Vec<String> =

@@ -1,7 +1,7 @@
-//! Static states runs are judged against: looked for once a design, shared by all its jobs.
+//! Static references that the verdicts of runs need: computed once per design, shared by its jobs.
 //!
-//! The id of a reference is that of the scene whose states they are
-//! ([`billow_solver::models::reference_scene`]): all that does not matter to them left out.
+//! The id of a reference is the id of its [`billow_solver::models::reference_scene`]: the scene
+//! without everything that does not change the static states.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -12,55 +12,56 @@ use billow_solver::scene::Scene;
 
 use crate::job::JobId;
 
-/// A reference, or why there is none.
-type Found = std::result::Result<Reference, String>;
-/// Found once; whoever comes meanwhile waits.
-type Slot = Arc<OnceLock<Found>>;
+/// A reference, or the reason why there is none.
+type Computed = std::result::Result<Reference, String>;
+/// Computed by the first job that needs it; the other jobs wait.
+type Slot = Arc<OnceLock<Computed>>;
 
-/// References by the scene they are of.
+/// References by the id of their scene.
 #[derive(Debug, Default)]
 pub struct References {
     slots: Mutex<BTreeMap<JobId, Slot>>,
-    fresh: Mutex<Vec<(JobId, Reference)>>,
+    new: Mutex<Vec<(JobId, Reference)>>,
 }
 
 impl References {
-    /// Those found by earlier runs.
-    pub fn known(found: impl IntoIterator<Item = (JobId, Reference)>) -> Self {
-        let slots = found.into_iter().map(|(id, one)| (id, Arc::new(OnceLock::from(Ok(one)))));
-        Self { slots: Mutex::new(slots.collect()), fresh: Mutex::default() }
+    /// Starts with references that earlier runs stored.
+    pub fn known(stored: impl IntoIterator<Item = (JobId, Reference)>) -> Self {
+        let slots =
+            stored.into_iter().map(|(id, reference)| (id, Arc::new(OnceLock::from(Ok(reference)))));
+        Self { slots: Mutex::new(slots.collect()), new: Mutex::default() }
     }
 
-    /// The reference of a scene; `None` where its model knows its own. The second value says why
-    /// there is none where there should be one. `goes_on` is asked now and then; once it says no the
-    /// whole run is ending, and none is looked for again.
+    /// The reference of a scene, `None` for a model that needs none, and the reason when a model
+    /// needs one and there is none. `goes_on` is called from time to time; when it returns `false`
+    /// the computation ends. The whole run is ending then, so the reference stays missing.
     pub fn of(
         &self,
         scene: &Scene,
         goes_on: &mut dyn FnMut() -> bool,
     ) -> (Option<Reference>, Option<String>) {
-        let Some(of) = models::reference_scene(scene) else { return (None, None) };
-        let id = JobId::of(&of);
+        let Some(scene) = models::reference_scene(scene) else { return (None, None) };
+        let id = JobId::of(&scene);
         let slot = {
             let mut slots = self.slots.lock().unwrap_or_else(PoisonError::into_inner);
             Arc::clone(slots.entry(id.clone()).or_default())
         };
-        let found = slot.get_or_init(|| {
-            let found = models::reference(&of, goes_on).map_err(|error| error.to_string());
-            if let Ok(reference) = &found {
-                let mut fresh = self.fresh.lock().unwrap_or_else(PoisonError::into_inner);
-                fresh.push((id, reference.clone()));
+        let computed = slot.get_or_init(|| {
+            let computed = models::reference(&scene, goes_on).map_err(|error| error.to_string());
+            if let Ok(reference) = &computed {
+                let mut new = self.new.lock().unwrap_or_else(PoisonError::into_inner);
+                new.push((id, reference.clone()));
             }
-            found
+            computed
         });
-        match found {
+        match computed {
             Ok(reference) => (Some(reference.clone()), None),
             Err(problem) => (None, Some(format!("no verdict: {problem}"))),
         }
     }
 
-    /// What has been found since the last call.
-    pub fn take_fresh(&self) -> Vec<(JobId, Reference)> {
-        core::mem::take(&mut self.fresh.lock().unwrap_or_else(PoisonError::into_inner))
+    /// References computed since the last call.
+    pub fn take_new(&self) -> Vec<(JobId, Reference)> {
+        core::mem::take(&mut self.new.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -1,4 +1,4 @@
-//! Errors as a user meets them: one line of what, one of what is allowed, one of what to do next.
+//! Errors for the user: what is wrong, what is allowed, the next step. One line each.
 
 use std::path::PathBuf;
 
@@ -7,50 +7,52 @@ use crate::platform::exit_code::Exit;
 /// Whatever ends a command early. Each variant has an [`Exit`].
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// Something the user gave is wrong: exit code 2.
+    /// A value, key, file or option of the user is wrong: exit code 2.
     #[error("{0}")]
     Input(InputError),
-    /// The disk, or what lies on it, is not as it should be: exit code 2.
+    /// The disk, or a file on it, cannot be used: exit code 2.
     #[error("{}: {problem}", path.display())]
     Disk {
         /// File or folder.
         path: PathBuf,
-        /// What is wrong and what to do next.
+        /// What is wrong, and the next step.
         problem: String,
     },
-    /// Jobs failed: exit code 1. Their rows stand in the table.
+    /// Jobs failed: exit code 1. The table has their rows.
     #[error("{0}")]
     JobsFailed(String),
     /// A signal ended the command: exit code 128 + its number.
-    #[error("stopped by signal {0}; what is finished is kept, the same command goes on from here")]
+    #[error(
+        "stopped by signal {0}; finished jobs are kept, the same command runs the remaining ones"
+    )]
     Signal(i32),
     /// A signal ended a single run: exit code 128 + its number.
     #[error("stopped by signal {signal}; {next}")]
     Interrupted {
         /// Number of the signal.
         signal: i32,
-        /// What is kept and how to go on.
+        /// What is kept, and how to continue.
         next: String,
     },
-    /// The reader of our output went away: quiet, exit code 0.
+    /// The reader of the output closed it: no message, exit code 0.
     #[error("output closed")]
     OutputClosed,
 }
 
-/// A value, key, file or flag that is not as it must be.
+/// An invalid value, key, file or option.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
-    /// File, or the flag it came from.
+    /// File, or the option of the command line.
     pub file: String,
-    /// Dotted key (`film.thickness`, `grid.N[2]`); empty when the file as a whole is meant.
+    /// Dotted key (`film.thickness`, `grid.N[2]`); empty for a fault of the whole file.
     pub key: String,
-    /// The value as written; empty when there is none.
+    /// The value as written; empty without a value.
     pub value: String,
     /// What is wrong.
     pub problem: String,
     /// What is allowed.
     pub allowed: String,
-    /// What to do next; empty when `allowed` says it.
+    /// The next step; empty when `allowed` says it.
     pub hint: String,
 }
 
@@ -110,5 +112,5 @@ impl Error {
     }
 }
 
-/// Result of anything a command does.
+/// Result of a command or a part of it.
 pub type Result<T> = std::result::Result<T, Error>;

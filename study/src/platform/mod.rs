@@ -1,4 +1,4 @@
-//! What the study crate takes from the machine: files, signals, the identity of the program, errors.
+//! The machine: files, signals, version of the program, errors.
 
 pub mod error;
 pub mod exit_code;

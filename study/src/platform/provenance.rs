@@ -1,10 +1,9 @@
-//! What made a result: program, commit, physics.
+//! Which program computes a result: version, commit, physics version.
 
 /// Version of the program.
 pub const PROGRAM_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Commit the program was built from, "unknown" outside a repository, "+" where the tree held
-/// changes.
+/// Commit of the source; "unknown" outside a repository, with "+" when the tree had changes.
 pub const COMMIT: &str = env!("BILLOW_COMMIT");
 
 /// Version of the physics: part of every job id.

@@ -1,61 +1,61 @@
-//! What running says to whoever watches; running and reporting meet only here.
+//! Events of a run: the only link between running and reporting.
 
 use billow_solver::models::run::Progress;
 
-use crate::job::JobId;
+use crate::job::{JobId, Status};
 
-/// Something happened while a study ran.
+/// An event of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
-    /// A generation of jobs begins.
+    /// A generation of jobs starts.
     GenerationStarted {
-        /// 0 for the first.
+        /// Number of the generation, from 0.
         number: u32,
-        /// Points that have a job.
+        /// Number of jobs to run, finished ones included.
         jobs: usize,
-        /// Jobs of it that are finished already.
+        /// Number of these jobs that are already finished.
         finished: usize,
     },
-    /// A job begins.
+    /// A job starts.
     JobStarted {
-        /// Its name.
+        /// Id of the job.
         id: JobId,
-        /// Its varied parameters, as "N=5 M=2".
+        /// Its varied parameters: "N=5 M=2".
         label: String,
-        /// The thread it runs on, from 0.
+        /// Number of its thread, from 0.
         thread: usize,
     },
-    /// A running job stands here. Not every sample is told.
+    /// Progress of a running job. Not every sample gives an event.
     JobSample {
-        /// The thread it runs on.
+        /// Number of its thread.
         thread: usize,
-        /// Where it stands.
+        /// Simulated time, height and pressure.
         progress: Progress,
     },
-    /// A job ended and its results are on disk.
+    /// A job ended, and its results are on disk.
     JobFinished {
-        /// Its name.
+        /// Id of the job.
         id: JobId,
-        /// The thread it ran on.
+        /// Number of its thread.
         thread: usize,
         /// How it ended.
-        status: String,
-        /// Its verdict, if it has one.
+        status: Status,
+        /// Its verdict; `None` unless it is done.
         verdict: Option<String>,
     },
-    /// Something the user should know that is no error: a torn journal line, a damaged file.
+    /// A message for the user that is not an error: a torn journal line, a damaged file.
     Note(String),
-    /// Nothing more happens.
+    /// The run ended. No event follows.
     Ended,
 }
 
-/// Hears events.
+/// Receives events.
 pub trait Reporter {
-    /// One event.
+    /// Receives one event.
     fn event(&mut self, event: &Event);
 }
 
-/// Hears nothing.
+/// Ignores every event.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 

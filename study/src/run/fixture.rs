@@ -1,4 +1,4 @@
-//! Jobs and deployments made up for tests: sound scenes, invented series.
+//! Jobs and deployments for tests: valid scenes, invented series.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -16,7 +16,7 @@ use billow_solver::scene::{
 };
 
 use crate::input::value::Value;
-use crate::job::executor::{Executor, Outcome, Watch};
+use crate::job::executor::{Executor, Outcome, ProgressObserver};
 use crate::job::point::{Infeasible, Point};
 use crate::job::{Job, JobId};
 use crate::study::plan::Generation;
@@ -84,7 +84,7 @@ fn scene(number: u32) -> Scene {
     }
 }
 
-/// A deployment of that many samples; its series depend on `number` alone.
+/// A deployment with `samples` samples. Its series depend on `number` alone.
 pub fn deployment(number: u32, samples: usize) -> Deployment {
     let mut history = History::new();
     for sample in 0..samples {
@@ -118,17 +118,17 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
     }
 }
 
-/// Frames of a two-sided film of four nodes and two elements; their places depend on `number`.
+/// Frames of a film of four nodes and two elements. Their positions depend on `number`.
 pub fn frames(number: u32, count: u32) -> Frames {
-    #[expect(clippy::cast_possible_truncation, reason = "made up")]
-    let place = |frame: u32, node: u32| {
-        let at = f64::from(7 * number + 3 * frame + node);
-        [libm::sin(at), libm::sin(2.0 * at), -0.0].map(|place| place as f32)
+    #[expect(clippy::cast_possible_truncation, reason = "invented values")]
+    let position = |frame: u32, node: u32| {
+        let angle = f64::from(7 * number + 3 * frame + node);
+        [libm::sin(angle), libm::sin(2.0 * angle), -0.0].map(|x| x as f32)
     };
     let all = [Regime::Slack, Regime::Wrinkled, Regime::Taut];
     let frame = |frame: u32| Frame {
         time: 0.1 * f64::from(frame),
-        places: (0..4).map(|node| place(frame, node)).collect(),
+        places: (0..4).map(|node| position(frame, node)).collect(),
         regimes: (0..2).map(|element| all[((frame + element) % 3) as usize]).collect(),
     };
     Frames {
@@ -154,26 +154,26 @@ pub fn generation(jobs: u32) -> Generation {
     Generation { number: 0, points }
 }
 
-/// An executor that makes its deployments up and does as `script` says.
+/// An executor without a solver: `script` gives the outcome of a job.
 pub struct Scripted<S> {
-    /// What becomes of the job with that seed; it may panic.
+    /// Outcome of the job with that seed. It may panic.
     pub script: S,
-    /// Jobs asked for so far.
-    pub asked: AtomicUsize,
-    /// Size of a batch.
+    /// Number of jobs executed so far.
+    pub executed: AtomicUsize,
+    /// Number of jobs in a batch.
     pub batch: usize,
-    /// Threads the last job was given.
+    /// Number of threads of the last batch.
     pub threads: AtomicUsize,
 }
 
 impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
-    /// Of one job a batch.
+    /// An executor of batches of one job.
     pub fn new(script: S) -> Self {
-        Self { script, asked: AtomicUsize::new(0), batch: 1, threads: AtomicUsize::new(0) }
+        Self { script, executed: AtomicUsize::new(0), batch: 1, threads: AtomicUsize::new(0) }
     }
 }
 
-/// A job that ran, with seven samples.
+/// The outcome of a job that ran, with seven samples.
 pub fn ran(number: u32) -> Outcome {
     Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5, note: None }
 }
@@ -183,12 +183,17 @@ impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
         self.batch
     }
 
-    fn execute(&self, jobs: &[&Job], threads: usize, watch: &Watch<'_>) -> Vec<Outcome> {
+    fn execute(
+        &self,
+        jobs: &[&Job],
+        threads: usize,
+        observer: &ProgressObserver<'_>,
+    ) -> Vec<Outcome> {
         self.threads.store(threads, Ordering::SeqCst);
-        let run = |(position, job): (usize, &&Job)| {
-            self.asked.fetch_add(1, Ordering::SeqCst);
+        let run = |(index, job): (usize, &&Job)| {
+            self.executed.fetch_add(1, Ordering::SeqCst);
             let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
-            if !watch(position, progress) {
+            if !observer(index, progress) {
                 return Outcome::Cancelled;
             }
             (self.script)(u32::try_from(job.scene.seed).unwrap())

@@ -1,4 +1,4 @@
-//! Running jobs in parallel: the runner, its events, and the progress display.
+//! Runs jobs in parallel: the runner, its events, the progress display.
 
 pub mod event;
 #[cfg(test)]

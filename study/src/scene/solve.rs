@@ -12,7 +12,7 @@ use billow_solver::platform::workers::Workers;
 use billow_solver::scene::timeline::Timeline;
 use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolution};
 
-use crate::job::row;
+use crate::job::Status;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Files, disk_error, write_atomic};
 use crate::platform::stop::Stop;
@@ -35,7 +35,7 @@ pub struct Pauses {
 #[derive(Debug)]
 pub struct Solved {
     /// `done`, `paused`, or why there is no result.
-    pub status: &'static str,
+    pub status: Status,
     /// The state at the end.
     pub end: Ended,
     /// Wall time of this call, s. A cost, never a reason.
@@ -78,7 +78,7 @@ pub fn solve(
     Ok(Solved { status, end, wall_seconds: start.elapsed().as_secs_f64() })
 }
 
-fn rest(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
+fn rest(scene: &SceneFile, stop: &Stop) -> Result<(Status, Ended)> {
     let mut watch = |_: &statics::Iteration| match stop.requested() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
@@ -87,14 +87,15 @@ fn rest(scene: &SceneFile, stop: &Stop) -> Result<(&'static str, Ended)> {
         Ok(solution) => {
             // Closed film turned inside out rests as well, and is no answer.
             let inside_out = scene.film.shell.is_closed() && solution.volume <= 0.0;
-            let status = if inside_out { FailureKind::InvertedVolume.name() } else { row::DONE };
+            let status =
+                if inside_out { Status::Failed(FailureKind::InvertedVolume) } else { Status::Done };
             Ok((status, Ended::Rest(Box::new(solution))))
         }
         Err(StaticError::NoState(failure)) => match (failure.kind, stop.requested()) {
             (StaticFailureKind::Stopped, Some(signal)) => {
                 Err(Error::Interrupted { signal, next: "nothing is stored".to_owned() })
             }
-            _ => Ok(("no_equilibrium", Ended::NoRest(failure))),
+            _ => Ok((Status::NoEquilibrium, Ended::NoRest(failure))),
         },
         Err(error) => Err(refused("", "solver.static", &error.to_string(), "").into()),
     }
@@ -128,7 +129,7 @@ fn motion(
     files: &dyn Files,
     stop: &Stop,
     report: &mut dyn FnMut(Progress),
-) -> Result<(&'static str, Ended)> {
+) -> Result<(Status, Ended)> {
     let course = Timeline::of_film(&scene.film);
     let (mut model, mut run) = begin(scene, pauses, files)?;
     model.film.share_with(Workers::of(threads));
@@ -170,10 +171,10 @@ fn motion(
     let mut deployment = run.finish(&model, &course, end.unwrap_or(End::Cancelled));
     scene.followed.name(&mut deployment.tracks);
     let status = match &deployment.stop {
-        _ if paused => "paused",
-        End::Done => row::DONE,
-        End::Cancelled => "cancelled",
-        End::Failed(failure) => failure.kind.name(),
+        _ if paused => Status::Paused,
+        End::Done => Status::Done,
+        End::Cancelled => Status::Cancelled,
+        End::Failed(failure) => Status::Failed(failure.kind),
     };
     Ok((status, Ended::Motion(Box::new((model, deployment)))))
 }

@@ -2,7 +2,7 @@
 //!
 //! | key | meaning |
 //! |---|---|
-//! | `status` | `done`; `paused`; `unstable`, `drifted`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
+//! | `status` | `done`; `paused`; `unstable`, `energy_drift`, `inverted_volume`, `step_limit`, `interpenetrated`, `no_equilibrium`: no result |
 //! | `notes` | what the program decided for itself, where it did |
 //! | `stop` | kind, time and place, where there is no result |
 //! | `volume` | enclosed, m³; of open film between it and the fans over its free edges |
@@ -54,7 +54,7 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
     if !scene.notes.is_empty() {
         summary["notes"] = scene.notes.clone().into();
     }
-    summary["status"] = solved.status.into();
+    summary["status"] = solved.status.name().into();
     summary["wall_seconds"] = solved.wall_seconds.into();
     summary
 }

@@ -1,5 +1,5 @@
-//! What is kept on disk: journal, history files, static references, summary table; and whether it is
-//! sound.
+//! What a study stores on disk: journal, history files, static references, summary table; and the
+//! check of a results folder.
 
 pub mod doctor;
 pub mod history_file;

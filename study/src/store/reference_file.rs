@@ -1,11 +1,11 @@
-//! References ([`crate::job::references`]) on disk.
+//! Static references ([`crate::job::references`]) on disk.
 //!
 //! ```text
 //! results/<study>/references/<id>.json     {"format", "version", "physics_version", "states": [[p, V, z_rim], …]}
 //! ```
 //!
-//! A stored state is a saving, never a truth: what is missing, damaged or of another physics version is
-//! looked for again and gives the same bits.
+//! A stored reference only saves time. A reference that is missing, damaged or of another physics
+//! version is computed again, with the same bits.
 
 use std::io;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use crate::store::results::Results;
 
 /// Name of the format.
 const FORMAT: &str = "billow-reference";
-/// Version of the format this program writes and reads.
+/// Version of the format that this program writes and reads.
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
@@ -36,16 +36,16 @@ struct Stored {
 
 fn read(bytes: &[u8]) -> Option<Reference> {
     let stored: Stored = serde_json::from_slice(bytes).ok()?;
-    let ours = stored.format == FORMAT
+    let current = stored.format == FORMAT
         && stored.version == VERSION
         && stored.physics_version == PHYSICS_VERSION;
     let rising = stored.states.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-    let sound = rising && stored.states.first().is_some_and(|first| first[0] > 0.0);
-    (ours && sound).then(|| Reference::new(stored.states))
+    let valid = rising && stored.states.first().is_some_and(|first| first[0] > 0.0);
+    (current && valid).then(|| Reference::new(stored.states))
 }
 
 impl Results<'_> {
-    /// References found by earlier runs; what cannot be read is not known.
+    /// References that earlier runs stored. Files that cannot be read are ignored.
     pub fn references(&self) -> Vec<(JobId, Reference)> {
         let paths = self.files().list(&self.references_path()).unwrap_or_default();
         let known = |path: PathBuf| {
@@ -55,11 +55,12 @@ impl Results<'_> {
         paths.into_iter().filter_map(known).collect()
     }
 
-    /// Files that should be references and are none this program reads.
+    /// Files in the folder of references that this program cannot read as references.
     pub fn unread_references(&self) -> Vec<PathBuf> {
         let paths = self.files().list(&self.references_path()).unwrap_or_default();
-        let sound = |path: &PathBuf| self.files().read(path).ok().and_then(|bytes| read(&bytes));
-        paths.into_iter().filter(|path| sound(path).is_none()).collect()
+        let reference =
+            |path: &PathBuf| self.files().read(path).ok().and_then(|bytes| read(&bytes));
+        paths.into_iter().filter(|path| reference(path).is_none()).collect()
     }
 
     /// Stores a reference.
@@ -75,13 +76,13 @@ impl Results<'_> {
             physics_version: PHYSICS_VERSION,
             states: reference.states().to_vec(),
         };
-        let written = || -> io::Result<()> {
+        let write = || -> io::Result<()> {
             self.files().create_folder(&folder)?;
             let mut bytes = serde_json::to_vec(&stored).map_err(io::Error::other)?;
             bytes.push(b'\n');
             files::write_atomic(self.files(), &path, &bytes)
         };
-        written().map_err(|error| disk_error(&path, &error))
+        write().map_err(|error| disk_error(&path, &error))
     }
 }
 
@@ -92,7 +93,7 @@ mod tests {
     use crate::platform::files::failing::FailingFiles;
 
     #[test]
-    fn what_is_stored_is_read_and_what_is_damaged_is_not() {
+    fn a_stored_reference_is_read_and_a_damaged_one_is_ignored() {
         let folder = tempfile::tempdir().unwrap();
         let results = Results::new(&Disk, folder.path());
         let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
@@ -109,14 +110,14 @@ mod tests {
         files::write_atomic(&Disk, &damaged, other.as_bytes()).unwrap();
         assert_eq!(results.unread_references(), [damaged]);
         // A disk that fails at any operation leaves the old file or the new one.
-        let sound = read(&results.files().read(&path).unwrap());
+        let before = read(&results.files().read(&path).unwrap());
         for nth in 1..=4 {
             let failing = FailingFiles::new(nth, io::ErrorKind::StorageFull);
             let other = Reference::new(vec![[1.0, 0.5, 0.9]]);
-            let told = Results::new(&failing, folder.path()).write_reference(&id, &other);
+            let written = Results::new(&failing, folder.path()).write_reference(&id, &other);
             let found = read(&results.files().read(&path).unwrap());
-            assert_eq!(told.is_err(), nth < 4, "operation {nth}");
-            assert!(found == sound || found == Some(other), "operation {nth}");
+            assert_eq!(written.is_err(), nth < 4, "operation {nth}");
+            assert!(found == before || found == Some(other), "operation {nth}");
             results.write_reference(&id, &reference).unwrap();
         }
         assert_eq!(results.references(), [(id, reference)]);

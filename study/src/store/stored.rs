@@ -1,12 +1,13 @@
-//! What a results folder holds, read as it lies there: its study, planned again, and its journal.
-//! Nothing is changed and no lock is held, so it reads the same while a run goes on.
+//! The contents of a results folder: its study, planned again, and its journal. Reading changes
+//! nothing and holds no lock, so it works while a run goes on.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use crate::job::id::common_prefix_length;
 use crate::job::point::Point;
-use crate::job::row::{self, Cells};
-use crate::job::{self, JobId};
+use crate::job::row::Cells;
+use crate::job::{self, JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
@@ -14,16 +15,16 @@ use crate::store::table::Table;
 use crate::study::Study;
 use crate::study::plan::{self, FinishedRow};
 
-/// Ids shown when one is not found, or not told apart.
-const NEAREST: usize = 5;
+/// Ids in the message about an id that is not found or not unique, at most.
+const MAX_IDS_SHOWN: usize = 5;
 
-/// A results folder, read.
+/// A results folder that was read.
 pub struct Stored<'a> {
-    /// Where it lies.
+    /// The folder.
     pub results: Results<'a>,
-    /// The study it was last run for.
+    /// The study that the folder was last run for.
     pub study: Study,
-    /// What its journals say.
+    /// Its journals.
     pub journal: Journal,
     /// Every point planned so far, in plan order.
     pub points: Vec<Point>,
@@ -33,24 +34,24 @@ impl<'a> Stored<'a> {
     /// Reads a folder.
     ///
     /// # Errors
-    /// [`Error::Disk`] where there is no study.json, or what lies there cannot be read.
+    /// [`Error::Disk`] when there is no study.json, or when a file cannot be read.
     pub fn read(results: Results<'a>) -> Result<Self> {
-        // What a line says that cannot be read is not to be guessed.
-        let (stored, faults) = Self::salvage(results)?;
+        let (stored, faults) = Self::read_valid(results)?;
         faults.into_iter().next().map_or(Ok(stored), Err)
     }
 
-    /// Reads what can be read: journal lines that are none of ours are passed over, and told.
+    /// Reads all that can be read. Journal lines that are not valid are skipped and returned as errors.
     ///
     /// # Errors
-    /// As [`Self::read`], but for such lines.
-    pub fn salvage(results: Results<'a>) -> Result<(Self, Vec<Error>)> {
+    /// As [`Self::read`], except for such lines.
+    pub fn read_valid(results: Results<'a>) -> Result<(Self, Vec<Error>)> {
         if results.owner()?.is_none() {
             return Err(Error::Disk {
                 path: results.root().to_owned(),
-                problem: "no results here: no study.json\n  next: `billow run STUDY` first, or \
+                problem:
+                    "no results here: no study.json\n  next: run `billow run STUDY` first, or \
                           name the folder of its results"
-                    .to_owned(),
+                        .to_owned(),
             });
         }
         let study = Study::load(&results.study_path(), &[])?;
@@ -59,17 +60,18 @@ impl<'a> Stored<'a> {
         Ok((Self { results, study, journal, points }, faults))
     }
 
-    /// How a point ended so far.
+    /// The row of a point.
     pub fn cells(&self, point: &Point) -> Cells {
-        journal::cells_of(point, &self.journal.records).unwrap_or_else(|| Cells::new(row::PENDING))
+        journal::cells_of(point, &self.journal.records)
+            .unwrap_or_else(|| Cells::new(Status::Pending))
     }
 
-    /// The table, from plan and journal.
+    /// The table, built from plan and journal.
     pub fn table(&self) -> Table {
         Table::build(&self.points, &self.journal.records, &|name| self.study.unit(name).to_owned())
     }
 
-    /// The table with a row for every point of the grid: those that are one job have one row each.
+    /// The table with one row per point of the grid, also for points that share a job.
     pub fn table_of_all_points(&self) -> Table {
         let mut points = Vec::with_capacity(self.points.len());
         let mut seen: BTreeSet<String> = BTreeSet::new();
@@ -90,15 +92,15 @@ impl<'a> Stored<'a> {
         self.points.iter().find(|point| point.job.id == *id)
     }
 
-    /// The record of a job, the last one before it was withdrawn included.
+    /// The last record of a job, also of an invalidated one.
     pub fn record(&self, id: &JobId) -> Option<&Record> {
-        self.journal.records.get(id).or_else(|| self.journal.withdrawn.get(id))
+        self.journal.records.get(id).or_else(|| self.journal.invalidated.get(id))
     }
 
-    /// Where the history of a job lies.
+    /// Path of the history file of a job.
     ///
     /// # Errors
-    /// [`Error::Disk`] where the job has left none, and why.
+    /// [`Error::Disk`] with the reason when the job has no history.
     pub fn history_path(&self, id: &JobId) -> Result<PathBuf> {
         let path = self.results.job_path(id);
         if self.record(id).is_some_and(|record| record.file_hash.is_some()) {
@@ -106,47 +108,46 @@ impl<'a> Stored<'a> {
         }
         let why = match (self.point(id), self.record(id)) {
             (Some(point), None) if point.infeasible.is_some() => {
-                "the point is infeasible: no job ran"
+                "the point is infeasible, so no job ran"
             }
             (_, None) => "the job has not run yet",
-            (_, Some(_)) => "the job left no history",
+            (_, Some(_)) => "the job wrote no history",
         };
         let next = format!("billow why {} {}", id.short(), self.results.root().display());
         Err(Error::Disk { path, problem: format!("{why}\n  next: {next}") })
     }
 
-    /// The job a prefix of its id means, among those planned and those only recorded.
+    /// The planned or recorded job whose id begins with `prefix`.
     ///
     /// # Errors
-    /// [`Error::Input`] when none or several begin like that; it lists the nearest.
+    /// [`Error::Input`] when no id or several ids begin so. The message lists the nearest ids.
     pub fn job(&self, prefix: &str) -> Result<JobId> {
         let wanted = prefix.trim().to_ascii_lowercase();
         let planned = self.points.iter().map(|point| &point.job.id);
-        let recorded = self.journal.records.keys().chain(self.journal.withdrawn.keys());
+        let recorded = self.journal.records.keys().chain(self.journal.invalidated.keys());
         let known: BTreeSet<&JobId> = planned.chain(recorded).collect();
-        let begins = |id: &&&JobId| !wanted.is_empty() && id.as_str().starts_with(&wanted);
-        let found: Vec<&JobId> = known.iter().filter(begins).copied().collect();
+        let begins_so = |id: &&&JobId| !wanted.is_empty() && id.as_str().starts_with(&wanted);
+        let found: Vec<&JobId> = known.iter().filter(begins_so).copied().collect();
         match found.as_slice() {
-            [one] => Ok((*one).clone()),
+            [id] => Ok((*id).clone()),
             [] => {
                 let mut near: Vec<&JobId> = known.into_iter().collect();
-                // Stable: ids that agree equally far stay sorted.
-                let agreed = |id: &&JobId| job::agreement(id.as_str(), &wanted);
-                near.sort_by_key(|id| std::cmp::Reverse(agreed(id)));
+                // The sort is stable: ids with equal prefixes stay in order.
+                let common = |id: &&JobId| common_prefix_length(id.as_str(), &wanted);
+                near.sort_by_key(|id| std::cmp::Reverse(common(id)));
                 Err(self.no_job(prefix, "no job has this id", &near))
             }
-            several => Err(self.no_job(
-                prefix,
-                &format!("{} jobs have ids that begin like this", several.len()),
-                several,
-            )),
+            several => {
+                Err(self.no_job(prefix, &format!("{} job ids begin so", several.len()), several))
+            }
         }
     }
 
     fn no_job(&self, prefix: &str, problem: &str, near: &[&JobId]) -> Error {
-        let mut allowed: Vec<String> = near.iter().take(NEAREST).map(|id| self.label(id)).collect();
-        if near.len() > NEAREST {
-            allowed.push(format!("and {} more", near.len() - NEAREST));
+        let mut allowed: Vec<String> =
+            near.iter().take(MAX_IDS_SHOWN).map(|id| self.label(id)).collect();
+        if near.len() > MAX_IDS_SHOWN {
+            allowed.push(format!("and {} more", near.len() - MAX_IDS_SHOWN));
         }
         InputError {
             file: "job".to_owned(),
@@ -154,16 +155,16 @@ impl<'a> Stored<'a> {
             value: prefix.to_owned(),
             problem: problem.to_owned(),
             allowed: if allowed.is_empty() {
-                "there is none".to_owned()
+                "nothing: the study has no jobs".to_owned()
             } else {
-                format!("the first digits of one id, as {}", allowed.join("; "))
+                format!("the first digits of one id: {}", allowed.join("; "))
             },
             hint: format!("billow table {} --columns job", self.results.root().display()),
         }
         .into()
     }
 
-    /// A job as a person tells it: short id and parameters.
+    /// Short id and parameters of a job, for messages.
     pub fn label(&self, id: &JobId) -> String {
         let parameters = self.point(id).map(|point| job::label(&point.job.parameters));
         match parameters {
@@ -173,7 +174,8 @@ impl<'a> Stored<'a> {
     }
 }
 
-/// Every point the study plans on what is finished: generation after generation, as a run does.
+/// Every point that the study plans with these finished jobs: generation after generation, as in a
+/// run.
 pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
     let mut points: Vec<Point> = Vec::new();
     let mut last = None;

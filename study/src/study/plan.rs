@@ -7,8 +7,8 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
 use crate::job::point::Point;
-use crate::job::row::Cells;
-use crate::job::{Job, JobId};
+use crate::job::row::{Cells, ColumnId};
+use crate::job::{Job, JobId, Status};
 use crate::study::Study;
 
 /// The jobs that can be planned together.
@@ -26,7 +26,7 @@ pub struct FinishedRow {
     /// The job.
     pub id: JobId,
     /// Its status, as in the table.
-    pub status: String,
+    pub status: Status,
     /// Its verdict, as in the table.
     pub verdict: Option<String>,
 }
@@ -34,12 +34,8 @@ pub struct FinishedRow {
 impl FinishedRow {
     /// Of a job that ended with these cells.
     pub fn of(id: &JobId, cells: &Cells) -> Self {
-        let verdict = Some(cells.text("verdict")).filter(|text| !text.is_empty());
-        Self {
-            id: id.clone(),
-            status: cells.status().to_owned(),
-            verdict: verdict.map(str::to_owned),
-        }
+        let verdict = Some(cells.text(ColumnId::Verdict)).filter(|text| !text.is_empty());
+        Self { id: id.clone(), status: cells.status(), verdict: verdict.map(str::to_owned) }
     }
 }
 

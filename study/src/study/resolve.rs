@@ -2,7 +2,8 @@
 
 use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
 use billow_solver::scene::{
-    Contact, GasSupply, InflowWindow, ModelKind, Outputs, Scene, Solver, Stepping, Thresholds,
+    Contact, GasSupply, InflowWindow, MAX_SAMPLES, ModelKind, Outputs, Scene, Solver, Stepping,
+    Thresholds,
 };
 
 use super::base::Base;
@@ -60,9 +61,6 @@ pub(super) fn design_key(design: &FoldDesign) -> DesignKey {
     ]
 }
 
-/// Most samples of one run: more would be a slip of the unit.
-const MOST_SAMPLES: f64 = 1e6;
-
 /// The scene of a point.
 pub(super) fn scene(
     point: &Base,
@@ -73,12 +71,12 @@ pub(super) fn scene(
     let get = |path: &str| number(settings, path, source);
     let end_time = get("solver.end_time")?;
     let sample_interval = get("outputs.sample_interval")?;
-    if end_time / sample_interval > MOST_SAMPLES {
+    if end_time / sample_interval > MAX_SAMPLES {
         return Err(source.error(
             "outputs.sample_interval",
             &shown(sample_interval),
-            format!("samples a run of {end_time} s more than {MOST_SAMPLES:.0} times"),
-            format!("at least {} s for this end_time", shown(end_time / MOST_SAMPLES)),
+            format!("samples a run of {end_time} s more than {MAX_SAMPLES:.0} times"),
+            format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
         ));
     }
     let name = settings.text("strategy");

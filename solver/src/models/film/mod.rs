@@ -40,6 +40,7 @@ pub use statics::{
     Erected, StaticState, erected, reference_scene, static_reference, static_reference_while,
     static_states,
 };
+pub use tracks::CONTACT as CONTACT_COLUMNS;
 
 /// Runs a scene as film with this contact, at this share of the stable step, judged against
 /// `reference` ([`static_reference`], or a stored one of the same design, film and supports).

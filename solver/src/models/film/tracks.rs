@@ -7,7 +7,7 @@ use crate::output::frames::Frame;
 use crate::output::history::Track;
 
 /// Tracks of contact: name, unit, meaning.
-const CONTACT: [(&str, &str, &str); 7] = [
+pub const CONTACT: [(&str, &str, &str); 7] = [
     ("interlayer_pressure", "Pa", "largest pressure of film on film at a node"),
     ("interlayer_pressure_mean", "Pa", "mean of it over the area in contact"),
     ("contact_area_fraction", "1", "share of the film's area in contact"),

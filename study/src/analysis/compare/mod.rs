@@ -1,50 +1,44 @@
-//! Comparing: what does one parameter do, all else equal?
+//! Comparison: the effect of one parameter with all others equal.
 //!
-//! Rows that are equal in all other parameters make a set; in a set, the row with the base value and
-//! each row with another one make a pair. Parameters are matched on their canonical text (the
-//! shortest digits that read back as the number), never on nearly equal floats. A parameter that
-//! stands on one axis with the compared one and follows from it changes with it, so it is not matched
-//! (a strategy that brings its own residual gas).
+//! Rows that are equal in all other parameters form a set. In a set, the row with the base value and
+//! each row with another value form a pair. Parameters are matched by their canonical text (the
+//! shortest digits that read back as the number), never by nearly equal floats. A parameter on the
+//! same axis as the compared one that is a function of it changes with it, so it is not matched
+//! (example: a strategy with its residual gas).
 //!
 //! ```text
 //! difference = other − base        ratio = other / base
 //! tie:  |other − base| ≤ tie · max(|base|, |other|)
 //! ```
 //!
-//! A measure counts only where its job is done; a job that failed, or has no pattern, has none, and
-//! neither has one in which the thing measured never happened. A pair of which only one side has the
-//! measure is an outcome (`only_base`, `only_other`) and is never dropped. A pair with a job still to
-//! run is `pending` and counts for nothing.
+//! Only done jobs have measures, and only when the measured event happened. A pair of which only one
+//! side has the measure is an outcome (`only_base`, `only_other`) and is never ignored. A pair with a
+//! pending job is `pending` and does not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
-use crate::job::row::{self, Kind};
+use crate::job::Status;
+use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId};
 use crate::store::table::{Column, Table};
 
-/// Measures of which less is better: sooner, or safer.
-pub const SMALLER_IS_BETTER: [&str; 13] = [
-    "t_50_z_rim",
-    "t_90_z_rim",
-    "t_50_volume",
-    "t_90_volume",
-    "t_deployed",
-    "t_settled",
-    "peak_vz",
-    "peak_kinetic_energy",
-    "overshoot",
-    "ringing_rms",
-    "film_stress",
-    "peak_lid_force",
-    "interlayer_pressure",
-];
-/// Measures of which more is better.
-pub const LARGER_IS_BETTER: [&str; 2] = ["volume_ratio", "height_ratio"];
-/// Largest relative difference of a tie, where nobody says otherwise: rounding, no physics.
-pub const TIE: f64 = 1e-9;
+/// Largest relative difference of a tie, unless the user gives another. Chosen: above rounding errors,
+/// far below any effect of interest.
+pub const DEFAULT_TIE: f64 = 1e-9;
 
-/// A value as it is matched: numbers in shortest digits (8 = 8.0, −0 = 0), texts in quotes.
+/// Names of the measures of which that side is better, in the order of the table.
+pub fn measures_with(side: BetterSide) -> Vec<&'static str> {
+    COLUMNS.iter().filter(|column| column.better == side).map(|column| column.name).collect()
+}
+
+/// Which side of a measure is better.
+fn better_side(measure: &str) -> BetterSide {
+    ColumnId::from_name(measure).map_or(BetterSide::Neither, |id| id.column().better)
+}
+
+/// The text by which values are matched: numbers in shortest digits (8 = 8.0, −0 = 0), texts in
+/// quotes.
 pub fn canonical(value: &Value) -> String {
     match value {
         Value::Number(number) => format!("{}", number + 0.0),
@@ -53,26 +47,26 @@ pub fn canonical(value: &Value) -> String {
     }
 }
 
-/// Values of a column in some rows, each once, in the order of first appearance.
+/// Different values of a column in some rows, in the order of first appearance.
 pub fn values(column: &Column, rows: &[usize]) -> Vec<Value> {
     let mut known = BTreeSet::new();
     let cells = rows.iter().map(|row| &column.cells[*row]);
     cells.filter(|value| known.insert(canonical(value))).cloned().collect()
 }
 
-/// Rows that are equal in all parameters but one.
+/// Sets of rows that are equal in all parameters except one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sets {
-    /// The parameters matched.
+    /// The matched parameters.
     pub matched: Vec<String>,
-    /// Parameters that change with the compared one.
+    /// Parameters that change with the compared one and are not matched.
     pub carried: Vec<String>,
     /// Rows of each set, in table order; sets in the order of their first row.
     pub sets: Vec<Vec<usize>>,
 }
 
 impl Sets {
-    /// Sorts rows of a table into sets. `zipped` are the parameters on the axis of `by`.
+    /// Puts rows of a table into sets. `zipped` are the parameters on the axis of `by`.
     pub fn new(table: &Table, rows: &[usize], by: &str, zipped: &[String]) -> Self {
         let compared = table.parameters().find(|column| column.name == by);
         let follows = |column: &Column| {
@@ -81,15 +75,15 @@ impl Sets {
         };
         let others = || table.parameters().filter(|column| column.name != by);
         let matched: Vec<&Column> = others().filter(|column| !follows(column)).collect();
-        let mut places: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+        let mut set_of: BTreeMap<Vec<String>, usize> = BTreeMap::new();
         let mut sets: Vec<Vec<usize>> = Vec::new();
         for row in rows {
             let key = matched.iter().map(|column| canonical(&column.cells[*row])).collect();
-            let place = *places.entry(key).or_insert(sets.len());
-            if place == sets.len() {
+            let index = *set_of.entry(key).or_insert(sets.len());
+            if index == sets.len() {
                 sets.push(Vec::new());
             }
-            sets[place].push(*row);
+            sets[index].push(*row);
         }
         Self {
             matched: matched.iter().map(|column| column.name.clone()).collect(),
@@ -99,7 +93,7 @@ impl Sets {
     }
 }
 
-/// Whether each value of `of` comes with one value of `column`.
+/// Whether each value of `of` comes with a single value of `column`.
 fn is_function(column: &Column, of: &Column) -> bool {
     let mut seen: BTreeMap<String, String> = BTreeMap::new();
     column.cells.iter().zip(&of.cells).all(|(value, of)| {
@@ -117,7 +111,7 @@ pub struct Pair {
     pub other: usize,
 }
 
-/// The pairs of some sets, and the rows left without a partner.
+/// The pairs of some sets, and the rows without a partner.
 pub fn pairs(table: &Table, sets: &Sets, by: &str, base: &Value) -> (Vec<Pair>, Vec<usize>) {
     let Some(column) = table.column(by) else { return (Vec::new(), Vec::new()) };
     let is_base = |row: &usize| canonical(&column.cells[*row]) == canonical(base);
@@ -137,29 +131,29 @@ pub fn pairs(table: &Table, sets: &Sets, by: &str, base: &Value) -> (Vec<Pair>, 
     (pairs, alone)
 }
 
-/// Which side of a pair a measure speaks for.
+/// Which job of a pair is better in a measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Better {
-    /// The base value's job.
+    /// The job with the base value.
     Base,
-    /// The other value's job.
+    /// The job with the other value.
     Other,
-    /// Neither by more than the tie.
+    /// Equal up to the tie.
     Tie,
-    /// Only the base value's job has the measure.
+    /// Only the job with the base value has the measure.
     OnlyBase,
-    /// Only the other value's job has it.
+    /// Only the job with the other value has the measure.
     OnlyOther,
-    /// Neither has it.
+    /// Neither job has the measure.
     Neither,
-    /// A job is still to run.
+    /// A job has not ended yet.
     Pending,
-    /// Both have it, and they differ, but less is not better, nor is more.
+    /// The values differ, but neither side of this measure is better.
     Differ,
 }
 
 impl Better {
-    /// As in the column `better`.
+    /// Name, as in the column `better`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Base => "base",
@@ -173,9 +167,9 @@ impl Better {
         }
     }
 
-    /// What it is with base and other in each other's place.
+    /// The result with base and other exchanged.
     #[must_use]
-    pub fn turned(self) -> Self {
+    pub fn exchanged(self) -> Self {
         match self {
             Self::Base => Self::Other,
             Self::Other => Self::Base,
@@ -189,21 +183,21 @@ impl Better {
 /// One measure of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compared {
-    /// Of the base value's job.
+    /// Value of the job with the base value.
     pub base: Option<f64>,
-    /// Of the other value's job.
+    /// Value of the job with the other value.
     pub other: Option<f64>,
-    /// Which side it speaks for.
+    /// Which job is better.
     pub better: Better,
 }
 
 impl Compared {
-    /// Other less base.
+    /// Other minus base.
     pub fn difference(&self) -> Option<f64> {
         Some(self.other? - self.base?)
     }
 
-    /// Other over base; none over a base of zero.
+    /// Other over base; `None` for a base of zero.
     pub fn ratio(&self) -> Option<f64> {
         let base = self.base.filter(|base| *base != 0.0)?;
         Some(self.other? / base)
@@ -214,7 +208,8 @@ impl Compared {
 pub fn compared(table: &Table, pair: Pair, measure: &Column, tie: f64) -> Compared {
     let base = measured(table, measure, pair.base);
     let other = measured(table, measure, pair.other);
-    let pending = [pair.base, pair.other].iter().any(|row| status(table, *row) == row::PENDING);
+    let pending =
+        [pair.base, pair.other].iter().any(|row| table.status(*row) == Some(Status::Pending));
     let better = match (base, other) {
         _ if pending => Better::Pending,
         (None, None) => Better::Neither,
@@ -226,32 +221,23 @@ pub fn compared(table: &Table, pair: Pair, measure: &Column, tie: f64) -> Compar
 }
 
 fn judge(measure: &str, base: f64, other: f64, tie: f64) -> Better {
-    // Equal infinities differ by no number.
+    // The difference of equal infinities is NaN.
     let equal =
         base.total_cmp(&other).is_eq() || (other - base).abs() <= tie * base.abs().max(other.abs());
     let smaller = if base < other { Better::Base } else { Better::Other };
     if equal {
-        Better::Tie
-    } else if SMALLER_IS_BETTER.contains(&measure) {
-        smaller
-    } else if LARGER_IS_BETTER.contains(&measure) {
-        smaller.turned()
-    } else {
-        Better::Differ
+        return Better::Tie;
+    }
+    match better_side(measure) {
+        BetterSide::Smaller => smaller,
+        BetterSide::Larger => smaller.exchanged(),
+        BetterSide::Neither => Better::Differ,
     }
 }
 
-/// Status of a row.
-pub fn status(table: &Table, row: usize) -> &str {
-    match table.column("status").map(|column| &column.cells[row]) {
-        Some(Value::Text(status)) => status,
-        _ => "",
-    }
-}
-
-/// A measure of a row, if its job is done and has it.
+/// A measure of a row; `None` unless its job is done and has the measure.
 pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
-    if status(table, row) != row::DONE {
+    if table.status(row) != Some(Status::Done) {
         return None;
     }
     match measure.cells[row] {
@@ -263,7 +249,7 @@ pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
 
 /// Whether a column can be compared as a measure.
 pub fn is_measure(column: &Column) -> bool {
-    matches!(column.kind, Kind::Number | Kind::Integer)
+    matches!(column.cell_type, CellType::Number | CellType::Integer)
 }
 
 /// One measure over all pairs of the base with one other value.
@@ -273,25 +259,25 @@ pub struct Tally {
     pub value: Value,
     /// The measure.
     pub measure: String,
-    /// How many pairs came out how; those pending are not pairs yet.
+    /// Number of pairs by name of [`Better`]; pending ones included.
     pub counts: BTreeMap<&'static str, usize>,
-    /// Ratios of the pairs that have both.
+    /// Ratios of the pairs in which both jobs have the measure.
     pub ratio: Option<Spread>,
 }
 
 impl Tally {
-    /// Pairs that came out like this.
+    /// Number of pairs with this result.
     pub fn count(&self, better: Better) -> usize {
         self.counts.get(better.name()).copied().unwrap_or(0)
     }
 
-    /// Pairs of which both jobs have ended.
+    /// Number of pairs of which both jobs have ended.
     pub fn pairs(&self) -> usize {
         self.counts.values().sum::<usize>() - self.count(Better::Pending)
     }
 }
 
-/// Sums pairs up: by other value, and there by measure.
+/// Counts pairs by other value and measure.
 pub fn tallies(
     table: &Table,
     pairs: &[Pair],
@@ -311,8 +297,8 @@ pub fn tallies(
                 .map(|pair| compared(table, *pair, measure, tie))
                 .collect();
             let mut counts = BTreeMap::new();
-            for one in &compared {
-                *counts.entry(one.better.name()).or_default() += 1;
+            for pair in &compared {
+                *counts.entry(pair.better.name()).or_default() += 1;
             }
             tallies.push(Tally {
                 value: value.clone(),

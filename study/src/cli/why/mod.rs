@@ -6,14 +6,13 @@ use std::io::Write;
 use billow_solver::output::audit::RESIDUAL_BOUND;
 use serde_json::{Map, json};
 
-use super::columns::{NEAR_THRESHOLD, NEAR_THRESHOLD_MARGIN, STOP_LOCATION, STOP_TIME};
 use super::options::OutputOptions;
 use super::print::print_rows;
 use super::target::{StudyArgs, folder_of_job};
 use super::{Format, output_error};
 use crate::input::value::{Value, brief_number, json_value};
-use crate::job::JobId;
-use crate::job::row::{self, Cells};
+use crate::job::row::{Cells, ColumnId};
+use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::scene::summary;
@@ -49,7 +48,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let cells = match (stored.point(&id), stored.record(&id)) {
         (Some(point), _) => stored.cells(point),
         (None, Some(record)) => record.cells.clone(),
-        (None, None) => Cells::new(row::PENDING),
+        (None, None) => Cells::new(Status::Pending),
     };
     let lines = explanation(&stored, &id, &cells)?;
     match args.output.format() {
@@ -74,9 +73,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 /// Status and verdict.
 fn headline(cells: &Cells) -> String {
     let near = if verdict::is_near_threshold(cells) { ", near a threshold" } else { "" };
-    match cells.text("verdict") {
-        "" => cells.status().to_owned(),
-        verdict => format!("{}, {verdict}{near}", cells.status()),
+    match cells.text(ColumnId::Verdict) {
+        "" => cells.status().name().to_owned(),
+        verdict => format!("{}, {verdict}{near}", cells.status().name()),
     }
 }
 
@@ -84,8 +83,8 @@ fn headline(cells: &Cells) -> String {
 fn explanation(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> {
     let root = stored.results.root().display();
     let (mut lines, next) = match cells.status() {
-        row::DONE => done(stored, id, cells),
-        row::PENDING => pending(stored, id),
+        Status::Done => done(stored, id, cells),
+        Status::Pending => pending(stored, id),
         status => failure::explanation(cells, status, id.short(), &root.to_string()),
     };
     lines.extend(audit(cells));
@@ -118,7 +117,7 @@ fn done(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> (Vec<Line>, String) {
 
 /// Lines and next step of a job that has not run.
 fn pending(stored: &Stored<'_>, id: &JobId) -> (Vec<Line>, String) {
-    let invalidated = stored.journal.withdrawn.contains_key(id);
+    let invalidated = stored.journal.invalidated.contains_key(id);
     let status = if invalidated { "invalidated, not run again yet" } else { "not run yet" };
     let root = stored.results.root().display();
     let next = format!("billow run of its study, or billow rerun {} {root}", id.short());
@@ -127,14 +126,14 @@ fn pending(stored: &Stored<'_>, id: &JobId) -> (Vec<Line>, String) {
 
 /// Lines of the audit: energy ledger, passages and intersections.
 fn audit(cells: &Cells) -> Vec<Line> {
-    let Some(residual) = number(cells, "ledger_residual") else { return Vec::new() };
+    let Some(residual) = cells.number(ColumnId::LedgerResidual) else { return Vec::new() };
     let sign = if residual <= RESIDUAL_BOUND { "≤" } else { ">" };
     let residual = brief_number(residual);
     let mut ledger = format!("largest residual {residual} {sign} {RESIDUAL_BOUND}");
-    if let Some(gas) = number(cells, "gas_residual") {
+    if let Some(gas) = cells.number(ColumnId::GasResidual) {
         let _ = write!(ledger, "; gas balance {}", brief_number(gas));
     }
-    let film = match (cells.get("passages"), cells.get("intersections")) {
+    let film = match (cells.get(ColumnId::Passages), cells.get(ColumnId::Intersections)) {
         (Value::Null, Value::Null) => {
             "passages and intersections are not counted by this model".to_owned()
         }
@@ -143,11 +142,6 @@ fn audit(cells: &Cells) -> Vec<Line> {
         }
     };
     vec![("ledger", ledger), ("film", film)]
-}
-
-/// The number in a cell.
-fn number(cells: &Cells, name: &str) -> Option<f64> {
-    if let Value::Number(number) = cells.get(name) { Some(*number) } else { None }
 }
 
 /// A fraction as a percentage, without its sign.
@@ -169,21 +163,21 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
         "checks": verdict::checks(cells),
         "why": texts.collect::<Vec<_>>(),
     });
-    for name in [
-        "status",
-        "verdict",
-        NEAR_THRESHOLD,
-        NEAR_THRESHOLD_MARGIN,
-        "reason",
-        "nearest",
-        STOP_TIME,
-        STOP_LOCATION,
-        "ledger_residual",
-        "gas_residual",
-        "passages",
-        "intersections",
+    for column in [
+        ColumnId::Status,
+        ColumnId::Verdict,
+        ColumnId::NearThreshold,
+        ColumnId::NearThresholdMargin,
+        ColumnId::Reason,
+        ColumnId::Nearest,
+        ColumnId::StopTime,
+        ColumnId::StopLocation,
+        ColumnId::LedgerResidual,
+        ColumnId::GasResidual,
+        ColumnId::Passages,
+        ColumnId::Intersections,
     ] {
-        keys[name] = json_value(cells.get(name));
+        keys[column.name()] = json_value(cells.get(column));
     }
     keys
 }

@@ -3,15 +3,15 @@
 use billow_solver::output::measures::{REFERENCE_PRESSURES, Verdict};
 use serde_json::json;
 
-use super::{Line, NEAR_THRESHOLD, NEAR_THRESHOLD_MARGIN, number, percent};
+use super::{Line, percent};
 use crate::input::value::{Value, brief_number};
-use crate::job::row::Cells;
+use crate::job::row::{Cells, ColumnId};
 
 /// Measures and thresholds that decide the verdict.
-const CHECKS: [(&str, &str); 3] = [
-    ("volume_ratio", "deployed_volume_threshold"),
-    ("height_ratio", "deployed_height_threshold"),
-    ("volume_ratio", "stalled_volume_threshold"),
+const CHECKS: [[ColumnId; 2]; 3] = [
+    [ColumnId::VolumeRatio, ColumnId::DeployedVolumeThreshold],
+    [ColumnId::HeightRatio, ColumnId::DeployedHeightThreshold],
+    [ColumnId::VolumeRatio, ColumnId::StalledVolumeThreshold],
 ];
 
 /// A measure compared with its threshold.
@@ -24,28 +24,28 @@ struct Check {
 }
 
 impl Check {
-    fn of(cells: &Cells, [measure, threshold]: [&str; 2]) -> Option<Self> {
-        let (value, threshold) = (number(cells, measure)?, number(cells, threshold)?);
+    fn of(cells: &Cells, [measure, threshold]: [ColumnId; 2]) -> Option<Self> {
+        let (value, threshold) = (cells.number(measure)?, cells.number(threshold)?);
         Some(Self { value, threshold, margin: value / threshold - 1.0 })
     }
 }
 
 /// Whether the verdict is deployed.
 pub(super) fn is_deployed(cells: &Cells) -> bool {
-    cells.text("verdict") == Verdict::Deployed.name()
+    cells.text(ColumnId::Verdict) == Verdict::Deployed.name()
 }
 
 /// Whether a small change of the ratios would change the verdict.
 pub(super) fn is_near_threshold(cells: &Cells) -> bool {
-    *cells.get(NEAR_THRESHOLD) == Value::Bool(true)
+    *cells.get(ColumnId::NearThreshold) == Value::Bool(true)
 }
 
 /// The checks as JSON.
 pub(super) fn checks(cells: &Cells) -> Vec<serde_json::Value> {
-    let check = |(measure, threshold): (&str, &str)| {
+    let check = |[measure, threshold]: [ColumnId; 2]| {
         let check = Check::of(cells, [measure, threshold])?;
         Some(json!({
-            "measure": measure, "value": check.value, "threshold": threshold,
+            "measure": measure.name(), "value": check.value, "threshold": threshold.name(),
             "least": check.threshold, "margin": check.margin,
         }))
     };
@@ -55,7 +55,7 @@ pub(super) fn checks(cells: &Cells) -> Vec<serde_json::Value> {
 /// The lines that explain a verdict.
 pub(super) fn explanation(cells: &Cells) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let verdict = cells.text("verdict");
+    let verdict = cells.text(ColumnId::Verdict);
     lines.extend(volume(cells, verdict).map(|text| ("volume", text)));
     lines.extend(height(cells).map(|text| ("height", text)));
     lines.extend(reference(cells).map(|text| ("reference", text)));
@@ -64,7 +64,7 @@ pub(super) fn explanation(cells: &Cells) -> Vec<Line> {
         lines.push(("verdict", text.to_owned()));
     }
     lines.extend(near_threshold(cells).map(|text| ("near", text)));
-    if let Some(time) = number(cells, "t_deployed") {
+    if let Some(time) = cells.number(ColumnId::TDeployed) {
         let since =
             format!("both thresholds reached at {} s and kept for 20 ms", brief_number(time));
         let later = if is_deployed(cells) { "" } else { ", but not until the end" };
@@ -74,8 +74,8 @@ pub(super) fn explanation(cells: &Cells) -> Vec<Line> {
 }
 
 fn volume(cells: &Cells, verdict: &str) -> Option<String> {
-    let deployed = Check::of(cells, ["volume_ratio", "deployed_volume_threshold"])?;
-    let stalled = Check::of(cells, ["volume_ratio", "stalled_volume_threshold"])?;
+    let deployed = Check::of(cells, CHECKS[0])?;
+    let stalled = Check::of(cells, CHECKS[2])?;
     let mean = format!("volume_ratio {} (mean of the last tenth)", brief_number(deployed.value));
     let (least, low) = (deployed.threshold, stalled.threshold);
     Some(if verdict == Verdict::Deployed.name() {
@@ -95,7 +95,7 @@ fn volume(cells: &Cells, verdict: &str) -> Option<String> {
 }
 
 fn height(cells: &Cells) -> Option<String> {
-    let check = Check::of(cells, ["height_ratio", "deployed_height_threshold"])?;
+    let check = Check::of(cells, CHECKS[1])?;
     let (sign, word) = if check.margin >= 0.0 { ("≥", "above") } else { ("<", "below") };
     Some(format!(
         "height_ratio {} (least of the last tenth) {sign} {}, the threshold of deployed; {} {word}",
@@ -108,7 +108,7 @@ fn height(cells: &Cells) -> Option<String> {
 /// A note when the final pressure is above the largest pressure of the static states.
 fn reference(cells: &Cells) -> Option<String> {
     let largest = REFERENCE_PRESSURES[REFERENCE_PRESSURES.len() - 1];
-    let pressure = number(cells, "final_pressure").filter(|pressure| *pressure > largest)?;
+    let pressure = cells.number(ColumnId::FinalPressure).filter(|pressure| *pressure > largest)?;
     Some(format!(
         "static states are computed up to {largest} Pa and taken as constant above; the final \
          pressure is {} Pa",
@@ -117,7 +117,7 @@ fn reference(cells: &Cells) -> Option<String> {
 }
 
 fn near_threshold(cells: &Cells) -> Option<String> {
-    let margin = percent(number(cells, NEAR_THRESHOLD_MARGIN)?);
+    let margin = percent(cells.number(ColumnId::NearThresholdMargin)?);
     let (answer, would) =
         if is_near_threshold(cells) { ("yes", "would") } else { ("no", "would not") };
     let change = format!("a change of the ratios by less than {margin}");

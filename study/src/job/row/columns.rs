@@ -1,25 +1,44 @@
-//! The columns of a row that do not depend on the study, in stored order. In the table the job id
-//! and the parameters of the study stand before them.
+//! The table of columns: one entry per column of a row.
+//!
+//! Everything else follows from this table: the row of a job, the summary table and its Parquet
+//! metadata, the groups of `billow show`, the better side in `billow compare`, and
+//! docs/reference/columns.md. To add a measure, add one entry here and update the reference page
+//! (`BILLOW_UPDATE_REFERENCE=1` with the pipeline test `reference_columns`). The entry takes its value
+//! from a [`JobEnd`]: from the history, the tracks, or a field of
+//! [`billow_solver::output::measures::Measures`], which the solver computes.
+//!
+//! In the summary table, the job id and the parameters of the study stand before these columns.
 
-/// Name, type, unit and meaning of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+use billow_solver::output::measures::Verdict;
+
+use super::cell::Cell;
+use super::job_end::{JobEnd, integer};
+use crate::platform::provenance;
+
+/// Name, type, unit, meaning and source of a column.
+#[derive(Debug, Clone, Copy)]
 pub struct RowColumn {
-    /// Name, as in the table.
+    /// Identifier in the code.
+    pub id: ColumnId,
+    /// Name in the table.
     pub name: &'static str,
-    /// Type of its cells; any cell may be null.
-    pub kind: Kind,
-    /// SI unit; "1" for a pure number, empty for what is none.
+    /// Type of its cells. Any cell may be null.
+    pub cell_type: CellType,
+    /// SI unit; "1" for a dimensionless number, empty for text and true/false.
     pub unit: &'static str,
+    /// Part of a row that it belongs to.
+    pub group: ColumnGroup,
+    /// Which of two values is the better one.
+    pub better: BetterSide,
     /// Meaning, one line.
     pub meaning: &'static str,
-    /// Whether it is compared bit for bit between runs of one job: false for what it cost and who
-    /// made it.
-    pub result: bool,
+    /// Takes the cell from a job that ended.
+    pub take: fn(&JobEnd<'_>) -> Cell,
 }
 
 /// Type of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CellType {
     /// True or false.
     Bool,
     /// Whole number.
@@ -30,108 +49,269 @@ pub enum Kind {
     Text,
 }
 
-/// Position of a column.
-pub fn index(name: &str) -> Option<usize> {
-    COLUMNS.iter().position(|column| column.name == name)
+impl CellType {
+    /// Name for documents and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bool => "true or false",
+            Self::Integer => "whole number",
+            Self::Number => "number",
+            Self::Text => "text",
+        }
+    }
 }
 
-const fn text(name: &'static str, meaning: &'static str) -> RowColumn {
-    RowColumn { name, kind: Kind::Text, unit: "", meaning, result: true }
+/// Part of a row, in the order in which `billow show` prints them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnGroup {
+    /// How the job ended.
+    Outcome,
+    /// What the run measured.
+    Measures,
+    /// How far the run can be trusted.
+    Audit,
+    /// The solved fold pattern.
+    Pattern,
+    /// What the run took.
+    Cost,
+    /// Which program computed it.
+    Provenance,
 }
 
-const fn number(name: &'static str, unit: &'static str, meaning: &'static str) -> RowColumn {
-    RowColumn { name, kind: Kind::Number, unit, meaning, result: true }
+impl ColumnGroup {
+    /// Every group, in printed order.
+    pub const ALL: [Self; 6] =
+        [Self::Outcome, Self::Measures, Self::Audit, Self::Pattern, Self::Cost, Self::Provenance];
+
+    /// Name, as `billow show` prints it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Outcome => "outcome",
+            Self::Measures => "measures",
+            Self::Audit => "audit",
+            Self::Pattern => "pattern",
+            Self::Cost => "cost",
+            Self::Provenance => "provenance",
+        }
+    }
 }
 
-const fn count(name: &'static str, meaning: &'static str) -> RowColumn {
-    RowColumn { name, kind: Kind::Integer, unit: "1", meaning, result: true }
+/// Which of two values of a column is better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BetterSide {
+    /// The smaller one: sooner, or a lower load.
+    Smaller,
+    /// The larger one.
+    Larger,
+    /// Neither: the values are only different.
+    Neither,
 }
 
-const fn cost(name: &'static str, unit: &'static str, meaning: &'static str) -> RowColumn {
-    RowColumn { name, kind: Kind::Number, unit, meaning, result: false }
+macro_rules! columns {
+    ($($id:ident $name:literal $type:ident [$unit:literal] $group:ident $better:ident
+       $meaning:literal $end:ident => $value:expr;)+) => {
+        /// Identifies a column of [`COLUMNS`]. A wrong name does not compile.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum ColumnId {
+            $(#[doc = concat!("The column `", $name, "`.")] $id),+
+        }
+
+        /// Every column after the parameters, in stored order.
+        pub const COLUMNS: &[RowColumn] = &[$(RowColumn {
+            id: ColumnId::$id,
+            name: $name,
+            cell_type: CellType::$type,
+            unit: $unit,
+            group: ColumnGroup::$group,
+            better: BetterSide::$better,
+            meaning: $meaning,
+            take: |$end| Cell::from($value),
+        }),+];
+    };
 }
 
-/// Every column after the parameters, in stored order.
-pub const COLUMNS: &[RowColumn] = &[
-    text("status", "done, infeasible, pending, or how the job failed"),
-    text("verdict", "deployed, partial or stalled; null unless done"),
-    RowColumn {
-        name: "close",
-        kind: Kind::Bool,
-        unit: "",
-        meaning: "whether a threshold was met or missed by less than close_margin",
-        result: true,
-    },
-    number("volume_ratio", "1", "mean volume of the last tenth of the run over the static volume"),
-    number("height_ratio", "1", "least z_rim of the last tenth of the run over the static height"),
-    number("t_50_z_rim", "s", "first time at half the static height that holds 5 ms"),
-    number("t_90_z_rim", "s", "first time at nine tenths of the static height that holds 5 ms"),
-    number("t_50_volume", "s", "first time at half the static volume that holds 5 ms"),
-    number("t_90_volume", "s", "first time at nine tenths of the static volume that holds 5 ms"),
-    number("t_deployed", "s", "first time from which both deployed thresholds hold 20 ms"),
-    number("peak_vz", "m/s", "largest mean velocity of the top ring along z"),
-    number("t_peak_vz", "s", "time of peak_vz"),
-    number("peak_kinetic_energy", "J", "largest kinetic energy of the film"),
-    number("overshoot", "1", "largest z_rim over the static height, less 1"),
-    number("ringing_rms", "m/s", "root mean square of vz over 0.2 s after t_deployed"),
-    number("ringing_frequency", "Hz", "largest spectral line of vz over 0.2 s after t_deployed"),
-    number(
-        "t_settled",
-        "s",
-        "first time from which the kinetic energy stays below 1e-4 of its peak for 50 ms",
-    ),
-    number("final_z_rim", "m", "last mean height of the top ring"),
-    number("final_volume", "m3", "last volume"),
-    number("final_pressure", "Pa", "last gas pressure"),
-    number("final_temperature", "K", "last gas temperature"),
-    number("film_stress", "Pa", "largest principal second Piola-Kirchhoff stress of the film"),
-    number("peak_lid_force", "N", "largest force on the packing lid"),
-    count("passages", "film through film, whole run; null for a model without film to pass"),
-    count(
-        "intersections",
-        "intersections at the worst frame; null for a model without film to intersect",
-    ),
-    number(
-        "interlayer_pressure",
-        "Pa",
-        "largest pressure of film on film at a sample; null for a model without contact",
-    ),
-    number(
-        "contact_area_fraction",
-        "1",
-        "largest share of the film's area in contact at a sample; null for a model without contact",
-    ),
-    number(
-        "smallest_gap",
-        "m",
-        "smallest distance of film from film at a sample; null for a model without contact",
-    ),
-    number("ledger_residual", "1", "largest energy ledger residual"),
-    number("gas_residual", "1", "largest gas balance residual"),
-    number("viscous_fraction", "1", "energy dissipated by film viscosity over the work of the gas"),
-    number("reference_volume", "m3", "static volume at the final pressure"),
-    number("reference_height", "m", "static z_rim at the final pressure"),
-    number("deployed_volume_threshold", "1", "volume_ratio a deployed run needs"),
-    number("deployed_height_threshold", "1", "height_ratio a deployed run needs"),
-    number("stalled_volume_threshold", "1", "volume_ratio below which a run is stalled"),
-    number("close_margin", "1", "margin under which a verdict is close"),
-    number("phi", "rad", "angle KAD of the solved pattern"),
-    number("half_angle", "rad", "half top angle of the solved pattern"),
-    number("top_radius", "m", "radius of the top ring of the solved pattern"),
-    number("height", "m", "height of the solved pattern, erected"),
-    text("reason", "why the point is infeasible, or the job invalid or panicked"),
-    text("nearest", "nearest feasible values (SI), each for a change of that key alone"),
-    number("stop_time", "s", "simulated time at which a failed run stopped"),
-    text("stop_place", "where a failed run stopped"),
-    count("steps", "accepted steps"),
-    count("elements", "elements of the mesh; 0 for a model without one"),
-    text("content_hash", "SHA-256 of names, lengths and values of history and frames"),
-    cost("wall_seconds", "s", "wall time of the job"),
-    cost("ns_per_element_step", "ns", "wall time over elements and steps; null without elements"),
-    RowColumn {
-        result: false,
-        ..text("program_version", "version of the program that ran the job")
-    },
-    RowColumn { result: false, ..text("commit", "commit of the program that ran the job") },
-    count("physics_version", "version of the physics, part of the job id"),
-];
+// identifier, name, type, [unit], group, better side; meaning; how it is taken.
+columns! {
+    Status "status" Text [""] Outcome Neither
+        "done, infeasible, pending, or how the job failed"
+        end => end.status.name();
+    Verdict "verdict" Text [""] Outcome Neither
+        "deployed, partial or stalled; null unless done"
+        end => end.verdict().map(Verdict::name);
+    NearThreshold "near_threshold" Bool [""] Outcome Neither
+        "whether a change of the ratios by less than near_threshold_margin would change the verdict"
+        end => end.verdict().and_then(|_| end.deployment().map(|run| run.measures.close));
+    VolumeRatio "volume_ratio" Number ["1"] Outcome Larger
+        "mean volume of the last tenth of the run over the static volume"
+        end => end.measure(|measures| measures.volume_ratio);
+    HeightRatio "height_ratio" Number ["1"] Outcome Larger
+        "least z_rim of the last tenth of the run over the static height"
+        end => end.measure(|measures| measures.height_ratio);
+    T50ZRim "t_50_z_rim" Number ["s"] Measures Smaller
+        "first time at half the static height that holds 5 ms"
+        end => end.measure(|measures| measures.t_50_z_rim);
+    T90ZRim "t_90_z_rim" Number ["s"] Measures Smaller
+        "first time at nine tenths of the static height that holds 5 ms"
+        end => end.measure(|measures| measures.t_90_z_rim);
+    T50Volume "t_50_volume" Number ["s"] Measures Smaller
+        "first time at half the static volume that holds 5 ms"
+        end => end.measure(|measures| measures.t_50_volume);
+    T90Volume "t_90_volume" Number ["s"] Measures Smaller
+        "first time at nine tenths of the static volume that holds 5 ms"
+        end => end.measure(|measures| measures.t_90_volume);
+    TDeployed "t_deployed" Number ["s"] Measures Smaller
+        "first time from which both deployed thresholds hold 20 ms"
+        end => end.measure(|measures| measures.t_deployed);
+    PeakVz "peak_vz" Number ["m/s"] Measures Smaller
+        "largest mean velocity of the top ring along z"
+        end => end.measure(|measures| measures.peak_vz);
+    TPeakVz "t_peak_vz" Number ["s"] Measures Neither
+        "time of peak_vz"
+        end => end.measure(|measures| measures.t_peak_vz);
+    PeakKineticEnergy "peak_kinetic_energy" Number ["J"] Measures Smaller
+        "largest kinetic energy of the film"
+        end => end.measure(|measures| measures.peak_kinetic_energy);
+    Overshoot "overshoot" Number ["1"] Measures Smaller
+        "largest z_rim over the static height, minus 1"
+        end => end.measure(|measures| measures.overshoot);
+    RingingRms "ringing_rms" Number ["m/s"] Measures Smaller
+        "root mean square of vz over 0.2 s after t_deployed"
+        end => end.measure(|measures| measures.ringing_rms);
+    RingingFrequency "ringing_frequency" Number ["Hz"] Measures Neither
+        "largest spectral line of vz over 0.2 s after t_deployed"
+        end => end.measure(|measures| measures.ringing_frequency);
+    TSettled "t_settled" Number ["s"] Measures Smaller
+        "first time from which the kinetic energy stays below 1e-4 of its peak for 50 ms"
+        end => end.measure(|measures| measures.t_settled);
+    FinalZRim "final_z_rim" Number ["m"] Measures Neither
+        "last mean height of the top ring"
+        end => end.measure(|measures| measures.final_z_rim);
+    FinalVolume "final_volume" Number ["m3"] Measures Neither
+        "last volume"
+        end => end.measure(|measures| measures.final_volume);
+    FinalPressure "final_pressure" Number ["Pa"] Measures Neither
+        "last gas pressure"
+        end => end.measure(|measures| measures.final_pressure);
+    FinalTemperature "final_temperature" Number ["K"] Measures Neither
+        "last gas temperature"
+        end => end.measure(|measures| measures.final_temperature);
+    FilmStress "film_stress" Number ["Pa"] Measures Smaller
+        "largest principal second Piola-Kirchhoff stress of the film"
+        end => end.measure(|measures| measures.film_stress);
+    PeakLidForce "peak_lid_force" Number ["N"] Measures Smaller
+        "largest force on the packing lid"
+        end => end.measure(|measures| measures.peak_lid_force);
+    Passages "passages" Integer ["1"] Audit Neither
+        "passages of film through film in the whole run; null for a model without contact"
+        end => end.audit(|audit| audit.passages).flatten().map(integer);
+    Intersections "intersections" Integer ["1"] Audit Neither
+        "intersections at the sample with the most; null for a model without contact"
+        end => end.audit(|audit| audit.intersections).flatten().map(integer);
+    InterlayerPressure "interlayer_pressure" Number ["Pa"] Measures Smaller
+        "largest pressure of film on film at a sample; null for a model without contact"
+        end => end.extreme("interlayer_pressure", f64::max);
+    ContactAreaFraction "contact_area_fraction" Number ["1"] Measures Neither
+        "largest fraction of the film's area in contact at a sample; null for a model without contact"
+        end => end.extreme("contact_area_fraction", f64::max);
+    SmallestGap "smallest_gap" Number ["m"] Measures Neither
+        "smallest distance of film from film at a sample, at most the contact distance; null for a model without contact"
+        end => end.extreme("smallest_gap", f64::min);
+    LedgerResidual "ledger_residual" Number ["1"] Audit Neither
+        "largest energy ledger residual"
+        end => end.audit(|audit| audit.ledger_residual);
+    GasResidual "gas_residual" Number ["1"] Audit Neither
+        "largest gas balance residual"
+        end => end.audit(|audit| audit.gas_residual);
+    ViscousFraction "viscous_fraction" Number ["1"] Audit Neither
+        "energy dissipated by film viscosity over the work of the gas"
+        end => end.audit(|audit| audit.viscous_fraction);
+    ReferenceVolume "reference_volume" Number ["m3"] Outcome Neither
+        "static volume at the final pressure"
+        end => end.measure(|measures| measures.reference_volume);
+    ReferenceHeight "reference_height" Number ["m"] Outcome Neither
+        "static z_rim at the final pressure"
+        end => end.measure(|measures| measures.reference_height);
+    DeployedVolumeThreshold "deployed_volume_threshold" Number ["1"] Outcome Neither
+        "volume_ratio that a deployed run needs"
+        end => end.threshold(|thresholds| thresholds.deployed_volume);
+    DeployedHeightThreshold "deployed_height_threshold" Number ["1"] Outcome Neither
+        "height_ratio that a deployed run needs"
+        end => end.threshold(|thresholds| thresholds.deployed_height);
+    StalledVolumeThreshold "stalled_volume_threshold" Number ["1"] Outcome Neither
+        "volume_ratio below which a run is stalled"
+        end => end.threshold(|thresholds| thresholds.stalled_volume);
+    NearThresholdMargin "near_threshold_margin" Number ["1"] Outcome Neither
+        "change of the ratios up to which a verdict is near a threshold"
+        end => end.threshold(|thresholds| thresholds.close_margin);
+    Phi "phi" Number ["rad"] Pattern Neither
+        "angle KAD of the solved pattern"
+        end => end.pattern(|pattern| pattern.angles.phi);
+    HalfAngle "half_angle" Number ["rad"] Pattern Neither
+        "half top angle of the solved pattern"
+        end => end.pattern(|pattern| pattern.half_angle);
+    TopRadius "top_radius" Number ["m"] Pattern Neither
+        "radius of the top ring of the solved pattern"
+        end => end.pattern(|pattern| pattern.top_radius);
+    Height "height" Number ["m"] Pattern Neither
+        "height of the solved pattern, erected"
+        end => end.pattern(|pattern| pattern.height);
+    Reason "reason" Text [""] Outcome Neither
+        "why the point is infeasible, the job is invalid or panicked, or a done job has no verdict"
+        end => end.reason();
+    Nearest "nearest" Text [""] Outcome Neither
+        "nearest feasible values (SI), each for a change of that key alone"
+        _end => None::<String>;
+    StopTime "stop_time" Number ["s"] Outcome Neither
+        "simulated time at which a failed run stopped"
+        end => end.failure().map(|failure| failure.time);
+    StopLocation "stop_location" Text [""] Outcome Neither
+        "element, node or part of the model at which a failed run stopped"
+        end => end.failure().map(|failure| failure.place.as_str());
+    Steps "steps" Integer ["1"] Cost Neither
+        "accepted steps"
+        end => end.deployment().map(|run| integer(run.steps));
+    Elements "elements" Integer ["1"] Cost Neither
+        "elements of the mesh; 0 for a model without a mesh"
+        end => end.deployment().map(|run| integer(run.elements as u64));
+    ContentHash "content_hash" Text [""] Provenance Neither
+        "SHA-256 of names, lengths and values of history and frames"
+        end => end.content_hash.map(str::to_owned);
+    WallSeconds "wall_seconds" Number ["s"] Cost Neither
+        "wall time of the job"
+        end => end.seconds();
+    NsPerElementStep "ns_per_element_step" Number ["ns"] Cost Neither
+        "wall time over elements and steps; null without elements"
+        end => end.ns_per_element_step();
+    ProgramVersion "program_version" Text [""] Provenance Neither
+        "version of the program that ran the job"
+        _end => provenance::PROGRAM_VERSION;
+    Commit "commit" Text [""] Provenance Neither
+        "commit of the program that ran the job"
+        _end => provenance::COMMIT;
+    PhysicsVersion "physics_version" Integer ["1"] Provenance Neither
+        "version of the physics, part of the job id"
+        _end => i64::from(provenance::PHYSICS_VERSION);
+}
+
+impl ColumnId {
+    /// The entry of this column.
+    pub fn column(self) -> &'static RowColumn {
+        &COLUMNS[self.index()]
+    }
+
+    /// Index in [`COLUMNS`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Name in the table.
+    pub fn name(self) -> &'static str {
+        self.column().name
+    }
+
+    /// The column with that name. Old names are not known here: see
+    /// [`super::current_column_name`].
+    pub fn from_name(name: &str) -> Option<Self> {
+        COLUMNS.iter().find(|column| column.name == name).map(|column| column.id)
+    }
+}

@@ -1,59 +1,61 @@
-//! How many rows ended how.
+//! Numbers of rows by status and by verdict.
 
 use std::collections::BTreeMap;
 
-use super::{Cells, INFEASIBLE, is_failure};
+use super::{Cells, ColumnId};
 use crate::input::value::Value;
+use crate::job::Status;
 
-/// Rows by how they ended.
+/// Numbers of rows by how they ended.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Rows by status.
+    /// Rows by name of their status.
     pub status: BTreeMap<String, usize>,
     /// Done rows by verdict.
     pub verdict: BTreeMap<String, usize>,
-    /// Done rows whose verdict a change of less than the margin would change.
-    pub close: usize,
+    /// Done rows whose verdict is near a threshold.
+    pub near_threshold: usize,
 }
 
 impl Counts {
-    /// Takes in a row; its verdict is empty where it has none.
-    pub fn add(&mut self, status: &str, verdict: &str, close: bool) {
-        *self.status.entry(status.to_owned()).or_default() += 1;
+    /// Adds a row. `verdict` is empty for a row without one.
+    pub fn add(&mut self, status: Status, verdict: &str, near_threshold: bool) {
+        *self.status.entry(status.name().to_owned()).or_default() += 1;
         if !verdict.is_empty() {
             *self.verdict.entry(verdict.to_owned()).or_default() += 1;
         }
-        self.close += usize::from(close);
+        self.near_threshold += usize::from(near_threshold);
     }
 
-    /// Takes in the cells of a row.
+    /// Adds the row with these cells.
     pub fn add_cells(&mut self, cells: &Cells) {
-        let close = *cells.get("close") == Value::Bool(true);
-        self.add(cells.status(), cells.text("verdict"), close);
+        let near_threshold = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
+        self.add(cells.status(), cells.text(ColumnId::Verdict), near_threshold);
     }
 
-    /// Rows of that status.
-    pub fn of(&self, status: &str) -> usize {
-        self.status.get(status).copied().unwrap_or(0)
+    /// Number of rows with that status.
+    pub fn of(&self, status: Status) -> usize {
+        self.status.get(status.name()).copied().unwrap_or(0)
     }
 
-    /// All rows.
+    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.status.values().sum()
     }
 
-    /// Rows that have a job.
+    /// Number of rows that have a job.
     pub fn jobs(&self) -> usize {
-        self.rows() - self.of(INFEASIBLE)
+        self.rows() - self.of(Status::Infeasible)
     }
 
-    /// Failed jobs by status.
+    /// Failed jobs by name of their status.
     pub fn failures(&self) -> BTreeMap<String, usize> {
-        let failed = self.status.iter().filter(|(status, _)| is_failure(status));
-        failed.map(|(status, number)| (status.clone(), *number)).collect()
+        let failed = |name: &str| Status::from_name(name).is_some_and(Status::is_failure);
+        let failures = self.status.iter().filter(|(name, _)| failed(name));
+        failures.map(|(name, number)| (name.clone(), *number)).collect()
     }
 
-    /// Rows of failed jobs.
+    /// Number of failed jobs.
     pub fn failed(&self) -> usize {
         self.failures().values().sum()
     }

@@ -1,4 +1,4 @@
-//! A disk that fails when told to: the fake beside the real one.
+//! A disk whose operations fail, for tests.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,9 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{Append, Disk, Files, Lock};
 
-/// The real disk until its n-th changing operation (write, rename, sync, append, new folder, lock),
-/// which fails, as does every one after it. A failing write or append leaves the first half of its
-/// bytes behind, as a full disk does.
+/// The real disk, whose n-th changing operation (write, rename, sync, append, new folder, lock) and all
+/// later ones fail. A failing write or append leaves the first half of its bytes, as a full disk does.
 #[derive(Debug, Clone)]
 pub struct FailingFiles {
     failing_from: u64,
@@ -18,17 +17,17 @@ pub struct FailingFiles {
 }
 
 impl FailingFiles {
-    /// Fails from operation `failing_from` on (1 is the first).
+    /// Every changing operation fails from number `failing_from` on (1 is the first).
     pub fn new(failing_from: u64, kind: io::ErrorKind) -> Self {
         Self { failing_from, kind, operations: Arc::default() }
     }
 
-    /// Never fails, only counts.
+    /// No operation fails; they are only counted.
     pub fn counting() -> Self {
         Self::new(u64::MAX, io::ErrorKind::Other)
     }
 
-    /// Changing operations asked for so far.
+    /// Number of changing operations so far.
     pub fn operations(&self) -> u64 {
         self.operations.load(Ordering::SeqCst)
     }
@@ -74,7 +73,7 @@ impl Files for FailingFiles {
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
-        // Removing frees space: it works on a full disk, and on no other failing one.
+        // Removing frees space: it works on a full disk, but not on one with another fault.
         if self.operations() >= self.failing_from && self.kind != io::ErrorKind::StorageFull {
             return Err(self.kind.into());
         }

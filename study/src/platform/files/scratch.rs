@@ -1,20 +1,20 @@
-//! A folder of our own that is gone once nobody holds it.
+//! A temporary folder that is removed on drop.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// An empty folder among the system's temporary files, removed with all in it on drop.
+/// An empty folder in the system's folder of temporary files. Drop removes it with its contents.
 #[derive(Debug)]
 pub struct Scratch {
     path: PathBuf,
 }
 
 impl Scratch {
-    /// Creates one; `word` is part of its name.
+    /// Creates a folder with `word` in its name.
     ///
     /// # Errors
-    /// Whatever the system says.
+    /// The error of the system.
     pub fn new(word: &str) -> io::Result<Self> {
         let mut number = 0_u32;
         loop {
@@ -22,14 +22,14 @@ impl Scratch {
             let path = std::env::temp_dir().join(name);
             match fs::create_dir(&path) {
                 Ok(()) => return Ok(Self { path }),
-                // Held by this process, or left by a killed one of the same number.
+                // Used by this process, or left by a killed process with the same number.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
                 Err(error) => return Err(error),
             }
         }
     }
 
-    /// Where it lies.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -37,7 +37,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // What cannot be removed lies among temporary files, where the system clears it away.
+        // A folder that cannot be removed stays among the temporary files of the system.
         let _ = fs::remove_dir_all(&self.path);
     }
 }
@@ -47,13 +47,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scratch_folders_differ_and_are_removed_with_what_is_in_them() {
-        let one = Scratch::new("test").unwrap();
-        let other = Scratch::new("test").unwrap();
-        assert_ne!(one.path(), other.path());
-        fs::write(one.path().join("file"), b"bytes").unwrap();
-        let path = one.path().to_owned();
-        drop(one);
-        assert!(!path.exists() && other.path().is_dir());
+    fn scratch_folders_differ_and_are_removed_with_their_contents() {
+        let first = Scratch::new("test").unwrap();
+        let second = Scratch::new("test").unwrap();
+        assert_ne!(first.path(), second.path());
+        fs::write(first.path().join("file"), b"bytes").unwrap();
+        let path = first.path().to_owned();
+        drop(first);
+        assert!(!path.exists() && second.path().is_dir());
     }
 }

@@ -1,12 +1,16 @@
-//! What a run says on stderr, event by event.
+//! The lines and bars of a run, event by event.
 
+use std::io;
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use billow_solver::models::run::Progress;
+use billow_solver::output::outcome::FailureKind;
 use indicatif::TermLike;
 
+use super::lines::duration_text;
 use super::*;
-use crate::job::JobId;
+use crate::job::{JobId, Status};
 
 fn events() -> Vec<Event> {
     let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
@@ -16,12 +20,17 @@ fn events() -> Vec<Event> {
         Event::Note("a line is torn".to_owned()),
         Event::JobStarted { id: id.clone(), label: "N=5 M=2".to_owned(), thread: 1 },
         Event::JobSample { thread: 1, progress },
-        Event::JobFinished { id, thread: 1, status: "unstable".to_owned(), verdict: None },
+        Event::JobFinished {
+            id,
+            thread: 1,
+            status: Status::Failed(FailureKind::Unstable),
+            verdict: None,
+        },
     ]
 }
 
 #[test]
-fn lines_say_where_the_study_stands() {
+fn lines_report_the_progress_of_the_study() {
     let mut lines = Lines::new(Vec::new(), true);
     for event in events() {
         lines.event(&event);
@@ -33,38 +42,38 @@ fn lines_say_where_the_study_stands() {
 }
 
 #[test]
-fn a_long_job_is_told_of_now_and_then_with_the_time_left() {
+fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
     let mut lines = Lines::new(Vec::new(), false);
     let [started, _, job, sample, finished] = events().try_into().unwrap();
     lines.event(&started);
     lines.event(&job);
     lines.event(&sample);
     assert_eq!(String::from_utf8(lines.out.clone()).unwrap().lines().count(), 1, "not yet");
-    // As if it had begun 100 s ago: a quarter of the only open job is done.
+    // As if it had started 100 s ago: a quarter of the only open job is done.
     let long_ago = Instant::now().checked_sub(Duration::from_secs(100)).unwrap();
     lines.start = Some((long_ago, 3));
     lines.last = Some(long_ago);
     lines.event(&sample);
     lines.event(&sample);
-    let said = String::from_utf8(lines.out.clone()).unwrap();
+    let written = String::from_utf8(lines.out.clone()).unwrap();
     let expected = "4 jobs, 3 finished, 1 to run\n\
-                    3 of 4 jobs finished, 0 failed, about 5 min left\n\
+                    3 of 4 jobs finished, 0 failed, about 5 min remaining\n\
                     \x20 abababab N=5 M=2  t 0.5000 of 2 s  z_centre 0.300 m  p 51.0000 Pa\n";
-    assert_eq!(said, expected, "once, not at every sample");
+    assert_eq!(written, expected, "one report, not one per sample");
     lines.event(&finished);
     assert!(lines.running.is_empty());
-    assert_eq!(told(Duration::from_secs(7_300)), "2.0 h");
+    assert_eq!(duration_text(Duration::from_secs(7_300)), "2.0 h");
 }
 
 #[test]
-fn nothing_to_run_is_no_line() {
+fn a_study_without_jobs_to_run_writes_no_line() {
     let mut lines = Lines::new(Vec::new(), false);
     lines.event(&Event::GenerationStarted { number: 0, jobs: 4, finished: 4 });
     lines.event(&Event::Ended);
     assert!(lines.out.is_empty());
 }
 
-/// A terminal that remembers all that was ever written to it.
+/// A terminal that keeps everything that was written to it.
 #[derive(Debug, Clone, Default)]
 struct Screen(Arc<Mutex<String>>);
 
@@ -108,7 +117,7 @@ impl TermLike for Screen {
 }
 
 #[test]
-fn bars_show_the_study_and_the_running_job_and_then_go_away() {
+fn bars_show_the_study_and_the_running_job_and_are_cleared() {
     let screen = Screen::default();
     let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
     let mut bars = Bars::new(target, false, false);

@@ -1,10 +1,11 @@
-//! Running finished jobs again: nothing lost, nothing else run, and the bits held against the old.
+//! Runs finished jobs again: nothing is lost, no other job runs, the bits are compared.
 
-#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
 use std::fs;
 use std::io;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 use super::*;
 use crate::job::executor::Outcome;
@@ -12,6 +13,8 @@ use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
 use crate::run::fixture::{self, Scripted, ran};
+use crate::store::history_file;
+use crate::store::journal::{Record, Writer};
 
 const JOBS: u32 = 5;
 
@@ -24,11 +27,11 @@ fn folder() -> tempfile::TempDir {
 fn run_on<S: Fn(u32) -> Outcome + Sync>(
     files: &dyn Files,
     root: &Path,
-    again: Option<&[u32]>,
+    rerun: Option<&[u32]>,
     script: S,
 ) -> (Result<Summary>, usize) {
     let ids: Option<BTreeSet<JobId>> =
-        again.map(|numbers| numbers.iter().map(|number| fixture::job(*number).id).collect());
+        rerun.map(|numbers| numbers.iter().map(|number| fixture::job(*number).id).collect());
     let executor = Scripted::new(script);
     let study = Run {
         name: "test",
@@ -39,10 +42,10 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         results: Results::new(files, root),
         threads: NonZero::new(1),
         stop: Stop::new(),
-        again: ids.as_ref(),
+        rerun: ids.as_ref(),
     };
     let ended = run(&study, &mut Silent);
-    (ended, executor.asked.load(Ordering::SeqCst))
+    (ended, executor.executed.load(Ordering::SeqCst))
 }
 
 fn history(root: &Path, number: u32) -> Vec<u8> {
@@ -50,67 +53,74 @@ fn history(root: &Path, number: u32) -> Vec<u8> {
 }
 
 /// The same job with one more sample: other bits.
-fn otherwise(number: u32) -> Outcome {
+fn other_bits(number: u32) -> Outcome {
     Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5, note: None }
 }
 
 #[test]
-fn only_the_named_jobs_run_and_their_bits_are_held_against_the_old() {
+fn only_the_named_jobs_run_and_their_bits_are_compared_with_the_old_ones() {
     let folder = folder();
     run_on(&Disk, folder.path(), None, ran).0.unwrap();
     let before = fs::read(folder.path().join("summary.parquet")).unwrap();
-    let (ended, asked) = run_on(&Disk, folder.path(), Some(&[1, 3]), ran);
+    let (ended, executed) = run_on(&Disk, folder.path(), Some(&[1, 3]), ran);
     let summary = ended.unwrap();
-    assert_eq!((asked, summary.ran, summary.same), (2, 2, 2));
+    assert_eq!((executed, summary.ran, summary.same), (2, 2, 2));
     assert!(summary.different.is_empty());
     assert_eq!(fs::read(folder.path().join("summary.parquet")).unwrap(), before);
 
     let (ended, _) = run_on(&Disk, folder.path(), Some(&[1, 3]), |number| {
-        if number == 3 { otherwise(number) } else { ran(number) }
+        if number == 3 { other_bits(number) } else { ran(number) }
     });
     let summary = ended.unwrap();
     assert_eq!((summary.same, summary.different), (1, vec![fixture::job(3).id]));
-    // Ending otherwise is different, too.
+    // Another status counts as different, too.
     let (ended, _) = run_on(&Disk, folder.path(), Some(&[4]), |_| panic!("bad luck"));
     assert_eq!(ended.unwrap().different, [fixture::job(4).id]);
-    let (_, asked) = run_on(&Disk, folder.path(), None, ran);
-    assert_eq!(asked, 0, "nothing is left open");
+    let (_, executed) = run_on(&Disk, folder.path(), None, ran);
+    assert_eq!(executed, 0, "every job is finished");
 }
 
 #[test]
-fn what_was_withdrawn_and_never_ended_runs_next_and_is_still_compared() {
+fn an_invalidated_job_that_did_not_end_runs_next_and_is_compared() {
     let folder = folder();
     run_on(&Disk, folder.path(), None, ran).0.unwrap();
     let old = history(folder.path(), 1);
     let results = Results::new(&Disk, folder.path());
-    Writer::new(&Disk, results.journal_path()).withdraw(&[fixture::job(1).id]).unwrap();
-    assert_eq!(history(folder.path(), 1), old, "the old history stays until it is replaced");
-    let (ended, asked) = run_on(&Disk, folder.path(), None, ran);
-    assert_eq!((asked, ended.unwrap().same), (1, 1));
+    Writer::new(&Disk, results.journal_path()).invalidate(&[fixture::job(1).id]).unwrap();
+    assert_eq!(
+        history(folder.path(), 1),
+        old,
+        "the old history stays until the new one replaces it"
+    );
+    let (ended, executed) = run_on(&Disk, folder.path(), None, ran);
+    assert_eq!((executed, ended.unwrap().same), (1, 1));
 }
 
 #[test]
-fn a_rerun_leaves_other_open_jobs_alone() {
+fn a_rerun_does_not_run_other_pending_jobs() {
     let folder = folder();
     run_on(&Disk, folder.path(), Some(&[0]), ran).0.unwrap();
-    let (ended, asked) = run_on(&Disk, folder.path(), Some(&[0]), ran);
+    let (ended, executed) = run_on(&Disk, folder.path(), Some(&[0]), ran);
     let summary = ended.unwrap();
-    assert_eq!((asked, summary.counts.status["pending"], summary.counts.status["done"]), (1, 3, 1));
+    assert_eq!(
+        (executed, summary.counts.status["pending"], summary.counts.status["done"]),
+        (1, 3, 1)
+    );
 }
 
 #[test]
-fn whatever_write_of_a_rerun_fails_nothing_is_lost() {
+fn a_failed_write_of_a_rerun_loses_nothing() {
     let folder = folder();
-    let whole = folder.path().join("whole");
-    run_on(&Disk, &whole, None, ran).0.unwrap();
-    let table = fs::read(whole.join("summary.parquet")).unwrap();
+    let undisturbed = folder.path().join("whole");
+    run_on(&Disk, &undisturbed, None, ran).0.unwrap();
+    let table = fs::read(undisturbed.join("summary.parquet")).unwrap();
     for kind in [io::ErrorKind::StorageFull, io::ErrorKind::ReadOnlyFilesystem] {
         for nth in 1.. {
             let root = folder.path().join(format!("{kind:?}-{nth}"));
             run_on(&Disk, &root, None, ran).0.unwrap();
             let failing = FailingFiles::new(nth, kind);
-            // Other bits, so that a lost or half replaced file would show.
-            let (ended, _) = run_on(&failing, &root, Some(&[0, 3, 4]), otherwise);
+            // Other bits, so that the test sees a lost or partly replaced file.
+            let (ended, _) = run_on(&failing, &root, Some(&[0, 3, 4]), other_bits);
             if ended.is_ok() {
                 assert!(nth > 12, "only {nth} changing operations");
                 break;
@@ -120,11 +130,11 @@ fn whatever_write_of_a_rerun_fails_nothing_is_lost() {
             let results = Results::new(&Disk, &root);
             let journal = results.journal().unwrap();
             assert_eq!(
-                journal.records.len() + journal.withdrawn.len(),
+                journal.records.len() + journal.invalidated.len(),
                 4,
-                "every job is finished or withdrawn, at operation {nth}"
+                "every job is finished or invalidated, at operation {nth}"
             );
-            // A history replaced before its record is run again; no other one is lost.
+            // No record is without its history.
             let damaged = |record: &&Record| results.damage(record).unwrap().is_some();
             assert_eq!(journal.records.values().filter(damaged).count(), 0, "operation {nth}");
             for number in [0, 1, 3, 4] {
@@ -135,7 +145,11 @@ fn whatever_write_of_a_rerun_fails_nothing_is_lost() {
             run_on(&Disk, &root, Some(&[0, 1, 3, 4]), ran).0.unwrap();
             assert_eq!(fs::read(root.join("summary.parquet")).unwrap(), table, "operation {nth}");
             for number in [0, 1, 3, 4] {
-                assert_eq!(history(&root, number), history(&whole, number), "operation {nth}");
+                assert_eq!(
+                    history(&root, number),
+                    history(&undisturbed, number),
+                    "operation {nth}"
+                );
             }
         }
     }

@@ -1,36 +1,40 @@
-//! Running on a fake executor: nothing lost, nothing run twice, same bits in any order.
+//! Runs with a scripted executor: nothing is lost, nothing runs twice, the order changes no bit.
 
-#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::SystemTime;
 
 use super::*;
 use crate::input::value::Value;
 use crate::job::executor::Outcome;
+use crate::platform::error::Error;
 use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
 use crate::run::fixture::{self, Scripted, ran};
+use crate::store::history_file;
+use crate::store::table::Table;
 
-/// A folder in memory where the machine has one: these tests are about order, not about disks.
+/// A folder in memory where the machine has one: these tests check the order of operations.
 fn folder() -> tempfile::TempDir {
     let memory = Path::new("/dev/shm");
     if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap()
 }
 
-struct Heard(Vec<Event>);
+struct EventLog(Vec<Event>);
 
-impl Reporter for Heard {
+impl Reporter for EventLog {
     fn event(&mut self, event: &Event) {
         self.0.push(event.clone());
     }
 }
 
-impl Heard {
+impl EventLog {
     fn notes(&self) -> Vec<&str> {
         let mut notes = Vec::new();
         for event in &self.0 {
@@ -64,7 +68,7 @@ fn run_on(
         results: Results::new(files, root),
         threads: NonZero::new(threads),
         stop: Stop::new(),
-        again: None,
+        rerun: None,
     };
     run(&study, reporter)
 }
@@ -103,14 +107,14 @@ fn histories(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     all.into_iter().map(|(path, (bytes, _))| (path, bytes)).collect()
 }
 
-fn asked<S>(executor: &Scripted<S>) -> usize {
-    executor.asked.load(Ordering::SeqCst)
+fn executed<S>(executor: &Scripted<S>) -> usize {
+    executor.executed.load(Ordering::SeqCst)
 }
 
 #[test]
-fn any_number_of_threads_and_any_batch_leave_the_same_bytes() {
+fn the_bytes_do_not_depend_on_threads_and_batch_size() {
     let folder = folder();
-    let mut left = Vec::new();
+    let mut stored = Vec::new();
     for (threads, batch) in [(1, 1), (2, 1), (3, 4), (1, 50)] {
         let root = folder.path().join(format!("{threads}-{batch}"));
         let mut executor = Scripted::new(ran);
@@ -122,16 +126,16 @@ fn any_number_of_threads_and_any_batch_leave_the_same_bytes() {
             [("done".to_owned(), 19), ("infeasible".to_owned(), 1)].into()
         );
         assert_eq!(summary.counts.verdict, [("deployed".to_owned(), 19)].into());
-        left.push((histories(&root), fs::read(root.join("summary.parquet")).unwrap()));
+        stored.push((histories(&root), fs::read(root.join("summary.parquet")).unwrap()));
     }
-    assert_eq!(left[0].0.len(), 19);
-    assert!(left.iter().all(|one| *one == left[0]));
+    assert_eq!(stored[0].0.len(), 19);
+    assert!(stored.iter().all(|files| *files == stored[0]));
 }
 
 #[test]
-fn jobs_fewer_than_threads_share_them() {
+fn fewer_jobs_than_threads_share_the_threads() {
     for (jobs, threads, each) in [(9, 2, 1), (3, 2, 1), (1, 2, 2), (3, 5, 2), (1, 5, 5)] {
-        // One of the points is no job, from the third on.
+        // The third point is infeasible: it has no job.
         let folder = folder();
         let executor = Scripted::new(ran);
         run_quiet(folder.path(), jobs, threads, &executor);
@@ -140,36 +144,36 @@ fn jobs_fewer_than_threads_share_them() {
 }
 
 #[test]
-fn a_second_run_computes_nothing_and_changes_no_file() {
+fn a_second_run_executes_nothing_and_changes_no_file() {
     let folder = folder();
     let executor = Scripted::new(ran);
     run_quiet(folder.path(), 6, 2, &executor);
     let before = files_under(folder.path());
     let again = Scripted::new(ran);
-    let mut heard = Heard(Vec::new());
-    let summary = run_on(&Disk, folder.path(), 6, 2, &again, &mut heard).unwrap();
-    assert_eq!((asked(&again), summary.ran), (0, 0));
+    let mut log = EventLog(Vec::new());
+    let summary = run_on(&Disk, folder.path(), 6, 2, &again, &mut log).unwrap();
+    assert_eq!((executed(&again), summary.ran), (0, 0));
     assert_eq!(summary.counts.status["done"], 5);
     assert_eq!(files_under(folder.path()), before);
-    assert!(heard.0.contains(&Event::GenerationStarted { number: 0, jobs: 5, finished: 5 }));
+    assert!(log.0.contains(&Event::GenerationStarted { number: 0, jobs: 5, finished: 5 }));
 }
 
 #[test]
-fn a_study_that_grows_runs_only_what_is_new_and_one_that_shrinks_runs_nothing() {
+fn a_larger_study_runs_only_its_new_jobs_and_a_smaller_one_runs_nothing() {
     let folder = folder();
     run_quiet(folder.path(), 4, 1, &Scripted::new(ran));
     let executor = Scripted::new(ran);
     run_quiet(folder.path(), 9, 1, &executor);
-    assert_eq!(asked(&executor), 5);
+    assert_eq!(executed(&executor), 5);
     assert_eq!(table(folder.path()).rows(), 9);
     let executor = Scripted::new(ran);
     run_quiet(folder.path(), 4, 1, &executor);
-    assert_eq!(asked(&executor), 0);
+    assert_eq!(executed(&executor), 0);
     assert_eq!(table(folder.path()).rows(), 4);
 }
 
 #[test]
-fn a_panic_and_a_refusal_are_rows_with_their_reason() {
+fn a_panic_and_a_refused_scene_are_rows_with_a_reason() {
     let script = |number| match number {
         1 => panic!("bad luck with {number}"),
         3 => Outcome::Refused(billow_solver::scene::error::SceneError::Invalid {
@@ -193,15 +197,19 @@ fn a_panic_and_a_refusal_are_rows_with_their_reason() {
 
         let again = Scripted::new(script);
         let summary = run_quiet(folder.path(), 6, 2, &again);
-        assert_eq!((asked(&again), summary.counts.failed()), (0, 2), "a failure is an answer too");
+        assert_eq!(
+            (executed(&again), summary.counts.failed()),
+            (0, 2),
+            "a failed job is not run again"
+        );
     }
 }
 
 #[test]
-fn whatever_write_fails_nothing_stored_is_lost_and_the_next_run_completes() {
+fn a_failed_write_loses_no_stored_job_and_the_next_run_completes() {
     let folder = folder();
-    let whole = folder.path().join("whole");
-    run_quiet(&whole, 4, 1, &Scripted::new(ran));
+    let undisturbed = folder.path().join("whole");
+    run_quiet(&undisturbed, 4, 1, &Scripted::new(ran));
     for kind in [io::ErrorKind::StorageFull, io::ErrorKind::ReadOnlyFilesystem] {
         for nth in 1.. {
             let root = folder.path().join(format!("{kind:?}-{nth}"));
@@ -221,11 +229,11 @@ fn whatever_write_fails_nothing_stored_is_lost_and_the_next_run_completes() {
             }
             let executor = Scripted::new(ran);
             run_quiet(&root, 4, 1, &executor);
-            assert_eq!(asked(&executor), 3 - stored.len(), "{kind:?} at operation {nth}");
-            assert_eq!(histories(&root), histories(&whole), "{kind:?} at operation {nth}");
+            assert_eq!(executed(&executor), 3 - stored.len(), "{kind:?} at operation {nth}");
+            assert_eq!(histories(&root), histories(&undisturbed), "{kind:?} at operation {nth}");
             assert_eq!(
                 fs::read(root.join("summary.parquet")).unwrap(),
-                fs::read(whole.join("summary.parquet")).unwrap()
+                fs::read(undisturbed.join("summary.parquet")).unwrap()
             );
             let leftover = files_under(&root);
             assert!(leftover.keys().all(|path| path.extension().is_none_or(|end| end != "tmp")));
@@ -234,7 +242,7 @@ fn whatever_write_fails_nothing_stored_is_lost_and_the_next_run_completes() {
 }
 
 #[test]
-fn a_missing_or_damaged_history_is_run_again_with_a_note() {
+fn a_missing_or_damaged_history_runs_again_with_a_note() {
     let folder = folder();
     run_quiet(folder.path(), 5, 1, &Scripted::new(ran));
     let before = histories(folder.path());
@@ -248,10 +256,10 @@ fn a_missing_or_damaged_history_is_run_again_with_a_note() {
     fs::write(path(4), flipped).unwrap();
 
     let executor = Scripted::new(ran);
-    let mut heard = Heard(Vec::new());
-    run_on(&Disk, folder.path(), 5, 1, &executor, &mut heard).unwrap();
-    assert_eq!(asked(&executor), 3);
-    let notes = heard.notes();
+    let mut log = EventLog(Vec::new());
+    run_on(&Disk, folder.path(), 5, 1, &executor, &mut log).unwrap();
+    assert_eq!(executed(&executor), 3);
+    let notes = log.notes();
     assert_eq!(notes.len(), 3);
     assert!(notes[0].contains("missing; its job is run again"), "{notes:?}");
     assert!(notes[2].contains("not the file that was written"), "{notes:?}");
@@ -259,7 +267,7 @@ fn a_missing_or_damaged_history_is_run_again_with_a_note() {
 }
 
 #[test]
-fn a_torn_journal_line_costs_its_job_and_no_other() {
+fn a_torn_journal_line_loses_only_its_job() {
     let folder = folder();
     run_quiet(folder.path(), 5, 1, &Scripted::new(ran));
     let before = table(folder.path());
@@ -267,15 +275,15 @@ fn a_torn_journal_line_costs_its_job_and_no_other() {
     let bytes = fs::read(&path).unwrap();
     fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
     let executor = Scripted::new(ran);
-    let mut heard = Heard(Vec::new());
-    run_on(&Disk, folder.path(), 5, 1, &executor, &mut heard).unwrap();
-    assert_eq!(asked(&executor), 1);
-    assert!(heard.notes()[0].contains("line 5 is torn"), "{:?}", heard.notes());
+    let mut log = EventLog(Vec::new());
+    run_on(&Disk, folder.path(), 5, 1, &executor, &mut log).unwrap();
+    assert_eq!(executed(&executor), 1);
+    assert!(log.notes()[0].contains("line 5 is torn"), "{:?}", log.notes());
     assert_eq!(table(folder.path()), before);
 }
 
 #[test]
-fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
+fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
     let folder = folder();
     let stop = Stop::new();
     let script = |number| {
@@ -294,7 +302,7 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
         results: Results::new(&Disk, folder.path()),
         threads: NonZero::new(1),
         stop: stop.clone(),
-        again: None,
+        rerun: None,
     };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
@@ -303,11 +311,11 @@ fn stopping_keeps_what_is_finished_and_shows_the_rest_as_pending() {
     assert_eq!(table(folder.path()).rows(), 12);
     let again = Scripted::new(ran);
     run_quiet(folder.path(), 12, 1, &again);
-    assert_eq!(asked(&again), 7);
+    assert_eq!(executed(&again), 7);
 }
 
 #[test]
-fn generations_are_replayed_on_resume() {
+fn a_resumed_study_plans_its_generations_again() {
     let folder = folder();
     // Two generations: the second is planned from the rows of the first.
     let planner = |finished: &[FinishedRow]| -> Option<Generation> {
@@ -330,10 +338,10 @@ fn generations_are_replayed_on_resume() {
             results: Results::new(&Disk, folder.path()),
             threads: NonZero::new(2),
             stop: Stop::new(),
-            again: None,
+            rerun: None,
         };
         run(&study, &mut Silent).unwrap();
-        assert_eq!(asked(&executor), expected);
+        assert_eq!(executed(&executor), expected);
         assert_eq!(table(folder.path()).rows(), 6);
     }
 }
@@ -348,14 +356,14 @@ fn another_study_a_newer_one_and_a_second_command_are_refused() {
         ended.unwrap_err().to_string()
     };
     let path = folder.path().join("study.json");
-    let sound = fs::read_to_string(&path).unwrap();
-    fs::write(&path, sound.replace("\"test\"", "\"other\"")).unwrap();
+    let valid = fs::read_to_string(&path).unwrap();
+    fs::write(&path, valid.replace("\"test\"", "\"other\"")).unwrap();
     assert!(refused().contains("holds results of the study \"other\", not of \"test\""));
-    fs::write(&path, sound.replace("\"version\": 1", "\"version\": 2")).unwrap();
+    fs::write(&path, valid.replace("\"version\": 1", "\"version\": 2")).unwrap();
     assert!(refused().contains("version 2, this program reads up to 1"));
     fs::write(&path, "{}").unwrap();
     assert!(refused().contains("not a study.json of billow"));
-    fs::write(&path, sound).unwrap();
+    fs::write(&path, valid).unwrap();
     let lock = Results::new(&Disk, folder.path()).lock().unwrap();
     assert!(refused().contains("another billow command is running this study"));
     drop(lock);

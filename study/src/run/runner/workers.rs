@@ -1,4 +1,4 @@
-//! The workers of a run: they compute, and tell; they never touch the disk.
+//! The workers of a run: they compute and send messages. They do not touch the disk.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::SyncSender;
@@ -15,42 +15,42 @@ use crate::job::{self, Job};
 use crate::run::event::Event;
 use crate::store::history_file;
 
-/// Least time between two samples told of one thread.
-const SAMPLE_INTERVAL: Duration = Duration::from_millis(100);
+/// Time between two progress messages of one thread, at least. Chosen: faster than a reader notices.
+const MIN_SAMPLE_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What a worker tells.
+/// A message of a worker.
 pub enum Message {
-    /// A job began.
+    /// A job started.
     Started {
-        /// Position in the list of jobs.
+        /// Index in the list of jobs.
         index: usize,
-        /// Thread, from 0.
+        /// Number of the thread, from 0.
         thread: usize,
     },
-    /// A job stands here.
+    /// Progress of a job.
     Sample {
-        /// Thread, from 0.
+        /// Number of the thread, from 0.
         thread: usize,
-        /// Where it stands.
+        /// Simulated time, height and pressure.
         progress: Progress,
     },
-    /// A job ended. Cancelled ones are not told.
+    /// A job ended. A cancelled job gives no message.
     Ended(Box<Ended>),
 }
 
 /// A job that ended.
 pub struct Ended {
-    /// Position in the list of jobs.
+    /// Index in the list of jobs.
     pub index: usize,
-    /// Thread, from 0.
+    /// Number of the thread, from 0.
     pub thread: usize,
     /// Its row.
     pub cells: Cells,
-    /// What it left, if it ran.
+    /// The result of a job that ran.
     pub deployment: Option<Box<Deployment>>,
 }
 
-/// The event a message is for others; `None` for an ended job, which is told once it is stored.
+/// The event of a message; `None` for an ended job, whose event follows when it is stored.
 pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
     match message {
         Message::Started { index, thread } => {
@@ -65,14 +65,13 @@ pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
     }
 }
 
-/// Threads each of so many jobs gets of those there are: one, but where there are fewer jobs than
-/// threads.
-pub fn share(threads: usize, jobs: usize) -> usize {
+/// Number of threads for each job: one, or more when there are fewer jobs than threads.
+pub fn threads_per_job(threads: usize, jobs: usize) -> usize {
     (threads / jobs.max(1)).max(1)
 }
 
-/// Runs all jobs on a pool, batch by batch in their order, until none is left or `ending` says so.
-/// Dropping the sender at the end tells the receiver that nothing more comes.
+/// Runs all jobs on a pool, batch by batch in their order, until all are done or `ending` returns
+/// `true`. The dropped sender tells the receiver that no message follows.
 pub fn work(
     pool: &ThreadPool,
     executor: &dyn Executor,
@@ -82,28 +81,28 @@ pub fn work(
 ) {
     let next = AtomicUsize::new(0);
     let batch = executor.batch().max(1);
-    let share = share(pool.current_num_threads(), jobs.len());
+    let threads = threads_per_job(pool.current_num_threads(), jobs.len());
     pool.broadcast(|context| {
         let thread = context.index();
         while !ending() {
             let first = next.fetch_add(batch, Ordering::Relaxed);
             let Some(rest) = jobs.get(first..).filter(|rest| !rest.is_empty()) else { break };
             let refs: Vec<&Job> = rest.iter().take(batch).collect();
-            // A receiver that is gone has met an error of its own; the work is then for nothing.
+            // Sending fails when the receiver stopped after an error.
             if sender.send(Message::Started { index: first, thread }).is_err() {
                 break;
             }
-            let told = Mutex::new(Instant::now());
-            let watch = |_: usize, progress: Progress| {
-                let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
-                if told.elapsed() >= SAMPLE_INTERVAL {
-                    *told = Instant::now();
-                    // A full channel has better things to carry than a sample.
+            let last_sample = Mutex::new(Instant::now());
+            let observer = |_: usize, progress: Progress| {
+                let mut last_sample = last_sample.lock().unwrap_or_else(PoisonError::into_inner);
+                if last_sample.elapsed() >= MIN_SAMPLE_INTERVAL {
+                    *last_sample = Instant::now();
+                    // A sample is dropped when the channel is full.
                     let _ = sender.try_send(Message::Sample { thread, progress });
                 }
                 !ending()
             };
-            let outcomes = execute_guarded(executor, &refs, share, &watch);
+            let outcomes = execute_guarded(executor, &refs, threads, &observer);
             for (offset, outcome) in outcomes.into_iter().enumerate() {
                 let Some(ended) = finish(first + offset, thread, refs[offset], outcome) else {
                     continue;
@@ -117,14 +116,15 @@ pub fn work(
     drop(sender);
 }
 
-/// Row and hash of a job that ended; `None` for a cancelled one.
+/// Row and result of a job that ended; `None` for a cancelled one.
 fn finish(index: usize, thread: usize, job: &Job, outcome: Outcome) -> Option<Ended> {
-    let mut cells = Cells::of(job, &outcome)?;
+    let hash = match &outcome {
+        Outcome::Ran { deployment, .. } => Some(history_file::content_hash(deployment)),
+        Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+    };
+    let cells = Cells::of(job, &outcome, hash.as_deref())?;
     let deployment = match outcome {
-        Outcome::Ran { deployment, .. } => {
-            cells.set("content_hash", history_file::content_hash(&deployment));
-            Some(deployment)
-        }
+        Outcome::Ran { deployment, .. } => Some(deployment),
         Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
     };
     Some(Ended { index, thread, cells, deployment })

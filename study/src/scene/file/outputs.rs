@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use billow_solver::geometry::mesh_io::obj_reader;
 use billow_solver::output::history::Track;
+use billow_solver::scene::MAX_SAMPLES;
 use billow_solver::scene::film_scene::FilmOutputs;
 use nalgebra::Vector3;
 
@@ -43,23 +44,20 @@ impl Followed {
 /// Share of the film's size beyond which a followed place is told to be off the film.
 const FAR: f64 = 0.2;
 
-/// Most samples of one run: more would be a slip of the unit.
-const MOST_SAMPLES: f64 = 1e6;
-
 /// Refuses a run of more samples than anybody reads.
 pub(super) fn check_interval(
     interval: f64,
     end_time: f64,
     source: &Source,
 ) -> std::result::Result<(), InputError> {
-    if end_time / interval <= MOST_SAMPLES {
+    if end_time / interval <= MAX_SAMPLES {
         return Ok(());
     }
     Err(source.error(
         "outputs.sample_interval",
         &shown(interval),
-        format!("samples a run of {end_time} s more than {MOST_SAMPLES:.0} times"),
-        format!("at least {} s for this end_time", shown(end_time / MOST_SAMPLES)),
+        format!("samples a run of {end_time} s more than {MAX_SAMPLES:.0} times"),
+        format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
     ))
 }
 

@@ -1,12 +1,12 @@
-//! Writing through bare HDF5 calls: what the safe binding has no call for (file images, text that
-//! is fixed-length and null-terminated), and what it takes thirty calls for where three do. A
-//! history file has over a hundred attributes, and their calls were most of its cost.
+//! Writes through the C interface of HDF5: file images and fixed-length null-terminated text, which the
+//! safe binding does not offer, and attributes and columns with fewer calls than the safe binding
+//! needs. A history file has over a hundred attributes, so their calls take most of its time.
 //!
 //! A dimension scale is a dataset with the attributes `CLASS` and `NAME` (fixed-length,
-//! null-terminated text) and `REFERENCE_LIST`; a dataset along it carries `DIMENSION_LIST` ("HDF5
-//! Dimension Scale Specification and Design Notes"). The high-level library that writes them is not
-//! linked, so they are written by hand here.
-#![expect(unsafe_code, reason = "calls into libhdf5; the one room that makes them")]
+//! null-terminated text) and `REFERENCE_LIST`. A dataset along the scale has the attribute
+//! `DIMENSION_LIST`. Source: "HDF5 Dimension Scale Specification and Design Notes". The high-level
+//! library that writes them is not linked, so this module writes them.
+#![expect(unsafe_code, reason = "calls into libhdf5; no other module of the crate makes them")]
 
 use std::ffi::{CString, c_void};
 
@@ -23,14 +23,14 @@ use hdf5_sys::h5p::H5P_DEFAULT;
 use hdf5_sys::h5s::H5S_ALL;
 use hdf5_sys::h5t::{H5T_C_S1, H5Tclose, H5Tcopy, H5Tset_size, hvl_t};
 
-/// Types and spaces every attribute of a file shares.
+/// Writes attributes: holds the type and the space that they share.
 pub struct Writer {
     text: Datatype,
     scalar: Dataspace,
 }
 
 impl Writer {
-    /// Prepares them.
+    /// Creates the type and the space.
     pub fn new() -> hdf5::Result<Self> {
         Ok(Self { text: Datatype::from_type::<VarLenUnicode>()?, scalar: Dataspace::try_new(())? })
     }
@@ -39,31 +39,32 @@ impl Writer {
     pub fn text(&self, location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
         let text = CString::new(text).map_err(|error| error.to_string())?;
         let pointer = text.as_ptr();
-        // SAFETY: the type says "pointer to null-terminated text", and `pointer` is one.
+        // SAFETY: `self.text` is "pointer to null-terminated text", and `pointer` is one.
         unsafe {
             attribute(location, name, self.text.id(), &self.scalar, (&raw const pointer).cast())
         }
     }
 
-    /// Writes text of fixed length with its terminating null: the only kind the specification
-    /// takes for a dimension scale.
+    /// Writes fixed-length text with its terminating null. The specification of dimension scales
+    /// allows no other text.
     fn fixed_text(&self, location: &Location, name: &str, text: &str) -> hdf5::Result<()> {
         let text = CString::new(text).map_err(|error| error.to_string())?;
         let bytes = text.as_bytes_with_nul();
         hdf5::sync::sync(|| {
-            // SAFETY: the type is a fresh copy, closed below; it is as long as `bytes`.
+            // SAFETY: `text_type` is a new copy, closed below, and as long as `bytes`.
             unsafe {
-                let kind = H5Tcopy(*H5T_C_S1);
-                check(H5Tset_size(kind, bytes.len()), "size a text")?;
-                let written = attribute(location, name, kind, &self.scalar, bytes.as_ptr().cast());
-                H5Tclose(kind);
+                let text_type = H5Tcopy(*H5T_C_S1);
+                check(H5Tset_size(text_type, bytes.len()), "set the length of a text")?;
+                let value = bytes.as_ptr().cast();
+                let written = attribute(location, name, text_type, &self.scalar, value);
+                H5Tclose(text_type);
                 written
             }
         })
     }
 
-    /// Makes `scale` the dimension scale of the first axis of `datasets`. Both are named relative
-    /// to `group`.
+    /// Makes `scale` the dimension scale of the first axis of `datasets`. The names are relative to
+    /// `group`.
     pub fn attach(
         &self,
         group: &Group,
@@ -73,15 +74,15 @@ impl Writer {
         self.fixed_text(scale, "CLASS", "DIMENSION_SCALE")?;
         self.fixed_text(scale, "NAME", name)?;
         let axes_type = Datatype::from_type::<VarLenArray<ObjectReference1>>()?;
-        let one = Dataspace::try_new([1])?;
+        let single = Dataspace::try_new([1])?;
         let mut reference = ObjectReference1::create(group, name)?;
         let axes = hvl_t { len: 1, p: (&raw mut reference).cast() };
         let mut attached = Vec::with_capacity(datasets.len());
         for (name, dataset) in datasets {
-            // SAFETY: the type says "pointer to references", and `axes` holds one such of one.
+            // SAFETY: `axes_type` is "length and pointer to references", and `axes` is one such value.
             unsafe {
                 let value = (&raw const axes).cast();
-                attribute(dataset, "DIMENSION_LIST", axes_type.id(), &one, value)?;
+                attribute(dataset, "DIMENSION_LIST", axes_type.id(), &single, value)?;
             }
             let dataset = ObjectReference1::create(group, name)?;
             attached.push(Attached { dataset, dimension: 0 });
@@ -99,39 +100,39 @@ struct Attached {
     dimension: i32,
 }
 
-/// Creates columns of one length.
+/// Creates columns of equal length.
 pub struct Columns {
-    kind: Datatype,
+    number: Datatype,
     space: Dataspace,
     create: DatasetCreate,
     samples: usize,
 }
 
 impl Columns {
-    /// Of that many samples, stored as `create` says.
+    /// Columns of `samples` values, stored with these creation properties.
     pub fn new(samples: usize, create: DatasetCreate) -> hdf5::Result<Self> {
         Ok(Self {
-            kind: Datatype::from_type::<f64>()?,
+            number: Datatype::from_type::<f64>()?,
             space: Dataspace::try_new([samples])?,
             create,
             samples,
         })
     }
 
-    /// Creates a column and writes it.
+    /// Creates and writes a column.
     pub fn write(&self, group: &Group, name: &str, values: &[f64]) -> hdf5::Result<Dataset> {
         if values.len() != self.samples {
             return Err(format!("{name} has {} of {} samples", values.len(), self.samples).into());
         }
         let name = CString::new(name).map_err(|error| error.to_string())?;
         hdf5::sync::sync(|| {
-            // SAFETY: every id is alive; the new one is handed to an owner at once; `values` is
-            // as long as the space says.
+            // SAFETY: every id is open; `owner` closes the new one; `values` is as long as the
+            // space.
             unsafe {
                 let dataset = H5Dcreate2(
                     group.id(),
                     name.as_ptr(),
-                    self.kind.id(),
+                    self.number.id(),
                     self.space.id(),
                     H5P_DEFAULT,
                     self.create.id(),
@@ -139,9 +140,9 @@ impl Columns {
                 );
                 let owner: Dataset = hdf5::from_id(dataset)?;
                 let values = values.as_ptr().cast();
-                let kind = self.kind.id();
+                let number = self.number.id();
                 check(
-                    H5Dwrite(dataset, kind, H5S_ALL, H5S_ALL, H5P_DEFAULT, values),
+                    H5Dwrite(dataset, number, H5S_ALL, H5S_ALL, H5P_DEFAULT, values),
                     "write a column",
                 )?;
                 Ok(owner)
@@ -154,27 +155,28 @@ fn check(status: herr_t, what: &str) -> hdf5::Result<()> {
     if status < 0 { Err(format!("HDF5 cannot {what}").into()) } else { Ok(()) }
 }
 
-/// Creates an attribute and writes it.
+/// Creates and writes an attribute.
 ///
 /// # Safety
-/// `value` must point to what `kind` and `space` say.
+/// `value` must point to data of type `value_type` with the shape of `space`.
 unsafe fn attribute(
     location: &Location,
     name: &str,
-    kind: hid_t,
+    value_type: hid_t,
     space: &Dataspace,
     value: *const c_void,
 ) -> hdf5::Result<()> {
     let name = CString::new(name).map_err(|error| error.to_string())?;
     hdf5::sync::sync(|| {
-        // SAFETY: every id is alive; the new one is closed here; the rest is the caller's promise.
+        // SAFETY: every id is open; the new one is closed here; the caller guarantees `value`.
         unsafe {
             let (location, space) = (location.id(), space.id());
-            let new = H5Acreate2(location, name.as_ptr(), kind, space, H5P_DEFAULT, H5P_DEFAULT);
+            let new =
+                H5Acreate2(location, name.as_ptr(), value_type, space, H5P_DEFAULT, H5P_DEFAULT);
             if new < 0 {
                 return Err(format!("HDF5 cannot create the attribute {name:?}").into());
             }
-            let written = H5Awrite(new, kind, value);
+            let written = H5Awrite(new, value_type, value);
             H5Aclose(new);
             check(written, "write an attribute")
         }
@@ -185,7 +187,7 @@ unsafe fn attribute(
 pub fn image(file: &File) -> hdf5::Result<Vec<u8>> {
     file.flush()?;
     hdf5::sync::sync(|| {
-        // SAFETY: asked with no buffer HDF5 gives the size; the buffer then has that size.
+        // SAFETY: without a buffer, HDF5 returns the size; the buffer then has that size.
         unsafe {
             let size = H5Fget_file_image(file.id(), std::ptr::null_mut(), 0);
             let mut bytes = vec![0_u8; usize::try_from(size).unwrap_or(0)];

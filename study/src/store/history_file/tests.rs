@@ -1,10 +1,12 @@
-//! History files: back to the bit, same bytes twice, nothing foreign accepted.
+//! History files: bits, same bytes twice, old names, refused files.
 
-#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
-use billow_solver::output::outcome::{Failure, FailureKind};
+use billow_solver::output::history::{COLUMNS, History, Track};
+use billow_solver::output::outcome::{Deployment, Failure, FailureKind, Stop};
 
 use super::*;
+use crate::job::{Job, Status};
 use crate::run::fixture;
 
 fn path_with(bytes: &[u8]) -> (tempfile::TempDir, std::path::PathBuf) {
@@ -23,22 +25,22 @@ fn encoded(samples: usize) -> (Job, Deployment, Vec<u8>) {
 }
 
 #[test]
-fn a_history_comes_back_to_the_bit_and_is_the_same_bytes_twice() {
-    for samples in [0, 1, 7, CHUNKED_FROM, 3 * CHUNK / 2] {
+fn a_history_is_read_back_bit_for_bit_and_written_twice_as_the_same_bytes() {
+    for samples in [0, 1, 7, MIN_CHUNKED_SAMPLES, 3 * MAX_CHUNK_SAMPLES / 2] {
         let (job, deployment, bytes) = encoded(samples);
         assert_eq!(bytes, encode(&job, &deployment, &content_hash(&deployment)).unwrap());
         let (_folder, path) = path_with(&bytes);
         let stored = read(&path).unwrap();
         assert_eq!(stored.history, deployment.history);
         assert_eq!(stored.job, job.id);
-        assert_eq!(stored.status, "done");
+        assert_eq!(stored.status, Status::Done);
         assert_eq!(stored.content_hash, hash_of(&stored.history, &[], None));
         assert_eq!(stored.scene, serde_json::to_string(&job.scene).unwrap());
     }
 }
 
 #[test]
-fn a_failed_run_keeps_its_history_and_says_when_and_where() {
+fn a_failed_run_stores_its_history_and_when_and_where_it_stopped() {
     let job = fixture::job(1);
     let mut deployment = fixture::deployment(1, 5);
     deployment.stop = Stop::Failed(Failure {
@@ -48,14 +50,14 @@ fn a_failed_run_keeps_its_history_and_says_when_and_where() {
     });
     let bytes = encode(&job, &deployment, "").unwrap();
     let (_folder, path) = path_with(&bytes);
-    assert_eq!(read(&path).unwrap().status, "drifted");
+    assert_eq!(read(&path).unwrap().status, Status::Failed(FailureKind::EnergyDrift));
     let file = File::open(&path).unwrap();
     assert_eq!(read_number::<f64>(&file, "stop_time").unwrap().to_bits(), 0.25_f64.to_bits());
-    assert_eq!(read_text(&file, "stop_place").unwrap(), "gas volume");
+    assert_eq!(read_text(&file, "stop_location").unwrap(), "gas volume");
 }
 
 #[test]
-fn the_content_hash_sees_every_bit_and_nothing_else() {
+fn the_content_hash_depends_on_every_bit_of_the_values_and_on_nothing_else() {
     let deployment = fixture::deployment(3, 20);
     let hash = content_hash(&deployment);
     assert_eq!(hash.len(), 64);
@@ -73,13 +75,13 @@ fn the_content_hash_sees_every_bit_and_nothing_else() {
 }
 
 #[test]
-fn foreign_newer_truncated_and_incomplete_files_are_refused() {
+fn truncated_newer_incomplete_and_other_files_are_refused() {
     let (_, _, bytes) = encoded(600);
     let refused = |bytes: &[u8]| {
         let (_folder, path) = path_with(bytes);
         read(&path).unwrap_err().to_string()
     };
-    assert!(refused(b"not HDF5 at all").contains("no HDF5 file"));
+    assert!(refused(b"not HDF5 at all").contains("not an HDF5 file"));
     for length in [100, bytes.len() / 2, bytes.len() - 1] {
         refused(&bytes[..length]);
     }
@@ -96,8 +98,31 @@ fn foreign_newer_truncated_and_incomplete_files_are_refused() {
     assert!(newer.contains("version 2, this program reads up to 1"), "{newer}");
     let half = edited(&|file| file.attr("complete").unwrap().write_scalar(&0_u8).unwrap());
     assert!(half.contains("not complete"), "{half}");
-    let foreign = edited(&|file| file.delete_attr("format").unwrap());
-    assert!(foreign.contains("no billow history"), "{foreign}");
+    let other = edited(&|file| file.delete_attr("format").unwrap());
+    assert!(other.contains("not a billow history"), "{other}");
     let missing = edited(&|file| file.group("history").unwrap().unlink("volume").unwrap());
     assert!(missing.contains("damaged"), "{missing}");
+}
+
+#[test]
+fn a_renamed_column_is_read_under_its_current_name_and_keeps_the_content_hash() {
+    let job = fixture::job(3);
+    let with_track = |name: &str| {
+        let mut deployment = fixture::deployment(3, 2);
+        let track = |name: &str| Track {
+            name: name.to_owned(),
+            unit: "1",
+            meaning: "rebuilds of the broad phase",
+            values: vec![1.0, 2.0],
+        };
+        deployment.tracks = vec![track(name)];
+        deployment
+    };
+    let (old, current) = (with_track("contact_searches"), with_track("broad_phase_rebuilds"));
+    assert_eq!(content_hash(&old), content_hash(&current));
+    let (_folder, path) = path_with(&encode(&job, &old, "").unwrap());
+    let stored = read(&path).unwrap();
+    assert_eq!(stored.tracks["broad_phase_rebuilds"], [1.0, 2.0]);
+    assert!(!stored.tracks.contains_key("contact_searches"));
+    assert_eq!(stored.labels["broad_phase_rebuilds"].0, "1");
 }

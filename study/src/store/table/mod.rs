@@ -1,17 +1,20 @@
-//! The summary table: one row a planned point, in plan order, rebuilt from plan and journal.
+//! The summary table: one row per planned point, in plan order, built from plan and journal.
 //!
-//! Columns: `job`, the parameters of the study, then [`row::COLUMNS`]. A parameter that bears the
-//! name of a later column keeps it; the later one is then called `<name>_resolved`.
+//! Columns: `job`, the parameters of the study, then [`crate::job::row::COLUMNS`]. A parameter keeps
+//! its name when a later column has the same one; the later column is then called `<name>_resolved`.
 
 use std::collections::BTreeMap;
 
 use crate::input::value::Value;
-use crate::job::JobId;
 use crate::job::point::Point;
-use crate::job::row::{self, COLUMNS, Cells, Kind};
+use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
+use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
 pub mod parquet;
+
+/// Suffix of a column whose name a parameter of the study has.
+const RESOLVED: &str = "_resolved";
 
 /// A table in memory: columns of equal length.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,13 +28,13 @@ pub struct Table {
 pub struct Column {
     /// Name.
     pub name: String,
-    /// Type of its cells; any may be null.
-    pub kind: Kind,
-    /// SI unit; "1" for a pure number, empty for what is none or unknown.
+    /// Type of its cells; any cell may be null.
+    pub cell_type: CellType,
+    /// SI unit; "1" for a dimensionless number, empty for text or an unknown unit.
     pub unit: String,
     /// Meaning, one line.
     pub meaning: String,
-    /// One a row.
+    /// One value per row.
     pub cells: Vec<Value>,
 }
 
@@ -44,7 +47,7 @@ impl Table {
     ) -> Self {
         let mut columns = vec![Column {
             name: "job".to_owned(),
-            kind: Kind::Text,
+            cell_type: CellType::Text,
             unit: String::new(),
             meaning: "job id: hash of all that decides the result".to_owned(),
             cells: points.iter().map(|p| Value::Text(p.job.id.as_str().to_owned())).collect(),
@@ -53,17 +56,17 @@ impl Table {
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
         let row = |point: &Point| {
-            journal::cells_of(point, records).unwrap_or_else(|| Cells::new(row::PENDING))
+            journal::cells_of(point, records).unwrap_or_else(|| Cells::new(Status::Pending))
         };
         let rows: Vec<Cells> = points.iter().map(row).collect();
-        for (at, column) in COLUMNS.iter().enumerate() {
-            let taken = parameters.iter().any(|name| name == column.name);
+        for column in COLUMNS {
+            let shadowed = parameters.iter().any(|name| name == column.name);
             columns.push(Column {
-                name: format!("{}{}", column.name, if taken { "_resolved" } else { "" }),
-                kind: column.kind,
+                name: format!("{}{}", column.name, if shadowed { RESOLVED } else { "" }),
+                cell_type: column.cell_type,
                 unit: column.unit.to_owned(),
                 meaning: column.meaning.to_owned(),
-                cells: rows.iter().map(|row| row.at(at).clone()).collect(),
+                cells: rows.iter().map(|row| row.get(column.id).clone()).collect(),
             });
         }
         Self { columns }
@@ -74,18 +77,41 @@ impl Table {
         self.columns.first().map_or(0, |column| column.cells.len())
     }
 
-    /// The column of that name.
+    /// The column with that name.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// Columns between `job` and `status`: what the study varies.
+    /// The value of a row in a column that every study has; `None` for a table without the column.
+    pub fn value(&self, column: ColumnId, row: usize) -> Option<&Value> {
+        self.columns
+            .iter()
+            .skip_while(|column| column.name != ColumnId::Status.name())
+            .find(|stored| row_column_name(&stored.name) == column.name())
+            .map(|stored| &stored.cells[row])
+    }
+
+    /// Status of a row; `None` for a text that is not a status.
+    pub fn status(&self, row: usize) -> Option<Status> {
+        match self.value(ColumnId::Status, row) {
+            Some(Value::Text(name)) => Status::from_name(name),
+            _ => None,
+        }
+    }
+
+    /// The parameters of the study: the columns between `job` and `status`.
     pub fn parameters(&self) -> impl Iterator<Item = &Column> {
-        self.columns.iter().skip(1).take_while(|column| column.name != "status")
+        let is_parameter = |column: &&Column| column.name != ColumnId::Status.name();
+        self.columns.iter().skip(1).take_while(is_parameter)
     }
 }
 
-/// Every parameter any point has, in the order of first appearance.
+/// The name of a column without the suffix that it has when a parameter shadows it.
+pub fn row_column_name(name: &str) -> &str {
+    name.strip_suffix(RESOLVED).unwrap_or(name)
+}
+
+/// Every parameter of any point, in the order of first appearance.
 fn parameter_columns(points: &[Point], unit: &dyn Fn(&str) -> String) -> Vec<Column> {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in points.iter().flat_map(|point| &point.job.parameters) {
@@ -101,41 +127,43 @@ fn parameter_columns(points: &[Point], unit: &dyn Fn(&str) -> String) -> Vec<Col
                 found.map_or(Value::Null, |(_, value)| value.clone())
             })
             .collect();
-        let kind = common_kind(&cells);
+        let cell_type = common_type(&cells);
         Column {
             name: (*name).to_owned(),
-            kind,
+            cell_type,
             unit: unit(name),
             meaning: "parameter of the study".to_owned(),
-            cells: cells.into_iter().map(|cell| widen(kind, cell)).collect(),
+            cells: cells.into_iter().map(|cell| convert(cell_type, cell)).collect(),
         }
     };
     names.iter().map(column).collect()
 }
 
 /// The narrowest type that holds every cell.
-fn common_kind(cells: &[Value]) -> Kind {
-    let kinds = cells.iter().filter_map(|cell| match cell {
+fn common_type(cells: &[Value]) -> CellType {
+    let types = cells.iter().filter_map(|cell| match cell {
         Value::Null => None,
-        Value::Bool(_) => Some(Kind::Bool),
-        Value::Integer(_) => Some(Kind::Integer),
-        Value::Number(_) => Some(Kind::Number),
-        Value::Text(_) => Some(Kind::Text),
+        Value::Bool(_) => Some(CellType::Bool),
+        Value::Integer(_) => Some(CellType::Integer),
+        Value::Number(_) => Some(CellType::Number),
+        Value::Text(_) => Some(CellType::Text),
     });
-    kinds
-        .reduce(|one, other| match (one, other) {
-            (one, other) if one == other => one,
-            (Kind::Integer | Kind::Number, Kind::Integer | Kind::Number) => Kind::Number,
-            _ => Kind::Text,
+    types
+        .reduce(|a, b| match (a, b) {
+            (a, b) if a == b => a,
+            (CellType::Integer | CellType::Number, CellType::Integer | CellType::Number) => {
+                CellType::Number
+            }
+            _ => CellType::Text,
         })
-        .unwrap_or(Kind::Text)
+        .unwrap_or(CellType::Text)
 }
 
-fn widen(kind: Kind, cell: Value) -> Value {
-    match (kind, cell) {
+fn convert(cell_type: CellType, cell: Value) -> Value {
+    match (cell_type, cell) {
         (_, Value::Null) => Value::Null,
-        (Kind::Number, Value::Integer(value)) => Value::Number(value as f64),
-        (Kind::Text, value @ (Value::Bool(_) | Value::Integer(_) | Value::Number(_))) => {
+        (CellType::Number, Value::Integer(value)) => Value::Number(value as f64),
+        (CellType::Text, value @ (Value::Bool(_) | Value::Integer(_) | Value::Number(_))) => {
             Value::Text(value.to_string())
         }
         (_, value) => value,

@@ -1,8 +1,10 @@
-//! The only door to Parquet.
+//! Reads and writes Parquet; no other module does.
 //!
 //! The file-level key `billow` holds JSON: format, version, and the unit and meaning of every column.
-//! Columns are written one after the other on the calling thread, so the bytes do not depend on
-//! the machine and polars starts no threads of its own.
+//! Columns are written one after the other on the calling thread. So the bytes do not depend on the
+//! machine, and polars starts no threads.
+//!
+//! Tables with old names of columns and statuses are read with the current names.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -13,15 +15,17 @@ use polars::prelude::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{Column, Table};
+use super::{Column, Table, row_column_name};
 use crate::input::value::Value;
-use crate::job::row::Kind;
+use crate::job::Status;
+use crate::job::row::{CellType, ColumnId, current_column_name};
 use crate::platform::error::{Error, Result};
 
-/// Key of the file-level metadata, and name of the format in it.
+/// Key of the file-level metadata.
 const KEY: &str = "billow";
+/// Name of the format.
 const FORMAT: &str = "billow-table";
-/// Version of the format this program writes, and the newest it reads.
+/// Version of the format that this program writes, and the newest that it reads.
 const VERSION: u64 = 1;
 
 #[derive(Serialize, Deserialize)]
@@ -42,7 +46,7 @@ struct ColumnMetadata {
 /// The bytes of a table's file.
 ///
 /// # Errors
-/// What polars says, in words.
+/// The message of polars.
 pub fn encode(table: &Table) -> std::result::Result<Vec<u8>, String> {
     let columns = table
         .columns
@@ -76,26 +80,26 @@ fn write(table: &Table, metadata: String) -> PolarsResult<Vec<u8>> {
 fn to_polars(column: &Column) -> PolarsColumn {
     let name = column.name.as_str().into();
     let cells = column.cells.iter();
-    match column.kind {
-        Kind::Bool => PolarsColumn::new(
+    match column.cell_type {
+        CellType::Bool => PolarsColumn::new(
             name,
             cells
                 .map(|cell| if let Value::Bool(value) = cell { Some(*value) } else { None })
                 .collect::<Vec<_>>(),
         ),
-        Kind::Integer => PolarsColumn::new(
+        CellType::Integer => PolarsColumn::new(
             name,
             cells
                 .map(|cell| if let Value::Integer(value) = cell { Some(*value) } else { None })
                 .collect::<Vec<_>>(),
         ),
-        Kind::Number => PolarsColumn::new(
+        CellType::Number => PolarsColumn::new(
             name,
             cells
                 .map(|cell| if let Value::Number(value) = cell { Some(*value) } else { None })
                 .collect::<Vec<_>>(),
         ),
-        Kind::Text => PolarsColumn::new(
+        CellType::Text => PolarsColumn::new(
             name,
             cells
                 .map(|cell| if let Value::Text(value) = cell { Some(value.as_str()) } else { None })
@@ -107,24 +111,26 @@ fn to_polars(column: &Column) -> PolarsColumn {
 /// Reads a table from the bytes of its file; `path` names it in errors.
 ///
 /// # Errors
-/// [`Error::Disk`] for bytes that are damaged, foreign or of a newer version.
+/// [`Error::Disk`] for bytes that are damaged, not a billow table, or of a newer version.
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
     let broken = |problem: String| Error::Disk {
         path: path.to_owned(),
-        problem: format!("{problem}\n  next: `billow run` of its study writes the table again"),
+        problem: format!(
+            "{problem}\n  next: run `billow run` of its study: it writes the table again"
+        ),
     };
     let mut reader = ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None);
     let stored = reader
         .get_metadata()
-        .map_err(|error| broken(format!("no Parquet file: {error}")))?
+        .map_err(|error| broken(format!("not a Parquet file: {error}")))?
         .key_value_metadata()
         .iter()
         .flatten()
         .find(|pair| pair.key == KEY)
         .and_then(|pair| pair.value.clone())
-        .ok_or_else(|| broken("a Parquet file, but no billow table".to_owned()))?;
+        .ok_or_else(|| broken("a Parquet file, but not a billow table".to_owned()))?;
     let metadata: Metadata = serde_json::from_str(&stored)
-        .map_err(|error| broken(format!("no billow table: {error}")))?;
+        .map_err(|error| broken(format!("not a billow table: {error}")))?;
     if metadata.format != FORMAT {
         return Err(broken(format!("format {:?} is not {FORMAT:?}", metadata.format)));
     }
@@ -141,25 +147,55 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
     let frame = reader.finish().map_err(|error| broken(format!("damaged table: {error}")))?;
     let mut columns = Vec::with_capacity(frame.width());
     for column in frame.columns() {
-        let told = metadata.columns.iter().find(|told| told.name == column.name().as_str());
+        let label = metadata.columns.iter().find(|label| label.name == column.name().as_str());
         columns.push(
-            from_polars(column, told)
+            from_polars(column, label)
                 .map_err(|error| broken(format!("column {:?}: {error}", column.name())))?,
         );
     }
-    Ok(Table { columns })
+    let mut table = Table { columns };
+    use_current_names(&mut table);
+    Ok(table)
+}
+
+/// Gives renamed columns and statuses their current names. Parameters of the study keep theirs.
+fn use_current_names(table: &mut Table) {
+    let is_parameter = |column: &&mut Column| column.name != ColumnId::Status.name();
+    for column in table.columns.iter_mut().skip_while(is_parameter) {
+        let old = row_column_name(&column.name).to_owned();
+        let current = current_column_name(&old).0;
+        if current != old {
+            column.name = column.name.replacen(&old, current, 1);
+            if let Some(id) = ColumnId::from_name(current) {
+                id.column().meaning.clone_into(&mut column.meaning);
+            }
+        }
+        if column.name == ColumnId::Status.name() {
+            for cell in &mut column.cells {
+                if let Value::Text(name) = cell
+                    && let Some(status) = Status::from_name(name)
+                {
+                    status.name().clone_into(name);
+                }
+            }
+        }
+    }
 }
 
 fn from_polars(
     column: &PolarsColumn,
-    told: Option<&ColumnMetadata>,
+    label: Option<&ColumnMetadata>,
 ) -> std::result::Result<Column, String> {
-    let kind = match column.dtype() {
-        DataType::Boolean => Kind::Bool,
-        DataType::Int64 => Kind::Integer,
-        DataType::Float64 => Kind::Number,
-        DataType::String => Kind::Text,
-        other => return Err(format!("type {other} is none of a billow table")),
+    let cell_type = match column.dtype() {
+        DataType::Boolean => CellType::Bool,
+        DataType::Int64 => CellType::Integer,
+        DataType::Float64 => CellType::Number,
+        DataType::String => CellType::Text,
+        other => {
+            return Err(format!(
+                "type {other} is not a type of a billow table (Boolean, Int64, Float64, String)"
+            ));
+        }
     };
     let cells = (0..column.len()).map(|row| {
         Ok(match column.get(row).map_err(|error| error.to_string())? {
@@ -173,9 +209,9 @@ fn from_polars(
     });
     Ok(Column {
         name: column.name().to_string(),
-        kind,
-        unit: told.map_or_else(String::new, |told| told.unit.clone()),
-        meaning: told.map_or_else(String::new, |told| told.meaning.clone()),
+        cell_type,
+        unit: label.map_or_else(String::new, |label| label.unit.clone()),
+        meaning: label.map_or_else(String::new, |label| label.meaning.clone()),
         cells: cells.collect::<std::result::Result<_, String>>()?,
     })
 }

@@ -1,10 +1,11 @@
-//! Tables: plan order, types, back to the bit, nothing foreign accepted.
+//! Tables: plan order, types, bits, old names, refused files.
 
-#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
 use std::path::Path;
 
 use super::*;
+use crate::job::row::current_column_name;
 use crate::run::fixture;
 
 fn built() -> Table {
@@ -14,7 +15,7 @@ fn built() -> Table {
     let mut records = BTreeMap::new();
     for number in [4, 0] {
         let job = &points[number].job;
-        let cells = Cells::of(job, &fixture::ran(u32::try_from(number).unwrap())).unwrap();
+        let cells = Cells::of(job, &fixture::ran(u32::try_from(number).unwrap()), None).unwrap();
         let record = Record { job: job.id.clone(), cells, file_hash: None };
         records.insert(job.id.clone(), record);
     }
@@ -41,17 +42,17 @@ fn every_planned_point_is_a_row_in_plan_order() {
 }
 
 #[test]
-fn parameters_are_typed_and_win_a_name() {
+fn parameters_are_typed_and_keep_their_name() {
     let table = built();
-    assert_eq!(table.column("N").unwrap().kind, Kind::Integer);
-    assert_eq!(table.column("mass_flow_rate").unwrap().kind, Kind::Number);
+    assert_eq!(table.column("N").unwrap().cell_type, CellType::Integer);
+    assert_eq!(table.column("mass_flow_rate").unwrap().cell_type, CellType::Number);
     assert_eq!(cells(&table, "mass_flow_rate")[1], Value::Number(3.0));
     assert_eq!(cells(&table, "height")[3], Value::Text("tall".to_owned()));
     assert_eq!(table.column("height_resolved").unwrap().unit, "m");
 }
 
 #[test]
-fn a_table_comes_back_to_the_bit_and_is_the_same_bytes_twice() {
+fn a_table_is_read_back_bit_for_bit_and_written_twice_as_the_same_bytes() {
     let mut table = built();
     table.columns[2].cells[0] = Value::Number(-0.0);
     table.columns[2].cells[2] = Value::Number(f64::INFINITY);
@@ -67,21 +68,38 @@ fn a_table_comes_back_to_the_bit_and_is_the_same_bytes_twice() {
         let name = thread.as_ref().unwrap().path().join("comm");
         std::fs::read_to_string(name).unwrap_or_default().starts_with("polars")
     });
-    assert_eq!(threads.count(), 0, "polars started a pool");
+    assert_eq!(threads.count(), 0, "polars started threads");
 }
 
 #[test]
-fn foreign_newer_and_damaged_tables_are_refused() {
+fn damaged_newer_and_other_files_are_refused() {
     let bytes = parquet::encode(&built()).unwrap();
     let refused = |bytes: &[u8]| parquet::decode(Path::new("t"), bytes).unwrap_err().to_string();
-    assert!(refused(b"").contains("no Parquet file"));
-    assert!(refused(&bytes[..bytes.len() - 3]).contains("t: no Parquet file"));
+    assert!(refused(b"").contains("not a Parquet file"));
+    assert!(refused(&bytes[..bytes.len() - 3]).contains("t: not a Parquet file"));
     let swap = |from: &str, to: &str| {
-        let at = bytes.windows(from.len()).rposition(|window| window == from.as_bytes()).unwrap();
-        [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
+        let start =
+            bytes.windows(from.len()).rposition(|window| window == from.as_bytes()).unwrap();
+        [&bytes[..start], to.as_bytes(), &bytes[start + from.len()..]].concat()
     };
     let newer = refused(&swap("\"version\":1", "\"version\":9"));
     assert!(newer.contains("table of version 9, this program reads up to 1"), "{newer}");
-    let other = refused(&swap("\"billow-table\"", "\"somebody-else\""[..14].trim_end()));
-    assert!(other.contains("billow table"), "{other}");
+    let other = refused(&swap("\"billow-table\"", "\"other-table\" "));
+    assert!(other.contains("is not \"billow-table\""), "{other}");
+}
+
+#[test]
+fn a_table_with_old_names_is_read_with_the_current_ones() {
+    let mut table = built();
+    let current = table.clone();
+    for column in &mut table.columns {
+        for old in ["close", "close_margin", "stop_place"] {
+            if current_column_name(old).0 == column.name {
+                old.clone_into(&mut column.name);
+            }
+        }
+    }
+    assert!(table.column("close").is_some() && table.column("near_threshold").is_none());
+    let read = parquet::decode(Path::new("t"), &parquet::encode(&table).unwrap()).unwrap();
+    assert_eq!(read, current);
 }

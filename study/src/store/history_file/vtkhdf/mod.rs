@@ -1,19 +1,19 @@
-//! Shapes of the film in a history file, as VTK's and `ParaView`'s own reader plays them: VTKHDF 2.0, one
-//! unstructured grid whose places change and whose elements do not.
+//! Shapes of the film in a history file, in the format that the reader of VTK and `ParaView` plays:
+//! VTKHDF 2.0, one unstructured grid with changing positions and constant elements.
 //!
 //! ```text
 //! /VTKHDF    attributes Version [2, 0], Type "UnstructuredGrid"
 //!   NumberOfPoints, NumberOfCells, NumberOfConnectivityIds   [1]: one part
 //!   Connectivity [3 elements]    Offsets [elements + 1]    Types [elements]: 5, a triangle
-//!   Points [frames · nodes, 3]: f32, m; frame k from row k · nodes; one frame a chunk
+//!   Points [frames · nodes, 3]: f32, m; frame k from row k · nodes; one chunk per frame
 //!   CellData/storey [elements]: u32, 0 the bottom cap, 1 … M, M + 1 the top cap
 //!   CellData/regime [frames · elements]: u8, 0 slack, 1 wrinkled, 2 taut; frame k from k · elements
 //!   Steps      attribute NSteps; Values [frames]: s
 //!     PartOffsets, CellOffsets, ConnectivityIdOffsets 0; NumberOfParts 1; PointOffsets k · nodes
 //!     CellDataOffsets/storey 0; CellDataOffsets/regime k · elements
 //! ```
-//! `CellOffsets` and `ConnectivityIdOffsets` have a second axis of one: an unstructured grid has one
-//! kind of topology. See "VTKHDF format specification" in the documentation of VTK.
+//! `CellOffsets` and `ConnectivityIdOffsets` have a second axis of length one: an unstructured grid has
+//! one kind of topology. Source: "VTKHDF format specification" in the documentation of VTK.
 
 use std::path::{Path, PathBuf};
 use std::sync::PoisonError;
@@ -24,16 +24,17 @@ use hdf5::file::LinkCreationOrder;
 use hdf5::types::FixedAscii;
 use hdf5::{Dataset, Extents, File, Group, H5Type};
 
-use super::{Contents, DEFLATE, DOOR, damaged, number_attribute};
+use super::hash::Contents;
+use super::{DEFLATE_LEVEL, HDF5_LOCK, damaged, number_attribute};
 use crate::platform::error::Result;
 
 /// Name of the group.
 const GROUP: &str = "VTKHDF";
-/// VTK's name of the kind of grid; text of exactly this length, as its readers want it.
+/// Name of the grid type in VTK. Its readers need text of exactly this length.
 const GRID: &str = "UnstructuredGrid";
-/// VTK's number of a triangle.
+/// Number of the cell type triangle in VTK.
 const TRIANGLE: u8 = 5;
-/// What is stored of a regime, in this order.
+/// Regimes in the order of their stored codes.
 const REGIMES: [Regime; 3] = [Regime::Slack, Regime::Wrinkled, Regime::Taut];
 
 fn code(regime: Regime) -> u8 {
@@ -48,7 +49,7 @@ fn connectivity(frames: &Frames) -> impl Iterator<Item = i64> {
     frames.triangles.as_flattened().iter().map(|node| i64::from(*node))
 }
 
-fn places(frames: &Frames) -> impl Iterator<Item = f32> {
+fn coordinates(frames: &Frames) -> impl Iterator<Item = f32> {
     frames.frames.iter().flat_map(|frame| frame.places.as_flattened()).copied()
 }
 
@@ -56,19 +57,19 @@ fn regimes(frames: &Frames) -> impl Iterator<Item = u8> {
     frames.frames.iter().flat_map(|frame| &frame.regimes).map(|regime| code(*regime))
 }
 
-/// Takes everything that is no mere layout into a content hash, by the paths it is stored at.
+/// Adds all values except the layout to a content hash, with the names of their datasets.
 pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
     let (count, elements) = (frames.frames.len(), frames.triangles.len());
     let nodes = frames.frames.first().map_or(0, |frame| frame.places.len());
     let ids = connectivity(frames).map(i64::to_le_bytes);
-    contents.take("VTKHDF/Connectivity", 3 * elements, ids);
+    contents.add("VTKHDF/Connectivity", 3 * elements, ids);
     let storeys = frames.storeys.iter().map(|storey| storey.to_le_bytes());
-    contents.take("VTKHDF/CellData/storey", frames.storeys.len(), storeys);
+    contents.add("VTKHDF/CellData/storey", frames.storeys.len(), storeys);
     let times = frames.frames.iter().map(|frame| frame.time.to_bits().to_le_bytes());
-    contents.take("VTKHDF/Steps/Values", count, times);
-    let places = places(frames).map(|place| place.to_bits().to_le_bytes());
-    contents.take("VTKHDF/Points", 3 * count * nodes, places);
-    contents.take("VTKHDF/CellData/regime", count * elements, regimes(frames).map(|code| [code]));
+    contents.add("VTKHDF/Steps/Values", count, times);
+    let points = coordinates(frames).map(|coordinate| coordinate.to_bits().to_le_bytes());
+    contents.add("VTKHDF/Points", 3 * count * nodes, points);
+    contents.add("VTKHDF/CellData/regime", count * elements, regimes(frames).map(|code| [code]));
 }
 
 /// Writes the group.
@@ -79,23 +80,23 @@ pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     if frames.storeys.len() != elements || !frames.frames.iter().all(fits) {
         return Err("frames of different sizes".into());
     }
-    let whole = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
+    let integer = |number: usize| i64::try_from(number).unwrap_or(i64::MAX);
     let group = create_group(file, GROUP)?;
     let version = group.new_attr::<i64>().shape(2).create("Version")?;
     version.write_raw(&[2_i64, 0])?;
     let kind = FixedAscii::<{ GRID.len() }>::from_ascii(GRID).map_err(|error| error.to_string())?;
     group.new_attr::<FixedAscii<{ GRID.len() }>>().create("Type")?.write_scalar(&kind)?;
 
-    array(&group, "NumberOfPoints", 1, None, &[whole(nodes)])?;
-    array(&group, "NumberOfCells", 1, None, &[whole(elements)])?;
-    array(&group, "NumberOfConnectivityIds", 1, None, &[whole(3 * elements)])?;
+    array(&group, "NumberOfPoints", 1, None, &[integer(nodes)])?;
+    array(&group, "NumberOfCells", 1, None, &[integer(elements)])?;
+    array(&group, "NumberOfConnectivityIds", 1, None, &[integer(3 * elements)])?;
     let ids: Vec<i64> = connectivity(frames).collect();
     array(&group, "Connectivity", ids.len(), Some(&[ids.len()]), &ids)?;
-    let offsets: Vec<i64> = (0..=elements).map(|element| whole(3 * element)).collect();
+    let offsets: Vec<i64> = (0..=elements).map(|element| integer(3 * element)).collect();
     array(&group, "Offsets", offsets.len(), Some(&[offsets.len()]), &offsets)?;
     array(&group, "Types", elements, Some(&[elements]), &vec![TRIANGLE; elements])?;
-    let places: Vec<f32> = places(frames).collect();
-    array(&group, "Points", (count * nodes, 3), Some(&[nodes, 3]), &places)?;
+    let points: Vec<f32> = coordinates(frames).collect();
+    array(&group, "Points", (count * nodes, 3), Some(&[nodes, 3]), &points)?;
 
     let cells = create_group(&group, "CellData")?;
     array(&cells, "storey", elements, Some(&[elements]), &frames.storeys)?;
@@ -103,18 +104,18 @@ pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     array(&cells, "regime", regimes.len(), Some(&[elements]), &regimes)?;
 
     let steps = create_group(&group, "Steps")?;
-    number_attribute(&steps, "NSteps", whole(count))?;
+    number_attribute(&steps, "NSteps", integer(count))?;
     let times: Vec<f64> = frames.frames.iter().map(|frame| frame.time).collect();
     array(&steps, "Values", count, None, &times)?;
-    let (noughts, ones) = (vec![0_i64; count], vec![1_i64; count]);
-    let every = |size: usize| (0..count).map(|step| whole(step * size)).collect::<Vec<i64>>();
+    let (zeros, ones) = (vec![0_i64; count], vec![1_i64; count]);
+    let every = |size: usize| (0..count).map(|step| integer(step * size)).collect::<Vec<i64>>();
     array(&steps, "NumberOfParts", count, None, &ones)?;
-    array(&steps, "PartOffsets", count, None, &noughts)?;
+    array(&steps, "PartOffsets", count, None, &zeros)?;
     array(&steps, "PointOffsets", count, None, &every(nodes))?;
-    array(&steps, "CellOffsets", (count, 1), None, &noughts)?;
-    array(&steps, "ConnectivityIdOffsets", (count, 1), None, &noughts)?;
+    array(&steps, "CellOffsets", (count, 1), None, &zeros)?;
+    array(&steps, "ConnectivityIdOffsets", (count, 1), None, &zeros)?;
     let offsets = create_group(&steps, "CellDataOffsets")?;
-    array(&offsets, "storey", count, None, &noughts)?;
+    array(&offsets, "storey", count, None, &zeros)?;
     array(&offsets, "regime", count, None, &every(elements))
 }
 
@@ -123,7 +124,7 @@ fn create_group(parent: &Group, name: &str) -> hdf5::Result<Group> {
     parent.create_group_builder().with_gcpl(|list| list.link_creation_order(ordered)).create(name)
 }
 
-/// Creates an array and writes it; in chunks it is shuffled and deflated.
+/// Creates and writes an array. An array in chunks is shuffled and deflated.
 fn array<T: H5Type>(
     group: &Group,
     name: &str,
@@ -132,14 +133,14 @@ fn array<T: H5Type>(
     values: &[T],
 ) -> hdf5::Result<()> {
     let empty = group.new_dataset::<T>().shape(shape);
-    let made = match chunk {
-        Some(chunk) => empty.chunk(chunk.to_vec()).shuffle().deflate(DEFLATE),
+    let builder = match chunk {
+        Some(chunk) => empty.chunk(chunk.to_vec()).shuffle().deflate(DEFLATE_LEVEL),
         None => empty,
     };
-    made.obj_track_times(false).create(name)?.write_raw(values)
+    builder.obj_track_times(false).create(name)?.write_raw(values)
 }
 
-/// Frames of a history file, read one at a time: a long run of a fine mesh need not fit into memory.
+/// Frames of a history file, read one at a time: all frames together may not fit into memory.
 #[derive(Debug)]
 pub struct StoredFrames {
     path: PathBuf,
@@ -151,7 +152,7 @@ pub struct StoredFrames {
     regimes: Dataset,
 }
 
-/// Opens the group and reads all but the frames themselves; `None` where there is no such group.
+/// Opens the group and reads everything except the frames; `None` for a file without the group.
 pub(super) fn read(file: &File, path: &Path) -> hdf5::Result<Option<StoredFrames>> {
     if !file.link_exists(GROUP) {
         return Ok(None);
@@ -159,26 +160,26 @@ pub(super) fn read(file: &File, path: &Path) -> hdf5::Result<Option<StoredFrames
     let group = file.group(GROUP)?;
     let nodes = group.dataset("NumberOfPoints")?.read_raw::<i64>()?;
     let nodes = nodes.first().and_then(|nodes| u32::try_from(*nodes).ok());
-    let nodes = nodes.ok_or("a number of nodes that is none")?;
+    let nodes = nodes.ok_or("invalid number of nodes")?;
     let ids = group.dataset("Connectivity")?.read_raw::<i64>()?;
     let ids: Vec<u32> = ids
         .into_iter()
         .map(|id| u32::try_from(id).ok().filter(|id| *id < nodes))
         .collect::<Option<_>>()
-        .ok_or("an element with a node there is not")?;
+        .ok_or("an element with an unknown node")?;
     let (triangles, rest) = ids.as_chunks::<3>();
     let storeys = group.dataset("CellData/storey")?.read_raw::<u32>()?;
     let times = group.dataset("Steps/Values")?.read_raw::<f64>()?;
     let (points, regimes) = (group.dataset("Points")?, group.dataset("CellData/regime")?);
     let (count, nodes) = (times.len(), nodes as usize);
     if !rest.is_empty() || triangles.is_empty() || storeys.len() != triangles.len() {
-        return Err("elements and storeys of different numbers".into());
+        return Err("different numbers of elements and storeys".into());
     }
     if count == 0
         || points.shape() != [count * nodes, 3]
         || regimes.shape() != [count * triangles.len()]
     {
-        return Err("frames of other sizes than their elements".into());
+        return Err("the size of the frames does not match the mesh".into());
     }
     if !times.iter().all(|time| time.is_finite()) || !times.is_sorted() {
         return Err("frames out of order".into());
@@ -206,9 +207,9 @@ impl StoredFrames {
     /// Reads one frame.
     ///
     /// # Errors
-    /// [`crate::platform::error::Error::Disk`] when the file is damaged there.
+    /// [`crate::platform::error::Error::Disk`] when this part of the file is damaged.
     pub fn frame(&self, number: usize) -> Result<Frame> {
-        let _door = DOOR.lock().unwrap_or_else(PoisonError::into_inner);
+        let _guard = HDF5_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
         self.read(number).map_err(|error| damaged(&self.path, &error))
     }
 
@@ -216,17 +217,17 @@ impl StoredFrames {
         let time = *self.times.get(number).ok_or("no such frame")?;
         let (nodes, elements) = (self.nodes, self.triangles.len());
         let rows = number * nodes..(number + 1) * nodes;
-        let places = self.points.read_slice_2d::<f32, _>((rows, ..))?;
-        let (places, _) = places.as_slice().unwrap_or_default().as_chunks::<3>();
-        if places.len() != nodes || places.as_flattened().iter().any(|place| !place.is_finite()) {
-            return Err(format!("frame {number} has places that are none").into());
+        let points = self.points.read_slice_2d::<f32, _>((rows, ..))?;
+        let (points, _) = points.as_slice().unwrap_or_default().as_chunks::<3>();
+        if points.len() != nodes || points.as_flattened().iter().any(|x| !x.is_finite()) {
+            return Err(format!("frame {number} has non-finite positions").into());
         }
         let codes = number * elements..(number + 1) * elements;
         let codes = self.regimes.read_slice_1d::<u8, _>(codes)?;
         let regime = |code: &u8| REGIMES.get(usize::from(*code)).copied();
         let regimes: Option<Vec<Regime>> = codes.iter().map(regime).collect();
-        let regimes = regimes.ok_or_else(|| format!("frame {number} has regimes unknown"))?;
-        Ok(Frame { time, places: places.to_vec(), regimes })
+        let regimes = regimes.ok_or_else(|| format!("frame {number} has unknown regimes"))?;
+        Ok(Frame { time, places: points.to_vec(), regimes })
     }
 }
 

@@ -1,6 +1,6 @@
-//! Frames come back to the bit, lie where VTK looks for them, and are refused when damaged.
+//! Frames: bits, the layout that VTK reads, refused files.
 
-#![expect(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -37,12 +37,12 @@ fn read_back(bytes: &[u8]) -> Result<Option<Frames>> {
 }
 
 #[test]
-fn a_file_without_frames_has_none() {
+fn a_file_without_frames_gives_none() {
     assert_eq!(read_back(&encoded(None)).unwrap(), None);
 }
 
 #[test]
-fn everything_lies_where_vtk_looks_for_it() {
+fn the_layout_is_that_of_vtkhdf() {
     let (_folder, path) = path_with(&encoded(Some(fixture::frames(1, 3))));
     let file = File::open(&path).unwrap();
     let group = file.group("VTKHDF").unwrap();
@@ -50,16 +50,16 @@ fn everything_lies_where_vtk_looks_for_it() {
     assert_eq!(kind.dtype().unwrap().to_descriptor().unwrap(), TypeDescriptor::FixedAscii(16));
     assert_eq!(kind.read_scalar::<FixedAscii<16>>().unwrap().as_str(), "UnstructuredGrid");
     assert_eq!(group.attr("Version").unwrap().read_raw::<i64>().unwrap(), [2, 0]);
-    let whole = |name: &str| group.dataset(name).unwrap().read_raw::<i64>().unwrap();
-    assert_eq!(whole("NumberOfPoints"), [4]);
-    assert_eq!(whole("NumberOfCells"), [2]);
-    assert_eq!(whole("NumberOfConnectivityIds"), [6]);
-    assert_eq!(whole("Offsets"), [0, 3, 6]);
-    assert_eq!(whole("Connectivity"), [0, 1, 2, 1, 3, 2]);
+    let integers = |name: &str| group.dataset(name).unwrap().read_raw::<i64>().unwrap();
+    assert_eq!(integers("NumberOfPoints"), [4]);
+    assert_eq!(integers("NumberOfCells"), [2]);
+    assert_eq!(integers("NumberOfConnectivityIds"), [6]);
+    assert_eq!(integers("Offsets"), [0, 3, 6]);
+    assert_eq!(integers("Connectivity"), [0, 1, 2, 1, 3, 2]);
     assert_eq!(group.dataset("Types").unwrap().read_raw::<u8>().unwrap(), [5, 5]);
     let points = group.dataset("Points").unwrap();
     assert_eq!(points.shape(), [12, 3]);
-    assert_eq!(points.chunk().unwrap(), [4, 3], "one frame a chunk");
+    assert_eq!(points.chunk().unwrap(), [4, 3], "one chunk per frame");
     assert_eq!(points.dtype().unwrap().size(), 4);
 
     let steps = group.group("Steps").unwrap();
@@ -75,7 +75,7 @@ fn everything_lies_where_vtk_looks_for_it() {
         ("CellDataOffsets/storey", [0; 3]),
         ("CellDataOffsets/regime", [0, 2, 4]),
     ] {
-        assert_eq!(whole(&format!("Steps/{name}")), expected, "{name}");
+        assert_eq!(integers(&format!("Steps/{name}")), expected, "{name}");
     }
     let cells = group.group("CellData").unwrap();
     assert_eq!(cells.dataset("storey").unwrap().read_raw::<u32>().unwrap(), [0, 1]);
@@ -87,13 +87,13 @@ fn everything_lies_where_vtk_looks_for_it() {
 #[test]
 fn no_time_of_day_is_stored() {
     let first = encoded(Some(fixture::frames(1, 3)));
-    // HDF5 counts times of creation in seconds.
+    // HDF5 stores creation times in seconds.
     sleep(Duration::from_millis(1_100));
     assert!(first == encoded(Some(fixture::frames(1, 3))));
 }
 
 #[test]
-fn the_content_hash_sees_every_frame() {
+fn the_content_hash_depends_on_every_frame() {
     let hash = |frames: Option<Frames>| {
         content_hash(&billow_solver::output::outcome::Deployment {
             frames,
@@ -116,14 +116,14 @@ fn the_content_hash_sees_every_frame() {
         edited(&|frames| frames.frames[0].regimes[0] = Regime::Taut),
         edited(&|frames| drop(frames.frames.pop())),
     ];
-    for (at, one) in hashes.iter().enumerate() {
-        assert!(!hashes[..at].contains(one), "{at}");
+    for (index, hash) in hashes.iter().enumerate() {
+        assert!(!hashes[..index].contains(hash), "{index}");
     }
     assert_eq!(hash(Some(frames())), hashes[1]);
 }
 
 #[test]
-fn frames_that_are_damaged_are_refused_with_the_file() {
+fn damaged_frames_are_refused_with_the_name_of_the_file() {
     let bytes = encoded(Some(fixture::frames(1, 3)));
     let edited = |edit: &dyn Fn(&Group)| {
         let (_folder, path) = path_with(&bytes);
@@ -139,24 +139,24 @@ fn frames_that_are_damaged_are_refused_with_the_file() {
     for (problem, edit) in [
         ("", &(|group: &Group| group.unlink("Points").unwrap()) as &dyn Fn(&Group)),
         ("", &|group| group.unlink("Steps").unwrap()),
-        ("an element with a node there is not", &|group| {
+        ("an element with an unknown node", &|group| {
             set(group, "Connectivity", &[0.0, 1.0, 2.0, 1.0, 4.0, 2.0]);
         }),
-        ("a number of nodes", &|group| set(group, "NumberOfPoints", &[-4.0])),
-        ("frames of other sizes", &|group| set(group, "NumberOfPoints", &[5.0])),
+        ("invalid number of nodes", &|group| set(group, "NumberOfPoints", &[-4.0])),
+        ("the size of the frames", &|group| set(group, "NumberOfPoints", &[5.0])),
         ("frames out of order", &|group| set(group, "Steps/Values", &[0.0, 0.2, 0.1])),
-        ("frame 2 has regimes unknown", &|group| {
+        ("frame 2 has unknown regimes", &|group| {
             set(group, "CellData/regime", &[0.0, 1.0, 1.0, 2.0, 2.0, 3.0]);
         }),
-        ("frame 1 has places that are none", &|group| {
-            let mut places = [0.0; 36];
-            places[20] = f64::NAN;
-            set(group, "Points", &places);
+        ("frame 1 has non-finite positions", &|group| {
+            let mut points = [0.0; 36];
+            points[20] = f64::NAN;
+            set(group, "Points", &points);
         }),
     ] {
-        let said = edited(edit);
-        assert!(said.contains("a.h5: damaged history file: "), "{said}");
-        assert!(said.contains(problem) && said.contains("next: "), "{problem}: {said}");
+        let message = edited(edit);
+        assert!(message.contains("a.h5: damaged history file: "), "{message}");
+        assert!(message.contains(problem) && message.contains("next: "), "{problem}: {message}");
     }
     for length in [bytes.len() / 3, bytes.len() - 1] {
         let (_folder, path) = path_with(&bytes[..length]);
@@ -167,13 +167,13 @@ fn frames_that_are_damaged_are_refused_with_the_file() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
     #[test]
-    fn frames_come_back_to_the_bit(
+    fn frames_are_read_back_bit_for_bit(
         bits in prop::collection::vec(prop::array::uniform3(any::<f32>()), 4 * 5),
         codes in prop::collection::vec(0_usize..3, 2 * 5),
         steps in prop::collection::vec(0.0..1.0_f64, 5),
         storeys in prop::collection::vec(any::<u32>(), 2),
     ) {
-        let finite = |place: &[f32; 3]| place.map(|x| if x.is_finite() { x } else { -0.0 });
+        let finite = |point: &[f32; 3]| point.map(|x| if x.is_finite() { x } else { -0.0 });
         let mut time = 0.0;
         let frame = |number: usize| {
             time += steps[number];
@@ -186,7 +186,7 @@ proptest! {
         let frames: Vec<Frame> = (0..5).map(frame).collect();
         let frames = Frames { storeys, frames, ..fixture::frames(0, 0) };
         let back = read_back(&encoded(Some(frames.clone()))).unwrap().unwrap();
-        let bits = |frames: &Frames| -> Vec<u32> { places(frames).map(f32::to_bits).collect() };
+        let bits = |frames: &Frames| -> Vec<u32> { coordinates(frames).map(f32::to_bits).collect() };
         prop_assert_eq!(bits(&back), bits(&frames));
         prop_assert_eq!(back, frames);
     }

@@ -1,0 +1,124 @@
+//! What the columns of a row are taken from: the job, how it ended, its fold pattern.
+
+use billow_solver::geometry::fold::{FoldError, FoldPattern};
+use billow_solver::output::audit::Audit;
+use billow_solver::output::measures::{Measures, Verdict};
+use billow_solver::output::outcome::{Deployment, Failure, Stop};
+use billow_solver::scene::Thresholds;
+use billow_solver::scene::error::SceneError;
+
+use crate::job::executor::Outcome;
+use crate::job::{Job, Status};
+
+/// A job that ended, as the table of columns sees it. The methods return `None` for what this job
+/// does not have; its cell is then null.
+pub struct JobEnd<'a> {
+    job: &'a Job,
+    outcome: &'a Outcome,
+    /// How the job ended.
+    pub status: Status,
+    pattern: Option<FoldPattern>,
+    /// Hash of history and frames of a job that ran.
+    pub content_hash: Option<&'a str>,
+}
+
+impl<'a> JobEnd<'a> {
+    /// `None` for a cancelled job: nothing of it is stored.
+    pub fn new(job: &'a Job, outcome: &'a Outcome, content_hash: Option<&'a str>) -> Option<Self> {
+        let status = match outcome {
+            Outcome::Cancelled => return None,
+            Outcome::Ran { deployment, .. } => match &deployment.stop {
+                Stop::Cancelled => return None,
+                Stop::Done => Status::Done,
+                Stop::Failed(failure) => Status::Failed(failure.kind),
+            },
+            Outcome::Refused(SceneError::Fold(FoldError::Infeasible { .. })) => Status::Infeasible,
+            Outcome::Refused(_) => Status::Invalid,
+            Outcome::Panicked(_) => Status::Panicked,
+        };
+        // A job that panicked may have panicked in the solution of its pattern.
+        let pattern = match outcome {
+            Outcome::Panicked(_) => None,
+            _ => FoldPattern::new(&job.scene.design).ok(),
+        };
+        Some(Self { job, outcome, status, pattern, content_hash })
+    }
+
+    /// The result of a job that ran.
+    pub fn deployment(&self) -> Option<&'a Deployment> {
+        match self.outcome {
+            Outcome::Ran { deployment, .. } => Some(deployment),
+            Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+        }
+    }
+
+    /// A measure of a job that ran.
+    pub fn measure(&self, measure: fn(&Measures) -> Option<f64>) -> Option<f64> {
+        measure(&self.deployment()?.measures)
+    }
+
+    /// The verdict of a job that ran.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.deployment()?.measures.verdict
+    }
+
+    /// A quantity of the audit of a job that ran.
+    pub fn audit<T>(&self, quantity: fn(&Audit) -> T) -> Option<T> {
+        Some(quantity(&self.deployment()?.audit))
+    }
+
+    /// The largest or smallest value of a track: `pick` returns one of two values.
+    pub fn extreme(&self, track: &str, pick: fn(f64, f64) -> f64) -> Option<f64> {
+        self.deployment()?.followed(track).iter().copied().reduce(pick)
+    }
+
+    /// A threshold of the verdict. A job that panicked shows none.
+    pub fn threshold(&self, threshold: fn(&Thresholds) -> f64) -> Option<f64> {
+        let panicked = matches!(self.outcome, Outcome::Panicked(_));
+        (!panicked).then(|| threshold(&self.job.scene.outputs.thresholds))
+    }
+
+    /// A dimension of the solved fold pattern.
+    pub fn pattern(&self, dimension: fn(&FoldPattern) -> f64) -> Option<f64> {
+        self.pattern.as_ref().map(dimension)
+    }
+
+    /// Why, when and where a failed run stopped.
+    pub fn failure(&self) -> Option<&'a Failure> {
+        match &self.deployment()?.stop {
+            Stop::Failed(failure) => Some(failure),
+            Stop::Done | Stop::Cancelled => None,
+        }
+    }
+
+    /// Why there is no run, or no verdict.
+    pub fn reason(&self) -> Option<String> {
+        match self.outcome {
+            Outcome::Ran { note, .. } => note.clone(),
+            Outcome::Refused(error) => Some(error.to_string()),
+            Outcome::Panicked(message) => Some(message.clone()),
+            Outcome::Cancelled => None,
+        }
+    }
+
+    /// Wall time of a job that ran, s.
+    pub fn seconds(&self) -> Option<f64> {
+        match self.outcome {
+            Outcome::Ran { seconds, .. } => Some(*seconds),
+            Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+        }
+    }
+
+    /// Wall time over elements and accepted steps, ns.
+    pub fn ns_per_element_step(&self) -> Option<f64> {
+        let run = self.deployment()?;
+        let element_steps = run.steps as f64 * run.elements as f64;
+        let seconds = self.seconds()?;
+        (element_steps > 0.0).then(|| seconds * 1e9 / element_steps)
+    }
+}
+
+/// A count as a cell holds it.
+pub fn integer(value: u64) -> i64 {
+    i64::try_from(value).unwrap_or(i64::MAX)
+}

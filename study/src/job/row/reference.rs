@@ -1,0 +1,124 @@
+//! The reference page of the columns, docs/reference/columns.md: written from the tables in the code.
+
+use std::fmt::Write as _;
+
+use billow_solver::models::film::CONTACT_COLUMNS;
+use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
+
+use super::{BetterSide, COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS};
+use crate::job::status::{RENAMED_STATUSES, Status};
+
+/// The text of the page, Markdown.
+pub fn page() -> String {
+    let mut page = String::from(
+        "# Columns\n\n\
+         This page is generated from the tables in the code. A test fails when it is not current.\n\
+         All values are in SI units; the unit 1 marks a dimensionless number.\n\n",
+    );
+    table_columns(&mut page);
+    statuses(&mut page);
+    history_columns(&mut page);
+    renamed(&mut page);
+    page
+}
+
+fn table_columns(page: &mut String) {
+    page.push_str(
+        "## Summary table\n\n\
+         `summary.parquet`, `billow table`, `billow show`, `billow chart --measure`.\n\n\
+         The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
+         below. A parameter keeps its name when a column below has the same one; that column is then\n\
+         called `<name>_resolved`. Any cell may be null. The column \"better\" says which side\n\
+         `billow compare` calls the better one.\n\n\
+         | name | type | unit | group | better | meaning |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    for column in COLUMNS {
+        let better = match column.better {
+            BetterSide::Smaller => "smaller",
+            BetterSide::Larger => "larger",
+            BetterSide::Neither => "",
+        };
+        let _ = writeln!(
+            page,
+            "| `{}` | {} | {} | {} | {better} | {} |",
+            column.name,
+            column.cell_type.name(),
+            column.unit,
+            column.group.name(),
+            column.meaning
+        );
+    }
+}
+
+fn statuses(page: &mut String) {
+    let in_tables = Status::all().filter(|status| match status {
+        Status::Cancelled | Status::Paused | Status::NoEquilibrium => false,
+        Status::Pending
+        | Status::Done
+        | Status::Infeasible
+        | Status::Invalid
+        | Status::Panicked
+        | Status::Failed(_) => true,
+    });
+    let names: Vec<String> = in_tables.map(|status| format!("`{status}`")).collect();
+    let _ = write!(
+        page,
+        "\nValues of `status`: {}.\n\
+         The run of a single scene (`billow solve`) can also be `paused` or `no_equilibrium`.\n",
+        names.join(", ")
+    );
+}
+
+fn history_columns(page: &mut String) {
+    page.push_str(
+        "\n## History\n\n\
+         Group `history` of a job's HDF5 file, `billow show --history`, `billow chart --history`.\n\
+         Every column has one value per sample.\n\n\
+         | name | unit | present | meaning |\n\
+         |---|---|---|---|\n",
+    );
+    for column in HISTORY_COLUMNS {
+        let present =
+            if RING_COLUMNS.contains(&column.name) { "film with rings" } else { "always" };
+        let _ = writeln!(
+            page,
+            "| `{}` | {} | {present} | {} |",
+            column.name, column.unit, column.meaning
+        );
+    }
+    let _ = writeln!(
+        page,
+        "| `vz_centre` | m/s | film with rings | velocity of the top centre node along z |"
+    );
+    for (name, unit, meaning) in CONTACT_COLUMNS {
+        let _ = writeln!(page, "| `{name}` | {unit} | film with contact | {meaning} |");
+    }
+    page.push_str(
+        "| `plate_NAME_force` | N | each plate of a scene | force of the film on the plate along its \
+         normal, against it |\n\
+         | `node_NAME_x`, `_y`, `_z` | m | each followed node of a scene | position of the node |\n\
+         | `element_NAME_N1`, `_N2` | N/m | each followed element of a scene | principal membrane \
+         force per reference width |\n",
+    );
+}
+
+fn renamed(page: &mut String) {
+    page.push_str(
+        "\n## Old names\n\n\
+         Stored files with old names are read. In options of commands, old names work for one version,\n\
+         with a note.\n\n\
+         | where | old name | current name |\n\
+         |---|---|---|\n",
+    );
+    let places: [(&str, &[(&str, &str)]); 3] = [
+        ("summary table", &RENAMED_TABLE_COLUMNS),
+        ("history", &RENAMED_COLUMNS),
+        ("value of `status`", &RENAMED_STATUSES),
+    ];
+    for (place, names) in places {
+        for (old, current) in names {
+            let _ = writeln!(page, "| {place} | `{old}` | `{current}` |");
+        }
+    }
+}

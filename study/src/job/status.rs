@@ -1,0 +1,110 @@
+//! The status of a job: one enum with one set of names, for table, journal and history files.
+
+use std::fmt;
+
+use billow_solver::output::outcome::FailureKind;
+
+/// Old names of statuses that are still read: old name, current name.
+pub const RENAMED_STATUSES: [(&str, &str); 1] = [("drifted", "energy_drift")];
+
+/// How a job, or the run of a single scene, stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// The job has not ended yet.
+    Pending,
+    /// The run reached its end time, or the static solver its equilibrium.
+    Done,
+    /// No fold pattern satisfies the design: nothing was run.
+    Infeasible,
+    /// The model refused the scene before its first step.
+    Invalid,
+    /// The program panicked.
+    Panicked,
+    /// The run stopped before its end time. There is no result.
+    Failed(FailureKind),
+    /// The run was cancelled. A study keeps nothing of it.
+    Cancelled,
+    /// The run of a single scene was paused; its checkpoint continues it. Never in a study.
+    Paused,
+    /// The static solver found no equilibrium for a single scene. Never in a study.
+    NoEquilibrium,
+}
+
+impl Status {
+    /// Every status.
+    pub fn all() -> impl Iterator<Item = Self> {
+        [
+            Self::Pending,
+            Self::Done,
+            Self::Infeasible,
+            Self::Invalid,
+            Self::Panicked,
+            Self::Cancelled,
+            Self::Paused,
+            Self::NoEquilibrium,
+        ]
+        .into_iter()
+        .chain(FailureKind::ALL.map(Self::Failed))
+    }
+
+    /// The name, as in the column `status`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pending => "pending",
+            Self::Done => "done",
+            Self::Infeasible => "infeasible",
+            Self::Invalid => "invalid",
+            Self::Panicked => "panicked",
+            Self::Failed(kind) => kind.name(),
+            Self::Cancelled => "cancelled",
+            Self::Paused => "paused",
+            Self::NoEquilibrium => "no_equilibrium",
+        }
+    }
+
+    /// The status with that name. Old names ([`RENAMED_STATUSES`]) are read.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let renamed = RENAMED_STATUSES.iter().find(|(old, _)| *old == name);
+        let name = renamed.map_or(name, |(_, current)| current);
+        Self::all().find(|status| status.name() == name)
+    }
+
+    /// Whether a job with this status failed: it will not give a result, though its point has a
+    /// pattern.
+    pub fn is_failure(self) -> bool {
+        match self {
+            Self::Invalid | Self::Panicked | Self::Failed(_) | Self::NoEquilibrium => true,
+            Self::Pending | Self::Done | Self::Infeasible | Self::Cancelled | Self::Paused => false,
+        }
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_status_is_found_by_its_name_and_names_differ() {
+        for status in Status::all() {
+            assert_eq!(Status::from_name(status.name()), Some(status));
+        }
+        let names: BTreeSet<&str> = Status::all().map(Status::name).collect();
+        assert_eq!(names.len(), Status::all().count());
+        assert_eq!(Status::from_name("finished"), None);
+    }
+
+    #[test]
+    fn the_old_name_of_energy_drift_is_read() {
+        let drift = Status::Failed(FailureKind::EnergyDrift);
+        assert_eq!(Status::from_name("drifted"), Some(drift));
+        assert_eq!(drift.name(), "energy_drift");
+    }
+}

@@ -1,0 +1,102 @@
+//! Whole files: written completely or not at all.
+
+use std::io;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::Files;
+
+/// End of the name of a temporary file.
+const TEMPORARY: &str = ".tmp";
+
+/// Whether a path has the name of a temporary file of this program.
+pub fn is_temporary(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with('.') && name.ends_with(TEMPORARY)
+}
+
+/// Writes a whole file, or keeps the old one: temporary name in the same folder, sync, rename, sync of
+/// the folder.
+///
+/// # Errors
+/// The error of the system. The temporary file is then removed if possible.
+pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    static COUNTER: AtomicU64 = AtomicU64::new(0);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+    let temporary =
+        path.with_file_name(format!(".{name}.{}-{number}{TEMPORARY}", std::process::id()));
+    let written = files.write_new(&temporary, bytes).and_then(|()| files.rename(&temporary, path));
+    if written.is_err() {
+        // The error of the write is reported, not an error of this removal.
+        let _ = files.remove(&temporary);
+    }
+    written?;
+    // The parent of a bare name is the empty path, which cannot be opened.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    files.sync_folder(folder.unwrap_or(Path::new(".")))
+}
+
+/// Writes a whole file unless it holds these bytes already. Returns whether it wrote.
+///
+/// # Errors
+/// As [`write_atomic`], and for an existing file that cannot be read.
+pub fn write_if_changed(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<bool> {
+    match files.read(path) {
+        Ok(stored) if stored == bytes => return Ok(false),
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    write_atomic(files, path, bytes).map(|()| true)
+}
+
+/// Removes the temporary files that killed processes left in a folder. Only for a folder to which no
+/// other process writes.
+///
+/// # Errors
+/// The error of the system.
+pub fn remove_temporary_files(files: &dyn Files, folder: &Path) -> io::Result<()> {
+    for path in files.list(folder)?.iter().filter(|path| is_temporary(path)) {
+        files.remove(path)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::super::Disk;
+    use super::super::failing::FailingFiles;
+    use super::*;
+
+    #[test]
+    fn a_failed_atomic_write_leaves_the_old_or_the_new_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        write_atomic(&Disk, &path, b"old").unwrap();
+        for nth in 1..=3 {
+            let failing = FailingFiles::new(nth, io::ErrorKind::StorageFull);
+            write_atomic(&failing, &path, b"new, and longer").unwrap_err();
+            let found = fs::read(&path).unwrap();
+            // A failed sync of the folder comes after the rename.
+            let expected: &[u8] = if nth == 3 { b"new, and longer" } else { b"old" };
+            assert_eq!(found, expected, "operation {nth}");
+            write_atomic(&Disk, &path, b"old").unwrap();
+            remove_temporary_files(&Disk, folder.path()).unwrap();
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        }
+        let enough = FailingFiles::new(4, io::ErrorKind::StorageFull);
+        write_atomic(&enough, &path, b"new").unwrap();
+        assert_eq!(enough.operations(), 3);
+    }
+
+    #[test]
+    fn an_equal_file_is_not_written_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        assert!(write_if_changed(&Disk, &path, b"1").unwrap());
+        assert!(!write_if_changed(&Disk, &path, b"1").unwrap());
+        assert!(write_if_changed(&Disk, &path, b"2").unwrap());
+    }
+}

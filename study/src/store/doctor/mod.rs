@@ -1,0 +1,237 @@
+//! Checks a results folder: every file that a run must have written exists, is complete and is
+//! unchanged, and there are no other files. It changes nothing.
+//!
+//! A *fault* is damage: a result is lost, or cannot be read. A *note* is not: a torn last line, a
+//! temporary file of a killed process, an unknown file. Each finding has a next step.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::job::JobId;
+use crate::platform::error::Error;
+use crate::platform::files::disk_error;
+use crate::store::journal::{self, Journal};
+use crate::store::results::Results;
+use crate::store::stored::{self, Stored};
+use crate::store::table::Table;
+use crate::study::Study;
+
+mod histories;
+mod unknown_files;
+
+/// What to do about a damaged job.
+const RUN_AGAIN: &str = "run `billow run` of its study: it runs the job again";
+
+/// How much is checked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// Which files exist.
+    Names,
+    /// Their contents, too.
+    Contents,
+}
+
+/// Something found.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// Whether it is damage.
+    pub fault: bool,
+    /// File or folder.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub problem: String,
+    /// The next step.
+    pub next: String,
+}
+
+/// Result of a check.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Health {
+    /// Faults first, then notes, both in the order of the check.
+    pub findings: Vec<Finding>,
+    /// Number of jobs that the journals record as ended.
+    pub records: usize,
+    /// Number of history files checked.
+    pub histories: usize,
+    /// Whether another process is running the study.
+    pub running: bool,
+}
+
+impl Health {
+    /// Number of faults.
+    pub fn faults(&self) -> usize {
+        self.findings.iter().filter(|finding| finding.fault).count()
+    }
+
+    fn fault(&mut self, path: &Path, problem: impl Into<String>, next: &str) {
+        self.add(true, path, problem.into(), next);
+    }
+
+    fn note(&mut self, path: &Path, problem: impl Into<String>, next: &str) {
+        self.add(false, path, problem.into(), next);
+    }
+
+    fn add(&mut self, fault: bool, path: &Path, problem: String, next: &str) {
+        let path = path.to_owned();
+        self.findings.push(Finding { fault, path, problem, next: next.to_owned() });
+    }
+
+    /// Adds an error as a fault: its text without the next step, and the next step.
+    fn error(&mut self, path: &Path, error: &Error) {
+        let (path, text) = match error {
+            Error::Disk { path, problem } => (path.clone(), problem.clone()),
+            other => (path.to_owned(), other.to_string()),
+        };
+        let (problem, next) = text.split_once("\n  next: ").unwrap_or((&text, ""));
+        let problem = problem.split_whitespace().collect::<Vec<_>>().join(" ");
+        self.fault(&path, problem, next);
+    }
+}
+
+/// Checks a results folder.
+pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
+    let mut health = Health::default();
+    let paths = match results.files().list(results.root()) {
+        Ok(paths) => paths,
+        Err(error) => {
+            health.error(results.root(), &disk_error(results.root(), &error));
+            return health;
+        }
+    };
+    if paths.is_empty() {
+        let next = "run `billow run STUDY` first, or name the folder of its results";
+        health.fault(results.root(), "no results here", next);
+        return health;
+    }
+    match results.is_locked() {
+        Ok(running) => health.running = running,
+        Err(error) => health.error(results.root(), &error),
+    }
+    let study = check_study(results, &mut health);
+    let journal = check_journal(results, &mut health);
+    let points = study.as_ref().map(|study| stored::planned(study, &journal.records));
+    if let Some(points) = &points {
+        let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
+        let unplanned = journal.records.keys().filter(|id| !planned.contains(id)).count();
+        if unplanned > 0 {
+            let problem = format!("{unplanned} finished jobs are not in the study as it is now");
+            let next = "nothing; they are used again when the grid has their points";
+            health.note(&results.journal_path(), problem, next);
+        }
+    }
+    histories::check(results, &journal, depth, &mut health);
+    unknown_files::check(results, &journal, &paths, &mut health);
+    for path in results.unread_references() {
+        let problem = "a static reference that cannot be read, or of another physics version";
+        health.note(&path, problem, "nothing; a run that needs it computes it again");
+    }
+    health.records = journal.records.len();
+    if let (Some(study), Some(points)) = (study, points) {
+        let stored = Stored { results: results.clone(), study, journal, points };
+        check_table(&stored, &mut health);
+    }
+    health.findings.sort_by_key(|finding| !finding.fault);
+    health
+}
+
+fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
+    let path = results.study_path();
+    let root = results.root().display();
+    let next = format!("run `billow run STUDY --results {root}`: it writes the file again");
+    match results.owner() {
+        Err(error) => health.error(&path, &error),
+        Ok(None) => health.fault(&path, "missing: nothing says which study this is", &next),
+        Ok(Some(_)) => match Study::load(&path, &[]) {
+            Ok(study) => return Some(study),
+            Err(error) => {
+                health.error(&path, &error);
+                if let Some(last) = health.findings.last_mut() {
+                    last.next = next;
+                }
+            }
+        },
+    }
+    None
+}
+
+fn check_journal(results: &Results<'_>, health: &mut Health) -> Journal {
+    let folder = results.journal_path();
+    let (journal, faults) = match journal::examine(results.files(), &folder) {
+        Ok(read) => read,
+        Err(error) => {
+            health.error(&folder, &error);
+            return Journal::default();
+        }
+    };
+    for fault in &faults {
+        health.error(&folder, fault);
+    }
+    for note in &journal.notes {
+        // The name of the file stands before the first colon and space of a note.
+        let (path, text) = note.split_once(": ").unwrap_or(("", note));
+        let next = if health.running {
+            "nothing; a running command is writing it"
+        } else {
+            "run `billow run` of its study"
+        };
+        health.note(Path::new(path), text, next);
+    }
+    if !journal.invalidated.is_empty() {
+        let number = journal.invalidated.len();
+        let problem = format!("{number} jobs are invalidated and have not run again yet");
+        health.note(&folder, problem, "run `billow run` of its study: it runs them");
+    }
+    journal
+}
+
+/// Compares the summary table with plan and journal.
+fn check_table(stored: &Stored<'_>, health: &mut Health) {
+    let path = stored.results.table_path();
+    let write_again = "run `billow run` of its study: it writes the table again";
+    let table = match stored.results.read_table() {
+        Ok(table) => table,
+        Err(_) if !path.exists() => {
+            if !health.running {
+                let next = "nothing: `billow table` reads the journal instead; `billow run` of its \
+                            study writes the table";
+                health.note(&path, "no table yet", next);
+            }
+            return;
+        }
+        Err(Error::Disk { path, problem }) => {
+            let problem = problem.split('\n').next().unwrap_or_default();
+            let newer = problem.contains("this program reads up to");
+            let next = if newer { "use the newer billow that wrote it" } else { write_again };
+            return health.fault(&path, problem, next);
+        }
+        Err(other) => return health.error(&path, &other),
+    };
+    let different = different_rows(&table, &stored.table());
+    if different > 0 {
+        let problem = format!("differs from the journal in {different} rows");
+        if health.running {
+            health.note(&path, problem, "nothing; the running command writes it from time to time");
+        } else {
+            health.fault(&path, problem, write_again);
+        }
+    }
+}
+
+/// Number of rows in which two tables differ; all rows when their columns differ.
+pub fn different_rows(a: &Table, b: &Table) -> usize {
+    let names = |table: &Table| -> Vec<String> {
+        table.columns.iter().map(|column| column.name.clone()).collect()
+    };
+    let rows = a.rows().max(b.rows());
+    if a.rows() != b.rows() || names(a) != names(b) {
+        return rows;
+    }
+    // Compared as text, too: NaN is not equal to NaN.
+    let differs = |row: &usize| {
+        a.columns.iter().zip(&b.columns).any(|(a, b)| {
+            a.cells[*row] != b.cells[*row]
+                && format!("{:?}", a.cells[*row]) != format!("{:?}", b.cells[*row])
+        })
+    };
+    (0..rows).filter(differs).count()
+}

@@ -1,0 +1,104 @@
+//! study.json: which study a results folder belongs to. It is the resolved study, a study file.
+
+use std::io;
+
+use serde::Deserialize;
+
+use super::Results;
+use crate::input::study_file::Json;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::{self, disk_error};
+use crate::study::Study;
+
+/// Name of the format.
+const FORMAT: &str = "billow-study";
+/// Version of study.json that this program writes, and the newest that it reads.
+const VERSION: u64 = 1;
+
+/// The members that say which study it is.
+#[derive(Deserialize)]
+struct Owner {
+    format: String,
+    version: u64,
+    name: String,
+}
+
+/// The bytes of study.json for a resolved study.
+fn study_bytes(name: &str, study: &Json) -> io::Result<Vec<u8>> {
+    let mut study = study.clone();
+    study.set("format", Json::Text(FORMAT.to_owned()));
+    study.set("version", Json::Integer(VERSION.cast_signed()));
+    study.set("name", Json::Text(name.to_owned()));
+    let mut bytes = serde_json::to_vec_pretty(&study).map_err(io::Error::other)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+impl Results<'_> {
+    /// Name of the study that the folder belongs to; `None` without study.json.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when study.json cannot be read, is not valid, or is of a newer version.
+    pub fn owner(&self) -> Result<Option<String>> {
+        let path = self.study_path();
+        let bytes = match self.files().read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(disk_error(&path, &error)),
+        };
+        let owner: Owner = serde_json::from_slice(&bytes)
+            .map_err(|error| self.refused(&format!("not a study.json of billow: {error}")))?;
+        if owner.format != FORMAT {
+            return Err(self.refused(&format!("format {:?} is not {FORMAT:?}", owner.format)));
+        }
+        if owner.version > VERSION {
+            return Err(self.refused(&format!(
+                "version {}, this program reads up to {VERSION}: a newer billow wrote it",
+                owner.version
+            )));
+        }
+        Ok(Some(owner.name))
+    }
+
+    fn refused(&self, problem: &str) -> Error {
+        Error::Disk {
+            path: self.study_path(),
+            problem: format!("{problem}\n  next: choose another folder with --results DIR"),
+        }
+    }
+
+    /// Writes study.json. An equal file is not written again. `study` is the resolved study, an
+    /// object.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when the folder belongs to another study, or to a newer program.
+    pub fn write_study(&self, name: &str, study: &Json) -> Result<()> {
+        if let Some(owner) = self.owner()?.filter(|owner| owner != name) {
+            return Err(self.refused(&format!(
+                "the folder holds results of the study {owner:?}, not of {name:?}"
+            )));
+        }
+        let path = self.study_path();
+        let bytes = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
+        files::write_if_changed(self.files(), &path, &bytes)
+            .map_err(|error| disk_error(&path, &error))?;
+        Ok(())
+    }
+
+    /// Whether the folder was last run for this resolved study. A study.json with old names of keys
+    /// is compared by its meaning.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when study.json cannot be read.
+    pub fn holds(&self, name: &str, study: &Json) -> Result<bool> {
+        let path = self.study_path();
+        let stored = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
+        let wanted = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
+        if stored == wanted {
+            return Ok(true);
+        }
+        let Ok(stored) = Study::load(&path, &[]) else { return Ok(false) };
+        let stored = study_bytes(&stored.name, &stored.resolved());
+        Ok(stored.map_err(|error| disk_error(&path, &error))? == wanted)
+    }
+}

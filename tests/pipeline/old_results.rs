@@ -1,0 +1,143 @@
+//! Results of an older version are read: old names of columns and statuses, a journal of version 2.
+//!
+//! `tests/reference/old-results` was written by version 0.1.0 before the names changed: three jobs of
+//! the piston and three of film with two subdivisions, one of them with the status `drifted` and run
+//! again, so that the journal has a line of the kind `withdrawn`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use crate::support::{Desk, histories, json_of, stderr};
+
+/// The job that the old version called `drifted`.
+const DRIFTED: &str = "9ffb7487";
+/// A job of film that is done.
+const DONE: &str = "6ca78bc2";
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).unwrap();
+        }
+    }
+}
+
+/// A folder with a copy of the old results in `old`.
+fn desk() -> Desk {
+    let desk = Desk::new(&json!({}));
+    let stored = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/old-results");
+    copy(&stored, &desk.path().join("old"));
+    desk
+}
+
+#[test]
+fn a_run_finds_every_old_job_finished() {
+    let desk = desk();
+    let before = histories(&desk.path().join("old"));
+    fs::copy(desk.path().join("old/study.json"), desk.path().join("study.json")).unwrap();
+    let ended = desk.run(&["run", "study.json", "--results", "old", "--json"]);
+    let summary: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    assert_eq!(summary["ran"], 0, "{summary}");
+    assert_eq!(summary["status"], json!({"done": 5, "energy_drift": 1}));
+    assert_eq!(summary["near_threshold"], 1);
+    assert_eq!(before, histories(&desk.path().join("old")));
+    let health = desk.stdout(&["doctor", "old"]);
+    assert!(health.contains("old: sound"), "{health}");
+    // The run wrote the table again, with the current names.
+    let rows = desk.rows("old");
+    assert_eq!(rows.len(), 6);
+    assert_eq!(rows[1]["near_threshold"], true);
+}
+
+#[test]
+fn an_old_job_that_runs_again_gives_the_same_bits() {
+    let desk = desk();
+    // The exit code is 1: another job of the study failed.
+    let ended = desk.run(&["rerun", DONE, "old", "--json"]);
+    let done: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    assert_eq!((&done["same_bits"], &done["other_bits"]), (&json!(1), &json!([])), "{done}");
+}
+
+#[test]
+fn old_rows_have_the_current_names() {
+    let desk = desk();
+    let status = json_of(&desk, &["status", "old"]);
+    assert_eq!((&status["done"], &status["failed"]), (&json!(5), &json!(1)), "{status}");
+    assert_eq!(status["broken"], 0, "{status}");
+    for row in desk.rows("old") {
+        let row = row.as_object().unwrap();
+        for (old, current) in [
+            ("close", "near_threshold"),
+            ("close_margin", "near_threshold_margin"),
+            ("stop_place", "stop_location"),
+        ] {
+            assert!(!row.contains_key(old) && row.contains_key(current), "{old}");
+        }
+    }
+    let why = json_of(&desk, &["why", DRIFTED, "old"]);
+    assert_eq!(why["status"], "energy_drift");
+    assert!(why["stop_location"].as_str().unwrap().starts_with("energy ledger"), "{why}");
+    let shown = desk.stdout(&["show", DRIFTED, "old"]);
+    assert!(shown.contains("energy_drift") && shown.contains("near_threshold_margin"), "{shown}");
+}
+
+#[test]
+fn old_histories_have_the_current_names() {
+    let desk = desk();
+    let all = json_of(&desk, &["show", DONE, "old", "--history"]);
+    let sample = all[0].as_object().unwrap();
+    assert!(sample.contains_key("broad_phase_rebuilds"), "{sample:?}");
+    assert!(!sample.contains_key("contact_searches"), "{sample:?}");
+    let columns = ["show", DONE, "old", "--history", "--columns", "time,contact_searches"];
+    let output = desk.run(&columns);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("is now called \"broad_phase_rebuilds\""));
+}
+
+#[test]
+fn old_names_in_options_work_with_a_note() {
+    let desk = desk();
+    for (arguments, note) in [
+        (&["table", "old", "--columns", "job,close"] as &[&str], "\"near_threshold\""),
+        (&["table", "old", "--sort", "close_margin"], "\"near_threshold_margin\""),
+        (&["table", "old", "--where", "close"], "\"near_threshold\""),
+        (&["table", "old", "--where", "status == 'drifted'"], "\"energy_drift\""),
+        (
+            &["compare", "old", "--by", "model", "--base", "piston", "--measures", "close_margin"],
+            "\"near_threshold_margin\"",
+        ),
+        (
+            &["chart", "old", "--measure", "close_margin", "--over", "mass_flow_rate"],
+            "\"near_threshold_margin\"",
+        ),
+        (
+            &["chart", "old", "--history", "contact_searches", "--where", "model == 'film'"],
+            "\"broad_phase_rebuilds\"",
+        ),
+    ] {
+        let output = desk.run(arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+        let notes = stderr(&output);
+        assert!(notes.contains("is now called") && notes.contains(note), "{arguments:?}: {notes}");
+    }
+    for (condition, number) in [("close", 1), ("status == 'drifted'", 1), ("not close", 4)] {
+        let rows = json_of(&desk, &["table", "old", "--where", condition]);
+        assert_eq!(rows.as_array().unwrap().len(), number, "{condition}");
+    }
+}
+
+#[test]
+fn comparisons_and_charts_of_old_results_work() {
+    let desk = desk();
+    let compared = desk.stdout(&["compare", "old", "--by", "model", "--base", "piston"]);
+    assert!(compared.contains("peak_vz"), "{compared}");
+    let drawn = desk.stdout(&["chart", "old"]);
+    assert!(drawn.contains(".svg"), "{drawn}");
+}
