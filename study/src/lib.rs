@@ -1,4 +1,4 @@
-//! Parameter studies of inflatable capsules: one JSON study file becomes jobs, every job leaves one
+//! Parameter studies of inflatable capsules. One JSON study file becomes jobs; every job gives one
 //! history file and one table row.
 //!
 //! ```text
@@ -6,8 +6,8 @@
 //!                ↑______ next_jobs(study, finished rows) ______|
 //! ```
 //!
-//! **Reading order.** `study_file` (what the JSON says), `study` (what it means), `plan`
-//! (which jobs), `runner` (running them), `history_file` and `table` (what is left).
+//! **Reading order.** [`input::study_file`] (the JSON), [`study`] (its meaning), [`study::plan`] (the
+//! jobs), [`run::runner`] (running them), [`store::history_file`] and [`store::table`] (what is stored).
 
 pub mod analysis;
 pub mod bench;

@@ -177,7 +177,7 @@ fn what_cannot_be_measured_is_bad_input() {
         (&["--subdivisions", "0"], "--subdivisions"),
         (&["--subdivisions", "five"], "five"),
         (&["--quick", "--full"], "cannot be used with"),
-        (&["--quick", "--subdivisions", "32", "--only", "kernels"], "n 32"),
+        (&["--quick", "--subdivisions", "32", "--only", "kernels"], "n = 32"),
     ] {
         let output = billow(flags);
         assert_eq!(output.status.code(), Some(2), "{flags:?}: {}", said(&output));

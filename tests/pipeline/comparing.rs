@@ -66,9 +66,10 @@ fn compare_pairs_rows_that_are_equal_in_all_else() {
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
     }
-    for (flag, value, expected) in
-        [("--measures", "verdict", "holds no numbers"), ("--tie", "2", "from 0 to below 1")]
-    {
+    for (flag, value, expected) in [
+        ("--measures", "verdict", "holds no numbers"),
+        ("--tie", "2", "at least 0 and less than 1"),
+    ] {
         let output = desk.run(&[&by[..], &[flag, value]].concat());
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
     }

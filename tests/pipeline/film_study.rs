@@ -86,7 +86,7 @@ fn models_stand_side_by_side_and_a_fixed_step_is_the_pistons() {
     let desk = Desk::new(&mixed);
     let told = desk.run(&["run", "grid.json"]);
     assert!(told.status.success(), "{}", stderr(&told));
-    assert!(stderr(&told).contains("model piston: how fast, not whether"));
+    assert!(stderr(&told).contains("model piston: it gives times and upper bounds"));
     let rows = desk.rows("results/grid");
     assert_eq!((&rows[0]["model"], &rows[1]["model"]), (&json!("piston"), &json!("film")));
     assert!(rows[0]["passages"].is_null() && rows[0]["smallest_gap"].is_null());

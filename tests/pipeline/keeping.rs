@@ -15,11 +15,11 @@ fn a_sound_folder_is_sound_and_the_doctor_changes_nothing() {
     let said = desk.stdout(&["doctor"]);
     assert_eq!(
         said,
-        "results/grid: sound: 16 jobs recorded, 16 histories looked at, 0 things found\n"
+        "results/grid: no faults: 16 jobs recorded, 16 histories checked, 0 findings\n"
     );
     assert_eq!(json_of(&desk, &["doctor"]), json!([]));
     assert_eq!(histories(&desk.results()), before);
-    assert!(desk.stdout(&["doctor", "grid.json"]).contains("sound"));
+    assert!(desk.stdout(&["doctor", "grid.json"]).contains("no faults"));
 }
 
 /// Hurts the folder, or one job of it.
@@ -230,7 +230,10 @@ fn other_bits_than_before_are_an_error() {
     let output = desk.run(&["rerun", id, "-q"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
-    assert!(said.contains(&format!("1 job gave other bits than before: {}", &id[..8])), "{said}");
+    assert!(
+        said.contains(&format!("1 job gave different bits than before: {}", &id[..8])),
+        "{said}"
+    );
 }
 
 #[test]

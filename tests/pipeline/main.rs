@@ -21,6 +21,7 @@ mod planning;
 mod reading;
 mod reference;
 mod reference_columns;
+mod reference_commands;
 mod resume;
 mod running;
 mod scene_files;

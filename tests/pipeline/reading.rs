@@ -28,7 +28,7 @@ fn status_counts_what_the_table_holds() {
     assert!((status["wall_seconds"].as_f64().unwrap() - wall).abs() < 1e-9);
     assert!(desk.stdout(&["status", "grid.json"]).starts_with("grid: finished\n"));
 
-    // An invalidated job is pending again, and the time left is the mean of those that ran.
+    // An invalidated job is pending again; the remaining time is the mean time of the jobs that ran.
     let journal = desk.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
     let id = &ids(&desk, "done")[0];
@@ -39,10 +39,10 @@ fn status_counts_what_the_table_holds() {
         (&status["done"], &status["pending"], &status["invalidated"]),
         (&json!(15), &json!(1), &json!(1))
     );
-    assert_eq!(status["seconds_left"], status["mean_wall_seconds"]);
+    assert_eq!(status["remaining_seconds"], status["mean_wall_seconds"]);
     let said = desk.stdout(&["status"]);
     assert!(said.contains("15 done, 0 failed, 1 pending (1 invalidated)"), "{said}");
-    assert!(said.contains("left     about "), "{said}");
+    assert!(said.contains("remaining about "), "{said}");
 }
 
 #[test]
@@ -118,13 +118,13 @@ fn why_tells_failures_and_infeasible_points_with_time_place_and_nearest() {
     let desk = failed();
     let failed = ids(&desk, "step_limit").remove(0);
     let said = desk.stdout(&["why", &failed]);
-    assert!(said.contains("step_limit: it took all the steps"), "{said}");
+    assert!(said.contains("step_limit: the run used all steps"), "{said}");
     assert!(said.contains("\n  time ") && said.contains("\n  location "), "{said}");
     assert!(said.contains("raise solver.step_limit"), "{said}");
     let infeasible = ids(&desk, "infeasible").remove(0);
     let said = desk.stdout(&["why", &infeasible, "results/grid"]);
     assert!(
-        said.contains("no fold pattern meets this design") && said.contains("nearest"),
+        said.contains("no fold pattern exists for this design") && said.contains("nearest"),
         "{said}"
     );
     let rows = desk.rows("results/grid");
@@ -220,7 +220,7 @@ fn show_prints_the_row_the_scene_and_the_history_that_are_stored() {
     );
     for (arguments, expected) in [
         (&["show", id, "--history", "--columns", "presure"][..], "did you mean pressure?"),
-        (&["show", id, "--history", "--every", "0"], "no sample would be shown"),
+        (&["show", id, "--history", "--every", "0"], "must be positive"),
         (&["show", &ids(&desk, "infeasible")[0], "--history"], "the point is infeasible"),
     ] {
         let output = desk.run(arguments);
@@ -278,6 +278,6 @@ fn results_in_place_of_a_job_are_told() {
         let output = desk.run(&[command, "results/grid"]);
         assert_eq!(output.status.code(), Some(2), "{command}");
         let said = stderr(&output);
-        assert!(said.contains("names results, and no job of theirs"), "{command}: {said}");
+        assert!(said.contains("is a results folder or study file, not a job"), "{command}: {said}");
     }
 }

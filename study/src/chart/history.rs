@@ -1,9 +1,10 @@
-//! Histories of several jobs in one figure: a panel a quantity, a line a job.
+//! Histories of several jobs in one figure: one panel per quantity, one line per job.
 
 use billow_solver::output::history::COLUMNS;
+use billow_solver::output::measures::Verdict;
 
-use super::vary::{self, Parameter};
-use super::{Source, outcome, refused, titled, unknown};
+use super::parameters::{self, Parameter};
+use super::{Source, invalid_option, outcome, title, unknown_name};
 use crate::input::value::Value;
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
@@ -14,8 +15,8 @@ use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, ticks};
 use crate::store::history_file::StoredHistory;
 
-/// Jobs in one figure, at most: more lines cannot be told apart.
-const JOBS: usize = 20;
+/// Most jobs in one figure. Chosen: more lines cannot be distinguished.
+const MAX_JOBS: usize = 20;
 
 /// A job of the figure.
 struct Run {
@@ -23,17 +24,41 @@ struct Run {
     history: StoredHistory,
 }
 
-/// A quantity: its name, SI unit, meaning.
+impl Run {
+    fn times(&self) -> &[f64] {
+        self.history.history.column("time")
+    }
+
+    /// Values of a quantity; empty when the job does not have it.
+    fn values(&self, name: &str) -> &[f64] {
+        match self.history.tracks.get(name) {
+            Some(values) => values,
+            None if COLUMNS.iter().any(|column| column.name == name) => {
+                self.history.history.column(name)
+            }
+            None => &[],
+        }
+    }
+}
+
+/// A quantity: name, SI unit, meaning.
 struct Quantity {
     name: String,
     unit: String,
     meaning: String,
 }
 
-/// Draws columns of histories over time, from `range[0]` to `range[1]` (s) where they are given.
+/// The time axis: its ends, s, and the unit in which it is shown.
+struct TimeAxis {
+    ends: [f64; 2],
+    unit: Unit,
+}
+
+/// Draws columns of histories over time. `range` gives the ends of the time axis, s, where they differ
+/// from the ends of the histories.
 ///
 /// # Errors
-/// A column no history has, too many jobs, an empty range; whatever `read` gives for a file.
+/// An unknown column, too many jobs, an empty range; the errors of `read`.
 pub fn svg(
     source: &Source<'_>,
     columns: &[String],
@@ -42,58 +67,26 @@ pub fn svg(
 ) -> Result<String> {
     let stored: Vec<usize> =
         source.rows.iter().copied().filter(|row| has_history(source, *row)).collect();
-    if stored.len() > JOBS {
-        return Err(refused(
-            "--history",
-            &columns.join(","),
-            format!("{} jobs in one figure", stored.len()),
-            format!("{JOBS} jobs at most"),
-            "choose some with --jobs ID,ID or --where CONDITION",
-        ));
-    }
-    let mut runs = Vec::with_capacity(stored.len());
-    for row in &stored {
-        if let Some(id) = job(source, *row) {
-            runs.push(Run { row: *row, history: read(&id)? });
-        }
-    }
+    let runs = runs(source, &stored, columns, read)?;
     let quantities: Vec<Quantity> =
         columns.iter().map(|name| quantity(name.trim(), &runs)).collect::<Result<_>>()?;
-    let times = || runs.iter().flat_map(|run| run.history.history.column("time"));
-    let ends = times().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], time| {
-        [low.min(*time), high.max(*time)]
-    });
-    let mut ends = if runs.is_empty() { [0.0, 1.0] } else { ends };
-    for (end, given) in ends.iter_mut().zip(range) {
-        *end = given.unwrap_or(*end);
-    }
-    let empty = ends[0].total_cmp(&ends[1]).is_ge();
-    if empty && range != [None, None] {
-        return Err(refused(
-            "--from, --to",
-            &format!("{} s to {} s", ends[0], ends[1]),
-            "no time is between them",
-            "--from TIME before --to TIME, both within the run",
-            "",
-        ));
-    }
-    if empty {
-        ends[1] = ends[0] + 1.0;
-    }
-    let time = Unit::fit("s", ends);
-    let panels: Vec<Panel> =
-        quantities.iter().map(|quantity| panel(source, quantity, &runs, &time, ends)).collect();
-    let alone = panels.len() == 1;
+    let time = time_axis(&runs, range)?;
+    let mut panels: Vec<Panel> =
+        quantities.iter().map(|quantity| panel(source, quantity, &runs, &time)).collect();
     let title = match quantities.as_slice() {
-        [one] => titled(&one.meaning, &one.name),
+        [quantity] => title(&quantity.meaning, &quantity.name),
         several => {
-            let names: Vec<&str> = several.iter().map(|each| each.name.as_str()).collect();
+            let names: Vec<&str> = several.iter().map(|quantity| quantity.name.as_str()).collect();
             format!("Histories of {}", names.join(", "))
         }
     };
-    let (parameters, notes) = vary::varying(source.table, &stored, &[]);
+    // The title of the figure replaces that of a single panel.
+    if let [panel] = panels.as_mut_slice() {
+        panel.title.clear();
+    }
+    let (parameters, notes) = parameters::varying(source.table, &stored, &[]);
     let mut notes: Vec<String> = if parameters.is_empty() { Vec::new() } else { notes };
-    notes.extend(missing(source));
+    notes.extend(without_history(source));
     let plots = Plots {
         sheet: Sheet {
             title,
@@ -102,22 +95,69 @@ pub fn svg(
             notes,
         },
         x: Axis {
-            label: time.label("time"),
+            label: time.unit.label("time"),
             spread: Spread::Linear,
-            range: ends.map(|end| time.shown(end)),
+            range: time.ends.map(|end| time.unit.shown(end)),
             ticks: Vec::new(),
             names: false,
         },
-        panels: panels
-            .into_iter()
-            .map(|panel| Panel { title: if alone { String::new() } else { panel.title }, ..panel })
-            .collect(),
+        panels,
         across: 1,
     };
     Ok(plots.svg())
 }
 
-/// Whether a history is stored of a row's job.
+/// Reads the histories of these rows.
+fn runs(
+    source: &Source<'_>,
+    rows: &[usize],
+    columns: &[String],
+    read: &dyn Fn(&JobId) -> Result<StoredHistory>,
+) -> Result<Vec<Run>> {
+    if rows.len() > MAX_JOBS {
+        return Err(invalid_option(
+            "--history",
+            &columns.join(","),
+            format!("{} jobs in one figure", rows.len()),
+            format!("{MAX_JOBS} jobs at most"),
+            "choose some with --jobs ID,ID or --where CONDITION",
+        ));
+    }
+    let mut runs = Vec::with_capacity(rows.len());
+    for row in rows {
+        if let Some(id) = job(source, *row) {
+            runs.push(Run { row: *row, history: read(&id)? });
+        }
+    }
+    Ok(runs)
+}
+
+/// The time axis: from the first to the last time of all histories, or the ends that `range` gives.
+fn time_axis(runs: &[Run], range: [Option<f64>; 2]) -> Result<TimeAxis> {
+    let times = runs.iter().flat_map(Run::times);
+    let ends = times.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], time| {
+        [low.min(*time), high.max(*time)]
+    });
+    let mut ends = if runs.is_empty() { [0.0, 1.0] } else { ends };
+    for (end, given) in ends.iter_mut().zip(range) {
+        *end = given.unwrap_or(*end);
+    }
+    if ends[0].total_cmp(&ends[1]).is_ge() {
+        if range != [None, None] {
+            return Err(invalid_option(
+                "--from, --to",
+                &format!("{} s to {} s", ends[0], ends[1]),
+                "the time range is empty",
+                "--from TIME before --to TIME, both within the run",
+                "",
+            ));
+        }
+        ends[1] = ends[0] + 1.0;
+    }
+    Ok(TimeAxis { ends, unit: Unit::fit("s", ends) })
+}
+
+/// Whether the job of a row has a stored history.
 pub fn has_history(source: &Source<'_>, row: usize) -> bool {
     let hash = source.table.column("content_hash");
     hash.is_some_and(|column| matches!(column.cells[row], Value::Text(_)))
@@ -130,7 +170,7 @@ fn job(source: &Source<'_>, row: usize) -> Option<JobId> {
     }
 }
 
-/// The quantity of that name, of a history or of what a job follows beside it.
+/// The quantity with that name: a column of the history, or an extra quantity of a job.
 fn quantity(name: &str, runs: &[Run]) -> Result<Quantity> {
     let shown = || COLUMNS.iter().filter(|column| column.name != "time");
     if let Some(column) = shown().find(|column| column.name == name) {
@@ -154,61 +194,31 @@ fn quantity(name: &str, runs: &[Run]) -> Result<Quantity> {
             known.push(track);
         }
     }
-    Err(unknown("--history", name, "no such history column", &known))
+    Err(unknown_name("--history", name, "no such history column", &known))
 }
 
-/// Values of a quantity; empty where a job has none of it.
-fn series<'a>(run: &'a Run, name: &str) -> &'a [f64] {
-    match run.history.tracks.get(name) {
-        Some(values) => values,
-        None if COLUMNS.iter().any(|column| column.name == name) => {
-            run.history.history.column(name)
-        }
-        None => &[],
-    }
-}
-
-fn panel(
-    source: &Source<'_>,
-    quantity: &Quantity,
-    runs: &[Run],
-    time: &Unit,
-    [from, to]: [f64; 2],
-) -> Panel {
+/// The panel of a quantity: one line per job.
+fn panel(source: &Source<'_>, quantity: &Quantity, runs: &[Run], time: &TimeAxis) -> Panel {
+    let [start, end] = time.ends;
     let inside = |run: &Run| -> Vec<f64> {
-        let pairs = run.history.history.column("time").iter().zip(series(run, &quantity.name));
-        pairs.filter(|(at, _)| (from..=to).contains(*at)).map(|(_, value)| *value).collect()
+        let pairs = run.times().iter().zip(run.values(&quantity.name));
+        pairs.filter(|(t, _)| (start..=end).contains(*t)).map(|(_, value)| *value).collect()
     };
     let values: Vec<f64> = runs.iter().flat_map(inside).filter(|value| value.is_finite()).collect();
     let unit = Unit::fit(&quantity.unit, values.iter().copied());
-    let reach = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+    let extent = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(unit.shown(*value)), high.max(unit.shown(*value))]
     });
-    let (low, high) = if values.is_empty() { (0.0, 1.0) } else { ticks::roomy(reach[0], reach[1]) };
-    let line = |(number, run): (usize, &Run)| {
-        let times = run.history.history.column("time");
-        let points: Vec<[f64; 2]> = times
-            .iter()
-            .zip(series(run, &quantity.name))
-            .map(|(at, value)| [time.shown(*at), unit.shown(*value)])
-            .collect();
-        // What is no number breaks the line.
-        let finite = |point: &[f64; 2]| point[1].is_finite();
-        let runs: Vec<Vec<[f64; 2]>> = points
-            .chunk_by(|one, other| finite(one) == finite(other))
-            .filter(|run| finite(&run[0]))
-            .map(<[_]>::to_vec)
-            .collect();
-        let last = runs.last().and_then(|run| run.last()).copied();
+    let (low, high) =
+        if values.is_empty() { (0.0, 1.0) } else { ticks::padded(extent[0], extent[1]) };
+    let line = |(series, run): (usize, &Run)| {
         let failed = outcome::has_failed(source, run.row);
-        let visible = |point: &[f64; 2]| (time.shown(from)..=time.shown(to)).contains(&point[0]);
-        let crosses = last.filter(|point| failed && visible(point)).into_iter().collect();
-        Line { series: number, runs, marks: Vec::new(), sparse: true, crosses }
+        history_line(series, run, quantity, &unit, time, failed)
     };
-    let words = if runs.is_empty() {
+    let message = if runs.is_empty() {
         "nothing to draw: none of these jobs has a history"
     } else if values.is_empty() {
-        "nothing to draw: no value in this time"
+        "nothing to draw: no value in this time range"
     } else {
         ""
     };
@@ -218,13 +228,42 @@ fn panel(
         range: [low, high],
         lines: runs.iter().enumerate().map(line).collect(),
         lane: Vec::new(),
-        words: words.to_owned(),
+        message: message.to_owned(),
     }
 }
 
+/// The line of one job. Non-finite values interrupt it; a cross marks its last point if the job failed.
+fn history_line(
+    series: usize,
+    run: &Run,
+    quantity: &Quantity,
+    unit: &Unit,
+    time: &TimeAxis,
+    failed: bool,
+) -> Line {
+    let [start, end] = time.ends.map(|end| time.unit.shown(end));
+    let points: Vec<[f64; 2]> = run
+        .times()
+        .iter()
+        .zip(run.values(&quantity.name))
+        .map(|(t, value)| [time.unit.shown(*t), unit.shown(*value)])
+        .collect();
+    let finite = |point: &[f64; 2]| point[1].is_finite();
+    let pieces: Vec<Vec<[f64; 2]>> = points
+        .chunk_by(|a, b| finite(a) == finite(b))
+        .filter(|piece| finite(&piece[0]))
+        .map(<[_]>::to_vec)
+        .collect();
+    let last = pieces.last().and_then(|piece| piece.last()).copied();
+    let visible = |point: &[f64; 2]| (start..=end).contains(&point[0]);
+    let crosses = last.filter(|point| failed && visible(point)).into_iter().collect();
+    Line { series, pieces, marks: Vec::new(), sparse_markers: true, crosses }
+}
+
 fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> Vec<Legend> {
-    let entry = |(number, run): (usize, &Run)| {
-        let values: Vec<String> = parameters.iter().map(|each| each.of_row(run.row)).collect();
+    let entry = |(series, run): (usize, &Run)| {
+        let values: Vec<String> =
+            parameters.iter().map(|parameter| parameter.of_row(run.row)).collect();
         let mut text = if values.is_empty() {
             format!("job {}", run.history.job.short())
         } else {
@@ -234,13 +273,13 @@ fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> V
         let verdict = outcome::verdict(source, run.row);
         if status != Status::Done.name() {
             text = format!("{text} ({status})");
-        } else if !matches!(verdict, "" | "deployed") {
+        } else if !verdict.is_empty() && verdict != Verdict::Deployed.name() {
             text = format!("{text} ({verdict})");
         }
-        (Sample::Series(number), text)
+        (Sample::Series(series), text)
     };
     let lines = Legend {
-        heading: vary::heading(parameters),
+        heading: parameters::heading(parameters),
         entries: runs.iter().enumerate().map(entry).collect(),
     };
     let failed = runs.iter().any(|run| outcome::has_failed(source, run.row));
@@ -252,8 +291,8 @@ fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> V
     vec![lines, Legend { heading: String::new(), entries: crosses }]
 }
 
-/// Which points have no history, in words.
-fn missing(source: &Source<'_>) -> Option<String> {
+/// A note with the number of points without a history, by status.
+fn without_history(source: &Source<'_>) -> Option<String> {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for row in source.rows.iter().filter(|row| !has_history(source, **row)) {
         let status = outcome::status(source, *row);

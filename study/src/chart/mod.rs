@@ -1,40 +1,40 @@
-//! Charts of stored results: histories of several jobs, one measure over an axis, one measure over two.
+//! Charts of stored results: histories of several jobs, one measure over one parameter, one measure over
+//! two parameters.
 //!
-//! A chart reads the table and the history files and nothing else. No job is dropped in silence: one
-//! without a value is a letter in the figure, one without a history is named below it. Nothing is
-//! averaged: every parameter is an axis, tells lines apart, tells panels apart, or is the same for all.
+//! A chart reads only the table and the history files. It shows every job: a job without a value is a
+//! letter in the figure, jobs without a history are counted below it. Nothing is averaged: every parameter
+//! is an axis, gives lines, gives panels, or has one value.
 
 use crate::input::keys;
 use crate::input::value::Value;
 use crate::job::row::CellType;
-use crate::platform::error::{Error, InputError, Result};
-use crate::render::figure::legend::Sample;
+use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
-use self::vary::Facets;
+use self::parameters::Facets;
 
 pub mod history;
 pub mod map;
 mod outcome;
 pub mod over;
+mod parameters;
 pub mod standard;
-mod vary;
 
-/// The rows a chart is drawn from.
+/// The rows of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source<'a> {
     /// Name of the study.
     pub study: &'a str,
-    /// Its table.
+    /// The table of the study.
     pub table: &'a Table,
-    /// Rows of it, in plan order.
+    /// Rows of the table, in plan order.
     pub rows: Vec<usize>,
-    /// How they were chosen, as in "where N == 6"; empty for all.
+    /// How the rows were chosen, as in "where N == 6"; empty for all rows.
     pub choice: String,
 }
 
 impl Source<'_> {
-    /// The line below the title: which study, which rows.
+    /// The line below the title: study and rows.
     fn subtitle(&self) -> Vec<String> {
         let rows = self.rows.len();
         let noun = if rows == 1 { "point" } else { "points" };
@@ -42,7 +42,7 @@ impl Source<'_> {
         vec![format!("study {}: {rows} {noun}{choice}{}", self.study, self.choice)]
     }
 
-    /// The same, and what tells panels apart.
+    /// The same, and the parameters of the panels.
     fn subtitle_by(&self, panels: &Facets<'_>) -> Vec<String> {
         let mut lines = self.subtitle();
         if !panels.heading.is_empty() {
@@ -51,8 +51,8 @@ impl Source<'_> {
         lines
     }
 
-    /// A column of numbers.
-    fn measure(&self, flag: &str, name: &str) -> Result<&Column> {
+    /// The column of numbers with this name, which `option` asks for.
+    fn measure(&self, option: &str, name: &str) -> Result<&Column> {
         let numbers = || {
             let columns = self.table.columns.iter();
             columns
@@ -60,49 +60,43 @@ impl Source<'_> {
         };
         let found = numbers().find(|column| column.name == name);
         found.ok_or_else(|| {
-            let there = self.table.column(name).is_some();
-            let problem = if there { "not a column of numbers" } else { "no such column" };
+            let exists = self.table.column(name).is_some();
+            let problem = if exists { "not a column of numbers" } else { "no such column" };
             let names: Vec<&str> = numbers().map(|column| column.name.as_str()).collect();
-            unknown(flag, name, problem, &names)
+            unknown_name(option, name, problem, &names)
         })
     }
 
-    /// A parameter of the study.
-    fn parameter(&self, flag: &str, name: &str) -> Result<&Column> {
+    /// The parameter with this name, which `option` asks for.
+    fn parameter(&self, option: &str, name: &str) -> Result<&Column> {
         let found = self.table.parameters().find(|column| column.name == name);
         found.ok_or_else(|| {
             let names: Vec<&str> =
                 self.table.parameters().map(|column| column.name.as_str()).collect();
-            unknown(flag, name, "not a parameter this study varies", &names)
+            unknown_name(option, name, "not a parameter that this study varies", &names)
         })
     }
 }
 
-/// A name that is none of those there are.
-fn unknown(flag: &str, name: &str, problem: &str, known: &[&str]) -> Error {
+/// The error of an unknown name; it gives the nearest known one.
+fn unknown_name(option: &str, name: &str, problem: &str, known: &[&str]) -> Error {
     let near = keys::nearest(name, known.iter().copied());
     let hint = near.map(|near| format!("did you mean {near}?")).unwrap_or_default();
-    refused(flag, name, problem, known.join(", "), hint)
+    invalid_option(option, name, problem, known.join(", "), hint)
 }
 
-fn refused(
-    flag: &str,
+/// The error of an invalid value of a command-line option.
+fn invalid_option(
+    option: &str,
     value: &str,
     problem: impl Into<String>,
     allowed: impl Into<String>,
     hint: impl Into<String>,
 ) -> Error {
-    Error::from(InputError {
-        file: flag.to_owned(),
-        key: String::new(),
-        value: value.to_owned(),
-        problem: problem.into(),
-        allowed: allowed.into(),
-        hint: hint.into(),
-    })
+    Error::invalid_option(option, value, problem, allowed, hint)
 }
 
-/// A cell as a number; `None` for what is none or not finite.
+/// A cell as a finite number.
 fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Integer(value) => Some(*value as f64),
@@ -111,8 +105,8 @@ fn number(value: &Value) -> Option<f64> {
     }
 }
 
-/// A title: the meaning of a quantity first, its name behind.
-fn titled(meaning: &str, name: &str) -> String {
+/// A title: the meaning of a quantity, then its name in brackets.
+fn title(meaning: &str, name: &str) -> String {
     let mut letters = meaning.chars();
     match letters.next() {
         Some(first) => format!("{}{} ({name})", first.to_uppercase(), letters.as_str()),

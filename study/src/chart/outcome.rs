@@ -1,6 +1,8 @@
-//! What became of a job, as a chart shows it: a marker where it has a value, a letter where not.
+//! The outcome of a job in a chart: a marker if it has a value, a letter if not.
 
 use std::collections::BTreeMap;
+
+use billow_solver::output::measures::Verdict;
 
 use super::Source;
 use crate::input::value::Value;
@@ -9,10 +11,10 @@ use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::style::Fill;
 use crate::store::table::Column;
 
-/// What a done job without a value is called.
-const NEVER: &str = "done, measure never happened";
+/// Legend text of a done job without a value: the event that the measure describes did not occur.
+const NOT_OCCURRED: &str = "done, event did not occur";
 
-/// Letters and marks of the rows of a chart, and how often each is used.
+/// Letters and markers of the rows of a chart, and how often each is used.
 pub struct Outcomes<'a> {
     source: &'a Source<'a>,
     letters: BTreeMap<String, String>,
@@ -21,22 +23,22 @@ pub struct Outcomes<'a> {
 }
 
 impl<'a> Outcomes<'a> {
-    /// Gives every way to end without a value a letter of its own.
+    /// Gives each status its letter.
     pub fn new(source: &'a Source<'a>) -> Self {
         let mut kinds: Vec<&str> = source.rows.iter().map(|row| status(source, *row)).collect();
         kinds.retain(|kind| *kind != Status::Done.name() && *kind != Status::Infeasible.name());
-        // The common one first, so that its letter is always the same.
+        // Pending comes first, so that its letter is always P.
         kinds.sort_by_key(|kind| (*kind != Status::Pending.name(), *kind));
         kinds.dedup();
         let mut letters: BTreeMap<String, String> = BTreeMap::new();
-        // An I would read as a line.
-        letters.insert(NEVER.to_owned(), "–".to_owned());
+        // A letter I looks like a line; infeasible has the sign of the empty set.
+        letters.insert(NOT_OCCURRED.to_owned(), "–".to_owned());
         letters.insert(Status::Infeasible.name().to_owned(), "∅".to_owned());
         for kind in kinds {
             let free = |letter: &char| !letters.values().any(|used| used.starts_with(*letter));
-            let own =
+            let letters_of_name =
                 kind.chars().filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_uppercase());
-            let letter = own.chain('A'..='Z').find(free).unwrap_or('?');
+            let letter = letters_of_name.chain('A'..='Z').find(free).unwrap_or('?');
             letters.insert(kind.to_owned(), letter.to_string());
         }
         Self { source, letters, marked: BTreeMap::new(), lettered: BTreeMap::new() }
@@ -52,12 +54,12 @@ impl<'a> Outcomes<'a> {
     /// The letter of a job without a value.
     pub fn letter(&mut self, row: usize) -> String {
         let status = status(self.source, row);
-        let kind = if status == Status::Done.name() { NEVER } else { status };
+        let kind = if status == Status::Done.name() { NOT_OCCURRED } else { status };
         *self.lettered.entry(kind.to_owned()).or_default() += 1;
         self.letters.get(kind).cloned().unwrap_or_else(|| "?".to_owned())
     }
 
-    /// The legend of what was used. A map's letters stand in cells.
+    /// The legend of the markers and letters in use. With `cells` the letters stand in cells, as in a map.
     pub fn legend(&self, cells: bool) -> Legend {
         let marks = self.marked.iter().map(|(verdict, count)| {
             let name = if verdict.is_empty() { "done, no verdict" } else { verdict };
@@ -81,8 +83,8 @@ impl<'a> Outcomes<'a> {
 
 fn fill(verdict: &str) -> Fill {
     match verdict {
-        "partial" => Fill::Open,
-        "stalled" => Fill::Crossed,
+        _ if verdict == Verdict::Partial.name() => Fill::Open,
+        _ if verdict == Verdict::Stalled.name() => Fill::Crossed,
         _ => Fill::Filled,
     }
 }
@@ -94,12 +96,13 @@ fn text<'a>(source: &Source<'a>, name: &str, row: usize) -> &'a str {
     }
 }
 
-/// What a job measured; `None` too for one that did not run to its end: its peak so far is no peak.
+/// The measure of a job; `None` also for a job that stopped before its end, because its peak so far is not
+/// the peak of the run.
 pub fn value(source: &Source<'_>, measure: &Column, row: usize) -> Option<f64> {
     super::number(&measure.cells[row]).filter(|_| source.table.status(row) == Some(Status::Done))
 }
 
-/// How the job of a row ended.
+/// The status of a row.
 pub fn status<'a>(source: &Source<'a>, row: usize) -> &'a str {
     text(source, "status", row)
 }
@@ -109,7 +112,7 @@ pub fn has_failed(source: &Source<'_>, row: usize) -> bool {
     source.table.status(row).is_some_and(Status::is_failure)
 }
 
-/// The verdict of a row, empty for none.
+/// The verdict of a row; empty without one.
 pub fn verdict<'a>(source: &Source<'a>, row: usize) -> &'a str {
     text(source, "verdict", row)
 }

@@ -1,10 +1,10 @@
-//! One measure over a parameter: a line for every combination of the others.
+//! One measure over a parameter: one line per combination of the other parameters.
 
 use std::collections::BTreeMap;
 
 use super::outcome::{self, Outcomes};
-use super::vary::{self, Group, Parameter};
-use super::{Source, number, refused, titled};
+use super::parameters::{self, Facets, Group, Parameter};
+use super::{Source, invalid_option, number, title};
 use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
@@ -13,112 +13,148 @@ use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, columns, ticks};
+use crate::store::table::Column;
 
-/// Lines in one panel, as long as further panels can take them.
-const LINES: usize = 8;
-/// Lines in one panel, at most.
-const MOST_LINES: usize = 20;
-/// Panels in one figure, at most.
-const PANELS: usize = 12;
-/// Values of a parameter that are marks of the axis themselves, at most.
-const MARKED: usize = 9;
+/// Most lines in one panel while more panels can take the others. Chosen: legible at a glance.
+const PREFERRED_LINES: usize = 8;
+/// Most lines in one panel. Chosen: more cannot be distinguished.
+const MAX_LINES: usize = 20;
+/// Most panels in one figure. Chosen: more do not fit on a page.
+const MAX_PANELS: usize = 12;
+/// Space at both ends of the x axis, as a fraction of its length.
+const PADDING: f64 = 0.06;
+/// Most values of a parameter for which every value is a tick of the axis.
+const MAX_MARKED_VALUES: usize = 9;
 
-/// Draws a measure over a parameter. `by` names the parameters that tell lines apart; the others that
-/// vary tell panels apart. Where it is empty all tell lines apart, as far as they stay legible, and the
-/// first of them panels.
+/// Draws a measure over a parameter. The parameters in `by` give the lines; the other parameters that vary
+/// give the panels. With an empty `by` all parameters give lines while these are legible, and the first
+/// ones give panels.
 ///
 /// # Errors
-/// Unknown names, a measure that is no number, more lines or panels than are legible.
+/// Unknown names, a measure that is not a number, too many lines or panels.
 pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Result<String> {
     let measure = source.measure("--measure", measure)?;
     let x = Parameter::new(source.parameter("--over", over)?, &source.rows);
-    let (others, mut notes) = vary::varying(source.table, &source.rows, &[x.column]);
+    let (others, mut notes) = parameters::varying(source.table, &source.rows, &[x.column]);
     let (panels, lines) = divided(source, others, by)?;
     if !panels.is_empty() && !by.is_empty() {
-        let names = vary::heading(&panels);
+        let names = parameters::heading(&panels);
         notes.push(format!("One panel for each of {names}: nothing is averaged."));
     }
-    let series = vary::groups(&lines, &source.rows);
-    let facets = vary::facets(panels, &source.rows);
-    if facets.panels.len() > PANELS || series.len() > MOST_LINES {
-        let (count, what, most) = if facets.panels.len() > PANELS {
-            (facets.panels.len(), "panels", PANELS)
-        } else {
-            (series.len(), "lines", MOST_LINES)
-        };
-        let free: Vec<&str> = facets.parameters.iter().chain(&lines).map(Parameter::name).collect();
-        return Err(refused(
-            "--over",
-            over,
-            format!("{count} {what} would be needed; nothing is averaged"),
-            format!("{most} {what} at most"),
-            format!("fix some of {} with --where CONDITION", free.join(", ")),
-        ));
-    }
+    let series = parameters::groups(&lines, &source.rows);
+    let facets = parameters::facets(panels, &source.rows);
+    check_size(over, &facets, &lines, &series)?;
+
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
     let unit = Unit::fit(&measure.unit, values.clone());
-    let reach = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+    let extent = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(unit.shown(value)), high.max(unit.shown(value))]
     });
-    let none = reach[0] > reach[1];
-    let (low, high) = if none { (0.0, 1.0) } else { ticks::roomy(reach[0], reach[1]) };
-
-    let places = Places::new(&x, &source.rows);
+    let no_values = extent[0] > extent[1];
+    let (low, high) = if no_values { (0.0, 1.0) } else { ticks::padded(extent[0], extent[1]) };
+    let positions = Positions::new(&x, &source.rows);
     let mut outcomes = Outcomes::new(source);
-    let mut figure = Vec::with_capacity(facets.panels.len());
-    for (title, rows) in &facets.panels {
-        let mut panel = Panel {
-            title: title.clone(),
-            label: unit.label(&measure.name),
-            range: [low, high],
-            ..Panel::default()
-        };
-        for (number, group) in series.iter().enumerate() {
-            let (line, lane) = one_line(
-                (number, series.len()),
-                &in_order(rows, group, &places),
-                |row| outcome::value(source, measure, row).map(|value| unit.shown(value)),
-                &places,
-                &mut outcomes,
-            );
-            panel.lines.push(line);
-            panel.lane.extend(lane);
-        }
-        if panel.lines.iter().all(|line| line.marks.is_empty()) {
-            let column = &measure.name;
-            panel.words = if source.rows.is_empty() {
-                "nothing to draw: no point is chosen".to_owned()
-            } else {
-                format!("nothing to draw: no job here has a value of {column}")
-            };
-        }
-        figure.push(panel);
-    }
-    let entries = series
+    let panels: Vec<Panel> = facets
+        .panels
         .iter()
-        .enumerate()
-        .filter(|(_, group)| !group.values.is_empty())
-        .map(|(number, group)| {
-            let sample = if places.names { Sample::Point(number) } else { Sample::Series(number) };
-            (sample, group.values.clone())
+        .map(|(title, rows)| {
+            let mut panel = Panel {
+                title: title.clone(),
+                label: unit.label(&measure.name),
+                range: [low, high],
+                ..Panel::default()
+            };
+            let value = |row| outcome::value(source, measure, row).map(|value| unit.shown(value));
+            add_lines(&mut panel, rows, &series, &value, &positions, &mut outcomes);
+            if panel.lines.iter().all(|line| line.marks.is_empty()) {
+                panel.message = nothing_to_draw(source, measure);
+            }
+            panel
         })
         .collect();
-    let legends = vec![Legend { heading: vary::heading(&lines), entries }, outcomes.legend(false)];
     let plots = Plots {
         sheet: Sheet {
-            title: titled(&measure.meaning, &measure.name),
+            title: title(&measure.meaning, &measure.name),
             subtitle: source.subtitle_by(&facets),
-            legends,
+            legends: vec![line_legend(&lines, &series, positions.names), outcomes.legend(false)],
             notes,
         },
-        x: places.axis(),
-        across: columns(figure.len()),
-        panels: figure,
+        x: positions.axis(),
+        across: columns(panels.len()),
+        panels,
     };
     Ok(plots.svg())
 }
 
-/// Parameters that tell panels apart, and those that tell lines apart.
+/// Refuses a figure with too many panels or lines.
+fn check_size(
+    over: &str,
+    facets: &Facets<'_>,
+    lines: &[Parameter<'_>],
+    series: &[Group],
+) -> Result<()> {
+    let (number, noun, limit) = if facets.panels.len() > MAX_PANELS {
+        (facets.panels.len(), "panels", MAX_PANELS)
+    } else if series.len() > MAX_LINES {
+        (series.len(), "lines", MAX_LINES)
+    } else {
+        return Ok(());
+    };
+    let varying: Vec<&str> = facets.parameters.iter().chain(lines).map(Parameter::name).collect();
+    Err(invalid_option(
+        "--over",
+        over,
+        format!("the chart needs {number} {noun}; nothing is averaged"),
+        format!("{limit} {noun} at most"),
+        format!("fix some of {} with --where CONDITION", varying.join(", ")),
+    ))
+}
+
+/// Adds a line per series, and the letters of the jobs without a value.
+fn add_lines(
+    panel: &mut Panel,
+    rows: &[usize],
+    series: &[Group],
+    value: &dyn Fn(usize) -> Option<f64>,
+    positions: &Positions,
+    outcomes: &mut Outcomes<'_>,
+) {
+    for (index, group) in series.iter().enumerate() {
+        // Markers over names are not joined by lines and stand side by side.
+        let shift = if positions.names && series.len() > 1 {
+            0.6 * ((index as f64 + 0.5) / series.len() as f64 - 0.5)
+        } else {
+            0.0
+        };
+        let rows = in_order(rows, group, positions);
+        let (line, lane) = line(index, &rows, shift, value, positions, outcomes);
+        panel.lines.push(line);
+        panel.lane.extend(lane);
+    }
+}
+
+fn nothing_to_draw(source: &Source<'_>, measure: &Column) -> String {
+    if source.rows.is_empty() {
+        "nothing to draw: no point is chosen".to_owned()
+    } else {
+        format!("nothing to draw: no job here has a value of {}", measure.name)
+    }
+}
+
+fn line_legend(lines: &[Parameter<'_>], series: &[Group], names: bool) -> Legend {
+    let entries = series
+        .iter()
+        .enumerate()
+        .filter(|(_, group)| !group.values.is_empty())
+        .map(|(index, group)| {
+            let sample = if names { Sample::Point(index) } else { Sample::Series(index) };
+            (sample, group.values.clone())
+        })
+        .collect();
+    Legend { heading: parameters::heading(lines), entries }
+}
+
+/// Parameters that give panels, and parameters that give lines.
 fn divided<'a>(
     source: &Source<'_>,
     mut others: Vec<Parameter<'a>>,
@@ -126,7 +162,8 @@ fn divided<'a>(
 ) -> Result<(Vec<Parameter<'a>>, Vec<Parameter<'a>>)> {
     if by.is_empty() {
         let mut panels = Vec::new();
-        while others.len() > 1 && vary::groups(&others, &source.rows).len() > LINES {
+        while others.len() > 1 && parameters::groups(&others, &source.rows).len() > PREFERRED_LINES
+        {
             panels.push(others.remove(0));
         }
         return Ok((panels, others));
@@ -134,76 +171,78 @@ fn divided<'a>(
     for name in by {
         source.parameter("--by", name.trim())?;
     }
-    Ok(others.into_iter().partition(|each| by.iter().all(|name| name.trim() != each.name())))
+    Ok(others
+        .into_iter()
+        .partition(|parameter| by.iter().all(|name| name.trim() != parameter.name())))
 }
 
 /// Rows of one line in one panel, from left to right.
-fn in_order(panel: &[usize], group: &Group, places: &Places) -> Vec<usize> {
+fn in_order(panel: &[usize], group: &Group, positions: &Positions) -> Vec<usize> {
     let mut rows: Vec<usize> =
         panel.iter().copied().filter(|row| group.rows.contains(row)).collect();
-    rows.sort_by(|one, other| places.of(*one).total_cmp(&places.of(*other)));
+    rows.sort_by(|a, b| positions.of(*a).total_cmp(&positions.of(*b)));
     rows
 }
 
-/// A line, and the letters of its jobs without a value.
-fn one_line(
-    (series, of): (usize, usize),
+/// A line, and the letters of its jobs without a value. `shift` moves its markers along the axis.
+fn line(
+    series: usize,
     rows: &[usize],
-    value: impl Fn(usize) -> Option<f64>,
-    places: &Places,
+    shift: f64,
+    value: &dyn Fn(usize) -> Option<f64>,
+    positions: &Positions,
     outcomes: &mut Outcomes<'_>,
 ) -> (Line, Vec<Mark>) {
     let mut line = Line { series, ..Line::default() };
     let mut lane = Vec::new();
-    let mut run: Vec<[f64; 2]> = Vec::new();
+    let mut piece: Vec<[f64; 2]> = Vec::new();
     for row in rows {
-        // Markers over names stand side by side, since no line leads from one to the next.
-        let shift = if places.names && of > 1 {
-            0.6 * ((series as f64 + 0.5) / of as f64 - 0.5)
-        } else {
-            0.0
-        };
-        let x = places.of(*row) + shift;
         let Some(value) = value(*row) else {
-            lane.push(Mark { x: places.of(*row), series, letter: outcomes.letter(*row) });
-            line.runs.push(std::mem::take(&mut run));
+            lane.push(Mark { x: positions.of(*row), series, letter: outcomes.letter(*row) });
+            line.pieces.push(std::mem::take(&mut piece));
             continue;
         };
-        line.marks.push(([x, value], outcomes.mark(*row)));
-        run.push([x, value]);
-        if places.names {
-            line.runs.push(std::mem::take(&mut run));
+        let point = [positions.of(*row) + shift, value];
+        line.marks.push((point, outcomes.mark(*row)));
+        piece.push(point);
+        if positions.names {
+            line.pieces.push(std::mem::take(&mut piece));
         }
     }
-    line.runs.push(run);
-    line.runs.retain(|run| !run.is_empty());
+    line.pieces.push(piece);
+    line.pieces.retain(|piece| !piece.is_empty());
     (line, lane)
 }
 
-/// Where the rows lie on the axis, in its unit.
-struct Places {
+/// Positions of the rows on the x axis, in its unit.
+struct Positions {
     /// By row.
     of_rows: BTreeMap<usize, f64>,
-    /// Different places and their texts, from left to right.
+    /// Distinct positions and their texts, from left to right.
     marks: Vec<(f64, String)>,
-    /// Of the axis.
+    /// Label of the axis.
     label: String,
+    /// Whether the values are names, at positions 0, 1, 2, …
     names: bool,
 }
 
-impl Places {
+impl Positions {
     fn new(x: &Parameter<'_>, rows: &[usize]) -> Self {
         let values = x.values(rows);
         let names = !x.is_number(rows) || x.column.cell_type == CellType::Bool;
-        let at = |position: usize| {
-            let si = if names { None } else { number(&values[position]) };
-            si.map_or(position as f64, |si| x.unit.shown(si))
+        let position = |index: usize| {
+            let si = if names { None } else { number(&values[index]) };
+            si.map_or(index as f64, |si| x.unit.shown(si))
         };
-        let position = |row: &usize| values.iter().position(|known| *known == x.column.cells[*row]);
+        let index = |row: &usize| values.iter().position(|known| *known == x.column.cells[*row]);
         let (label, texts) = x.along(&values, rows);
         Self {
-            of_rows: rows.iter().map(|row| (*row, at(position(row).unwrap_or(0)))).collect(),
-            marks: texts.into_iter().enumerate().map(|(number, text)| (at(number), text)).collect(),
+            of_rows: rows.iter().map(|row| (*row, position(index(row).unwrap_or(0)))).collect(),
+            marks: texts
+                .into_iter()
+                .enumerate()
+                .map(|(index, text)| (position(index), text))
+                .collect(),
             label,
             names,
         }
@@ -214,26 +253,27 @@ impl Places {
     }
 
     fn axis(self) -> Axis {
-        let values: Vec<f64> = self.marks.iter().map(|(place, _)| *place).collect();
+        let values: Vec<f64> = self.marks.iter().map(|(position, _)| *position).collect();
         let spread = if self.names { Spread::Linear } else { Spread::of_values(&values) };
         let (low, high) = match values.as_slice() {
             [] => (0.0, 1.0),
             [first, .., last] => (*first, *last),
-            [one] => (*one, *one),
+            [only] => (*only, *only),
         };
         let range = if self.names {
             [-0.5, values.len().max(1) as f64 - 0.5]
         } else if spread == Spread::Logarithmic {
-            let room = libm::pow(high / low, 0.06);
-            [low / room, high * room]
+            let padding = libm::pow(high / low, PADDING);
+            [low / padding, high * padding]
         } else if high > low {
-            let room = 0.06 * (high - low);
-            [low - room, high + room]
+            let padding = PADDING * (high - low);
+            [low - padding, high + padding]
         } else {
-            let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
-            [low - room, high + room]
+            let padding = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+            [low - padding, high + padding]
         };
-        let ticks = if self.names || values.len() <= MARKED { self.marks } else { Vec::new() };
+        let ticks =
+            if self.names || values.len() <= MAX_MARKED_VALUES { self.marks } else { Vec::new() };
         Axis { label: self.label, spread, range, ticks, names: self.names }
     }
 }

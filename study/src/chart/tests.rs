@@ -1,8 +1,10 @@
+//! Texts of charts of an invented study, read from their SVG.
+
 use std::collections::BTreeMap;
 
 use billow_solver::output::outcome::FailureKind;
 
-use super::standard::Kind;
+use super::standard::ChartKind;
 use super::*;
 use crate::job::point::{Infeasible, Point};
 use crate::job::row::{Cells, ColumnId};
@@ -12,7 +14,7 @@ use crate::run::fixture;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::table::Table;
 
-/// A point of a made-up study: parameters, and what its row says.
+/// A point of an invented study.
 fn point(number: u32, parameters: &[(&str, Value)]) -> Point {
     let mut job: Job = fixture::job(number);
     job.parameters =
@@ -20,8 +22,8 @@ fn point(number: u32, parameters: &[(&str, Value)]) -> Point {
     Point { job, infeasible: None, solved: None, merged: Vec::new() }
 }
 
-/// A table of N × mass flow × strategy; the row of every point is as `say` has it.
-fn study(say: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
+/// A table of N × mass flow × strategy; `edit` sets the cells of each point.
+fn study(edit: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
     let mut points = Vec::new();
     for panels in [5, 6] {
         for flow in [0.001, 0.002, 0.005] {
@@ -39,17 +41,17 @@ fn study(say: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
             }
         }
     }
-    for at in infeasible {
-        points[*at].infeasible =
+    for index in infeasible {
+        points[*index].infeasible =
             Some(Infeasible { reason: "too low".to_owned(), nearest: Vec::new() });
     }
     let mut records = BTreeMap::new();
-    for (at, point) in points.iter().enumerate() {
+    for (index, point) in points.iter().enumerate() {
         let mut cells = Cells::new(Status::Done);
         cells.set(ColumnId::Verdict, "deployed");
-        cells.set(ColumnId::PeakVz, 20.0 + at as f64);
-        cells.set(ColumnId::ContentHash, "made up");
-        say(at, &mut cells);
+        cells.set(ColumnId::PeakVz, 20.0 + index as f64);
+        cells.set(ColumnId::ContentHash, "invented");
+        edit(index, &mut cells);
         let record =
             crate::store::journal::Record { job: point.job.id.clone(), file_hash: None, cells };
         records.insert(point.job.id.clone(), record);
@@ -68,13 +70,13 @@ fn source(table: &Table) -> Source<'_> {
 
 fn mixed() -> Table {
     study(
-        |at, cells| match at {
+        |index, cells| match index {
             1 => cells.set(ColumnId::Verdict, "partial"),
             2 => cells.set(ColumnId::Verdict, "stalled"),
             3 => {
                 *cells = Cells::new(Status::Failed(FailureKind::StepLimit));
                 cells.set(ColumnId::PeakVz, 300.0);
-                cells.set(ColumnId::ContentHash, "made up");
+                cells.set(ColumnId::ContentHash, "invented");
             }
             4 => *cells = Cells::new(Status::Pending),
             5 => cells.set(ColumnId::PeakVz, Value::Null),
@@ -84,7 +86,7 @@ fn mixed() -> Table {
     )
 }
 
-fn says(texts: &[String], text: &str) -> bool {
+fn contains(texts: &[String], text: &str) -> bool {
     texts.iter().any(|shown| shown == text)
 }
 
@@ -105,12 +107,15 @@ fn every_point_of_a_measure_is_shown_with_its_outcome() {
         "failed: step_limit (1)",
         "infeasible (2)",
         "pending (1)",
-        "done, measure never happened (1)",
-        "residual_gas_mass goes with strategy.",
+        "done, event did not occur (1)",
+        "residual_gas_mass changes with strategy.",
     ] {
-        assert!(says(&texts, text), "{text}: {texts:?}");
+        assert!(contains(&texts, text), "{text}: {texts:?}");
     }
-    assert!(!says(&texts, "300") && !says(&texts, "200"), "a failed job's peak is none: {texts:?}");
+    assert!(
+        !contains(&texts, "300") && !contains(&texts, "200"),
+        "a failed job has no peak: {texts:?}"
+    );
     for letter in ["∅", "S", "P", "–"] {
         assert!(
             texts.iter().filter(|text| *text == letter).count() >= 2,
@@ -125,22 +130,22 @@ fn lines_by_one_parameter_leave_the_others_to_panels() {
     let by = ["N".to_owned()];
     let svg = over::svg(&source(&table), "peak_vz", "mass_flow_rate", &by).unwrap();
     let texts = check::figure(&svg);
-    assert!(says(&texts, "strategy direct") && says(&texts, "strategy rapid"), "{texts:?}");
-    assert!(says(&texts, "One panel for each of strategy: nothing is averaged."), "{texts:?}");
+    assert!(contains(&texts, "strategy direct") && contains(&texts, "strategy rapid"), "{texts:?}");
+    assert!(contains(&texts, "One panel for each of strategy: nothing is averaged."), "{texts:?}");
 }
 
 #[test]
-fn a_measure_over_names_stands_over_them() {
+fn a_measure_over_names_has_one_position_per_name() {
     let table = mixed();
     let texts = check::figure(&over::svg(&source(&table), "peak_vz", "strategy", &[]).unwrap());
     assert!(
-        says(&texts, "direct") && says(&texts, "rapid") && says(&texts, "5, 1 g/s"),
+        contains(&texts, "direct") && contains(&texts, "rapid") && contains(&texts, "5, 1 g/s"),
         "{texts:?}"
     );
 }
 
 #[test]
-fn a_map_says_each_value_and_each_outcome() {
+fn a_map_shows_each_value_and_each_outcome() {
     let table = mixed();
     let svg = map::svg(&source(&table), "peak_vz", ["mass_flow_rate", "N"]).unwrap();
     let texts = check::figure(&svg);
@@ -157,16 +162,16 @@ fn a_map_says_each_value_and_each_outcome() {
         "infeasible (2)",
         "partial (1)",
     ] {
-        assert!(says(&texts, text), "{text}: {texts:?}");
+        assert!(contains(&texts, text), "{text}: {texts:?}");
     }
-    assert!(!says(&texts, "300"), "a failed job's measure is no value: {texts:?}");
+    assert!(!contains(&texts, "300"), "a failed job has no value: {texts:?}");
     let fixed = Source { rows: vec![0, 2, 8], ..source(&table) };
     let texts = check::figure(&map::svg(&fixed, "peak_vz", ["mass_flow_rate", "N"]).unwrap());
-    assert!(says(&texts, "no such point in the study"), "{texts:?}");
+    assert!(contains(&texts, "no such point in the study"), "{texts:?}");
 }
 
-/// Histories made up for the jobs asked for.
-#[expect(clippy::unnecessary_wraps, reason = "the shape charts read through")]
+/// Invented histories.
+#[expect(clippy::unnecessary_wraps, reason = "the signature that charts call")]
 fn read(id: &JobId) -> Result<StoredHistory> {
     let deployment = fixture::deployment(u32::from(id.as_str().as_bytes()[0]), 900);
     Ok(StoredHistory {
@@ -184,7 +189,7 @@ fn read(id: &JobId) -> Result<StoredHistory> {
 }
 
 #[test]
-fn histories_are_labelled_by_what_differs() {
+fn histories_are_labelled_by_the_varying_parameters() {
     let table = mixed();
     let columns = ["z_rim", "pressure", "smallest_gap"].map(str::to_owned);
     let svg = history::svg(&source(&table), &columns, [None, None], &read).unwrap();
@@ -201,30 +206,35 @@ fn histories_are_labelled_by_what_differs() {
         "mean height of the top ring",
         "end of a run that failed",
     ] {
-        assert!(says(&texts, text), "{text}: {texts:?}");
+        assert!(contains(&texts, text), "{text}: {texts:?}");
     }
-    let missing = "residual_gas_mass goes with strategy.";
-    assert!(says(&texts, missing), "{texts:?}");
-    assert!(says(&texts, "Without a history: 1 pending, 2 infeasible."), "{texts:?}");
+    let missing = "residual_gas_mass changes with strategy.";
+    assert!(contains(&texts, missing), "{texts:?}");
+    assert!(contains(&texts, "Without a history: 1 pending, 2 infeasible."), "{texts:?}");
 
     let cut = history::svg(&source(&table), &columns[..1], [Some(0.1), Some(0.2)], &read).unwrap();
     let texts = check::figure(&cut);
-    assert!(says(&texts, "100") && says(&texts, "200") && !says(&texts, "300"), "{texts:?}");
+    assert!(
+        contains(&texts, "100") && contains(&texts, "200") && !contains(&texts, "300"),
+        "{texts:?}"
+    );
 }
 
 #[test]
-fn nothing_to_draw_is_said_in_words() {
+fn an_empty_chart_says_why() {
     let none = study(|_, cells| *cells = Cells::new(Status::Pending), &[]);
-    let say =
+    let says_so =
         |svg: String| check::figure(&svg).iter().any(|text| text.starts_with("nothing to draw"));
-    assert!(say(over::svg(&source(&none), "peak_vz", "N", &[]).unwrap()));
-    assert!(say(history::svg(&source(&none), &["z_rim".to_owned()], [None; 2], &read).unwrap()));
+    assert!(says_so(over::svg(&source(&none), "peak_vz", "N", &[]).unwrap()));
+    assert!(says_so(
+        history::svg(&source(&none), &["z_rim".to_owned()], [None; 2], &read).unwrap()
+    ));
     let texts = check::figure(&map::svg(&source(&none), "peak_vz", ["N", "strategy"]).unwrap());
-    assert!(says(&texts, "No job here has a value of peak_vz."), "{texts:?}");
+    assert!(contains(&texts, "No job here has a value of peak_vz."), "{texts:?}");
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused_with_what_would_do() {
+fn an_impossible_chart_is_an_error_that_says_what_is_allowed() {
     let table = mixed();
     let source = source(&table);
     let columns = |name: &str| vec![name.to_owned()];
@@ -237,7 +247,7 @@ fn what_cannot_be_drawn_is_refused_with_what_would_do() {
         (history::svg(&source, &columns("z_rims"), [None; 2], &read), "did you mean z_rim?"),
         (
             history::svg(&source, &columns("vz"), [Some(0.2), Some(0.1)], &read),
-            "no time is between",
+            "the time range is empty",
         ),
     ] {
         let error = result.unwrap_err();
@@ -252,10 +262,10 @@ fn what_cannot_be_drawn_is_refused_with_what_would_do() {
 }
 
 #[test]
-fn a_study_gets_the_charts_that_fit_it() {
+fn the_standard_charts_fit_the_study() {
     let table = mixed();
     let (kinds, notes) = standard::kinds(&source(&table));
-    let names: Vec<String> = kinds.iter().map(Kind::file_name).collect();
+    let names: Vec<String> = kinds.iter().map(ChartKind::file_name).collect();
     assert_eq!(
         names,
         [
@@ -267,6 +277,6 @@ fn a_study_gets_the_charts_that_fit_it() {
         ]
     );
     assert!(notes.is_empty(), "{notes:?}");
-    let dotted = Kind::Over("a".to_owned(), "film/../x".to_owned(), Vec::new());
+    let dotted = ChartKind::Over("a".to_owned(), "film/../x".to_owned(), Vec::new());
     assert_eq!(dotted.file_name(), "a-over-film_.._x");
 }

@@ -1,10 +1,11 @@
-//! The answer of a study as lines of text and as JSON keys.
+//! The answer of a study, as lines of text and as JSON keys.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
 use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
+use billow_solver::output::measures::Verdict;
 use serde_json::{Map, json};
 
 use super::print::count;
@@ -12,55 +13,41 @@ use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
 use crate::input::value::{Value, brief_number, json_value, short_number};
 use crate::job::Status;
 
-/// Characters a line of medians may have.
-const WIDTH: usize = 120;
+/// Most characters in a line of medians.
+const MAX_LINE_WIDTH: usize = 120;
 
-/// Film stress over Young's modulus above which no film bears it linearly; where film that opens at speed
-/// is pulled taut, it reaches half of that for a moment.
-const STRETCHED: f64 = 0.1;
+/// Film stress over Young's modulus above which a note asks for a missing unit. Chosen: no film is linear
+/// up to there, and short peaks of film that is pulled taut reach half of it.
+const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 
-/// Prints the answer: about a line each for what deployed, the fastest job, the hardest, the trust,
-/// and every parameter of a few values.
+/// Prints the answer: one or two lines each for the deployed jobs, the fastest job, the jobs with the
+/// highest velocity and energy, the audit, and every parameter with a few values.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
         writeln!(out, "{}", answer.question)?;
     }
     writeln!(out, "  deployed {}", deployed(answer))?;
-    if let Some(fastest) = &answer.fastest {
-        let value = format!("t_90_z_rim {} s", brief_number(fastest.value));
-        writeln!(out, "  fastest  {value}: {}", of_job(fastest))?;
-    }
-    if let Some(hardest) = &answer.hardest {
-        let mut value = format!("peak_vz {} m/s", brief_number(hardest.value));
-        let energy = answer.most_energy.as_ref();
-        if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
-            let _ = write!(value, ", peak_kinetic_energy {} J", brief_number(same.value));
-        }
-        writeln!(out, "  hardest  {value}: {}", of_job(hardest))?;
-        if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
-            let value = format!("peak_kinetic_energy {} J", brief_number(other.value));
-            writeln!(out, "           {value}: {}", of_job(other))?;
-        }
-    }
+    print_extremes(answer, out)?;
     if let Some(trust) = &answer.trust {
-        writeln!(out, "  trust    {}", trusted(trust))?;
+        writeln!(out, "  trust    {}", audit(trust))?;
     }
-    if answer.stretch > STRETCHED {
+    if answer.stretch > MAX_PLAUSIBLE_STRAIN {
         writeln!(
             out,
-            "  stretch  film_stress is up to {} % of Young's modulus, where the linear law of the film \
-             holds for a few: is there a unit missing?",
+            "  stretch  film_stress is up to {} % of Young's modulus; the linear film model holds for \
+             a few per cent: is a unit missing?",
             brief_number(100.0 * answer.stretch)
         )?;
     }
     if !answer.effects.is_empty() {
         writeln!(
             out,
-            "  medians  t_90_z_rim (s), peak_vz (m/s) by value, over jobs equal in all else"
+            "  medians  t_90_z_rim (s), peak_vz (m/s) per value, all other parameters being equal"
         )?;
     }
-    let indent = answer.effects.iter().map(|own| name(own).chars().count()).max().unwrap_or(0);
+    let names = answer.effects.iter().map(|effect| name(effect).chars().count());
+    let indent = names.max().unwrap_or(0);
     for effect in &answer.effects {
         for line in lines(effect, indent) {
             writeln!(out, "{line}")?;
@@ -69,25 +56,46 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// What to look at next.
+/// The fastest job, and the jobs with the highest velocity and kinetic energy.
+fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
+    if let Some(fastest) = &answer.fastest {
+        let value = format!("t_90_z_rim {} s", brief_number(fastest.value));
+        writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
+    }
+    let Some(hardest) = &answer.hardest else { return Ok(()) };
+    let mut value = format!("peak_vz {} m/s", brief_number(hardest.value));
+    let energy = answer.most_energy.as_ref();
+    if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
+        let _ = write!(value, ", peak_kinetic_energy {} J", brief_number(same.value));
+    }
+    writeln!(out, "  hardest  {value}: {}", job_text(hardest))?;
+    if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
+        let value = format!("peak_kinetic_energy {} J", brief_number(other.value));
+        writeln!(out, "           {value}: {}", job_text(other))?;
+    }
+    Ok(())
+}
+
+/// Prints the commands that show more.
 pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Result<()> {
     let root = root.display();
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
-    // A choice, as of a strategy, asks to be compared first, then a quantity.
-    let of = |unit: fn(&str) -> bool| answer.effects.iter().find(|effect| unit(&effect.unit));
-    let named = of(str::is_empty).or_else(|| of(|unit| unit != "1"));
-    if let Some(effect) = named.or(answer.effects.first())
+    // Compare a named choice (a strategy) first, then a quantity with a unit.
+    let first_with =
+        |unit: fn(&str) -> bool| answer.effects.iter().find(|effect| unit(&effect.unit));
+    let effect = first_with(str::is_empty).or_else(|| first_with(|unit| unit != "1"));
+    if let Some(effect) = effect.or(answer.effects.first())
         && let Some((base, _)) = effect.values.first()
     {
-        let base = word(base);
+        let base = shell_word(base);
         writeln!(out, "           billow compare {root} --by {} --base {base}", effect.parameter)?;
     }
     Ok(())
 }
 
-/// A value as a shell takes it.
-pub fn word(value: &Value) -> String {
+/// A value as one word of a shell command.
+pub fn shell_word(value: &Value) -> String {
     let text = match value {
         Value::Number(number) => number.to_string(),
         other => other.to_string(),
@@ -98,21 +106,21 @@ pub fn word(value: &Value) -> String {
 
 fn deployed(answer: &Answer) -> String {
     let counts = &answer.counts;
-    let of = |verdict: &str| counts.verdict.get(verdict).copied().unwrap_or(0);
+    let with = |verdict: Verdict| counts.verdict.get(verdict.name()).copied().unwrap_or(0);
     let jobs = counts.jobs();
-    let mut text = format!("{} of {}", of("deployed"), count(jobs, "job"));
-    for (number, word) in [
-        (of("partial"), "partial"),
-        (of("stalled"), "stalled"),
+    let mut text = format!("{} of {}", with(Verdict::Deployed), count(jobs, "job"));
+    for (number, noun) in [
+        (with(Verdict::Partial), Verdict::Partial.name()),
+        (with(Verdict::Stalled), Verdict::Stalled.name()),
         (counts.failed(), "failed"),
-        (counts.of(Status::Pending), "pending"),
+        (counts.of(Status::Pending), Status::Pending.name()),
     ] {
         if number > 0 {
-            let _ = write!(text, ", {number} {word}");
+            let _ = write!(text, ", {number} {noun}");
         }
     }
     if counts.near_threshold > 0 {
-        let _ = write!(text, ", {} close to a threshold", counts.near_threshold);
+        let _ = write!(text, ", {} near a threshold", counts.near_threshold);
     }
     let infeasible = counts.of(Status::Infeasible);
     if infeasible > 0 {
@@ -121,7 +129,7 @@ fn deployed(answer: &Answer) -> String {
     text
 }
 
-fn of_job(extreme: &Extreme) -> String {
+fn job_text(extreme: &Extreme) -> String {
     let parameters: Vec<String> = extreme
         .parameters
         .iter()
@@ -132,23 +140,25 @@ fn of_job(extreme: &Extreme) -> String {
         .collect();
     let others = match extreme.others {
         0 => String::new(),
-        others => format!(" (and {} with it)", count(others, "job")),
+        others => format!(" (and {} with the same value)", count(others, "job")),
     };
     format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(" "))
 }
 
-fn trusted(trust: &Trust) -> String {
+/// The audit of all done jobs.
+fn audit(trust: &Trust) -> String {
     let film = match (trust.passages, trust.intersections) {
         (None, None) => "passages and intersections: not counted by this model".to_owned(),
         (passages, intersections) => {
-            let number =
-                |own: Option<i64>| own.map_or_else(|| "not counted".to_owned(), |n| n.to_string());
-            let of = if trust.counted < trust.jobs {
+            let number = |counted: Option<i64>| {
+                counted.map_or_else(|| "not counted".to_owned(), |n| n.to_string())
+            };
+            let jobs = if trust.counted < trust.jobs {
                 format!(" ({} counted)", count(trust.counted, "job"))
             } else {
                 String::new()
             };
-            format!("passages {}, intersections {}{of}", number(passages), number(intersections))
+            format!("passages {}, intersections {}{jobs}", number(passages), number(intersections))
         }
     };
     format!(
@@ -166,7 +176,7 @@ fn name(effect: &Effect) -> String {
     }
 }
 
-/// One parameter: its values with both medians, broken where the line would be too long.
+/// One parameter: its values with both medians, on as many lines as needed.
 fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     let mut parts: Vec<String> = effect
         .values
@@ -176,7 +186,7 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
                 Value::Number(number) => short_number(*number),
                 other => other.to_string(),
             };
-            let medians = medians.map(|own| own.map_or_else(|| "-".to_owned(), brief_number));
+            let medians = medians.map(|median| median.map_or_else(|| "-".to_owned(), brief_number));
             format!("{value}: {}", medians.join(", "))
         })
         .collect();
@@ -189,7 +199,7 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     let mut lines = vec![format!("{:<indent$}", name(effect))];
     for part in parts {
         let length = lines.last().map_or(0, |line| line.chars().count());
-        if length + 2 + part.chars().count() > WIDTH {
+        if length + 2 + part.chars().count() > MAX_LINE_WIDTH {
             lines.push(" ".repeat(indent));
         }
         if let Some(line) = lines.last_mut() {
@@ -199,58 +209,62 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     lines
 }
 
-/// The same as keys.
+/// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
-    let parameters = |extreme: &Extreme| {
-        let own = extreme.parameters.iter();
-        own.map(|(name, value)| (name.clone(), json_value(value))).collect::<Map<_, _>>()
-    };
-    let extreme = |own: &Option<Extreme>, measure: &str| {
-        own.as_ref().map(|own| {
-            let mut keys = Map::new();
-            keys.insert("job".to_owned(), own.job.as_str().into());
-            keys.insert("parameters".to_owned(), parameters(own).into());
-            keys.insert(measure.to_owned(), own.value.into());
-            keys.insert("others".to_owned(), own.others.into());
-            keys
-        })
-    };
-    let effects = answer.effects.iter().map(|effect| {
-        let values = effect.values.iter().map(|(value, medians)| {
-            let mut keys = Map::new();
-            keys.insert("value".to_owned(), json_value(value));
-            for (measure, median) in MEDIANS.iter().zip(medians) {
-                keys.insert(measure.name().to_owned(), json!(median));
-            }
-            serde_json::Value::from(keys)
-        });
-        json!({
-            "parameter": effect.parameter,
-            "unit": effect.unit,
-            "with_it": effect.carried,
-            "sets": effect.sets,
-            "values": values.collect::<Vec<_>>(),
-        })
-    });
-    let trust = answer.trust.map(|trust| {
-        json!({
-            "jobs": trust.jobs,
-            "ledger_residual": trust.ledger_residual,
-            "gas_residual": trust.gas_residual,
-            "passages": trust.passages,
-            "intersections": trust.intersections,
-            "counted": trust.counted,
-            "film_stress_over_modulus": answer.stretch,
-        })
-    });
     json!({
         "question": answer.question,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
-        "fastest": extreme(&answer.fastest, "t_90_z_rim"),
-        "hardest": extreme(&answer.hardest, "peak_vz"),
-        "most_energy": extreme(&answer.most_energy, "peak_kinetic_energy"),
-        "trust": trust,
-        "medians": effects.collect::<Vec<_>>(),
+        "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
+        "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
+        "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
+        "trust": answer.trust.map(|trust| trust_json(&trust, answer.stretch)),
+        "medians": answer.effects.iter().map(effect_json).collect::<Vec<_>>(),
+    })
+}
+
+fn extreme_json(
+    extreme: Option<&Extreme>,
+    measure: &str,
+) -> Option<Map<String, serde_json::Value>> {
+    let extreme = extreme?;
+    let parameters = extreme.parameters.iter();
+    let parameters: Map<_, _> =
+        parameters.map(|(name, value)| (name.clone(), json_value(value))).collect();
+    let mut keys = Map::new();
+    keys.insert("job".to_owned(), extreme.job.as_str().into());
+    keys.insert("parameters".to_owned(), parameters.into());
+    keys.insert(measure.to_owned(), extreme.value.into());
+    keys.insert("others".to_owned(), extreme.others.into());
+    Some(keys)
+}
+
+fn trust_json(trust: &Trust, stretch: f64) -> serde_json::Value {
+    json!({
+        "jobs": trust.jobs,
+        "ledger_residual": trust.ledger_residual,
+        "gas_residual": trust.gas_residual,
+        "passages": trust.passages,
+        "intersections": trust.intersections,
+        "counted": trust.counted,
+        "film_stress_over_modulus": stretch,
+    })
+}
+
+fn effect_json(effect: &Effect) -> serde_json::Value {
+    let values = effect.values.iter().map(|(value, medians)| {
+        let mut keys = Map::new();
+        keys.insert("value".to_owned(), json_value(value));
+        for (measure, median) in MEDIANS.iter().zip(medians) {
+            keys.insert(measure.name().to_owned(), json!(median));
+        }
+        serde_json::Value::from(keys)
+    });
+    json!({
+        "parameter": effect.parameter,
+        "unit": effect.unit,
+        "with_it": effect.carried,
+        "sets": effect.sets,
+        "values": values.collect::<Vec<_>>(),
     })
 }

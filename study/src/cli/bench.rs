@@ -1,41 +1,47 @@
-//! `billow bench`: what billow costs on this machine.
+//! `billow bench`: measures the speed of billow on this machine.
 
 use std::io::{self, Write};
 use std::path::Path;
 
+use super::options::{OutputOptions, QuietOption};
 use super::print::print_rows;
-use super::{Format, Global, output_error};
+use super::{Format, instruction_set, output_error};
 use crate::bench::{self, Effort, LARGEST_RUN, Line, Part, Plan, Report};
 use crate::input::value::{Value, brief_number, json_value};
-use crate::platform::error::{Error, InputError, Result};
+use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
 use crate::platform::stop::Stop;
 
-/// Least share of its wall time a run has a core on a machine that does nothing else.
-const QUIET: f64 = 0.95;
+/// Least fraction of its wall time that a run has a core on an idle machine. Chosen: below it another
+/// program has used the core.
+const MIN_CORE_SHARE: f64 = 0.95;
 
 /// Arguments of `billow bench`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Measure these parts only.
+    /// Measure only these parts.
     #[arg(long, value_name = "PART", value_enum, value_delimiter = ',')]
     pub only: Vec<Part>,
-    /// Meshes, as in 5,8 [default: 5,8,16,32; with --quick 5].
+    /// Mesh subdivisions n, comma-separated [default: 5,8,16,32; with --quick 5].
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=64))]
     pub subdivisions: Vec<u32>,
-    /// Seconds instead of minutes: small meshes, short runs; most targets stay unmeasured.
+    /// Take seconds instead of minutes: small meshes, short runs; most targets are not measured.
     #[arg(long, conflicts_with = "full")]
     pub quick: bool,
-    /// The whole cases too: 1.5 s at n 8, 0.3 s at n 16.
+    /// Also run the full-length cases: 1.5 s at n = 8, 0.3 s at n = 16.
     #[arg(long)]
     pub full: bool,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
-/// Runs `billow bench`. Targets that are missed are figures, no errors.
+/// Runs `billow bench`. A missed target is a result, not an error.
 ///
 /// # Errors
-/// A run that stops short, a disk that fails, a signal.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+/// A run that stops before its end, a disk error, a signal.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let parts = if args.only.is_empty() { Part::ALL.to_vec() } else { args.only.clone() };
     refuse_unmeasured(args, &parts)?;
     let plan = Plan {
@@ -46,42 +52,42 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             (_, true) => Effort::Full,
             _ => Effort::Usual,
         },
-        path: super::instruction_set::instruction_set()?,
+        path: instruction_set::selected()?,
     };
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let report = bench::run(&plan, &stop, &mut |next| {
-        if !global.quiet {
+        if !args.quiet.quiet {
             eprintln!("billow: {next}");
         }
     })?;
-    if let (Some(share), false) = (report.least_core_share(), global.quiet)
-        && share < QUIET
+    if let (Some(share), false) = (report.least_core_share(), args.quiet.quiet)
+        && share < MIN_CORE_SHARE
     {
         eprintln!(
-            "billow: something else used this machine: a run had a core for {:.0} % of its wall time \
-             (core_share), so figures are too high",
+            "billow: another program used this machine: a run had a core for {:.0} % of its wall time \
+             (core_share); the times are too long",
             100.0 * share
         );
     }
-    print(&report, global.format(), out)
+    print(&report, args.output.format(), out)
 }
 
-/// A mesh of which nothing would be measured is a mistake.
+/// Refuses a mesh for which none of the parts measures anything.
 fn refuse_unmeasured(args: &Args, parts: &[Part]) -> Result<()> {
     let large = args.subdivisions.iter().find(|n| **n > LARGEST_RUN);
-    let way = !args.quick && parts.contains(&Part::Cases);
-    let Some(n) = large.filter(|_| !way && !parts.contains(&Part::Stages)) else { return Ok(()) };
-    Err(Error::Input(InputError {
-        file: "--subdivisions".to_owned(),
-        key: String::new(),
-        value: n.to_string(),
-        problem: format!("nothing of n {n} would be measured"),
-        allowed: format!("up to {LARGEST_RUN} for kernels, and for cases with --quick"),
-        hint: "add stages to --only: of larger meshes the stowed state is timed".to_owned(),
-    }))
+    let full_cases = !args.quick && parts.contains(&Part::Cases);
+    let measured = full_cases || parts.contains(&Part::Stages);
+    let Some(n) = large.filter(|_| !measured) else { return Ok(()) };
+    Err(Error::invalid_option(
+        "--subdivisions",
+        &n.to_string(),
+        format!("no part measures n = {n}"),
+        format!("up to {LARGEST_RUN} for kernels, and for cases with --quick"),
+        "add stages to --only: it measures the stowed state of larger meshes",
+    ))
 }
 
-/// A report's tables, by name.
+/// Tables of a report, by name.
 fn tables(report: &Report) -> [(&'static str, Vec<Line>); 6] {
     [
         ("machine", vec![report.machine.line()]),
@@ -93,7 +99,7 @@ fn tables(report: &Report) -> [(&'static str, Vec<Line>); 6] {
     ]
 }
 
-/// Prints a report: tables one below the other; one table of every cell as CSV; one JSON object.
+/// Prints a report: as tables one below the other, as one CSV table of all cells, or as one JSON object.
 ///
 /// # Errors
 /// When the output cannot be written.
@@ -121,21 +127,21 @@ fn readable(report: &Report, out: &mut dyn Write) -> Result<()> {
         }
         writeln!(out).map_err(output_error)?;
     }
-    let open = report.not_measured();
-    let open = if open.is_empty() {
+    let missing = report.not_measured();
+    let missing = if missing.is_empty() {
         String::new()
     } else {
-        format!(" (not measured: {})", open.join(", "))
+        format!(" (not measured: {})", missing.join(", "))
     };
     let met = if report.targets_met() { "yes" } else { "no" };
-    writeln!(out, "targets met: {met}{open}").map_err(output_error)
+    writeln!(out, "targets met: {met}{missing}").map_err(output_error)
 }
 
 fn text(text: &str) -> Value {
     Value::Text(text.to_owned())
 }
 
-/// A cell for the eye: four digits are more than a clock gives.
+/// A cell of a readable table: a clock gives fewer than four significant digits.
 fn brief(value: &Value) -> Value {
     match value {
         Value::Number(number) => brief_number(*number).parse().map_or(Value::Null, Value::Number),
@@ -144,7 +150,7 @@ fn brief(value: &Value) -> Value {
     }
 }
 
-/// Every cell with its place.
+/// Every cell with its table, row and name.
 fn cells(report: &Report) -> Vec<Vec<Value>> {
     let mut cells = Vec::new();
     for (name, lines) in tables(report) {
@@ -177,8 +183,8 @@ fn json(report: &Report, out: &mut dyn Write) -> io::Result<()> {
             (_, rows) => writeln!(out, "\"{name}\": [\n  {}\n],", rows.join(",\n  "))?,
         }
     }
-    let open = serde_json::Value::from(report.not_measured());
-    writeln!(out, "\"not_measured\": {open},")?;
+    let missing = serde_json::Value::from(report.not_measured());
+    writeln!(out, "\"not_measured\": {missing},")?;
     writeln!(out, "\"targets_met\": {}", report.targets_met())?;
     writeln!(out, "}}")
 }

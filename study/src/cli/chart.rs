@@ -1,156 +1,176 @@
-//! `billow chart`: draws charts of a study's results, as SVG and PNG.
+//! `billow chart`: draws charts of the results of a study, as SVG and PNG.
 
 use std::io::Write;
 use std::path::PathBuf;
 
+use super::options::{OutputOptions, QuietOption, SetOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
-use super::target::{self, Target};
-use super::{Format, Global, output_error};
-use crate::chart::standard::{self, Kind};
+use super::target::{self, StudyArgs, Target};
+use super::{Format, output_error};
+use crate::chart::standard::{self, ChartKind};
 use crate::chart::{Source, history, map, over};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::store::history_file::{self, StoredHistory};
+use crate::store::results::Results;
+use crate::store::table::Table;
 
 /// Arguments of `billow chart`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Study file, or folder of its results [default: the only one under results].
-    pub study: Option<PathBuf>,
-    /// Draw these columns of histories over time, comma-separated: one line a job, one panel a
-    /// column.
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Draw these columns of the histories over time, comma-separated: one line per job, one panel
+    /// per column.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["measure"])]
     pub history: Vec<String>,
     /// Draw this column of the table, over a parameter (--over) or two (--map).
     #[arg(long, value_name = "COLUMN")]
     pub measure: Option<String>,
-    /// The parameter a measure is drawn over; every other one that varies tells lines or panels
-    /// apart, nothing is averaged.
+    /// Draw the measure over this parameter. Every other parameter that varies gives lines or
+    /// panels; nothing is averaged.
     #[arg(long, value_name = "PARAMETER", requires = "measure", conflicts_with = "map")]
     pub over: Option<String>,
-    /// The parameters that tell lines apart, comma-separated; the others that vary tell panels
-    /// apart [default: as many lines as are legible].
+    /// Draw one line per combination of these parameters, comma-separated; the other parameters
+    /// that vary give panels [default: as many lines as are legible].
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', requires = "over")]
     pub by: Vec<String>,
-    /// Draw a measure as a map over two parameters.
+    /// Draw the measure as a map over two parameters.
     #[arg(long, value_name = "X,Y", value_delimiter = ',', requires = "measure")]
     pub map: Vec<String>,
-    /// Only these jobs: ids or beginnings of ids, comma-separated.
+    /// Only these jobs: first digits of their ids, comma-separated.
     #[arg(long, value_name = "IDS", value_delimiter = ',')]
     pub jobs: Vec<String>,
-    /// Only rows of which this holds, as in `N == 6 and mass_flow_rate >= '2 g/s'`.
+    /// Only rows for which this condition holds, as in `N == 6 and mass_flow_rate >= '2 g/s'`.
     #[arg(long = "where", value_name = "CONDITION", conflicts_with = "jobs")]
     pub condition: Option<String>,
-    /// Histories from this time on: s, or with a unit.
+    /// Start of the time axis: s, or with a unit.
     #[arg(long, value_name = "TIME", requires = "history")]
     pub from: Option<String>,
-    /// Histories up to this time: s, or with a unit.
+    /// End of the time axis: s, or with a unit.
     #[arg(long, value_name = "TIME", requires = "history")]
     pub to: Option<String>,
-    /// File to write, .svg or .png [default: both, into the folder charts of the results].
+    /// File to write, .svg or .png [default: both, in the folder charts of the results].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    set: SetOption,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
-/// Runs `billow chart`: prints the paths of what it drew.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+/// Runs `billow chart`: prints the paths of the pictures.
+///
+/// # Errors
+/// Results that cannot be read; an unknown column or parameter; a picture that cannot be written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let asked = kind(args)?;
     let range = [time("--from", args.from.as_deref())?, time("--to", args.to.as_deref())?];
     if let Some(path) = &args.out {
         Picture::of(path)?;
     }
-    let Target { results, table } = target::open(args.study.as_deref(), global)?;
+    let Target { results, table } = target::open(&args.study, &args.set.set)?;
+    let name = study_name(&results);
+    let source = source(args, &name, &table)?;
+    let standard = asked.is_none();
+    let kinds = match asked {
+        Some(kind) => vec![kind],
+        None => standard_kinds(&source, args.quiet.quiet),
+    };
+    let read = |id: &JobId| history_file::read(&results.job_path(id));
+    let mut written: Vec<PathBuf> = Vec::new();
+    for kind in &kinds {
+        match draw(&source, kind, range, &read) {
+            Ok(svg) => written.extend(write(args, &results, kind, &svg)?),
+            // A standard chart may not fit this study; then it is skipped with a message.
+            Err(Error::Input(error)) if standard => {
+                if !args.quiet.quiet {
+                    eprintln!("billow: no {}: {}", kind.file_name(), error.problem);
+                }
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    print(&written, args.output.format(), out)
+}
+
+/// The rows that `--jobs` or `--where` choose.
+fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a>> {
     let rows = if args.jobs.is_empty() {
-        target::filtered(&table, args.condition.as_deref())?
+        target::filtered(table, args.condition.as_deref())?
     } else {
-        target::jobs(&table, &args.jobs)?
+        target::jobs(table, &args.jobs)?
     };
     if rows.is_empty() {
         let condition = args.condition.as_deref().unwrap_or("");
-        return Err(refused(
-            "--where",
-            condition,
-            "holds of no row",
-            "a condition that holds of a row; numbers are SI unless they carry a unit, as in \
-             mass_flow_rate == '5 g/s'",
-        ));
+        let allowed = "a condition that at least one row fulfils; a number without a unit is SI, a \
+                       unit is written as in mass_flow_rate == '5 g/s'";
+        return Err(refused("--where", condition, "no row fulfils this condition", allowed));
     }
     let choice = match (&args.condition, args.jobs.len()) {
         (Some(condition), _) => format!("where {}", condition.trim()),
         (None, 0) => String::new(),
         (None, _) => "(chosen jobs)".to_owned(),
     };
-    let root = results.root();
-    // "." has no name of its own.
-    let name = root
-        .file_name()
-        .map_or_else(|| root.display().to_string(), |name| name.to_string_lossy().into_owned());
-    let source = Source { study: &name, table: &table, rows, choice };
-    let asked_for = asked.is_some();
-    let kinds = if let Some(kind) = asked { vec![kind] } else { standard_kinds(&source, global) };
-    let read = |id: &JobId| history_file::read(&results.job_path(id));
-    let mut written: Vec<PathBuf> = Vec::new();
-    for kind in &kinds {
-        let svg = match draw(&source, kind, range, &read) {
-            Ok(svg) => svg,
-            // What nobody asked for by name may not fit this study.
-            Err(Error::Input(error)) if !asked_for => {
-                if !global.quiet {
-                    eprintln!("billow: no {}: {}", kind.file_name(), error.problem);
-                }
-                continue;
-            }
-            Err(error) => return Err(error),
-        };
-        if let Some(path) = &args.out {
-            picture::write(path, &svg)?;
-            written.push(path.clone());
-        } else {
-            let folder = results.charts_path();
-            Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-            for format in Picture::ALL {
-                let path = folder.join(format!("{}.{}", kind.file_name(), format.ending()));
-                picture::write(&path, &svg)?;
-                written.push(path);
-            }
-        }
-    }
-    print(&written, global.format(), out)
+    Ok(Source { study, table, rows, choice })
 }
 
-/// The charts drawn where none is asked for; what is left out is told.
-fn standard_kinds(source: &Source<'_>, global: &Global) -> Vec<Kind> {
+/// Name of the results folder; the whole path when it has no last part, as in ".".
+fn study_name(results: &Results<'_>) -> String {
+    let root = results.root();
+    root.file_name()
+        .map_or_else(|| root.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+/// The standard charts; a message on stderr says what is missing and why.
+fn standard_kinds(source: &Source<'_>, quiet: bool) -> Vec<ChartKind> {
     let (kinds, notes) = standard::kinds(source);
-    for note in notes.iter().filter(|_| !global.quiet) {
+    for note in notes.iter().filter(|_| !quiet) {
         eprintln!("billow: {note}");
     }
     kinds
 }
 
+/// Writes a chart to the file asked for, or in every format to the folder of charts. Returns the paths.
+fn write(args: &Args, results: &Results<'_>, kind: &ChartKind, svg: &str) -> Result<Vec<PathBuf>> {
+    if let Some(path) = &args.out {
+        picture::write(path, svg)?;
+        return Ok(vec![path.clone()]);
+    }
+    let folder = results.charts_path();
+    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
+    let path =
+        |format: Picture| folder.join(format!("{}.{}", kind.file_name(), format.extension()));
+    let paths = Picture::ALL.map(path).to_vec();
+    for path in &paths {
+        picture::write(path, svg)?;
+    }
+    Ok(paths)
+}
+
 fn draw(
     source: &Source<'_>,
-    kind: &Kind,
+    kind: &ChartKind,
     range: [Option<f64>; 2],
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
 ) -> Result<String> {
     match kind {
-        Kind::History(columns) => history::svg(source, columns, range, read),
-        Kind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
-        Kind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
+        ChartKind::History(columns) => history::svg(source, columns, range, read),
+        ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
+        ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
     }
 }
 
-/// The chart asked for, if one is.
-fn kind(args: &Args) -> Result<Option<Kind>> {
+/// The chart that the options ask for; `None` for the standard charts.
+fn kind(args: &Args) -> Result<Option<ChartKind>> {
     if !args.history.is_empty() {
-        let columns = args
-            .history
-            .iter()
-            .map(|name| target::current_name("--history", name.trim()).to_owned());
-        return Ok(Some(Kind::History(columns.collect())));
+        let current = |name: &String| target::current_name("--history", name.trim()).to_owned();
+        return Ok(Some(ChartKind::History(args.history.iter().map(current).collect())));
     }
     let measure = args
         .measure
@@ -163,20 +183,22 @@ fn kind(args: &Args) -> Result<Option<Kind>> {
                 "--out",
                 &path.display().to_string(),
                 "one file for several charts",
-                "say which: --history, --measure … --over, or --measure … --map",
+                "one chart: --history, --measure … --over, or --measure … --map",
             )),
         };
     };
     match (args.over.clone(), args.map.as_slice()) {
         (Some(over), _) => {
             let by = args.by.iter().map(|name| name.trim().to_owned()).collect();
-            Ok(Some(Kind::Over(measure, over, by)))
+            Ok(Some(ChartKind::Over(measure, over, by)))
         }
-        (None, [x, y]) => Ok(Some(Kind::Map(measure, [x, y].map(|name| name.trim().to_owned())))),
+        (None, [x, y]) => {
+            Ok(Some(ChartKind::Map(measure, [x, y].map(|name| name.trim().to_owned()))))
+        }
         (None, []) => Err(refused(
             "--measure",
             &measure,
-            "does not say over what",
+            "needs a parameter to be drawn over",
             "--over PARAMETER, or --map X,Y",
         )),
         (None, several) => {
@@ -185,9 +207,9 @@ fn kind(args: &Args) -> Result<Option<Kind>> {
     }
 }
 
-/// A time given on the command line, s.
-fn time(flag: &str, text: Option<&str>) -> Result<Option<f64>> {
-    text.map(|text| picture::seconds(flag, text)).transpose()
+/// A time on the command line, s.
+fn time(option: &str, text: Option<&str>) -> Result<Option<f64>> {
+    text.map(|text| picture::seconds(option, text)).transpose()
 }
 
 fn print(paths: &[PathBuf], format: Format, out: &mut dyn Write) -> Result<()> {

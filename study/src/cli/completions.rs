@@ -1,4 +1,4 @@
-//! `billow completions`: what a shell needs to complete commands and flags.
+//! `billow completions`: the completion script of a shell.
 
 use std::io::Write;
 
@@ -15,8 +15,11 @@ pub struct Args {
 }
 
 /// Runs `billow completions`.
+///
+/// # Errors
+/// When the output cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    // The generator panics where a write fails; a buffer never does.
+    // The generator panics when a write fails; a write to memory cannot fail.
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "billow", &mut script);
     out.write_all(&script).map_err(output_error)

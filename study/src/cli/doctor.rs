@@ -1,12 +1,12 @@
-//! `billow doctor`: is a results folder sound?
+//! `billow doctor`: checks a results folder.
 
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::print::count;
-use super::print::print_rows;
-use super::target::folder;
-use super::{Format, Global, output_error};
+use super::options::OutputOptions;
+use super::print::{count, print_rows};
+use super::target::{StudyArgs, folder};
+use super::{Format, output_error};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
@@ -16,41 +16,43 @@ use crate::store::results::{RESULT_NAMES, Results};
 /// Arguments of `billow doctor`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Study file, or folder of its results [default: the only one under results].
-    pub study: Option<PathBuf>,
+    #[command(flatten)]
+    study: StudyArgs,
+    #[command(flatten)]
+    output: OutputOptions,
 }
 
-/// Runs `billow doctor`: one line a finding, what is broken first.
+/// Runs `billow doctor`: one line per finding, faults first.
 ///
 /// # Errors
 /// [`Error::JobsFailed`] (exit code 1) when something is broken.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let root = folder(args.study.as_deref(), global)?;
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let root = folder(&args.study, &[])?;
     let names = Disk.list(&root).map_err(|error| disk_error(&root, &error))?;
-    let ours = |path: &PathBuf| {
+    let is_ours = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         RESULT_NAMES.contains(&name.as_ref())
     };
-    if !names.iter().any(ours) {
+    if !names.iter().any(is_ours) {
         return Err(Error::Disk {
             path: root,
-            problem: "no folder of results: nothing in it is of a study\n  next: name one, or `billow run \
-                      STUDY` first"
+            problem: "not a results folder: it holds no file of a study\n  next: name a results folder, or \
+                      run `billow run STUDY` first"
                 .to_owned(),
         });
     }
     let health = doctor::examine(&Results::new(&Disk, &root), Depth::Contents);
     let faults = health.faults();
-    match global.format() {
+    match args.output.format() {
         Format::Table => {
             for finding in &health.findings {
                 writeln!(out, "{}", line(finding)).map_err(output_error)?;
             }
-            let running = if health.running { "; a run is going on" } else { "" };
-            let state = if faults == 0 { "sound".to_owned() } else { format!("{faults} broken") };
+            let running = if health.running { "; a run is active" } else { "" };
+            let state = if faults == 0 { "no faults".to_owned() } else { count(faults, "fault") };
             writeln!(
                 out,
-                "{}: {state}: {} recorded, {} looked at, {} found{running}",
+                "{}: {state}: {} recorded, {} checked, {}{running}",
                 root.display(),
                 count(health.records, "job"),
                 if health.histories == 1 {
@@ -58,7 +60,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
                 } else {
                     format!("{} histories", health.histories)
                 },
-                count(health.findings.len(), "thing"),
+                count(health.findings.len(), "finding"),
             )
             .map_err(output_error)?;
         }
@@ -70,8 +72,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     if faults == 0 {
         return Ok(());
     }
-    let are = if faults == 1 { "thing is" } else { "things are" };
-    Err(Error::JobsFailed(format!("{}: {faults} {are} broken", root.display())))
+    Err(Error::JobsFailed(format!("{}: {}", root.display(), count(faults, "fault"))))
 }
 
 fn level(finding: &Finding) -> &'static str {

@@ -1,35 +1,28 @@
-//! The instruction set of every command that simulates.
+//! The instruction set that `BILLOW_SIMD` selects.
 
 use billow_solver::platform::simd::InstructionSet;
 
-use crate::platform::error::{Error, InputError, Result};
+use crate::platform::error::{Error, Result};
 
-/// Name of the environment variable.
+/// Environment variable that selects the instruction set.
 const VARIABLE: &str = "BILLOW_SIMD";
 
-/// The instruction set that `BILLOW_SIMD` names, or the widest of this machine. Every one gives the
-/// same bits; tests choose one to prove that.
+/// The instruction set of `BILLOW_SIMD`; without it the widest one of this machine.
 ///
 /// # Errors
-/// An unknown name, or an instruction set that this machine does not have.
-pub(super) fn instruction_set() -> Result<InstructionSet> {
-    let Some(word) = std::env::var_os(VARIABLE).filter(|word| !word.is_empty()) else {
+/// [`Error::Input`] for an unknown name, or one that this machine does not have.
+pub fn selected() -> Result<InstructionSet> {
+    let Some(name) = std::env::var_os(VARIABLE).filter(|name| !name.is_empty()) else {
         return Ok(InstructionSet::detect());
     };
-    let word = word.to_string_lossy();
-    let named = InstructionSet::ALL.into_iter().find(|set| set.name() == word);
-    let problem = match named {
-        Some(set) if set.available() => return Ok(set),
+    let name = name.to_string_lossy();
+    let problem = match InstructionSet::ALL.into_iter().find(|known| known.name() == name) {
+        Some(known) if known.available() => return Ok(known),
         Some(_) => "this machine does not have this instruction set",
         None => "unknown instruction set",
     };
-    let available = InstructionSet::ALL.into_iter().filter(|set| set.available());
-    Err(Error::Input(InputError {
-        file: VARIABLE.to_owned(),
-        key: String::new(),
-        value: word.into_owned(),
-        problem: problem.to_owned(),
-        allowed: available.map(InstructionSet::name).collect::<Vec<_>>().join(", "),
-        hint: "leave it unset: every instruction set gives the same bits".to_owned(),
-    }))
+    let available = InstructionSet::ALL.into_iter().filter(|known| known.available());
+    let allowed: Vec<&str> = available.map(InstructionSet::name).collect();
+    let hint = "leave it unset: every instruction set gives the same bits";
+    Err(Error::invalid_option(VARIABLE, &name, problem, allowed.join(", "), hint))
 }

@@ -2,8 +2,9 @@
 
 use std::io::{self, Write};
 
+use super::options::OutputOptions;
 use super::print::print_rows;
-use super::{Format, Global, output_error};
+use super::{Format, output_error};
 use crate::input::keys::listing::{Entry, FileKind, REQUIRED, entries, reference_page};
 use crate::input::keys::nearest;
 use crate::input::value::Value;
@@ -20,6 +21,8 @@ pub struct Args {
     /// Print the reference page of all keys, in Markdown.
     #[arg(long, hide = true, conflicts_with_all = ["word", "scene"])]
     pub markdown: bool,
+    #[command(flatten)]
+    output: OutputOptions,
 }
 
 /// Names printed when a word is not found (chosen: one line).
@@ -32,13 +35,13 @@ const LINE_WIDTH: usize = 96;
 ///
 /// # Errors
 /// When no key has the word, or the output cannot be written.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if args.markdown {
         return write!(out, "{}", reference_page()).map_err(output_error);
     }
     let file = if args.scene { FileKind::Scene } else { FileKind::Study };
     let found = search(file, args.word.as_deref())?;
-    match global.format() {
+    match args.output.format() {
         Format::Table => print(&found, out).map_err(output_error),
         format => {
             let rows: Vec<Vec<Value>> = found.iter().map(|entry| row(file, entry)).collect();

@@ -1,13 +1,15 @@
-//! The command line: one file a command, each with its own arguments and a function that writes its
-//! result to a given `Write`. Results go to stdout, progress and errors to stderr.
+//! The command line. One file per command: its arguments, and a function that writes the result to a
+//! given `Write`. Results go to stdout; progress, notes and errors go to stderr.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 
 use crate::platform::error::{Error, Result};
+use crate::platform::exit_code::{EXIT_CODES, Exit};
 
 mod answer;
 pub mod bench;
@@ -21,9 +23,11 @@ mod instruction_set;
 mod keys;
 mod memory;
 mod notes;
+pub mod options;
 mod picture;
 mod plan;
 pub mod print;
+pub mod reference;
 mod rerun;
 mod run;
 mod schema;
@@ -35,81 +39,41 @@ mod target;
 pub mod validate;
 mod why;
 
+pub use options::Format;
+
 /// Parameter studies of inflatable capsules: fold, inflate, compare.
 #[derive(Debug, Parser)]
-#[command(name = "billow", version, propagate_version = true, max_term_width = 100)]
+#[command(
+    name = "billow",
+    version,
+    propagate_version = true,
+    max_term_width = 100,
+    after_help = exit_codes_help()
+)]
 pub struct Cli {
-    /// Options every command takes.
-    #[command(flatten)]
-    pub global: Global,
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
-}
-
-/// Options every command takes.
-#[derive(Debug, Clone, clap::Args)]
-pub struct Global {
-    /// Folder of the results [default: `results/STUDY` under the current folder].
-    #[arg(long, global = true, value_name = "DIR")]
-    pub results: Option<PathBuf>,
-    /// Threads [default: one a core]. Each runs one job at a time; `solve` uses one. No result
-    /// depends on them.
-    #[arg(long, global = true, value_name = "N")]
-    pub threads: Option<usize>,
-    /// Override a key of the study or scene, as in --set film.thickness="30 um".
-    #[arg(long, global = true, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Same as --format json.
-    #[arg(long, global = true, conflicts_with = "format")]
-    pub json: bool,
-    /// How a table is printed.
-    #[arg(long, global = true, value_enum)]
-    pub format: Option<Format>,
-    /// No progress.
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
-    pub quiet: bool,
-    /// More progress.
-    #[arg(short, long, global = true)]
-    pub verbose: bool,
-}
-
-impl Global {
-    /// The format asked for.
-    pub fn format(&self) -> Format {
-        if self.json { Format::Json } else { self.format.unwrap_or(Format::Table) }
-    }
-}
-
-/// How a table is printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// Aligned columns.
-    Table,
-    /// Comma-separated values (RFC 4180).
-    Csv,
-    /// A JSON array of rows.
-    Json,
 }
 
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// One fold design: its angles and lengths, and its crease pattern as files.
+    /// Compute one fold design: angles, lengths, and its crease pattern as files.
     Fold(fold::Args),
     /// List the jobs of a study; run nothing.
     Plan(plan::Args),
-    /// Run what is missing of a study.
+    /// Run the jobs of a study that are not finished.
     Run(run::Args),
-    /// Run jobs again that are finished, and say whether they give the same bits.
+    /// Run finished jobs again and check that they give the same bits.
     Rerun(rerun::Args),
-    /// Say how far a study is, while it runs and afterwards.
+    /// Show the progress of a study, during a run and afterwards.
     Status(status::Args),
-    /// Say why a job ended as it did.
+    /// Explain why a job ended as it did.
     Why(why::Args),
-    /// Show everything stored of one job: parameters, scene, row, history.
+    /// Show everything stored for one job: parameters, scene, row, history.
     Show(show::Args),
-    /// Compare the values of one parameter, all else equal.
+    /// Compare the values of one parameter, all other parameters being equal.
     Compare(compare::Args),
     /// Check a results folder; change nothing. Exit code 1 if something is broken.
     Doctor(doctor::Args),
@@ -119,17 +83,17 @@ pub enum Command {
     Solve(solve::Args),
     /// Print the summary table of a study's results.
     Table(table::Args),
-    /// Draw charts of a study's results.
+    /// Draw charts of a study's results, as SVG and PNG.
     Chart(chart::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
     Keys(keys::Args),
     /// Print the JSON Schema of the study file or the scene file.
     Schema(schema::Args),
-    /// Run the reference cases and judge them; exit code 1 if one is out of band.
+    /// Run the reference cases and check their errors. Exit code 1 if one is out of tolerance.
     Validate(validate::Args),
-    /// Measure what billow costs on this machine, stage by stage, and what is asked of it.
+    /// Measure the speed of billow on this machine, stage by stage, against its targets.
     Bench(bench::Args),
-    /// Print the completions of a shell.
+    /// Print the completion script of a shell.
     Completions(completions::Args),
 }
 
@@ -138,50 +102,60 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // --help and --version are answers; everything else is bad input, exit code 2.
-            let code = if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+            // --help and --version are answers; every other clap error is invalid input.
+            let exit = if error.use_stderr() { Exit::InvalidInput } else { Exit::Success };
             let _ = error.print();
-            return code;
+            return exit.into();
         }
     };
     let mut out = io::BufWriter::new(io::stdout().lock());
-    let result = dispatch(&cli, &mut out).and_then(|()| out.flush().map_err(output_error));
+    let result = dispatch(&cli.command, &mut out).and_then(|()| out.flush().map_err(output_error));
     match result {
-        Ok(()) | Err(Error::OutputClosed) => ExitCode::SUCCESS,
+        Ok(()) | Err(Error::OutputClosed) => Exit::Success.into(),
         Err(error) => {
-            // What was printed before the error still belongs to the reader.
+            // The reader still gets what was printed before the error.
             let _ = out.flush();
             eprintln!("billow: {error}");
-            error.exit_code()
+            error.exit().into()
         }
     }
 }
 
-fn dispatch(cli: &Cli, out: &mut dyn Write) -> Result<()> {
-    match &cli.command {
-        Command::Fold(args) => fold::run(args, &cli.global, out),
-        Command::Plan(args) => plan::run(args, &cli.global, out),
-        Command::Run(args) => run::run(args, &cli.global, out),
-        Command::Rerun(args) => rerun::run(args, &cli.global, out),
-        Command::Status(args) => status::run(args, &cli.global, out),
-        Command::Why(args) => why::run(args, &cli.global, out),
-        Command::Show(args) => show::run(args, &cli.global, out),
-        Command::Compare(args) => compare::run(args, &cli.global, out),
-        Command::Doctor(args) => doctor::run(args, &cli.global, out),
-        Command::Frames(args) => frames::run(args, &cli.global, out),
-        Command::Solve(args) => solve::run(args, &cli.global, out),
-        Command::Table(args) => table::run(args, &cli.global, out),
-        Command::Chart(args) => chart::run(args, &cli.global, out),
-        Command::Keys(args) => keys::run(args, &cli.global, out),
-        Command::Schema(args) => schema::run(args, &cli.global, out),
-        Command::Validate(args) => validate::run(args, &cli.global, out),
-        Command::Bench(args) => bench::run(args, &cli.global, out),
+fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
+    match command {
+        Command::Fold(args) => fold::run(args, out),
+        Command::Plan(args) => plan::run(args, out),
+        Command::Run(args) => run::run(args, out),
+        Command::Rerun(args) => rerun::run(args, out),
+        Command::Status(args) => status::run(args, out),
+        Command::Why(args) => why::run(args, out),
+        Command::Show(args) => show::run(args, out),
+        Command::Compare(args) => compare::run(args, out),
+        Command::Doctor(args) => doctor::run(args, out),
+        Command::Frames(args) => frames::run(args, out),
+        Command::Solve(args) => solve::run(args, out),
+        Command::Table(args) => table::run(args, out),
+        Command::Chart(args) => chart::run(args, out),
+        Command::Keys(args) => keys::run(args, out),
+        Command::Schema(args) => schema::run(args, out),
+        Command::Validate(args) => validate::run(args, out),
+        Command::Bench(args) => bench::run(args, out),
         Command::Completions(args) => completions::run(args, out),
     }
 }
 
-/// A failed write to stdout: quiet when the reader went away (`billow … | head`).
-#[expect(clippy::needless_pass_by_value, reason = "the shape map_err takes")]
+/// The exit codes below `billow --help`.
+fn exit_codes_help() -> String {
+    let mut text = "Exit codes:\n".to_owned();
+    for code in EXIT_CODES {
+        let _ = writeln!(text, "  {:<8} {}", code.number, code.brief);
+    }
+    text
+}
+
+/// The error of a failed write to stdout; [`Error::OutputClosed`] when the reader closed it
+/// (`billow … | head`).
+#[expect(clippy::needless_pass_by_value, reason = "the signature that map_err takes")]
 pub fn output_error(error: io::Error) -> Error {
     if error.kind() == io::ErrorKind::BrokenPipe {
         Error::OutputClosed

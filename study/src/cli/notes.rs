@@ -1,11 +1,11 @@
-//! What a reader should know of a study's answers, said on stderr beside them.
+//! Notes on the results of a study, on stderr: limits of the models, and keys that a model ignores.
 
 use billow_solver::scene::ModelKind;
 
 use crate::input::keys::{MODELS, Model};
 use crate::study::Study;
 
-/// Says what the models' answers are worth, and which axes they ignore.
+/// Prints the notes.
 pub fn print(study: &Study) {
     for line in lines(study) {
         eprintln!("{line}");
@@ -22,7 +22,7 @@ fn lines(study: &Study) -> Vec<String> {
     let without = study.points().iter().filter(empty).count();
     if without > 0 {
         lines.push(format!(
-            "note: {without} of {} points have no gas at all; nothing deploys them",
+            "note: {without} of {} points have no gas and cannot deploy",
             study.points().len()
         ));
     }
@@ -31,8 +31,8 @@ fn lines(study: &Study) -> Vec<String> {
     );
     if has(ModelKind::Piston) {
         lines.push(
-            "model piston: how fast, not whether (it cannot lock, its speeds are upper bounds); \
-             README, Models"
+            "model piston: it gives times and upper bounds of speeds, not whether a capsule deploys \
+             (the piston cannot lock); README, Models"
                 .to_owned(),
         );
     }
@@ -42,8 +42,8 @@ fn lines(study: &Study) -> Vec<String> {
         };
         if study.points().iter().any(stiff) {
             lines.push(
-                "note: film.compression above 0 is a stand-in for bending whose effect depends on \
-                 the mesh; compare verdicts at design.subdivisions 5, 8 and 12, over several seeds"
+                "note: film.compression above 0 replaces bending stiffness and its effect depends on \
+                 the mesh; compare verdicts at design.subdivisions 5, 8 and 12 and several seeds"
                     .to_owned(),
             );
         }

@@ -1,5 +1,5 @@
-//! Printing a table of rows: aligned for the eye, CSV, or JSON. Every command that lists something
-//! prints through here, so that columns, rounding and empty cells look the same everywhere.
+//! Printing rows: as an aligned table, CSV or JSON. Every command that lists rows prints them here, so
+//! that columns, rounding and empty cells look the same everywhere.
 
 use std::io::{self, IsTerminal, Write};
 
@@ -9,13 +9,14 @@ use crate::platform::error::Result;
 
 /// Prints rows under their columns.
 ///
-/// - `table`: aligned columns, numbers to six significant digits and to the right, an empty cell
-///   as `-`; the header is bold on a terminal, unless `NO_COLOR` is set.
-/// - `csv`: quoted as RFC 4180 has it, lines ended by a line feed, numbers in full, nothing as an
-///   empty field (and an empty text as `""`).
-/// - `json`: an array of objects, keys in column order, numbers in full, nothing as `null`.
+/// - `table`: aligned columns; numbers have six significant digits and stand to the right; an empty cell
+///   is `-`; the header is bold on a terminal, unless `NO_COLOR` is set.
+/// - `csv`: quoted as in RFC 4180; lines end with a line feed; numbers in full precision; an empty cell
+///   is an empty field, an empty text is `""`.
+/// - `json`: an array of objects, keys in column order; numbers in full precision; an empty cell is
+///   `null`.
 ///
-/// A row shorter than the columns is filled with empty cells.
+/// Missing cells at the end of a row are empty.
 ///
 /// # Errors
 /// When the output cannot be written.
@@ -34,7 +35,7 @@ pub fn print_rows<C: AsRef<str>>(
     written.map_err(output_error)
 }
 
-/// Whether stdout is a terminal whose reader has not asked for plain text (<https://no-color.org>).
+/// Whether stdout is a terminal and `NO_COLOR` is not set (<https://no-color.org>).
 fn bold_headers() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
@@ -47,30 +48,33 @@ fn aligned(
 ) -> io::Result<()> {
     let cells: Vec<Vec<String>> = rows
         .iter()
-        .map(|row| (0..columns.len()).map(|at| cell(row.get(at).unwrap_or(&Value::Null))).collect())
+        .map(|row| {
+            (0..columns.len()).map(|index| cell(row.get(index).unwrap_or(&Value::Null))).collect()
+        })
         .collect();
     let widths: Vec<usize> = columns
         .iter()
         .enumerate()
-        .map(|(at, name)| {
-            let widest = cells.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
+        .map(|(index, name)| {
+            let widest = cells.iter().map(|row| row[index].chars().count()).max().unwrap_or(0);
             widest.max(name.chars().count())
         })
         .collect();
-    // A column of numbers stands to the right, header and all.
+    // A column of numbers and its header are aligned to the right.
     let right: Vec<bool> = (0..columns.len())
-        .map(|at| {
-            rows.iter().any(|row| matches!(row.get(at), Some(Value::Integer(_) | Value::Number(_))))
+        .map(|index| {
+            rows.iter()
+                .any(|row| matches!(row.get(index), Some(Value::Integer(_) | Value::Number(_))))
         })
         .collect();
     let line = |texts: &mut dyn Iterator<Item = &str>| {
         let mut line = String::new();
-        for (at, text) in texts.enumerate() {
-            if at > 0 {
+        for (index, text) in texts.enumerate() {
+            if index > 0 {
                 line.push_str("  ");
             }
-            let padding = " ".repeat(widths[at].saturating_sub(text.chars().count()));
-            if right[at] {
+            let padding = " ".repeat(widths[index].saturating_sub(text.chars().count()));
+            if right[index] {
                 line.push_str(&padding);
                 line.push_str(text);
             } else {
@@ -110,7 +114,7 @@ fn csv(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Result
     writeln!(out, "{}", header.join(","))?;
     for row in rows {
         let fields: Vec<String> = (0..columns.len())
-            .map(|at| match row.get(at) {
+            .map(|index| match row.get(index) {
                 None | Some(Value::Null) => String::new(),
                 Some(Value::Text(text)) => quoted(text),
                 Some(other) => other.to_string(),
@@ -121,7 +125,7 @@ fn csv(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Result
     Ok(())
 }
 
-/// A CSV field, in quotes where the text would otherwise break its row or read as nothing.
+/// A CSV field; in quotes when the text is empty or holds a separator.
 fn quoted(text: &str) -> String {
     if text.is_empty() || text.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -134,11 +138,11 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
     write!(out, "[")?;
     for (number, row) in rows.iter().enumerate() {
         write!(out, "{}\n  {{", if number > 0 { "," } else { "" })?;
-        for (at, name) in columns.iter().enumerate() {
-            if at > 0 {
+        for (index, name) in columns.iter().enumerate() {
+            if index > 0 {
                 write!(out, ", ")?;
             }
-            let value = json_value(row.get(at).unwrap_or(&Value::Null));
+            let value = json_value(row.get(index).unwrap_or(&Value::Null));
             write!(out, "{}: {value}", serde_json::Value::from(*name))?;
         }
         write!(out, "}}")?;
@@ -146,12 +150,12 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
     writeln!(out, "{}]", if rows.is_empty() { "" } else { "\n" })
 }
 
-/// So many of something, as in "1 job", "2 jobs".
+/// A number with its noun: "1 job", "2 jobs".
 pub fn count(number: usize, word: &str) -> String {
     format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
-/// A time as a person says it.
+/// A duration in a readable unit: "12 s", "3.5 min", "2.0 h".
 pub fn duration(seconds: f64) -> String {
     if seconds < 120.0 {
         return format!("{} s", brief_number(seconds));
@@ -190,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn csv_quotes_what_would_break_a_row() {
+    fn csv_quotes_separators_and_empty_texts() {
         assert_eq!(
             printed(Format::Csv),
             "N,note,x\n6,\"a, \"\"b\"\"\",0.30000000000000004\n12,,NaN\n"

@@ -1,19 +1,18 @@
-//! `billow rerun`: runs jobs again that are finished, and says whether they give the same bits.
+//! `billow rerun`: runs finished jobs again and checks that they give the same bits.
 
 use std::collections::BTreeSet;
 use std::io::Write;
-use std::path::Path;
+use std::path::PathBuf;
 
-use super::print::count;
-use super::print::print_rows;
-use super::run::run_study;
-
-use super::target::{filtered, folder};
-use super::{Format, Global};
+use super::Format;
+use super::options::ResultsOption;
+use super::print::{count, print_rows};
+use super::run::{RunOptions, run_study};
+use super::target::{StudyArgs, filtered, folder};
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::job::{JobId, Status};
-use crate::platform::error::{Error, InputError, Result};
+use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
@@ -22,49 +21,49 @@ use crate::store::stored::Stored;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Jobs, by the first digits of their ids; then the study file or the folder of its results
-    /// [default: the only one under results].
+    /// [default: the only folder under results].
     #[arg(value_name = "JOB… [RESULTS]")]
     pub jobs: Vec<String>,
-    /// Jobs of the rows of which this holds, as in `status == 'unstable'`, in place of ids.
+    /// Run the jobs of the rows for which this condition holds, as in `status == 'unstable'`,
+    /// instead of ids.
     #[arg(long = "where", value_name = "CONDITION")]
     pub condition: Option<String>,
-    /// List them, run nothing.
+    /// List the jobs; run nothing.
     #[arg(long)]
     pub dry_run: bool,
+    #[command(flatten)]
+    results: ResultsOption,
+    #[command(flatten)]
+    options: RunOptions,
 }
 
-/// Runs `billow rerun`: the jobs are invalidated in the journal and run, and nothing else is. Their old
+/// Runs `billow rerun`. It invalidates the jobs in the journal and runs them and no others. Their old
 /// histories stay until the new ones replace them.
 ///
 /// # Errors
-/// As [`super::run::run`]; ids that are no jobs; [`Error::JobsFailed`] where bits differ.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let (ids, results) = split(&args.jobs, global.results.is_some());
-    let root = folder(results.map(Path::new), global)?;
+/// As [`super::run::run`]; unknown job ids; [`Error::JobsFailed`] when bits differ.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let (ids, study) = split(&args.jobs, args.results.results.is_some());
+    let given = StudyArgs { study: study.map(PathBuf::from), results: args.results.clone() };
+    let root = folder(&given, &[])?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     let jobs = match (&args.condition, ids) {
         (Some(condition), []) => matching(&stored, condition)?,
         (None, [_, ..]) => named(&stored, ids)?,
-        (condition, _) => {
-            let problem = if condition.is_some() {
-                "jobs are named both by id and by --where"
-            } else {
-                "no job is named"
-            };
-            return Err(refused("", problem));
-        }
+        (Some(_), _) => return Err(refused("", "jobs are named both by id and by --where")),
+        (None, []) => return Err(refused("", "no job is named")),
     };
     if args.dry_run || jobs.is_empty() {
-        return list(&stored, &jobs, global, out);
+        return list(&stored, &jobs, &args.options, out);
     }
-    if !global.quiet {
+    if !args.options.progress.quiet {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
-    run_study(&stored.study, &root, Some(&jobs), global, out)
+    run_study(&stored.study, &root, Some(&jobs), &args.options, out)
 }
 
-/// Job ids, and where the results lie: a last argument that is no id. A folder whose name could be
-/// one is named as ./ab.
+/// Job ids, and the results: a last argument that cannot be an id. A folder whose name could be an id is
+/// written as ./ab.
 fn split(arguments: &[String], has_results: bool) -> (&[String], Option<&str>) {
     match arguments.split_last() {
         Some((last, ids)) if !has_results && !is_prefix(last) => (ids, Some(last)),
@@ -72,21 +71,19 @@ fn split(arguments: &[String], has_results: bool) -> (&[String], Option<&str>) {
     }
 }
 
+/// Whether a text can be the first digits of a job id.
 fn is_prefix(text: &str) -> bool {
     (1..=32).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
 
 fn refused(value: &str, problem: &str) -> Error {
-    InputError {
-        file: "billow rerun".to_owned(),
-        key: String::new(),
-        value: value.to_owned(),
-        problem: problem.to_owned(),
-        allowed: "billow rerun JOB… [RESULTS], or billow rerun [RESULTS] --where CONDITION"
-            .to_owned(),
-        hint: "billow rerun … --dry-run lists what would run".to_owned(),
-    }
-    .into()
+    Error::invalid_option(
+        "billow rerun",
+        value,
+        problem,
+        "billow rerun JOB… [RESULTS], or billow rerun [RESULTS] --where CONDITION",
+        "billow rerun … --dry-run lists the jobs",
+    )
 }
 
 fn named(stored: &Stored<'_>, ids: &[String]) -> Result<BTreeSet<JobId>> {
@@ -95,11 +92,11 @@ fn named(stored: &Stored<'_>, ids: &[String]) -> Result<BTreeSet<JobId>> {
         let id = stored.job(prefix)?;
         match stored.point(&id) {
             None => {
-                let problem = "this job is not in the study as it is now (study.json)";
+                let problem = "this job is no longer in the study (study.json)";
                 return Err(refused(prefix, problem));
             }
             Some(point) if point.infeasible.is_some() => {
-                let problem = "no fold pattern meets this point: it has no job to run";
+                let problem = "this point is infeasible: it has no job to run";
                 return Err(refused(prefix, problem));
             }
             Some(_) => jobs.insert(id),
@@ -108,7 +105,7 @@ fn named(stored: &Stored<'_>, ids: &[String]) -> Result<BTreeSet<JobId>> {
     Ok(jobs)
 }
 
-/// Jobs of the rows a condition holds for; infeasible points have none.
+/// Jobs of the rows for which a condition holds; infeasible points have no job.
 fn matching(stored: &Stored<'_>, condition: &str) -> Result<BTreeSet<JobId>> {
     let rows = filtered(&stored.table(), Some(condition))?;
     let points = rows.into_iter().map(|row| &stored.points[row]);
@@ -120,10 +117,10 @@ fn matching(stored: &Stored<'_>, condition: &str) -> Result<BTreeSet<JobId>> {
 fn list(
     stored: &Stored<'_>,
     jobs: &BTreeSet<JobId>,
-    global: &Global,
+    options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let format = global.format();
+    let format = options.output.format();
     let parameters = stored.study.parameter_names();
     let points = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
     let rows: Vec<Vec<Value>> = points
@@ -132,8 +129,8 @@ fn list(
             let shown = if format == Format::Table { id.short() } else { id.as_str() };
             let mut row = vec![Value::Text(shown.to_owned())];
             row.extend(parameters.iter().map(|name| {
-                let own = point.job.parameters.iter().find(|(own, _)| own == name);
-                own.map_or(Value::Null, |(_, value)| value.clone())
+                let parameter = point.job.parameters.iter().find(|(known, _)| known == name);
+                parameter.map_or(Value::Null, |(_, value)| value.clone())
             }));
             let cells = stored.cells(point);
             row.push(Value::Text(cells.status().name().to_owned()));
@@ -141,18 +138,18 @@ fn list(
             row
         })
         .collect();
-    let ends = ["status", "verdict"].map(str::to_owned);
+    let last = ["status", "verdict"].map(str::to_owned);
     let columns: Vec<String> =
-        ["job".to_owned()].into_iter().chain(parameters).chain(ends).collect();
+        ["job".to_owned()].into_iter().chain(parameters).chain(last).collect();
     print_rows(&columns, &rows, format, out)?;
-    if !global.quiet {
-        let finished = points_finished(stored, jobs);
+    if !options.progress.quiet {
+        let finished = number_finished(stored, jobs);
         eprintln!("{} would run, {finished} of them finished", count(rows.len(), "job"));
     }
     Ok(())
 }
 
-fn points_finished(stored: &Stored<'_>, jobs: &BTreeSet<JobId>) -> usize {
-    let own = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
-    own.filter(|point| stored.cells(point).status() != Status::Pending).count()
+fn number_finished(stored: &Stored<'_>, jobs: &BTreeSet<JobId>) -> usize {
+    let chosen = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
+    chosen.filter(|point| stored.cells(point).status() != Status::Pending).count()
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::Serializer;
 use serde_json::ser::PrettyFormatter;
 
-use super::{Global, output_error};
+use super::output_error;
 use crate::input::schema;
 use crate::platform::error::Result;
 
@@ -34,7 +34,7 @@ pub enum Of {
 ///
 /// # Errors
 /// When the output cannot be written.
-pub fn run(args: &Args, _: &Global, out: &mut dyn Write) -> Result<()> {
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let schema = match args.of {
         Of::Study if !args.scene => schema::study_schema(),
         Of::Study | Of::Scene => schema::scene_schema(),

@@ -1,14 +1,15 @@
-//! `billow status`: how far a study is.
+//! `billow status`: shows the progress of a study.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::num::NonZero;
 
 use serde_json::json;
 
+use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, print_rows};
-use super::run::{listed, threads};
-use super::target::folder;
-use super::{Format, Global, output_error};
+use super::run::listed;
+use super::target::{StudyArgs, folder};
+use super::{Format, output_error};
 use crate::job::Status as JobStatus;
 use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
@@ -21,175 +22,199 @@ use crate::store::stored::Stored;
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Study file, or folder of its results [default: the only one under results].
-    pub study: Option<PathBuf>,
+    #[command(flatten)]
+    study: StudyArgs,
+    #[command(flatten)]
+    threads: ThreadsOption,
+    #[command(flatten)]
+    output: OutputOptions,
 }
 
-/// How far a study is.
-struct Status {
+/// The progress of a study.
+struct Status<'a> {
+    stored: &'a Stored<'a>,
+    health: &'a Health,
     counts: Counts,
-    /// Wall time of the jobs that have one, s, and how many have.
+    /// Sum of the wall times of the jobs, s.
     seconds: f64,
+    /// Number of jobs with a wall time.
     timed: usize,
+    /// Number of threads for the estimate of the remaining time.
     threads: usize,
 }
 
-/// Runs `billow status`: reads, and holds no lock.
+/// One line: its topic and its text.
+type Line = (&'static str, String);
+
+/// Runs `billow status`. It only reads, and takes no lock.
 ///
 /// # Errors
-/// Where there are no results, or they cannot be read.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let root = folder(args.study.as_deref(), global)?;
+/// When there are no results, or they cannot be read.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let root = folder(&args.study, &[])?;
     let results = Results::new(&Disk, &root);
-    // What is broken is one of the things it says.
+    // Damage is part of the answer, not an error.
     let (stored, _) = Stored::read_valid(results.clone())?;
     let health = doctor::examine(&results, Depth::Names);
-    let mut status = Status::of(&stored);
-    status.threads = match threads(global)? {
-        Some(threads) => threads.get(),
-        None => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
-    };
-    let json = status.json(&stored, &health);
-    match global.format() {
-        Format::Table => status.print(&stored, &health, out),
-        Format::Json => writeln!(out, "{json}").map_err(output_error),
-        Format::Csv => print_rows(&["quantity", "value"], &summary::rows(&json), Format::Csv, out),
+    let cores = || std::thread::available_parallelism().ok();
+    let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);
+    let status = Status::new(&stored, &health, threads);
+    match args.output.format() {
+        Format::Table => status.print(out),
+        Format::Json => writeln!(out, "{}", status.json()).map_err(output_error),
+        Format::Csv => {
+            let rows = summary::rows(&status.json());
+            print_rows(&["quantity", "value"], &rows, Format::Csv, out)
+        }
     }
 }
 
-impl Status {
-    fn of(stored: &Stored<'_>) -> Self {
-        let mut status = Self { counts: Counts::default(), seconds: 0.0, timed: 0, threads: 1 };
+impl<'a> Status<'a> {
+    fn new(stored: &'a Stored<'a>, health: &'a Health, threads: usize) -> Self {
+        let mut counts = Counts::default();
+        let (mut seconds, mut timed) = (0.0, 0);
         for point in &stored.points {
             let cells = stored.cells(point);
-            status.counts.add_cells(&cells);
-            if let Some(seconds) = cells.number(ColumnId::WallSeconds) {
-                status.seconds += seconds;
-                status.timed += 1;
+            counts.add_cells(&cells);
+            if let Some(wall) = cells.number(ColumnId::WallSeconds) {
+                seconds += wall;
+                timed += 1;
             }
         }
-        status
+        Self { stored, health, counts, seconds, timed, threads }
     }
 
     /// Mean wall time of a job, s.
-    fn mean(&self) -> Option<f64> {
+    fn mean_seconds(&self) -> Option<f64> {
         (self.timed > 0).then(|| self.seconds / self.timed as f64)
     }
 
-    /// Wall time until all has run, s, on `threads` at once; none while nothing has run.
-    fn left(&self) -> Option<f64> {
+    /// Estimated wall time until all jobs have run, s; `None` while no job has run.
+    fn remaining_seconds(&self) -> Option<f64> {
         let pending = self.counts.of(JobStatus::Pending);
         let at_once = self.threads.min(pending).max(1);
-        self.mean().map(|mean| mean * pending as f64 / at_once as f64)
+        self.mean_seconds().map(|mean| mean * pending as f64 / at_once as f64)
     }
 
-    fn json(&self, stored: &Stored<'_>, health: &Health) -> serde_json::Value {
-        let infeasible = self.counts.of(JobStatus::Infeasible);
+    fn json(&self) -> serde_json::Value {
+        let (stored, counts) = (self.stored, &self.counts);
         json!({
             "study": stored.study.name,
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
-            "running": health.running,
-            "points": self.counts.rows(),
-            "jobs": self.counts.jobs(),
-            "done": self.counts.of(JobStatus::Done),
-            "failed": self.counts.failed(),
-            "pending": self.counts.of(JobStatus::Pending),
-            "infeasible": infeasible,
+            "running": self.health.running,
+            "points": counts.rows(),
+            "jobs": counts.jobs(),
+            "done": counts.of(JobStatus::Done),
+            "failed": counts.failed(),
+            "pending": counts.of(JobStatus::Pending),
+            "infeasible": counts.of(JobStatus::Infeasible),
             "invalidated": stored.journal.invalidated.len(),
-            "status": self.counts.status,
-            "verdict": self.counts.verdict,
-            "near_threshold": self.counts.near_threshold,
+            "status": counts.status,
+            "verdict": counts.verdict,
+            "near_threshold": counts.near_threshold,
             "wall_seconds": self.seconds,
-            "mean_wall_seconds": self.mean(),
-            "seconds_left": self.left(),
+            "mean_wall_seconds": self.mean_seconds(),
+            "remaining_seconds": self.remaining_seconds(),
             "threads": self.threads,
-            "broken": health.faults(),
-            "findings": health.findings.iter()
+            "broken": self.health.faults(),
+            "findings": self.health.findings.iter()
                 .map(|finding| format!("{}: {}", finding.path.display(), finding.problem))
                 .collect::<Vec<_>>(),
         })
     }
 
-    fn print(&self, stored: &Stored<'_>, health: &Health, out: &mut dyn Write) -> Result<()> {
-        let infeasible = self.counts.of(JobStatus::Infeasible);
-        let pending = self.counts.of(JobStatus::Pending);
-        let failed = self.counts.failures();
-        let state = match (health.running, pending) {
+    fn print(&self, out: &mut dyn Write) -> Result<()> {
+        let state = match (self.health.running, self.counts.of(JobStatus::Pending)) {
             (true, _) => "running: another process holds its lock",
             (false, 0) => "finished",
             (false, _) => "not running",
         };
-        let mut lines = vec![(String::new(), format!("{}: {state}", stored.study.name))];
-        let mut line = |name: &str, text: String| lines.push((name.to_owned(), text));
-        if !stored.study.question.is_empty() {
-            line("question", stored.study.question.clone());
+        writeln!(out, "{}: {state}", self.stored.study.name).map_err(output_error)?;
+        let mut lines: Vec<Line> = Vec::new();
+        if !self.stored.study.question.is_empty() {
+            lines.push(("question", self.stored.study.question.clone()));
         }
-        let jobs = count(self.counts.jobs(), "job");
-        line("points", format!("{}: {jobs}, {infeasible} infeasible", self.counts.rows()));
-        let invalidated = stored.journal.invalidated.len();
-        let again =
-            if invalidated > 0 { format!(" ({invalidated} invalidated)") } else { String::new() };
-        let number = self.counts.failed();
-        line(
-            "jobs",
-            format!(
-                "{} done, {number} failed, {pending} pending{again}",
-                self.counts.of(JobStatus::Done)
-            ),
-        );
-        if !failed.is_empty() {
-            line("failed", format!("{}; billow why JOB says why", listed(&failed)));
-        }
-        if !self.counts.verdict.is_empty() {
-            let close = match self.counts.near_threshold {
-                0 => String::new(),
-                close => format!(" ({close} close to a threshold)"),
-            };
-            line("verdict", format!("{}{close}", listed(&self.counts.verdict)));
-        }
-        if let Some(mean) = self.mean() {
-            let spent = duration(self.seconds);
-            line("spent", format!("{spent} of one core, {} a job on the mean", duration(mean)));
-        }
-        match self.left().filter(|_| pending > 0) {
-            Some(left) => {
-                let threads = count(self.threads, "thread");
-                line("left", format!("about {} on {threads}, from that mean", duration(left)));
-            }
-            None if pending > 0 => line("left", "nothing has run yet to tell from".to_owned()),
-            None => {}
-        }
-        let root = stored.results.root().display();
-        let broken = match (health.faults(), health.findings.first()) {
-            (0, None) => "nothing".to_owned(),
-            (0, Some(_)) => {
-                format!(
-                    "nothing; {} to know: billow doctor {root}",
-                    count(health.findings.len(), "thing")
-                )
-            }
-            (number, Some(first)) => {
-                let more =
-                    if number > 1 { format!(", and {} more", number - 1) } else { String::new() };
-                format!(
-                    "{}: {}{more}; next: billow doctor {root}",
-                    first.path.display(),
-                    first.problem
-                )
-            }
-            (_, None) => unreachable!("a fault is a finding"),
-        };
-        line("broken", broken);
-        line("results", root.to_string());
-        for (name, text) in &lines {
-            let written = if name.is_empty() {
-                writeln!(out, "{text}")
-            } else {
-                writeln!(out, "  {name:<8} {text}")
-            };
-            written.map_err(output_error)?;
+        lines.extend(self.job_lines());
+        lines.extend(self.time_lines());
+        lines.push(("broken", self.broken()));
+        lines.push(("results", self.stored.results.root().display().to_string()));
+        for (topic, text) in &lines {
+            writeln!(out, "  {topic:<9} {text}").map_err(output_error)?;
         }
         Ok(())
+    }
+
+    /// Numbers of points and jobs, failures and verdicts.
+    fn job_lines(&self) -> Vec<Line> {
+        let counts = &self.counts;
+        let (infeasible, pending) =
+            (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
+        let jobs = count(counts.jobs(), "job");
+        let mut lines =
+            vec![("points", format!("{}: {jobs}, {infeasible} infeasible", counts.rows()))];
+        let invalidated = match self.stored.journal.invalidated.len() {
+            0 => String::new(),
+            number => format!(" ({number} invalidated)"),
+        };
+        let (done, failed) = (counts.of(JobStatus::Done), counts.failed());
+        lines.push((
+            "jobs",
+            format!("{done} done, {failed} failed, {pending} pending{invalidated}"),
+        ));
+        let failures = counts.failures();
+        if !failures.is_empty() {
+            lines.push(("failed", format!("{}; billow why JOB explains one", listed(&failures))));
+        }
+        if !counts.verdict.is_empty() {
+            let near = match counts.near_threshold {
+                0 => String::new(),
+                near => format!(" ({near} near a threshold)"),
+            };
+            lines.push(("verdict", format!("{}{near}", listed(&counts.verdict))));
+        }
+        lines
+    }
+
+    /// Elapsed and remaining time.
+    fn time_lines(&self) -> Vec<Line> {
+        let mut lines = Vec::new();
+        if let Some(mean) = self.mean_seconds() {
+            let elapsed = duration(self.seconds);
+            lines.push((
+                "elapsed",
+                format!("{elapsed} on one core, mean {} per job", duration(mean)),
+            ));
+        }
+        if self.counts.of(JobStatus::Pending) > 0 {
+            let text = match self.remaining_seconds() {
+                Some(remaining) => {
+                    let threads = count(self.threads, "thread");
+                    format!("about {} on {threads}, from this mean", duration(remaining))
+                }
+                None => "unknown: no job has run yet".to_owned(),
+            };
+            lines.push(("remaining", text));
+        }
+        lines
+    }
+
+    /// The first fault, or that there is none.
+    fn broken(&self) -> String {
+        let root = self.stored.results.root().display();
+        let findings = &self.health.findings;
+        match (self.health.faults(), findings.first()) {
+            (0, None) => "nothing".to_owned(),
+            (0, Some(_)) => {
+                format!("nothing; {}: billow doctor {root}", count(findings.len(), "note"))
+            }
+            (faults, Some(first)) => {
+                let more =
+                    if faults > 1 { format!(", and {} more", faults - 1) } else { String::new() };
+                let path = first.path.display();
+                format!("{path}: {}{more}; next: billow doctor {root}", first.problem)
+            }
+            (_, None) => unreachable!("every fault is a finding"),
+        }
     }
 }

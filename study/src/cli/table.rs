@@ -2,17 +2,17 @@
 
 use std::cmp::Ordering;
 use std::io::Write;
-use std::path::PathBuf;
 
+use super::Format;
+use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::print_rows;
-use super::target::{self, filtered, find};
-use super::{Format, Global};
+use super::target::{self, StudyArgs, filtered, find};
 use crate::input::value::{Value, short_number};
-use crate::platform::error::{InputError, Result};
+use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
-/// Measures shown after the parameters, in this order, as far as they fit.
-const MAIN: [&str; 10] = [
+/// Columns shown after the parameters by default, in this order, as far as they fit.
+const MAIN_COLUMNS: [&str; 10] = [
     "status",
     "verdict",
     "t_90_z_rim",
@@ -24,31 +24,41 @@ const MAIN: [&str; 10] = [
     "height_ratio",
     "overshoot",
 ];
-/// Characters a line of the default table may have.
-const WIDTH: usize = 120;
+/// Most characters in a line of the default table.
+const MAX_LINE_WIDTH: usize = 120;
 
 /// Arguments of `billow table`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Study file, or folder of its results [default: the only one under results].
-    pub study: Option<PathBuf>,
-    /// Only rows of which this holds, as in `N == 6 and final_pressure > '40 Pa'`.
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Only rows for which this condition holds, as in `N == 6 and final_pressure > '40 Pa'`.
     #[arg(long = "where", value_name = "CONDITION")]
     pub condition: Option<String>,
-    /// Columns, comma-separated, or "all" [default: parameters and main measures; all for csv and
-    /// json].
+    /// Columns, comma-separated, or "all" [default: parameters and main measures; all for csv
+    /// and json].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
-    /// Sort by these columns, comma-separated; ":desc" turns one round. Empty cells come last.
+    /// Sort by these columns, comma-separated; NAME:desc sorts from the largest down. Empty cells
+    /// come last.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sort: Vec<String>,
+    #[command(flatten)]
+    set: SetOption,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
 /// Runs `billow table`.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let table = target::open(args.study.as_deref(), global)?.table;
+///
+/// # Errors
+/// Results that cannot be read; an unknown column; an invalid condition.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let table = target::open(&args.study, &args.set.set)?.table;
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
-    let format = global.format();
+    let format = args.output.format();
     let columns = chosen(&table, &args.columns, format)?;
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let cells: Vec<Vec<Value>> = rows
@@ -56,10 +66,10 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         .map(|row| columns.iter().map(|column| shown(column, *row, format)).collect())
         .collect();
     print_rows(&names, &cells, format, out)?;
-    if format == Format::Table && !global.quiet {
+    if format == Format::Table && !args.quiet.quiet {
         if rows.is_empty() && args.condition.is_some() {
             eprintln!(
-                "billow: --where holds of no row; numbers are SI unless they carry a unit, as in \
+                "billow: no row fulfils --where; a number without a unit is SI, a unit is written as in \
                  mass_flow_rate == '5 g/s'"
             );
         }
@@ -68,7 +78,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
-/// Units of the columns printed, and how many there are beside them.
+/// Units of the printed columns, and the number of all columns.
 fn legend(shown: &[&Column], all: usize) -> String {
     let units: Vec<String> = shown
         .iter()
@@ -80,49 +90,42 @@ fn legend(shown: &[&Column], all: usize) -> String {
     format!("{units}{} of {all} columns (--columns all)", shown.len())
 }
 
-/// Rows in the order asked for; equal ones stay in plan order.
+/// Rows in the order asked for; equal rows stay in plan order.
 fn sorted(table: &Table, mut rows: Vec<usize>, sort: &[String]) -> Result<Vec<usize>> {
     let mut keys = Vec::with_capacity(sort.len());
     for key in sort {
-        let (name, down) = match key.trim().split_once(':') {
+        let (name, descending) = match key.trim().split_once(':') {
             None => (key.trim(), false),
             Some((name, "asc")) => (name, false),
             Some((name, "desc")) => (name, true),
             Some(_) => {
-                return Err(InputError {
-                    file: "--sort".to_owned(),
-                    key: String::new(),
-                    value: key.clone(),
-                    problem: "unknown direction".to_owned(),
-                    allowed: "NAME, NAME:asc, NAME:desc".to_owned(),
-                    hint: String::new(),
-                }
-                .into());
+                let allowed = "NAME, NAME:asc, NAME:desc";
+                return Err(Error::invalid_option("--sort", key, "unknown direction", allowed, ""));
             }
         };
-        keys.push((find(table, "--sort", name)?, down));
+        keys.push((find(table, "--sort", name)?, descending));
     }
-    rows.sort_by(|one, other| {
-        let compare = |(column, down): &(&Column, bool)| {
-            compare(&column.cells[*one], &column.cells[*other], *down)
+    rows.sort_by(|a, b| {
+        let compare = |(column, descending): &(&Column, bool)| {
+            compare(&column.cells[*a], &column.cells[*b], *descending)
         };
         keys.iter().map(compare).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
     });
     Ok(rows)
 }
 
-fn compare(one: &Value, other: &Value, down: bool) -> Ordering {
-    let order = match (one, other) {
+fn compare(a: &Value, b: &Value, descending: bool) -> Ordering {
+    let order = match (a, b) {
         (Value::Null, Value::Null) => return Ordering::Equal,
         (Value::Null, _) => return Ordering::Greater,
         (_, Value::Null) => return Ordering::Less,
-        (Value::Bool(one), Value::Bool(other)) => one.cmp(other),
-        (Value::Integer(one), Value::Integer(other)) => one.cmp(other),
-        (Value::Number(one), Value::Number(other)) => one.total_cmp(other),
-        // Cells of one column are of one type.
-        (one, other) => one.to_string().cmp(&other.to_string()),
+        (Value::Bool(a), Value::Bool(b)) => a.cmp(b),
+        (Value::Integer(a), Value::Integer(b)) => a.cmp(b),
+        (Value::Number(a), Value::Number(b)) => a.total_cmp(b),
+        // Cells of one column have one type: these are texts.
+        (a, b) => a.to_string().cmp(&b.to_string()),
     };
-    if down { order.reverse() } else { order }
+    if descending { order.reverse() } else { order }
 }
 
 fn chosen<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Vec<&'a Column>> {
@@ -134,15 +137,16 @@ fn chosen<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Vec<
     }
 }
 
-/// Job, parameters, and the main measures that fit a line.
+/// Job, parameters, and the main columns that fit on a line.
 fn main_columns(table: &Table) -> Vec<&Column> {
     let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
     columns.extend(table.parameters());
     let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
-    for column in MAIN.iter().filter_map(|name| table.column(name)) {
-        let answers = column.cells.iter().any(|cell| *cell != Value::Null);
-        // How a job ended is shown however wide the parameters are.
-        if column.name == "status" || (answers && width + self::width(column) <= WIDTH) {
+    for column in MAIN_COLUMNS.iter().filter_map(|name| table.column(name)) {
+        let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
+        // The status is always shown.
+        if column.name == "status" || (has_values && width + self::width(column) <= MAX_LINE_WIDTH)
+        {
             width += self::width(column) + 2;
             columns.push(column);
         }
@@ -150,7 +154,7 @@ fn main_columns(table: &Table) -> Vec<&Column> {
     columns
 }
 
-/// Characters a column takes.
+/// Width of a column, characters.
 fn width(column: &Column) -> usize {
     let rows = 0..column.cells.len();
     let widest = rows.map(|row| match shown(column, row, Format::Table) {
@@ -160,7 +164,7 @@ fn width(column: &Column) -> usize {
     widest.max().unwrap_or(0).max(column.name.chars().count())
 }
 
-/// A cell as printed: job ids short where people read them.
+/// A cell as printed: a table has short job ids.
 fn shown(column: &Column, row: usize, format: Format) -> Value {
     match &column.cells[row] {
         Value::Text(id) if format == Format::Table && column.name == "job" => {

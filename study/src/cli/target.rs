@@ -1,9 +1,8 @@
-//! Which results a command means, and which rows of their table.
+//! The results folder that a command reads, and the rows of its table.
 
 use std::path::{Path, PathBuf};
 
-use super::Global;
-use super::run::results_folder;
+use super::options::ResultsOption;
 use crate::input::expression::{Expression, Type, Variable};
 use crate::input::keys;
 use crate::input::units::Dimension;
@@ -18,33 +17,43 @@ use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 use crate::study::Study;
 
+/// Which results a command reads.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct StudyArgs {
+    /// Study file, or folder of its results [default: the only folder under results].
+    pub study: Option<PathBuf>,
+    /// Where the results are.
+    #[command(flatten)]
+    pub results: ResultsOption,
+}
+
 /// Results of a study, and their table.
 pub struct Target {
-    /// Their folder.
+    /// The folder.
     pub results: Results<'static>,
     /// The table.
     pub table: Table,
 }
 
-/// Opens the results meant, as [`folder`] finds them; rows of jobs that have not run yet are pending.
-/// Says on stderr where a study file given is not the one they were run for.
+/// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
+/// stderr says when the given study file, with its overrides `set`, differs from the study of the
+/// results.
 ///
 /// # Errors
-/// Where there are none, or their table cannot be read.
-pub fn open(given: Option<&Path>, global: &Global) -> Result<Target> {
-    let results = Results::new(&Disk, &folder(given, global)?);
-    // A run that has not written its table yet, or was killed before, has plan and journal.
+/// When there are no results, or their table cannot be read.
+pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
+    let results = Results::new(&Disk, &folder(given, set)?);
+    // A run that was stopped before it wrote its table has a plan and a journal.
     let table = if !results.table_path().exists() && results.owner()?.is_some() {
         Stored::read(results.clone())?.table()
     } else {
         results.read_table()?
     };
-    if let Some(path) = given.filter(|path| path.is_file()) {
-        let study = Study::load(path, &global.set)?;
+    if let Some(path) = given.study.as_deref().filter(|path| path.is_file()) {
+        let study = Study::load(path, set)?;
         if !results.holds(&study.name, &study.resolved())? {
             eprintln!(
-                "billow: {} says another study than the one these rows were run for; `billow run` \
-                 brings them up to date",
+                "billow: {} has changed since these rows were computed; `billow run` updates them",
                 path.display()
             );
         }
@@ -52,51 +61,56 @@ pub fn open(given: Option<&Path>, global: &Global) -> Result<Target> {
     Ok(Target { results, table })
 }
 
-/// The results folder meant: a folder, or that of a study file, or the only one there is.
+/// The results folder: the given folder, or the folder of the given study file, or the only folder under
+/// `results`.
 ///
 /// # Errors
 /// [`Error::Disk`] or [`Error::Input`] when there is none, or several.
-pub fn folder(study: Option<&Path>, global: &Global) -> Result<PathBuf> {
-    if let Some(results) = &global.results {
+pub fn folder(given: &StudyArgs, set: &[String]) -> Result<PathBuf> {
+    if let Some(results) = &given.results.results {
         return Ok(results.clone());
     }
-    let Some(given) = study else { return only_folder() };
-    let named = Path::new("results").join(given);
-    if given.is_dir() {
-        Ok(given.to_owned())
-    } else if !given.exists() && named.is_dir() {
-        Ok(named)
-    } else if !given.exists() {
+    let Some(study) = &given.study else { return only_folder() };
+    let under_results = Path::new("results").join(study);
+    if study.is_dir() {
+        Ok(study.clone())
+    } else if !study.exists() && under_results.is_dir() {
+        Ok(under_results)
+    } else if !study.exists() {
         Err(Error::Disk {
-            path: given.to_owned(),
-            problem: "neither a study file nor a folder of results\n  next: name a study file, or \
-                      the folder of its results"
-                .to_owned(),
+            path: study.clone(),
+            problem:
+                "neither a study file nor a results folder\n  next: name a study file, or its \
+                      results folder"
+                    .to_owned(),
         })
     } else {
-        Ok(results_folder(global, &Study::load(given, &global.set)?))
+        Ok(results_folder(&given.results, &Study::load(study, set)?))
     }
 }
 
-/// The results folder a job is in, for commands that take a job first.
+/// The results folder of a study: the one asked for, or `results/STUDY`.
+pub fn results_folder(option: &ResultsOption, study: &Study) -> PathBuf {
+    option.results.clone().unwrap_or_else(|| Path::new("results").join(&study.name))
+}
+
+/// The results folder that holds a job, for commands whose first argument is a job.
 ///
 /// # Errors
-/// As [`folder`]; and where results are given in place of the job.
-pub fn folder_of_job(job: &str, study: Option<&Path>, global: &Global) -> Result<PathBuf> {
+/// As [`folder`]; and when the job argument names results.
+pub fn folder_of_job(job: &str, given: &StudyArgs) -> Result<PathBuf> {
     let path = Path::new(job);
     let is_results = path.is_dir() || Path::new("results").join(path).is_dir();
-    if study.is_none() && (is_results || path.is_file()) && !job.is_empty() {
-        return Err(InputError {
-            file: "job".to_owned(),
-            key: String::new(),
-            value: job.to_owned(),
-            problem: "names results, and no job of theirs".to_owned(),
-            allowed: "the first digits of a job's id, then the results".to_owned(),
-            hint: format!("billow table {job} --columns job,status lists the ids"),
-        }
-        .into());
+    if given.study.is_none() && (is_results || path.is_file()) && !job.is_empty() {
+        return Err(Error::invalid_option(
+            "job",
+            job,
+            "is a results folder or study file, not a job",
+            "the first digits of a job id, then the results",
+            format!("billow table {job} --columns job,status lists the ids"),
+        ));
     }
-    folder(study, global)
+    folder(given, &[])
 }
 
 fn only_folder() -> Result<PathBuf> {
@@ -105,73 +119,57 @@ fn only_folder() -> Result<PathBuf> {
     folders
         .retain(|path| path.join("summary.parquet").is_file() || path.join("study.json").is_file());
     match folders.as_slice() {
-        [one] => Ok(one.clone()),
+        [only] => Ok(only.clone()),
+        [] => {
+            let problem = "no results under the current folder";
+            let allowed = "a study file, or a results folder";
+            Err(Error::invalid_option("results", "", problem, allowed, "name one"))
+        }
         several => {
             let names: Vec<String> =
                 several.iter().map(|path| path.display().to_string()).collect();
-            Err(InputError {
-                file: "results".to_owned(),
-                key: String::new(),
-                value: String::new(),
-                problem: if names.is_empty() {
-                    "no results under the current folder".to_owned()
-                } else {
-                    "results of several studies under the current folder".to_owned()
-                },
-                allowed: if names.is_empty() {
-                    "a study file, or a folder of results".to_owned()
-                } else {
-                    names.join(", ")
-                },
-                hint: "name one".to_owned(),
-            }
-            .into())
+            let problem = "results of several studies under the current folder";
+            Err(Error::invalid_option("results", "", problem, names.join(", "), "name one"))
         }
     }
 }
 
-/// The current name of a column; an old one, given with this flag, gives a note on stderr.
-pub fn current_name<'a>(flag: &str, name: &'a str) -> &'a str {
+/// The current name of a column; an old one, given with this option, gives a note on stderr.
+pub fn current_name<'a>(option: &str, name: &'a str) -> &'a str {
     let (current, note) = current_column_name(name);
     if let Some(note) = note {
-        eprintln!("billow: {flag}: {note}");
+        eprintln!("billow: {option}: {note}");
     }
     current
 }
 
-/// The column of that name, asked for by a flag.
+/// The column with that name, which `option` asks for.
 ///
 /// # Errors
-/// Where there is none; the nearest name is told. An old name is found, with a note on stderr.
-pub fn find<'a>(table: &'a Table, flag: &str, name: &str) -> Result<&'a Column> {
+/// When there is none; the error gives the nearest name. An old name is read, with a note on stderr.
+pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column> {
     let names = || table.columns.iter().map(|column| column.name.as_str());
     if let Some(column) = table.column(name) {
         return Ok(column);
     }
-    table.column(current_name(flag, name)).ok_or_else(|| {
+    table.column(current_name(option, name)).ok_or_else(|| {
         let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
-        Error::from(InputError {
-            file: flag.to_owned(),
-            key: String::new(),
-            value: name.to_owned(),
-            problem: "no such column".to_owned(),
-            allowed: names().collect::<Vec<_>>().join(", "),
-            hint: hint.unwrap_or_default(),
-        })
+        let allowed = names().collect::<Vec<_>>().join(", ");
+        Error::invalid_option(option, name, "no such column", allowed, hint.unwrap_or_default())
     })
 }
 
-/// Rows of which the condition holds (`--where`), in plan order.
+/// Rows for which the condition (`--where`) holds, in plan order.
 ///
 /// # Errors
-/// A condition that is none, or of columns there are not.
+/// An invalid condition, or an unknown column in it.
 pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
     let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
     let text = &with_current_names(text, table);
     let variables: Vec<Variable> = table
         .columns
         .iter()
-        .map(|column| Variable { name: column.name.clone(), kind: kind(column) })
+        .map(|column| Variable { name: column.name.clone(), kind: variable_type(column) })
         .collect();
     let condition = Expression::condition(text, &variables).map_err(|error| InputError {
         file: "--where".to_owned(),
@@ -222,8 +220,8 @@ fn with_current_names(text: &str, table: &Table) -> String {
     current_text
 }
 
-/// What a column is to an expression.
-fn kind(column: &Column) -> Type {
+/// The type of a column in an expression.
+fn variable_type(column: &Column) -> Type {
     match column.cell_type {
         CellType::Bool => Type::Bool,
         CellType::Text => Type::Text(None),
@@ -234,47 +232,43 @@ fn kind(column: &Column) -> Type {
     }
 }
 
-/// Rows of the jobs whose ids begin so (`--jobs`), in the order given.
+/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given.
 ///
 /// # Errors
-/// A beginning that no job has, or several; the nearest, or those, are told.
-pub fn jobs(table: &Table, beginnings: &[String]) -> Result<Vec<usize>> {
+/// A prefix of no job, or of several; the error gives the nearest ids.
+pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
     let ids: Vec<&str> = table
         .column("job")
         .into_iter()
         .flat_map(|column| &column.cells)
         .map(|cell| if let Value::Text(id) = cell { id.as_str() } else { "" })
         .collect();
-    let mut rows = Vec::with_capacity(beginnings.len());
-    for beginning in beginnings.iter().map(|beginning| beginning.trim()) {
+    let mut rows = Vec::with_capacity(prefixes.len());
+    for prefix in prefixes.iter().map(|prefix| prefix.trim()) {
         let found: Vec<usize> =
-            (0..ids.len()).filter(|row| ids[*row].starts_with(beginning)).collect();
+            (0..ids.len()).filter(|row| ids[*row].starts_with(prefix)).collect();
         match found.as_slice() {
             [row] if !rows.contains(row) => rows.push(*row),
             [_] => {}
             several => {
-                return Err(InputError {
-                    file: "--jobs".to_owned(),
-                    key: String::new(),
-                    value: beginning.to_owned(),
-                    problem: if several.is_empty() {
-                        "no job's id begins so".to_owned()
-                    } else {
-                        format!("{} jobs' ids begin so", several.len())
-                    },
-                    allowed: near(&ids, beginning),
-                    hint: "billow table --columns job,status lists them".to_owned(),
-                }
-                .into());
+                let problem = if several.is_empty() {
+                    "no job id starts with this".to_owned()
+                } else {
+                    format!("{} job ids start with this", several.len())
+                };
+                let hint = "billow table --columns job,status lists them";
+                let allowed = nearest_ids(&ids, prefix);
+                return Err(Error::invalid_option("--jobs", prefix, problem, allowed, hint));
             }
         }
     }
     Ok(rows)
 }
 
-/// Ids that share the longest beginning with this one, a few of them.
-fn near(ids: &[&str], beginning: &str) -> String {
-    let shared = |id: &str| common_prefix_length(id, beginning);
+/// Ids that share the longest prefix with this one, at most six.
+fn nearest_ids(ids: &[&str], prefix: &str) -> String {
+    const MAX_SHOWN: usize = 6;
+    let shared = |id: &str| common_prefix_length(id, prefix);
     let longest = ids.iter().map(|id| shared(id)).max().unwrap_or(0);
     let mut nearest: Vec<&str> = ids
         .iter()
@@ -283,6 +277,6 @@ fn near(ids: &[&str], beginning: &str) -> String {
         .collect();
     nearest.sort_unstable();
     nearest.dedup();
-    let more = if nearest.len() > 6 { ", …" } else { "" };
-    format!("{}{more}", nearest[..nearest.len().min(6)].join(", "))
+    let more = if nearest.len() > MAX_SHOWN { ", …" } else { "" };
+    format!("{}{more}", nearest[..nearest.len().min(MAX_SHOWN)].join(", "))
 }

@@ -1,4 +1,4 @@
-//! `billow validate`: the reference cases, judged.
+//! `billow validate`: runs the reference cases and compares their errors with their tolerances.
 
 use std::io::Write;
 use std::path::Path;
@@ -8,76 +8,81 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 
-use super::instruction_set::instruction_set;
+use super::options::{OutputOptions, QuietOption, ThreadsOption};
 use super::print::print_rows;
-use super::{Format, Global};
+use super::{Format, instruction_set};
 use crate::cases::{self, CASES, Case, Judged, Rig, Tier};
 use crate::input::keys;
 use crate::input::value::Value;
-use crate::platform::error::{Error, InputError, Result};
+use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
 use crate::platform::stop::Stop;
 
-/// How long a signal may go unseen.
-const LOOK: Duration = Duration::from_millis(50);
+/// Interval at which a signal is checked for. Chosen: short for a user, long for a processor.
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Arguments of `billow validate`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Run this case only; may be given again.
+    /// Run only this case; can be repeated.
     #[arg(long = "case", value_name = "NAME")]
     pub cases: Vec<String>,
-    /// Leave out the long cases.
+    /// Skip the long cases.
     #[arg(long)]
     pub quick: bool,
-    /// List the cases and what each compares; run nothing.
+    /// List the cases and what each one compares; run nothing.
     #[arg(long)]
     pub list: bool,
+    #[command(flatten)]
+    threads: ThreadsOption,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
 /// Runs `billow validate`.
 ///
 /// # Errors
-/// When a case is not known, or one is out of band; a signal, after the rows of what has ended.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+/// An unknown case; a case that is out of tolerance; a signal, after the rows of the finished cases.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let chosen = chosen(&args.cases)?;
     if args.list {
-        return list(&chosen, global.format(), out);
+        return list(&chosen, args.output.format(), out);
     }
     let skip = |case: &&Case| args.quick && case.tier == Tier::Long;
     let (skipped, cases): (Vec<&Case>, Vec<&Case>) = chosen.into_iter().partition(skip);
     if cases.is_empty() {
-        return Err(Error::Input(InputError {
-            file: "--quick".to_owned(),
-            key: String::new(),
-            value: String::new(),
-            problem: "leaves out every case asked for".to_owned(),
-            allowed: "long cases without --quick".to_owned(),
-            hint: String::new(),
-        }));
+        let problem = "skips every case that --case names";
+        return Err(Error::invalid_option(
+            "--quick",
+            "",
+            problem,
+            "long cases without --quick",
+            "",
+        ));
     }
-    let rig = Rig { instruction_set: instruction_set()?, ..Rig::default() };
+    let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let total = cases.len();
-    let mut judged =
-        judge(super::run::pool(global)?, cases.clone(), rig, &stop, &|number, judged| {
-            if !global.quiet {
-                let verdict = if judged.pass() { "in band" } else { "OUT OF BAND" };
-                let Judged { name, seconds, .. } = judged;
-                eprintln!("billow: {number}/{total} {name}: {verdict}, {seconds:.1} s");
-            }
-        });
-    let place = |judged: &Judged| cases.iter().position(|case| case.name == judged.name);
-    judged.sort_by_key(place);
-    if !skipped.is_empty() && !global.quiet {
+    let mut judged = judge(args.threads.pool()?, cases.clone(), rig, &stop, &|number, judged| {
+        if !args.quiet.quiet {
+            let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
+            let Judged { name, seconds, .. } = judged;
+            eprintln!("billow: {number}/{total} {name}: {verdict}, {seconds:.1} s");
+        }
+    });
+    let position = |judged: &Judged| cases.iter().position(|case| case.name == judged.name);
+    judged.sort_by_key(position);
+    if !skipped.is_empty() && !args.quiet.quiet {
         let names: Vec<&str> = skipped.iter().map(|case| case.name).collect();
         eprintln!("billow: skipped by --quick: {}", names.join(", "));
     }
-    print(&judged, global.format(), out)?;
+    print(&judged, args.output.format(), out)?;
     match stop.requested().filter(|_| judged.len() < total) {
         Some(signal) => {
             let next = format!(
-                "{} of {total} cases were judged, above; --case NAME runs one alone",
+                "{} of {total} cases finished, their rows are above; --case NAME runs one case",
                 judged.len()
             );
             Err(Error::Interrupted { signal, next })
@@ -86,25 +91,27 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
     }
 }
 
-/// Runs cases, each told with its number as it ends; those that have ended when a signal asks to stop.
-/// A case cannot be stopped in its midst: it is left, and ends with the program.
+/// Runs cases and returns them as judged. Calls `report` with a running number for each case that ends.
+/// After a signal it returns the cases that have ended; the others end with the program, because a case
+/// cannot be interrupted.
 fn judge(
     pool: ThreadPool,
     cases: Vec<&'static Case>,
     rig: Rig,
     stop: &Stop,
-    tell: &dyn Fn(usize, &Judged),
+    report: &dyn Fn(usize, &Judged),
 ) -> Vec<Judged> {
-    let (told, ended) = mpsc::channel();
+    let (sender, ended) = mpsc::channel();
     let _running = thread::spawn(move || {
-        // Nobody listens once a signal has come.
-        cases::run_all(&pool, &cases, &rig, &|judged| drop(told.send(judged.clone())))
+        // After a signal the receiver is gone and the send fails.
+        let send = |judged: &Judged| drop(sender.send(judged.clone()));
+        cases::run_all(&pool, &cases, &rig, &send)
     });
     let mut judged = Vec::new();
     while stop.requested().is_none() {
-        match ended.recv_timeout(LOOK) {
+        match ended.recv_timeout(SIGNAL_INTERVAL) {
             Ok(case) => {
-                tell(judged.len() + 1, &case);
+                report(judged.len() + 1, &case);
                 judged.push(case);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -114,37 +121,32 @@ fn judge(
     judged
 }
 
-/// What the program ends with.
+/// The error of the command.
 ///
 /// # Errors
-/// When a case is out of band.
+/// When a case is out of tolerance.
 pub fn verdict(judged: &[Judged]) -> Result<()> {
     let outside: Vec<&str> = judged.iter().filter(|j| !j.pass()).map(|j| j.name).collect();
     if outside.is_empty() {
         return Ok(());
     }
     Err(Error::JobsFailed(format!(
-        "{} of {} cases out of band: {}",
+        "{} of {} cases out of tolerance: {}",
         outside.len(),
         judged.len(),
         outside.join(", ")
     )))
 }
 
-/// The cases of these names, in the table's order; all where none is named.
+/// The cases with these names, in the order of the table; every case without names.
 fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
     for name in names {
         if !CASES.iter().any(|case| case.name == name) {
             let known = || CASES.iter().map(|case| case.name);
             let near = keys::nearest(name, known());
-            return Err(Error::Input(InputError {
-                file: "--case".to_owned(),
-                key: String::new(),
-                value: name.clone(),
-                problem: "there is no such case".to_owned(),
-                allowed: known().collect::<Vec<_>>().join(", "),
-                hint: near.map(|near| format!("did you mean {near}?")).unwrap_or_default(),
-            }));
+            let allowed = known().collect::<Vec<_>>().join(", ");
+            let hint = near.map(|near| format!("did you mean {near}?")).unwrap_or_default();
+            return Err(Error::invalid_option("--case", name, "unknown case", allowed, hint));
         }
     }
     let named = |case: &&Case| names.is_empty() || names.iter().any(|name| name == case.name);
@@ -161,7 +163,7 @@ fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
     print_rows(&["case", "tier", "compares"], &rows, format, out)
 }
 
-/// Prints the rows of the cases, one a quantity; the seconds are those of the whole case.
+/// Prints one row per quantity of the cases. `seconds` is the time of the whole case.
 ///
 /// # Errors
 /// When the output cannot be written.

@@ -1,9 +1,10 @@
 //! Errors for the user: what is wrong, what is allowed, the next step. One line each.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
-/// Everything that ends a command early. The README lists the exit codes.
+use crate::platform::exit_code::Exit;
+
+/// Whatever ends a command early. Each variant has an [`Exit`].
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A value, key, file or option of the user is wrong: exit code 2.
@@ -82,16 +83,32 @@ impl From<InputError> for Error {
 }
 
 impl Error {
-    /// The documented exit code.
-    pub fn exit_code(&self) -> ExitCode {
+    /// How the program ends with this error.
+    pub fn exit(&self) -> Exit {
         match self {
-            Self::Input(_) | Self::Disk { .. } => ExitCode::from(2),
-            Self::JobsFailed(_) => ExitCode::from(1),
-            Self::Signal(number) | Self::Interrupted { signal: number, .. } => {
-                ExitCode::from(u8::try_from(128 + number).unwrap_or(u8::MAX))
-            }
-            Self::OutputClosed => ExitCode::SUCCESS,
+            Self::Input(_) | Self::Disk { .. } => Exit::InvalidInput,
+            Self::JobsFailed(_) => Exit::Failure,
+            Self::Signal(signal) | Self::Interrupted { signal, .. } => Exit::Signal(*signal),
+            Self::OutputClosed => Exit::Success,
         }
+    }
+
+    /// The error of an invalid value of a command-line option.
+    pub fn invalid_option(
+        option: &str,
+        value: &str,
+        problem: impl Into<String>,
+        allowed: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self::Input(InputError {
+            file: option.to_owned(),
+            key: String::new(),
+            value: value.to_owned(),
+            problem: problem.into(),
+            allowed: allowed.into(),
+            hint: hint.into(),
+        })
     }
 }
 

@@ -1,8 +1,8 @@
-//! The crease pattern as a drawing to cut and fold: SVG in millimetres, 1:1.
+//! The crease pattern as a drawing to cut and fold: SVG in millimetres, scale 1:1.
 //!
-//! One layer (an SVG group) a kind of line, so that a cutter can take `cut` alone: `cut` solid,
-//! `mountain` dash-dotted, `valley` dashed, `glue_flaps` thin, `dimensions` and `notes` for the
-//! reader. Colours hold for the colour-blind and in grey; the dashes say the same.
+//! Each type of line is a layer (an SVG group), so that a cutter can use `cut` alone: `cut` is solid,
+//! `mountain` dash-dotted, `valley` dashed, `glue_flaps` thin; `dimensions` and `notes` are for the reader.
+//! The colours are suitable for colour-blind readers and in grey; the dashes also distinguish the lines.
 
 use std::fmt::Write;
 
@@ -10,11 +10,11 @@ use billow_solver::geometry::fold::{Assignment, Corner, FoldPattern};
 use billow_solver::geometry::mesh_io::obj::Sheet;
 use nalgebra::Vector2;
 
-/// Millimetres a metre.
+/// Millimetres per metre.
 const MM: f64 = 1e3;
 
-/// Draws a pattern, seen from outside; `flap` is the width of the glue flaps, m, if there are any:
-/// one along the right side of the seam, one along every edge of both caps.
+/// Draws a pattern, seen from outside. `flap` is the width of the glue flaps, m: one flap along the right
+/// side of the seam, and one along every edge of both caps.
 pub fn svg(pattern: &FoldPattern, flap: Option<f64>) -> String {
     Drawing::new(pattern, flap.map(|width| width * MM)).draw()
 }
@@ -26,7 +26,7 @@ struct Drawing<'a> {
     /// Upper left corner of the page in sheet coordinates (y up), mm.
     origin: Vector2<f64>,
     size: Vector2<f64>,
-    /// Height of letters, mm: legible on the whole sheet.
+    /// Size of the texts, mm: proportional to the sheet.
     letter: f64,
 }
 
@@ -34,8 +34,8 @@ impl<'a> Drawing<'a> {
     fn new(pattern: &'a FoldPattern, flap: Option<f64>) -> Self {
         let mut sheet = Sheet::new(pattern);
         let [bottom_cap, top_cap] = &mut sheet.caps;
-        for place in sheet.corners.iter_mut().chain(bottom_cap).chain(top_cap) {
-            *place *= MM;
+        for position in sheet.corners.iter_mut().chain(bottom_cap).chain(top_cap) {
+            *position *= MM;
         }
         let all = || sheet.corners.iter().chain(sheet.caps.iter().flatten());
         let low = all().fold(Vector2::repeat(f64::INFINITY), |low, p| low.inf(p));
@@ -77,8 +77,8 @@ impl<'a> Drawing<'a> {
     }
 
     /// Page coordinates, y down.
-    fn page(&self, place: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new(place.x - self.origin.x, self.origin.y - place.y)
+    fn page(&self, position: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(position.x - self.origin.x, self.origin.y - position.y)
     }
 
     fn corner(&self, corner: Corner) -> Vector2<f64> {
@@ -86,16 +86,17 @@ impl<'a> Drawing<'a> {
         self.sheet.corners[(corner.ring * across + corner.corner) as usize]
     }
 
-    fn lines(&self, svg: &mut String, id: &str, kind: Assignment, style: &str) {
+    fn lines(&self, svg: &mut String, id: &str, assignment: Assignment, style: &str) {
         let _ = writeln!(svg, "<g id=\"{id}\" {style}>");
-        for crease in self.pattern.creases().iter().filter(|crease| crease.assignment == kind) {
+        for crease in self.pattern.creases().iter().filter(|crease| crease.assignment == assignment)
+        {
             self.segment(svg, crease.ends.map(|end| self.corner(end)));
         }
-        if kind == Assignment::Boundary {
+        if assignment == Assignment::Boundary {
             for cap in &self.sheet.caps {
                 let points: Vec<String> = cap
                     .iter()
-                    .map(|place| self.page(*place))
+                    .map(|position| self.page(*position))
                     .map(|p| format!("{:.4},{:.4}", p.x, p.y))
                     .collect();
                 let _ = writeln!(svg, "<polygon points=\"{}\"/>", points.join(" "));
@@ -130,22 +131,22 @@ impl<'a> Drawing<'a> {
         svg.push_str("</g>\n");
     }
 
-    /// A trapezium on the right-hand side of an edge, its ends cut at 45° so that neighbours clear
-    /// one another.
+    /// A trapezium on the right-hand side of an edge. Its ends are cut at 45°, so that adjacent flaps do not
+    /// overlap.
     fn flap(&self, svg: &mut String, [from, to]: [Vector2<f64>; 2], width: f64) {
         let along = (to - from).normalize();
         let outward = Vector2::new(along.y, -along.x);
         let width = width.min(0.4 * (to - from).norm());
         let tip = [from + (along + outward) * width, to + (outward - along) * width];
         let points: Vec<String> = [from, tip[0], tip[1], to]
-            .map(|place| self.page(place))
+            .map(|position| self.page(position))
             .iter()
             .map(|p| format!("{:.4},{:.4}", p.x, p.y))
             .collect();
         let _ = writeln!(svg, "<polyline points=\"{}\"/>", points.join(" "));
     }
 
-    /// The lengths of a panel in every storey, written along its lines, and the size of the sheet.
+    /// The lengths of one panel per storey along its lines, and the size of the sheet.
     fn dimensions(&self, svg: &mut String, style: &str) {
         let _ = writeln!(svg, "<g id=\"dimensions\" {style}>");
         let design = &self.pattern.design;
@@ -155,7 +156,7 @@ impl<'a> Drawing<'a> {
         }
         for crease in self.pattern.creases() {
             let [from, to] = crease.ends;
-            // One side and one diagonal a storey: the second panel's, clear of the seam.
+            // One side and one diagonal per storey: those of the second panel, away from the seam.
             let second = from.corner.min(to.corner) == 1 && from.corner.max(to.corner) <= 2;
             if from.ring != to.ring && second {
                 let ends = [self.corner(from), self.corner(to)];
@@ -163,7 +164,7 @@ impl<'a> Drawing<'a> {
             }
         }
         let lateral = |pick: fn(f64, f64) -> f64, start: f64, of: fn(&Vector2<f64>) -> f64| {
-            self.sheet.corners.iter().fold(start, |best, place| pick(best, of(place)))
+            self.sheet.corners.iter().fold(start, |best, position| pick(best, of(position)))
         };
         let (left, right) = (
             lateral(f64::min, f64::INFINITY, |p| p.x),
@@ -188,7 +189,7 @@ impl<'a> Drawing<'a> {
         svg.push_str("</g>\n");
     }
 
-    /// Text along a line, above its middle, never upside down.
+    /// Text along a line, above its middle and never upside down.
     fn label(&self, svg: &mut String, ends: [Vector2<f64>; 2], text: &str) {
         let [mut p, mut q] = ends.map(|end| self.page(end));
         if q.x < p.x || (q.x <= p.x && q.y > p.y) {
@@ -253,78 +254,4 @@ fn stroke(colour: &str, width: f64, dashes: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
-
-    use super::*;
-
-    fn paper() -> FoldPattern {
-        FoldPattern::new(&FoldDesign {
-            fit: Fit::Cone,
-            panels: 6,
-            storeys: 3,
-            bottom_radius: 0.5,
-            top_radius: Some(0.365),
-            height: Some(1.0),
-            half_angle: None,
-            alpha1_over_phi: None,
-            chirality: Chirality::Same,
-            stowed_height: 0.04,
-            subdivisions: 1,
-            caps: Caps::Polygon,
-        })
-        .expect("the paper's capsule")
-    }
-
-    /// The lines of one layer, by their lengths.
-    fn layer(svg: &str, id: &str) -> Vec<f64> {
-        let (_, rest) = svg.split_once(&format!("<g id=\"{id}\"")).expect(id);
-        let (layer, _) = rest.split_once("</g>").expect("a closed layer");
-        layer
-            .lines()
-            .filter(|line| line.starts_with("<line"))
-            .map(|line| {
-                let at = |name: &str| -> f64 {
-                    let (_, rest) = line.split_once(&format!("{name}=\"")).expect(name);
-                    rest.split('"').next().expect("a value").parse().expect("a number")
-                };
-                Vector2::new(at("x2") - at("x1"), at("y2") - at("y1")).norm()
-            })
-            .collect()
-    }
-
-    #[test]
-    fn is_drawn_one_to_one_in_millimetres() {
-        let pattern = paper();
-        let svg = svg(&pattern, None);
-        let valleys = layer(&svg, "valley");
-        assert_eq!(valleys.len(), 18);
-        for storey in 0..3 {
-            let diagonal = 1e3 * pattern.lengths(storey).ae;
-            assert_eq!(valleys.iter().filter(|l| (*l - diagonal).abs() < 1e-3).count(), 6);
-        }
-        assert_eq!(layer(&svg, "cut").len(), 2 * 6 + 2 * 3);
-        assert_eq!(layer(&svg, "mountain").len(), 2 * 6 + 3 * 5);
-        assert!(!svg.contains("glue_flaps"));
-        // The page says millimetres, and its user unit is one.
-        let (_, size) = svg.split_once("width=\"").expect("a width");
-        let width = size.split("mm").next().expect("millimetres");
-        assert!(svg.contains(&format!("viewBox=\"0 0 {width} ")));
-    }
-
-    #[test]
-    fn glue_flaps_stand_on_the_seam_and_round_the_caps() {
-        let svg = svg(&paper(), Some(0.015));
-        let (_, rest) = svg.split_once("glue_flaps").expect("the layer");
-        let (flaps, _) = rest.split_once("</g>").expect("a closed layer");
-        assert_eq!(flaps.matches("<polyline").count(), 3 + 2 * 6);
-    }
-
-    #[test]
-    fn lengths_are_written_on_the_drawing() {
-        let svg = svg(&paper(), None);
-        for length in ["523.17", "446.07", "829.58", "381.91"] {
-            assert!(svg.contains(&format!(">{length}</text>")), "{length}");
-        }
-    }
-}
+mod tests;

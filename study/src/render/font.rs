@@ -1,31 +1,32 @@
-//! The one font of the pictures: `DejaVu Sans`, embedded, so that a picture is the same on any machine.
+//! The font of the pictures: `DejaVu Sans`, embedded in the program, so that a picture is the same on any
+//! machine.
 //!
-//! `assets/DejaVuSans-subset.ttf` is a subset (Latin, Greek, signs of mathematics) of `DejaVu Sans`
-//! 2.37; its licence lies beside it. SVG files name the font, and [`super::png`] draws with it. The
-//! widths of texts, which a layout needs, are read from its tables `cmap` and `hmtx`.
+//! `assets/DejaVuSans-subset.ttf` is a subset (Latin, Greek, mathematical signs) of `DejaVu Sans` 2.37;
+//! its licence is in the same folder. SVG files name the font, and [`super::png`] draws with it. The widths
+//! of texts come from the tables `cmap` and `hmtx` of the font (OpenType specification).
 
 use std::sync::LazyLock;
 
 /// The font file.
 pub const BYTES: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
-/// Its family, as an SVG names it.
+/// Font family, as an SVG file names it.
 pub const FAMILY: &str = "DejaVu Sans";
 
 static METRICS: LazyLock<Metrics> =
-    LazyLock::new(|| Metrics::read(BYTES).unwrap_or_else(|| panic!("the embedded font is sound")));
+    LazyLock::new(|| Metrics::read(BYTES).unwrap_or_else(|| panic!("the embedded font is valid")));
 
-/// Width of a text at a font size, in the unit of `size`. A character the font lacks counts as a
-/// wide one.
+/// Width of a text at a font size, in the unit of `size`. A character that the font does not have counts as
+/// one font size.
 pub fn width(text: &str, size: f64) -> f64 {
     text.chars().map(|letter| METRICS.advance(letter).unwrap_or(1.0)).sum::<f64>() * size
 }
 
-/// Whether the font has that character.
+/// Whether the font has this character.
 pub fn has(letter: char) -> bool {
     METRICS.advance(letter).is_some()
 }
 
-/// Advances of the characters of the basic plane, in font sizes.
+/// Advance widths of the characters of the Basic Multilingual Plane, in font sizes.
 struct Metrics {
     /// Sorted by character.
     advances: Vec<(u16, f64)>,
@@ -38,8 +39,8 @@ impl Metrics {
         let hmtx = table(font, *b"hmtx")?;
         let advance = |glyph: u16| {
             // Glyphs after the last measured one have its advance.
-            let at = usize::from(glyph).min(measured.checked_sub(1)?);
-            Some(f64::from(u16_at(hmtx, 4 * at)?) / units)
+            let entry = usize::from(glyph).min(measured.checked_sub(1)?);
+            Some(f64::from(u16_at(hmtx, 4 * entry)?) / units)
         };
         let cmap = table(font, *b"cmap")?;
         let subtables = usize::from(u16_at(cmap, 2)?);
@@ -60,16 +61,17 @@ impl Metrics {
         let (ends, starts) = (14, 16 + doubled);
         let (deltas, offsets) = (starts + doubled, starts + 2 * doubled);
         let mut glyphs = Vec::new();
-        for at in (0..doubled).step_by(2) {
-            let (start, end) = (u16_at(subtable, starts + at)?, u16_at(subtable, ends + at)?);
-            let delta = u16_at(subtable, deltas + at)?;
-            let offset = usize::from(u16_at(subtable, offsets + at)?);
+        for segment in (0..doubled).step_by(2) {
+            let start = u16_at(subtable, starts + segment)?;
+            let end = u16_at(subtable, ends + segment)?;
+            let delta = u16_at(subtable, deltas + segment)?;
+            let offset = usize::from(u16_at(subtable, offsets + segment)?);
             for letter in (start..=end).filter(|letter| *letter != u16::MAX) {
                 let glyph = if offset == 0 {
                     letter.wrapping_add(delta)
                 } else {
-                    let place = offsets + at + offset + 2 * usize::from(letter - start);
-                    match u16_at(subtable, place)? {
+                    let index = offsets + segment + offset + 2 * usize::from(letter - start);
+                    match u16_at(subtable, index)? {
                         0 => 0,
                         glyph => glyph.wrapping_add(delta),
                     }
@@ -84,8 +86,8 @@ impl Metrics {
 
     fn advance(&self, letter: char) -> Option<f64> {
         let letter = u16::try_from(u32::from(letter)).ok()?;
-        let at = self.advances.binary_search_by_key(&letter, |(known, _)| *known).ok()?;
-        Some(self.advances[at].1)
+        let index = self.advances.binary_search_by_key(&letter, |(known, _)| *known).ok()?;
+        Some(self.advances[index].1)
     }
 }
 
@@ -101,12 +103,12 @@ fn table(font: &'static [u8], tag: [u8; 4]) -> Option<&'static [u8]> {
     })
 }
 
-fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
-    Some(u16::from_be_bytes(bytes.get(at..at + 2)?.try_into().ok()?))
+fn u16_at(bytes: &[u8], offset: usize) -> Option<u16> {
+    Some(u16::from_be_bytes(bytes.get(offset..offset + 2)?.try_into().ok()?))
 }
 
-fn u32_at(bytes: &[u8], at: usize) -> Option<usize> {
-    let number = u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?);
+fn u32_at(bytes: &[u8], offset: usize) -> Option<usize> {
+    let number = u32::from_be_bytes(bytes.get(offset..offset + 4)?.try_into().ok()?);
     usize::try_from(number).ok()
 }
 
@@ -126,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn units_and_signs_are_there() {
+    fn the_font_has_units_and_signs() {
         for letter in "AZaz09 .,·×−–²³°µϕα∠≥≤…₀⁻¹½√→←∞≈∅()/%&<>\"'_".chars()
         {
             assert!(has(letter), "{letter}");

@@ -1,4 +1,4 @@
-//! Pictures, as SVG text, and PNG from it.
+//! Pictures as SVG text, and PNG files drawn from it.
 
 pub mod crease_pattern;
 pub mod figure;

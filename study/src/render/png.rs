@@ -1,7 +1,7 @@
-//! PNG files, drawn from the very SVG text that is stored beside them.
+//! PNG files, drawn from the SVG text that is stored beside them.
 //!
-//! One embedded font ([`super::font`]) and no other, no system fonts, no files: the same SVG gives the
-//! same bytes on any machine.
+//! Texts use the embedded font ([`super::font`]) and no system font, so the same SVG gives the same bytes on
+//! any machine.
 
 use std::sync::{Arc, LazyLock};
 
@@ -10,12 +10,12 @@ use resvg::usvg::{self, ImageHrefResolver, Options, Tree, fontdb};
 
 use super::font;
 
-/// Pixels a millimetre fit for print: 305 dots per inch.
-pub const PRINT: f64 = 12.0;
-/// Pixels a picture may have: a larger one is asked for by mistake.
-const PIXELS: f64 = 2e8;
-/// Units of `usvg` (CSS pixels) a millimetre.
-const CSS: f64 = 96.0 / 25.4;
+/// Resolution for print, pixels per mm: 305 dots per inch.
+pub const PRINT_RESOLUTION: f64 = 12.0;
+/// Most pixels of a picture. Chosen: 0.8 GB of memory; a larger picture is a mistake.
+const MAX_PIXELS: f64 = 2e8;
+/// CSS pixels, the unit of `usvg`, per mm.
+const CSS_PIXELS_PER_MM: f64 = 96.0 / 25.4;
 
 static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     let mut fonts = fontdb::Database::new();
@@ -24,42 +24,42 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// Draws an SVG, on white, `dots_per_mm` pixels a millimetre of its `width` and `height` (a length
-/// without a unit is 1/96 inch, as in CSS). Texts are set in the family [`font::FAMILY`] or
-/// `sans-serif`; images inside the SVG are left out.
+/// Draws an SVG on white with `dots_per_mm` pixels per mm of its `width` and `height`; a length without a
+/// unit is 1/96 inch, as in CSS. Texts use the family [`font::FAMILY`] or `sans-serif`; images inside the SVG
+/// are ignored.
 ///
 /// # Errors
-/// What is wrong with the SVG, or a picture without pixels or with far too many, in words.
+/// An invalid SVG, a picture without pixels or with too many.
 pub fn encode(svg: &str, dots_per_mm: f64) -> Result<Vec<u8>, String> {
     let options = Options {
         font_family: font::FAMILY.to_owned(),
         fontdb: Arc::clone(&FONTS),
-        // The disk has one door, and it is not here.
+        // Files are read through `platform::files` only.
         image_href_resolver: ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),
         },
         ..Options::default()
     };
-    let tree = Tree::from_str(svg, &options).map_err(|error| format!("no SVG: {error}"))?;
-    draw(&tree, dots_per_mm / CSS)
+    let tree = Tree::from_str(svg, &options).map_err(|error| format!("invalid SVG: {error}"))?;
+    draw(&tree, dots_per_mm / CSS_PIXELS_PER_MM)
 }
 
 fn draw(tree: &usvg::Tree, scale: f64) -> Result<Vec<u8>, String> {
     let [width, height] = [tree.size().width(), tree.size().height()]
         .map(|length| (f64::from(length) * scale).round().max(1.0));
-    if !(scale > 0.0 && width * height <= PIXELS) {
-        return Err(format!("{width} by {height} pixels, more than {PIXELS:e}"));
+    if !(scale > 0.0 && width * height <= MAX_PIXELS) {
+        return Err(format!("{width} by {height} pixels, more than {MAX_PIXELS:e}"));
     }
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "whole, and at most PIXELS"
+        reason = "whole, and at most MAX_PIXELS"
     )]
     let (columns, rows) = (width as u32, height as u32);
-    let mut pixels = Pixmap::new(columns, rows).ok_or("no pixels")?;
+    let mut pixels = Pixmap::new(columns, rows).ok_or("a picture without pixels")?;
     pixels.fill(Color::WHITE);
-    #[expect(clippy::cast_possible_truncation, reason = "f32 is what usvg draws with")]
+    #[expect(clippy::cast_possible_truncation, reason = "usvg draws with f32")]
     let scale = scale as f32;
     resvg::render(tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
     pixels.encode_png().map_err(|error| error.to_string())
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_has_the_size_of_its_page_and_is_white_where_nothing_is() {
+    fn a_picture_has_the_size_of_its_page_and_a_white_ground() {
         let pixels = drawn("");
         assert_eq!((pixels.width(), pixels.height()), (400, 100));
         assert_eq!(ink(&pixels), 0);
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn text_is_set_in_the_embedded_font_and_as_wide_as_measured() {
+    fn text_uses_the_embedded_font_and_has_the_measured_width() {
         let text = "ϕ 12.5 m³/s";
         let pixels = drawn(&format!("<text x=\"2\" y=\"6\">{text}</text>"));
         let columns: Vec<u32> = (0..pixels.width())
@@ -106,14 +106,14 @@ mod tests {
         let expected = 10.0 * font::width(text, 4.0);
         let measured = f64::from(last - first + 1);
         assert!((measured - expected).abs() < 0.06 * expected, "{measured} {expected}");
-        // Another family is set in the embedded font too, never in one of the machine's.
+        // Another family uses the embedded font too, not a system font.
         let generic =
             drawn(&format!("<text x=\"2\" y=\"6\" font-family=\"sans-serif\">{text}</text>"));
         assert!(generic == pixels);
     }
 
     #[test]
-    fn the_bytes_are_the_same_each_time() {
+    fn the_same_svg_gives_the_same_bytes() {
         let svg = svg(
             "<circle cx=\"20\" cy=\"5\" r=\"4.3\" fill=\"#0072b2\"/><text x=\"1\" y=\"9\">m</text>",
         );
@@ -121,8 +121,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_said() {
-        assert!(encode("<svg", 10.0).unwrap_err().starts_with("no SVG: "));
+    fn an_invalid_picture_is_an_error() {
+        assert!(encode("<svg", 10.0).unwrap_err().starts_with("invalid SVG: "));
         assert!(encode(&svg(""), 1e6).unwrap_err().contains("pixels"));
         assert!(encode(&svg(""), f64::NAN).is_err());
     }

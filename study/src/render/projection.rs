@@ -1,20 +1,20 @@
-//! A surface looked at from afar: where it lies on the page, in which order it is drawn, how bright it is.
+//! Orthographic projection of a surface: position on the page, drawing order, brightness.
 //!
 //! ```text
 //! to the eye  e = (cos ε cos α, cos ε sin α, sin ε)        α azimuth, ε elevation
 //! right       r = (−sin α, cos α, 0),   up  u = e × r
-//! on the page (x·r, x·u),   depth x·e,   brightness |n·l|
+//! page        (x·r, x·u),   depth x·e,   brightness |n·l|
 //! ```
 //!
-//! Orthographic: lengths across the line of sight are the same everywhere. Elements are drawn in the
-//! order of [`super::painter`], whichever side they show: film has no back.
+//! Lengths across the line of sight have the same scale everywhere. Elements are drawn in the order of
+//! [`super::painter`]; both sides of the film are drawn.
 
 use billow_solver::output::frames::Frame;
 use nalgebra::Vector3;
 
-use super::painter::{self, Patch};
+use super::painter::{self, Triangle};
 
-/// Where the light comes from, in right, up and to the eye: from the upper left, over the shoulder.
+/// Direction to the light in the basis (right, up, to the eye): upper left, on the side of the eye.
 const LIGHT: [f64; 3] = [-0.45, 0.55, 0.7];
 
 /// A line of sight.
@@ -28,18 +28,18 @@ pub struct View {
 /// An element on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facet {
-    /// Number of the element.
+    /// Index of the element.
     pub element: usize,
-    /// Its corners, to the right and up, m.
+    /// Corners, to the right and up, m.
     pub corners: [[f64; 2]; 3],
     /// Brightness, 0 to 1.
     pub light: f64,
-    /// Whether its outside is seen.
+    /// Whether the outside is visible.
     pub outside: bool,
 }
 
 impl View {
-    /// Looking from this azimuth (from the x axis towards y) and elevation (above the ground), rad.
+    /// The view from this azimuth (from the x axis towards y) and elevation (above the ground), rad.
     pub fn new(azimuth: f64, elevation: f64) -> Self {
         let (sin, cos) = libm::sincos(azimuth);
         let (rise, run) = libm::sincos(elevation);
@@ -50,32 +50,33 @@ impl View {
         }
     }
 
-    /// Where a place lies on the page: to the right and up, m.
-    pub fn project(&self, place: [f32; 3]) -> [f64; 2] {
-        let place = Vector3::from(place.map(f64::from));
-        [place.dot(&self.right), place.dot(&self.up)]
+    /// Position of a point on the page: to the right and up, m.
+    pub fn project(&self, point: [f32; 3]) -> [f64; 2] {
+        let point = Vector3::from(point.map(f64::from));
+        [point.dot(&self.right), point.dot(&self.up)]
     }
 
-    /// The elements of a shape in the order they are drawn. Elements without an area are left out.
+    /// The elements of a shape in drawing order. Elements without an area are ignored.
     pub fn facets(&self, triangles: &[[u32; 3]], frame: &Frame) -> Vec<Facet> {
         let light = (LIGHT[0] * self.right + LIGHT[1] * self.up + LIGHT[2] * self.eye).normalize();
         let mut facets = Vec::with_capacity(triangles.len());
-        let mut patches = Vec::with_capacity(triangles.len());
+        let mut projected = Vec::with_capacity(triangles.len());
         for (element, triangle) in triangles.iter().enumerate() {
-            let places = triangle.map(|node| frame.positions[node as usize]);
-            let corners = places.map(|place| self.project(place));
-            let places = places.map(|place| Vector3::from(place.map(f64::from)));
-            let [a, b, c] = places;
+            let nodes = triangle.map(|node| frame.positions[node as usize]);
+            let corners = nodes.map(|node| self.project(node));
+            let positions = nodes.map(|node| Vector3::from(node.map(f64::from)));
+            let [a, b, c] = positions;
             let normal = (b - a).cross(&(c - a));
             let area = normal.norm();
             if area > 0.0 {
                 let light = (normal.dot(&light) / area).abs().min(1.0);
                 let outside = normal.dot(&self.eye) >= 0.0;
                 facets.push(Facet { element, corners, light, outside });
-                patches.push(Patch { corners, depths: places.map(|place| place.dot(&self.eye)) });
+                let depths = positions.map(|position| position.dot(&self.eye));
+                projected.push(Triangle { corners, depths });
             }
         }
-        painter::order(&patches).into_iter().map(|at| facets[at]).collect()
+        painter::order(&projected).into_iter().map(|index| facets[index]).collect()
     }
 }
 
@@ -88,12 +89,12 @@ mod tests {
 
     use super::*;
 
-    fn close(one: [f64; 2], other: [f64; 2]) -> bool {
-        one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-6)
+    fn close(a: [f64; 2], b: [f64; 2]) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6)
     }
 
-    /// Triangles of their own nodes.
-    fn loose(triangles: &[[[f32; 3]; 3]]) -> (Vec<[u32; 3]>, Frame) {
+    /// Triangles that share no nodes.
+    fn separate(triangles: &[[[f32; 3]; 3]]) -> (Vec<[u32; 3]>, Frame) {
         let numbers = (0..).step_by(3).take(triangles.len());
         let frame = Frame {
             time: 0.0,
@@ -104,22 +105,22 @@ mod tests {
     }
 
     #[test]
-    fn what_is_seen_from_where() {
-        let place = [1.0, 2.0, 3.0];
+    fn views_along_the_axes_give_the_other_coordinates() {
+        let point = [1.0, 2.0, 3.0];
         let from_x = View::new(0.0, 0.0);
-        assert!(close(from_x.project(place), [2.0, 3.0]), "y to the right, z up");
+        assert!(close(from_x.project(point), [2.0, 3.0]), "y to the right, z up");
         let from_y = View::new(FRAC_PI_2, 0.0);
-        assert!(close(from_y.project(place), [-1.0, 3.0]));
+        assert!(close(from_y.project(point), [-1.0, 3.0]));
         let from_above = View::new(-FRAC_PI_2, FRAC_PI_2);
-        assert!(close(from_above.project(place), [1.0, 2.0]), "a map");
+        assert!(close(from_above.project(point), [1.0, 2.0]), "seen from above");
     }
 
     #[test]
-    fn the_nearer_element_is_drawn_later_and_its_side_is_told() {
+    fn the_nearer_element_is_drawn_later_with_its_visible_side() {
         let at = |x: f32| [[x, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]];
         let mut turned = at(2.0);
         turned.swap(0, 1);
-        let (triangles, frame) = loose(&[at(1.0), turned, at(-3.0), [[0.0; 3]; 3]]);
+        let (triangles, frame) = separate(&[at(1.0), turned, at(-3.0), [[0.0; 3]; 3]]);
         let order = |view: View| -> Vec<(usize, bool)> {
             let facets = view.facets(&triangles, &frame);
             facets.iter().map(|facet| (facet.element, facet.outside)).collect()
@@ -130,19 +131,19 @@ mod tests {
 
     proptest! {
         #[test]
-        fn lengths_across_the_sight_are_kept_and_brightness_has_no_side(
+        fn lengths_on_the_page_are_kept_and_both_sides_are_equally_bright(
             azimuth in -10.0..10.0_f64, elevation in -1.6..1.6_f64,
             corners in prop::array::uniform3(prop::array::uniform3(-1.0_f32..1.0)),
         ) {
             let view = View::new(azimuth, elevation);
-            // The three directions stand at right angles and are as long as one.
+            // The three directions are orthonormal.
             let frame = nalgebra::Matrix3::from_columns(&[view.right, view.up, view.eye]);
             let identity = nalgebra::Matrix3::identity();
             prop_assert!((frame.transpose() * frame - identity).norm() < 1e-12);
-            prop_assert!((frame.determinant() - 1.0).abs() < 1e-12, "not seen in a mirror");
+            prop_assert!((frame.determinant() - 1.0).abs() < 1e-12, "right-handed");
             let mut turned = corners;
             turned.swap(1, 2);
-            let (triangles, shape) = loose(&[corners, turned]);
+            let (triangles, shape) = separate(&[corners, turned]);
             let facets = view.facets(&triangles, &shape);
             prop_assert!(facets.len() == 2 || facets.is_empty());
             for facet in &facets {
@@ -153,19 +154,19 @@ mod tests {
         }
 
         #[test]
-        fn shapes_apart_in_depth_are_drawn_far_to_near(
+        fn separate_elements_are_drawn_from_far_to_near(
             depths in prop::collection::vec(-5.0_f32..5.0, 1..40), azimuth in -4.0..4.0_f64,
         ) {
             let view = View::new(azimuth, 0.4);
-            let place = |depth: f32, right: f64, up: f64| {
-                let place = f64::from(depth) * view.eye + right * view.right + up * view.up;
-                #[expect(clippy::cast_possible_truncation, reason = "as frames have it")]
-                [place.x as f32, place.y as f32, place.z as f32]
+            let point = |depth: f32, right: f64, up: f64| {
+                let point = f64::from(depth) * view.eye + right * view.right + up * view.up;
+                #[expect(clippy::cast_possible_truncation, reason = "frames store f32")]
+                [point.x as f32, point.y as f32, point.z as f32]
             };
             let triangle = |depth: &f32| {
-                [place(*depth, 0.0, 0.0), place(*depth, 1.0, 0.0), place(*depth, 0.0, 1.0)]
+                [point(*depth, 0.0, 0.0), point(*depth, 1.0, 0.0), point(*depth, 0.0, 1.0)]
             };
-            let (triangles, frame) = loose(&depths.iter().map(triangle).collect::<Vec<_>>());
+            let (triangles, frame) = separate(&depths.iter().map(triangle).collect::<Vec<_>>());
             let facets = view.facets(&triangles, &frame);
             prop_assert_eq!(facets.len(), depths.len());
             let drawn: Vec<f32> = facets.iter().map(|facet| depths[facet.element]).collect();

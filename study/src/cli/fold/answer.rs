@@ -1,11 +1,11 @@
-//! What `billow fold` says of a design.
+//! The answer of `billow fold`, as JSON and as rows.
 
 use billow_solver::geometry::fold::{FoldDesign, FoldPattern, Nearest};
 use serde_json::{Value as Json, json};
 
 use crate::input::value::Value;
 
-/// A pattern as JSON: SI, angles in rad, keys as in the glossary.
+/// A pattern as JSON: SI units, angles in rad, keys as in the glossary.
 pub(super) fn feasible_json(pattern: &FoldPattern) -> Json {
     let angles = &pattern.angles;
     let lengths = |storey| {
@@ -55,7 +55,7 @@ pub(super) fn feasible_json(pattern: &FoldPattern) -> Json {
     })
 }
 
-/// The same keys for a design no pattern meets: what was asked stands, what would follow is null.
+/// The same keys for an infeasible design: the given values, and null for everything that needs a pattern.
 pub(super) fn infeasible_json(design: &FoldDesign, reason: &str, nearest: &[Nearest]) -> Json {
     let mut answer = json!({
         "feasible": false,
@@ -76,7 +76,7 @@ pub(super) fn infeasible_json(design: &FoldDesign, reason: &str, nearest: &[Near
         "alpha1_over_phi": design.alpha1_over_phi,
         "stowed_height": design.stowed_height,
     });
-    // What only a pattern defines is there, and null.
+    // These need a pattern.
     for key in [
         "phi",
         "alpha1",
@@ -105,11 +105,11 @@ pub(super) fn infeasible_json(design: &FoldDesign, reason: &str, nearest: &[Near
 
 /// A whole number without its ".0".
 fn whole(value: f64) -> Json {
-    #[expect(clippy::cast_possible_truncation, reason = "whole and small, just checked")]
+    #[expect(clippy::cast_possible_truncation, reason = "whole and small, as checked")]
     if value.fract().abs() > 0.0 || value.abs() >= 1e9 { json!(value) } else { json!(value as i64) }
 }
 
-/// A pattern as rows for the eye: angles in degrees.
+/// A pattern as rows of a table: angles in degrees.
 pub(super) fn rows(pattern: &FoldPattern) -> Vec<Vec<Value>> {
     let row = |name: &str, value: f64, unit: &str| {
         vec![Value::Text(name.into()), Value::Number(value), Value::Text(unit.into())]
@@ -155,7 +155,7 @@ pub(super) fn rows(pattern: &FoldPattern) -> Vec<Vec<Value>> {
     rows
 }
 
-/// Why there is none, and what is nearest.
+/// The reason of an infeasible design, and the nearest feasible values.
 pub(super) fn infeasible_rows(reason: &str, nearest: &[Nearest]) -> Vec<Vec<Value>> {
     let mut rows = vec![
         vec![Value::Text("feasible".into()), Value::Bool(false), Value::Null],

@@ -1,4 +1,4 @@
-//! `billow fold`: one fold design, its numbers and its crease pattern.
+//! `billow fold`: computes one fold design and writes its crease pattern.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,9 @@ use billow_solver::geometry::mesh_io::{fold as fold_text, obj};
 use clap::ValueEnum;
 use serde_json::Value as Json;
 
+use super::options::{OutputOptions, QuietOption};
 use super::print::print_rows;
-use super::{Format, Global, output_error};
+use super::{Format, output_error};
 use crate::input::keys;
 use crate::input::study_file::Json as Typed;
 use crate::input::value::Value;
@@ -20,17 +21,18 @@ use crate::render::crease_pattern;
 
 mod answer;
 
-/// Arguments of `billow fold`. A number is SI; a value may carry its unit ("500 mm", "30 deg").
+/// Arguments of `billow fold`. A number without a unit is SI; a value can have a unit ("500 mm",
+/// "30 deg").
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Which quantities are given: `cone` (top radius, height), `angles` (alpha1/phi and the half
-    /// angle, or a nominal top radius and height), `height` (height, alpha1/phi).
+    /// The given quantities: `cone` (top radius, height), `angles` (alpha1/phi and the half angle,
+    /// or a nominal top radius and height), `height` (height, alpha1/phi).
     #[arg(long, value_enum, default_value = "cone")]
     fit: FitArg,
-    /// N, panels round a ring, at least 4.
+    /// N, number of panels of a ring, at least 4.
     #[arg(long, visible_alias = "N", value_name = "N")]
     panels: u32,
-    /// M, storeys.
+    /// M, number of storeys.
     #[arg(long, visible_alias = "M", value_name = "M")]
     storeys: u32,
     /// Radius of the bottom ring.
@@ -42,31 +44,36 @@ pub struct Args {
     /// Height of the erected cone.
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     height: Option<String>,
-    /// Half top angle.
+    /// Half angle of the cone at its apex.
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     half_angle: Option<String>,
-    /// alpha1/phi.
+    /// Angle ratio alpha1/phi.
     #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     alpha1_over_phi: Option<String>,
-    /// Turn of successive storeys.
+    /// Direction of rotation of successive storeys.
     #[arg(long, value_enum, default_value = "same")]
     chirality: ChiralityArg,
-    /// Height of the stowed stack [default: 40 mm, or the highest this design can be packed to].
+    /// Height of the stowed stack [default: 40 mm, or the largest height that this design can have,
+    /// if that is less].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     stowed_height: Option<String>,
-    /// n, mesh subdivisions of every facet edge in the .obj shapes.
+    /// n, number of mesh subdivisions of each facet edge in the .obj shapes.
     #[arg(long, value_name = "n", default_value_t = 8)]
     subdivisions: u32,
-    /// Shape of the caps; circular ones for the erected shape only.
+    /// Shape of the caps; circular caps exist for the erected shape only.
     #[arg(long, value_enum, default_value = "polygon")]
     caps: CapsArg,
-    /// Folder to write `crease_pattern.fold`, `crease_pattern.svg`, `flat.obj`, `stowed.obj`,
-    /// `developed.obj` and `erected.obj` to.
+    /// Write `crease_pattern.fold`, `crease_pattern.svg`, `flat.obj`, `stowed.obj`,
+    /// `developed.obj` and `erected.obj` to this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Draw glue flaps of this width in the .svg.
     #[arg(long, value_name = "WIDTH", requires = "out", allow_hyphen_values = true)]
     glue_flaps: Option<String>,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -88,8 +95,11 @@ enum CapsArg {
     Circular,
 }
 
-/// Runs `billow fold`.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+/// Runs `billow fold`. An infeasible design is an answer: it prints the reason and the nearest values.
+///
+/// # Errors
+/// An invalid option; a file that cannot be written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let design = design(args)?;
     if args.out.is_some() {
         check_size(&design)?;
@@ -98,34 +108,30 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
         Ok(pattern) => Ok(pattern),
         Err(FoldError::Infeasible { reason, nearest }) => Err((reason, nearest)),
         Err(FoldError::Invalid { key, problem }) => {
-            return Err(bad(&flag(key), "", &problem, ""));
+            return Err(refused(&option(key), "", &problem, ""));
         }
     };
     let flap = match (&args.glue_flaps, &solved) {
         (Some(text), Ok(pattern)) => Some(flap_width(text, pattern)?),
         _ => None,
     };
-    match (global.format(), &solved) {
+    match (args.output.format(), &solved) {
         (Format::Json, Ok(pattern)) => print_json(&answer::feasible_json(pattern), out)?,
         (Format::Json, Err((reason, nearest))) => {
             print_json(&answer::infeasible_json(&design, reason, nearest), out)?;
         }
-        (format, Ok(pattern)) => {
-            print_rows(&["quantity", "value", "unit"], &answer::rows(pattern), format, out)?;
-        }
-        (format, Err((reason, nearest))) => {
-            print_rows(
-                &["quantity", "value", "unit"],
-                &answer::infeasible_rows(reason, nearest),
-                format,
-                out,
-            )?;
+        (format, solved) => {
+            let rows = match solved {
+                Ok(pattern) => answer::rows(pattern),
+                Err((reason, nearest)) => answer::infeasible_rows(reason, nearest),
+            };
+            print_rows(&["quantity", "value", "unit"], &rows, format, out)?;
         }
     }
     match (&args.out, solved) {
-        (Some(folder), Ok(pattern)) => write_files(&Disk, folder, &pattern, flap, global),
+        (Some(folder), Ok(pattern)) => write_files(&Disk, folder, &pattern, flap, args.quiet.quiet),
         (Some(folder), Err(_)) => {
-            eprintln!("billow: infeasible, so nothing is written to {}", folder.display());
+            eprintln!("billow: infeasible design, nothing is written to {}", folder.display());
             Ok(())
         }
         (None, _) => Ok(()),
@@ -152,7 +158,8 @@ fn design(args: &Args) -> Result<FoldDesign> {
             ChiralityArg::Same => Chirality::Same,
             ChiralityArg::Alternate => Chirality::Alternate,
         },
-        stowed_height: given("stowed_height", &args.stowed_height)?.unwrap_or(STOWED_HEIGHT),
+        stowed_height: given("stowed_height", &args.stowed_height)?
+            .unwrap_or(DEFAULT_STOWED_HEIGHT),
         subdivisions: args.subdivisions,
         caps: match args.caps {
             CapsArg::Polygon => Caps::Polygon,
@@ -161,34 +168,35 @@ fn design(args: &Args) -> Result<FoldDesign> {
     })
 }
 
-/// Height of the stowed stack where none is asked for, m.
-const STOWED_HEIGHT: f64 = 0.04;
+/// Default height of the stowed stack, m.
+const DEFAULT_STOWED_HEIGHT: f64 = 0.04;
 
-/// Solves a design; `lower` allows a stack lower than the design's, where that one cannot be packed.
+/// Solves a design. With `lower`, the stack may be lower than in the design if that height is
+/// infeasible.
 fn solve(design: &FoldDesign, lower: bool) -> std::result::Result<FoldPattern, FoldError> {
-    let stowed_at =
+    let with_height =
         |stowed_height| FoldPattern::new(&FoldDesign { stowed_height, ..design.clone() });
     match FoldPattern::new(design) {
         Err(FoldError::Infeasible { nearest, .. }) if lower => {
             match nearest.iter().find(|near| near.key == "stowed_height") {
-                Some(near) => stowed_at(near.value),
-                // No height will do, so that of the stack shall keep no nearest value back.
-                None => stowed_at(1e-6 * design.bottom_radius),
+                Some(near) => with_height(near.value),
+                // No stowed height is feasible: a tiny one gives the nearest values of the other keys.
+                None => with_height(1e-6 * design.bottom_radius),
             }
         }
         solved => solved,
     }
 }
 
-/// A key of the design, read from its flag as from a study file: a plain number is SI, a text
-/// carries its unit, both within the same range.
+/// A key of the design from its option, with the rules of a study file: a number is SI, a text has a unit,
+/// and both must be in the range of the key.
 fn value(key: &str, text: &str) -> Result<f64> {
     let json = match text.trim().parse::<f64>() {
         Ok(number) => Typed::Number(number),
         Err(_) => Typed::Text(text.to_owned()),
     };
-    let known = keys::find(&format!("design.{key}")).map(|at| &keys::KEYS[at]);
-    let refuse = |problem: &str, allowed: &str| Err(bad(&flag(key), text, problem, allowed));
+    let known = keys::find(&format!("design.{key}")).map(|index| &keys::KEYS[index]);
+    let refuse = |problem: &str, allowed: &str| Err(refused(&option(key), text, problem, allowed));
     match known.map(|known| known.read(&json)) {
         Some(Ok(Value::Number(number))) if number.is_finite() => Ok(number),
         Some(Err(refusal)) => refuse(&refusal.problem, &refusal.allowed),
@@ -196,25 +204,26 @@ fn value(key: &str, text: &str) -> Result<f64> {
     }
 }
 
-/// Width of the glue flaps, m: up to 0.4 of the shortest edge they stand on, where their ends meet.
+/// Width of the glue flaps, m. Their ends are cut at 45°, so a flap needs an edge longer than twice its
+/// width; the limit 0.4 of the shortest edge keeps a margin.
 fn flap_width(text: &str, pattern: &FoldPattern) -> Result<f64> {
     let width = value("top_radius", text).map_err(|error| match error {
         Error::Input(error) => Error::Input(InputError { key: "--glue-flaps".to_owned(), ..error }),
         other => other,
     })?;
     let top = pattern.lengths(pattern.design.storeys - 1);
-    let most = 0.4 * top.de.min(top.ad);
-    if width > most {
-        let allowed = format!("up to {most:.4} m, 0.4 of the shortest edge");
-        return Err(bad("--glue-flaps", text, "is too wide", &allowed));
+    let limit = 0.4 * top.de.min(top.ad);
+    if width > limit {
+        let allowed = format!("up to {limit:.4} m, 0.4 of the shortest edge");
+        return Err(refused("--glue-flaps", text, "is too wide", &allowed));
     }
     Ok(width)
 }
 
-fn bad(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
+fn refused(option: &str, value: &str, problem: &str, allowed: &str) -> Error {
     Error::Input(InputError {
         file: "fold".to_owned(),
-        key: flag.to_owned(),
+        key: option.to_owned(),
         value: value.to_owned(),
         problem: problem.to_owned(),
         allowed: allowed.to_owned(),
@@ -222,8 +231,8 @@ fn bad(flag: &str, value: &str, problem: &str, allowed: &str) -> Error {
     })
 }
 
-/// The flag of a design key.
-fn flag(key: &str) -> String {
+/// The option of a design key.
+fn option(key: &str) -> String {
     match key {
         "N" => "--panels".to_owned(),
         "M" => "--storeys".to_owned(),
@@ -238,17 +247,18 @@ fn print_json(answer: &Json, out: &mut dyn Write) -> Result<()> {
         .map_err(output_error)
 }
 
-/// Most elements of a shape written as .obj: more would fill the memory and no program opens it.
-const MOST_ELEMENTS: u64 = 4_000_000;
+/// Most elements of a shape in an .obj file. Chosen: larger files fill the memory, and no program opens
+/// them.
+const MAX_OBJ_ELEMENTS: u64 = 4_000_000;
 
 fn check_size(design: &FoldDesign) -> Result<()> {
     let (n, elements) = (design.subdivisions, design.elements());
-    if elements <= MOST_ELEMENTS {
+    if elements <= MAX_OBJ_ELEMENTS {
         return Ok(());
     }
-    let problem = format!("makes shapes of {elements} elements");
-    let allowed = format!("fewer: 2 N (M + 1) n² up to {MOST_ELEMENTS}");
-    Err(bad("--subdivisions", &n.to_string(), &problem, &allowed))
+    let problem = format!("gives shapes with {elements} elements");
+    let allowed = format!("2 N (M + 1) n² up to {MAX_OBJ_ELEMENTS} elements");
+    Err(refused("--subdivisions", &n.to_string(), &problem, &allowed))
 }
 
 fn write_files(
@@ -256,18 +266,18 @@ fn write_files(
     folder: &Path,
     pattern: &FoldPattern,
     flap: Option<f64>,
-    global: &Global,
+    quiet: bool,
 ) -> Result<()> {
     let design = &pattern.design;
     let title = format!("billow: N {} panels, M {} storeys", design.panels, design.storeys);
     let shape = |shape, name: &str| -> Result<String> {
         let mesh = Mesh::new(pattern, design.subdivisions, shape)
-            .map_err(|error| bad("--caps", "circular", &error.to_string(), "polygon"))?;
+            .map_err(|error| refused("--caps", "circular", &error.to_string(), "polygon"))?;
         Ok(obj::mesh(&mesh, &format!("{title}, {name}")))
     };
     let mut texts = vec![("erected.obj", shape(Shape::Erected, "erected")?)];
     if design.caps == Caps::Circular {
-        eprintln!("billow: circular caps cannot be folded: only the erected shape is written");
+        eprintln!("billow: circular caps cannot be folded; only the erected shape is written");
     } else {
         texts.extend([
             ("crease_pattern.fold", fold_text::crease_pattern(pattern, &title)),
@@ -282,7 +292,7 @@ fn write_files(
         let path = folder.join(name);
         write_atomic(files, &path, text.as_bytes()).map_err(|error| disk_error(&path, &error))?;
     }
-    if !global.quiet {
+    if !quiet {
         let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();
         eprintln!("billow: wrote {} to {}", names.join(", "), folder.display());
     }

@@ -1,4 +1,4 @@
-//! `billow frames`: the shapes of one job side by side.
+//! `billow frames`: draws the shapes of one job side by side.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use billow_solver::output::frames::Frame;
 use clap::ValueEnum;
 
-use super::Global;
+use super::options::{OutputOptions, QuietOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
-use super::target::folder_of_job;
+use super::target::{StudyArgs, folder_of_job};
 use crate::input::value::{Value, short_number};
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
@@ -24,19 +24,20 @@ use crate::store::stored::Stored;
 
 mod choose;
 
-use choose::{by_motion, nearest};
+use choose::{by_displacement, nearest};
 
 /// Arguments of `billow frames`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The job: the first digits of its id; or a history file (.h5).
     pub job: String,
-    /// Study file, or folder of its results [default: the only one under results].
-    pub study: Option<PathBuf>,
-    /// How many frames, first to last, with as much motion from each to the next; of one, the last.
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Number of frames, from the first to the last, with about equal motion between them; a single
+    /// frame is the last one.
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub count: usize,
-    /// The frames nearest to these times instead, comma-separated: seconds, or with a unit, as in
+    /// Draw the frames nearest to these times, comma-separated: s, or with a unit, as in
     /// "10 ms, 0.5".
     #[arg(
         long,
@@ -46,10 +47,10 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub times: Vec<String>,
-    /// What the colours say [default: the storey; plain where there are none].
+    /// Meaning of the colours [default: the storey; plain for a mesh without storeys].
     #[arg(long, value_enum)]
     pub colour: Option<ColourArg>,
-    /// Where it is looked at from: azimuth and elevation, degrees.
+    /// Direction of view: azimuth and elevation, degrees.
     #[arg(
         long,
         value_name = "AZIMUTH,ELEVATION",
@@ -61,50 +62,53 @@ pub struct Args {
     /// results, or beside the history file].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
-/// What the colours say.
+/// Meaning of the colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ColourArg {
     /// The storey of a capsule.
     Storey,
-    /// What the film does: taut, wrinkled, slack.
+    /// The state of the film: taut, wrinkled, slack.
     Regime,
-    /// Nothing.
+    /// One colour.
     Plain,
 }
 
-/// A run whose shapes are asked for.
+/// A run whose shapes are drawn.
 struct Source {
-    /// Its history file.
+    /// History file.
     path: PathBuf,
-    /// What it is called above the picture.
+    /// Title of the picture.
     title: String,
-    /// Pictures, without their extensions, where nobody names any.
+    /// Default path of the pictures, without the extension.
     out: PathBuf,
 }
 
-/// Runs `billow frames`: one row a picture written.
+/// Runs `billow frames`: prints one row per picture.
 ///
 /// # Errors
-/// A job that is not there or has no frames; a flag that makes no sense; a file that cannot be read or
-/// written.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
+/// An unknown job, or one without frames; an invalid option; a file that cannot be read or written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let view = view(&args.view)?;
-    let source = source(args, global)?;
+    let source = source(args)?;
     let pictures = pictures(args, &source)?;
     let stored = history_file::read_frames(&source.path)?.ok_or_else(|| Error::Disk {
         path: source.path.clone(),
-        problem: "no frames in this file: its model has no shape (piston), or it was to keep none \
-                  (outputs.frames 0)\n  next: run it with solver.model \"film\" and \
-                  outputs.frames above 0"
-            .to_owned(),
+        problem:
+            "no frames in this file: its model has no shape (piston), or outputs.frames is 0\n  \
+                  next: run it with solver.model \"film\" and outputs.frames above 0"
+                .to_owned(),
     })?;
     let colour = colour(args.colour, &stored)?;
     let numbers = if args.times.is_empty() {
-        by_motion(args.count, &ways(&stored)?)?
+        by_displacement(args.count, &displacements(&stored)?)?
     } else {
-        nearest(&args.times, stored.times(), global.quiet)?
+        nearest(&args.times, stored.times(), args.quiet.quiet)?
     };
     let frames: Vec<Frame> =
         numbers.iter().map(|number| stored.frame(*number)).collect::<Result<_>>()?;
@@ -133,12 +137,12 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             time(frames.last()),
         ]);
     }
-    print_rows(&["file", "frames", "from", "to"], &rows, global.format(), out)
+    print_rows(&["file", "frames", "from", "to"], &rows, args.output.format(), out)
 }
 
-/// How far the film moved on the way to each frame but the first: root mean square over its nodes, m.
-fn ways(stored: &StoredFrames) -> Result<Vec<f64>> {
-    let mut ways = Vec::with_capacity(stored.times().len());
+/// Displacement of the film from each frame to the next: root mean square over the nodes, m.
+fn displacements(stored: &StoredFrames) -> Result<Vec<f64>> {
+    let mut displacements = Vec::with_capacity(stored.times().len());
     let mut before = stored.frame(0)?;
     for number in 1..stored.times().len() {
         let frame = stored.frame(number)?;
@@ -146,20 +150,20 @@ fn ways(stored: &StoredFrames) -> Result<Vec<f64>> {
             (0..3).map(|k| f64::from(a[k] - b[k]) * f64::from(a[k] - b[k])).sum::<f64>()
         };
         let sum: f64 = before.positions.iter().zip(&frame.positions).map(square).sum();
-        ways.push((sum / frame.positions.len().max(1) as f64).sqrt());
+        displacements.push((sum / frame.positions.len().max(1) as f64).sqrt());
         before = frame;
     }
-    Ok(ways)
+    Ok(displacements)
 }
 
-fn source(args: &Args, global: &Global) -> Result<Source> {
+fn source(args: &Args) -> Result<Source> {
     let path = Path::new(&args.job);
     if path.is_file() || path.extension().is_some_and(|extension| extension == "h5") {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let out = path.with_file_name(format!("{stem}_frames"));
         return Ok(Source { path: path.to_owned(), title: stem.into_owned(), out });
     }
-    let root = folder_of_job(&args.job, args.study.as_deref(), global)?;
+    let root = folder_of_job(&args.job, &args.study)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     let id = stored.job(&args.job)?;
     Ok(Source {
@@ -175,7 +179,7 @@ fn title(stored: &Stored<'_>, id: &JobId) -> String {
     for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
         let text = if let Value::Number(si) = value {
             let unit = Unit::of(stored.study.unit(name), si.abs());
-            unit.behind(&short_number(unit.shown(*si)))
+            unit.after(&short_number(unit.shown(*si)))
         } else {
             value.to_string()
         };
@@ -184,12 +188,12 @@ fn title(stored: &Stored<'_>, id: &JobId) -> String {
     title
 }
 
-/// Files to write: the one asked for, or both.
+/// Files to write: the one asked for, or one per format.
 fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
     let Some(path) = &args.out else {
         let path = |format: Picture| {
             let mut path = source.out.clone().into_os_string();
-            path.push(format!(".{}", format.ending()));
+            path.push(format!(".{}", format.extension()));
             PathBuf::from(path)
         };
         return Ok(Picture::ALL.map(path).to_vec());
@@ -198,7 +202,7 @@ fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
     Ok(vec![path.clone()])
 }
 
-/// What to colour by: storeys where there are some and nobody says otherwise.
+/// The meaning of the colours: the one asked for, or storeys if the film has some.
 fn colour(asked: Option<ColourArg>, stored: &StoredFrames) -> Result<Colour> {
     let capsule = stored.storeys().iter().any(|storey| *storey > 0);
     match asked {
@@ -207,7 +211,7 @@ fn colour(asked: Option<ColourArg>, stored: &StoredFrames) -> Result<Colour> {
         Some(ColourArg::Storey) if !capsule => Err(refused(
             "--colour",
             "storey",
-            "this film is no capsule: no storeys",
+            "this film is not a capsule and has no storeys",
             "regime, plain",
         )),
         Some(ColourArg::Storey) => Ok(Colour::Storey),
@@ -229,7 +233,7 @@ fn view(text: &str) -> Result<View> {
         return Err(wrong("not two numbers"));
     };
     if elevation.abs() > 90.0 {
-        return Err(wrong("looks from beyond the zenith"));
+        return Err(wrong("the elevation is out of range"));
     }
     Ok(View::new(azimuth.to_radians(), elevation.to_radians()))
 }

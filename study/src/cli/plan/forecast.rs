@@ -1,4 +1,11 @@
-//! What the jobs of a plan will cost.
+//! Cost of the jobs of a plan.
+//!
+//! ```text
+//! time on one core ≈ 17 ns · Σ elements · steps + 4.3e-7 s · Σ elements^1.75
+//! ```
+//!
+//! The first sum runs over the film jobs, the second one over the designs whose static states are not
+//! known yet.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,55 +17,55 @@ use crate::input::value::short_number;
 use crate::job::point::Point;
 use crate::job::{JobId, canonical_json};
 
-/// Nanoseconds an element takes on one core for each step of film that never gets calm, about: measured
-/// on the paper's capsule, which does, at n 4 to 8 over 0.5 s.
-const NS: f64 = 17.0;
-/// Seconds the static states of a design take on one core, c eᵏ of its elements: 0.6, 6 and 78 s were
-/// measured at n 8, 16 and 32 (the factors of sparse matrices grow faster than they do).
-const STATES: f64 = 4.3e-7;
-const STATES_POWER: f64 = 1.75;
-/// Meshes that are made to foretell a cost, at most.
-const MESHES: usize = 100;
+/// Time per element and step on one core, ns, while the film is not quiescent. Source: measured on the
+/// capsule of the paper, n = 4 to 8, 0.5 s.
+const NS_PER_ELEMENT_STEP: f64 = 17.0;
+/// Time of the static states of a design on one core: coefficient, s, and exponent of the number of
+/// elements. Source: measured at n = 8, 16, 32; the factors of sparse matrices grow faster than the
+/// matrices.
+const STATIC_SECONDS: f64 = 4.3e-7;
+const STATIC_EXPONENT: f64 = 1.75;
+/// Most meshes that are built for an estimate.
+const MAX_MESHES: usize = 100;
 
-/// What jobs will cost, about, their static states included but for those `known_states`; nothing where
-/// there are none.
+/// Estimated cost of jobs, as text; `None` without jobs. `known_states` are the static states that are
+/// computed already.
 pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> Option<String> {
-    let mut known: BTreeMap<String, Cost> = BTreeMap::new();
-    let mut states = 0.0;
+    let mut costs: BTreeMap<String, Cost> = BTreeMap::new();
+    let mut static_seconds = 0.0;
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
     for point in points {
         let scene = &point.job.scene;
         if scene.solver.model == ModelKind::Piston {
             continue;
         }
-        let decides = (&scene.design, &scene.film, &scene.solver, scene.outputs.sample_interval);
-        let key = canonical_json(&decides);
-        if !known.contains_key(&key) {
-            if known.len() == MESHES {
-                return Some(format!(
-                    "forecast: over {MESHES} meshes, none made to foretell a cost"
-                ));
+        // The cost depends on these parts of the scene only.
+        let parts = (&scene.design, &scene.film, &scene.solver, scene.outputs.sample_interval);
+        let key = canonical_json(&parts);
+        if !costs.contains_key(&key) {
+            if costs.len() == MAX_MESHES {
+                return Some(format!("forecast: no estimate for more than {MAX_MESHES} meshes"));
             }
-            known.insert(key.clone(), models::cost(scene).ok()?);
+            costs.insert(key.clone(), models::cost(scene).ok()?);
         }
-        let cost = known[&key];
-        if let Some(of) = models::reference_scene(scene)
-            && known_states.insert(JobId::of(&of))
+        let cost = costs[&key];
+        if let Some(reference) = models::reference_scene(scene)
+            && known_states.insert(JobId::of(&reference))
         {
-            states += STATES * libm::pow(cost.elements as f64, STATES_POWER);
+            static_seconds += STATIC_SECONDS * libm::pow(cost.elements as f64, STATIC_EXPONENT);
         }
         jobs += 1;
         element_steps += cost.elements as f64 * cost.steps as f64;
     }
     let text = if jobs > 0 {
         format!(
-            "{} of film, about {} million element-steps, about {} of one core",
+            "{} of film, about {} million element-steps, about {} on one core",
             count(jobs, "job"),
             short_number(libm::round(element_steps / 1e6)),
-            duration(libm::ceil(element_steps * NS * 1e-9 + states))
+            duration(libm::ceil(element_steps * NS_PER_ELEMENT_STEP * 1e-9 + static_seconds))
         )
     } else {
-        format!("{} without film, well under a second each", count(points.len(), "job"))
+        format!("{} without film, less than a second each", count(points.len(), "job"))
     };
     (!points.is_empty()).then(|| format!("forecast: {text}"))
 }

@@ -1,17 +1,18 @@
-//! `billow plan`.
+//! `billow plan`: lists the jobs of a study.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 mod forecast;
 
 use forecast::forecast;
 
+use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption};
 use super::print::{self, print_rows};
-use super::run::results_folder;
-use super::{Format, Global, memory, notes};
+use super::target::results_folder;
+use super::{Format, memory, notes};
 use crate::input::value::{Value, short_number};
 use crate::job::Parameters;
 use crate::job::point::Point;
@@ -24,54 +25,57 @@ use crate::study::plan::{Generation, next_jobs};
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The study file.
+    /// Study file.
     #[arg(value_name = "STUDY")]
     pub study: PathBuf,
+    #[command(flatten)]
+    results: ResultsOption,
+    #[command(flatten)]
+    set: SetOption,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
-/// Runs `billow plan`: one row a point on `out`, a closing line on stderr.
+/// Runs `billow plan`: one row per point on `out`; summary, forecast and notes on stderr.
 ///
 /// # Errors
-/// When the study is not sound or the output cannot be written.
-pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
-    let study = Study::load(&args.study, &global.set)?;
+/// When the study is invalid or the output cannot be written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let study = Study::load(&args.study, &args.set.set)?;
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
-    let format = global.format();
+    let format = args.output.format();
     let names = study.parameter_names();
     let rows: Vec<Vec<Value>> =
         generation.points.iter().map(|point| row(point, format == Format::Table)).collect();
     print_rows(&columns(&names), &rows, format, out)?;
-    if !global.quiet {
+    if !args.quiet.quiet {
         if format == Format::Table {
             eprintln!("units: {}", units(&study));
         }
         eprintln!("{}: {}", study.name, summary(&generation));
-        tell_the_rest(&args.study, &study, &generation, global)?;
+        print_progress_and_forecast(args, &study, &generation)?;
         notes::print(&study);
     }
     Ok(())
 }
 
-/// Says how many of the jobs are finished in the results folder, where it is this study's, and what the
-/// others will cost.
-fn tell_the_rest(
-    file: &Path,
-    study: &Study,
-    generation: &Generation,
-    global: &Global,
-) -> Result<()> {
-    let root = results_folder(global, study);
+/// Prints how many jobs are finished, if the results folder belongs to this study, and the estimated
+/// cost of the others.
+fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generation) -> Result<()> {
+    let root = results_folder(&args.results, study);
     let results = Results::new(&Disk, &root);
-    let ours = results.owner()?.as_deref() == Some(study.name.as_str());
-    let records = if ours { results.journal()?.records } else { BTreeMap::new() };
+    let same_study = results.owner()?.as_deref() == Some(study.name.as_str());
+    let records = if same_study { results.journal()?.records } else { BTreeMap::new() };
     let jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
-    let (there, missing): (Vec<&Point>, Vec<&Point>) =
+    let (finished, missing): (Vec<&Point>, Vec<&Point>) =
         jobs.partition(|point| records.contains_key(&point.job.id));
-    if !there.is_empty() {
-        let jobs = print::count(there.len() + missing.len(), "job");
-        eprintln!("{}: {} of {jobs} there already", root.display(), there.len());
+    if !finished.is_empty() {
+        let jobs = print::count(finished.len() + missing.len(), "job");
+        eprintln!("{}: {} of {jobs} finished already", root.display(), finished.len());
     }
-    if let Err(error) = memory::check(&file.display().to_string(), study) {
+    if let Err(error) = memory::check(&args.study.display().to_string(), study) {
         eprintln!("{error}");
         return Ok(());
     }
@@ -82,17 +86,17 @@ fn tell_the_rest(
     Ok(())
 }
 
-/// What the fold solves; a parameter of the same name is what was asked for, so it keeps its column
-/// and the solved one is told apart.
+/// Quantities that the fold design gives. A parameter of the same name keeps its column; the solved value
+/// then stands in a column `NAME_resolved`.
 const SOLVED: [&str; 4] = ["phi", "half_angle", "top_radius", "height"];
 
-/// Units of what is printed.
+/// Units of the printed columns.
 fn units(study: &Study) -> String {
     let parameters = study.parameter_names();
-    let own = parameters.iter().map(|name| (name.as_str(), study.unit(name)));
+    let given = parameters.iter().map(|name| (name.as_str(), study.unit(name)));
     let solved = [("phi", "rad"), ("half_angle", "rad"), ("top_radius", "m"), ("height", "m")];
-    let units: Vec<String> = own
-        .chain(solved.into_iter().filter(|(name, _)| !parameters.iter().any(|own| own == name)))
+    let units: Vec<String> = given
+        .chain(solved.into_iter().filter(|(name, _)| !parameters.iter().any(|given| given == name)))
         .filter(|(_, unit)| !matches!(*unit, "" | "1"))
         .map(|(name, unit)| format!("{name} {unit}"))
         .collect();
@@ -104,8 +108,8 @@ fn columns(parameters: &[String]) -> Vec<String> {
     columns.extend(parameters.iter().cloned());
     columns.push("status".to_owned());
     columns.extend(SOLVED.iter().map(|name| {
-        let taken = parameters.iter().any(|parameter| parameter == name);
-        if taken { format!("{name}_resolved") } else { (*name).to_owned() }
+        let is_parameter = parameters.iter().any(|parameter| parameter == name);
+        if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() }
     }));
     columns.extend(["reason", "nearest", "note"].map(str::to_owned));
     columns
@@ -143,12 +147,12 @@ fn solved(point: &Point) -> [Value; SOLVED.len()] {
     })
 }
 
-/// Which points are the same job as this one; beyond a few, how many.
+/// The points that are the same job as this one: the first three, and the number of the others.
 fn note(merged: &[Parameters]) -> String {
-    const SHOWN: usize = 3;
+    const MAX_SHOWN: usize = 3;
     let mut texts: Vec<String> = merged
         .iter()
-        .take(SHOWN)
+        .take(MAX_SHOWN)
         .map(|parameters| {
             let values: Vec<String> = parameters
                 .iter()
@@ -160,15 +164,15 @@ fn note(merged: &[Parameters]) -> String {
             if values.is_empty() { "the same point".to_owned() } else { values.join(", ") }
         })
         .collect();
-    if merged.len() > SHOWN {
-        texts.push(format!("and {} more", merged.len() - SHOWN));
+    if merged.len() > MAX_SHOWN {
+        texts.push(format!("and {} more", merged.len() - MAX_SHOWN));
     }
     format!("same job as {}", texts.join("; "))
 }
 
 fn summary(generation: &Generation) -> String {
-    let count = |number: usize, one: &str, many: &str| {
-        format!("{number} {}", if number == 1 { one } else { many })
+    let count = |number: usize, singular: &str, plural: &str| {
+        format!("{number} {}", if number == 1 { singular } else { plural })
     };
     let points = &generation.points;
     let infeasible = points.iter().filter(|point| point.infeasible.is_some()).count();

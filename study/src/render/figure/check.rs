@@ -1,12 +1,12 @@
-//! What every figure has to keep, for tests: well-formed, no letters outside the page, none below 8 pt,
-//! none over another, numbers that are numbers.
+//! Properties of every valid figure, for tests: well-formed, texts inside the page, at least 8 pt, without
+//! overlap, and finite numbers.
 
 use resvg::usvg::roxmltree::{Document, Node};
 
 use crate::render::font;
 
-/// A text and the box it fills: left, top, right, bottom, mm.
-type Set = (String, [f64; 4]);
+/// A text and its bounding box: left, top, right, bottom, mm.
+type PlacedText = (String, [f64; 4]);
 
 fn number(node: Node<'_, '_>, name: &str) -> f64 {
     let text = node.attribute(name).unwrap_or_else(|| panic!("{name} of {node:?}"));
@@ -15,7 +15,7 @@ fn number(node: Node<'_, '_>, name: &str) -> f64 {
     value
 }
 
-fn set(node: Node<'_, '_>) -> Set {
+fn placed_text(node: Node<'_, '_>) -> PlacedText {
     let text = node.text().unwrap_or("").to_owned();
     let (x, y, size) = (number(node, "x"), number(node, "y"), number(node, "font-size"));
     assert!(size >= 8.0 * 25.4 / 72.0 - 0.01, "{text:?} is {size} mm high");
@@ -25,20 +25,20 @@ fn set(node: Node<'_, '_>) -> Set {
         Some("end") => -width,
         _ => 0.0,
     };
-    // Lower-case letters reach about 0.55, capitals 0.73 of the size above their line.
+    // Capital letters reach 0.73 of the size above the baseline, lower-case letters about 0.55.
     let (up, down) = (0.73 * size, 0.15 * size);
-    let place = if node.attribute("transform").is_some() {
+    let bounds = if node.attribute("transform").is_some() {
         [x - up, y - start - width, x + down, y - start]
     } else {
         [x + start, y - up, x + start + width, y + down]
     };
-    (text, place)
+    (text, bounds)
 }
 
 /// The texts of a figure.
 ///
 /// # Panics
-/// Where it is not as it has to be.
+/// When the figure is not valid.
 pub fn figure(svg: &str) -> Vec<String> {
     for word in ["NaN", "inf"] {
         assert!(!svg.contains(&format!("\"{word}")) && !svg.contains(&format!(",{word}")), "{svg}");
@@ -54,16 +54,16 @@ pub fn figure(svg: &str) -> Vec<String> {
             assert!([x, y].iter().all(|n| n.parse::<f64>().unwrap().is_finite()), "{pair}");
         }
     }
-    let texts: Vec<Set> =
-        root.descendants().filter(|node| node.has_tag_name("text")).map(set).collect();
-    for (at, (text, [left, top, right, bottom])) in texts.iter().enumerate() {
+    let texts: Vec<PlacedText> =
+        root.descendants().filter(|node| node.has_tag_name("text")).map(placed_text).collect();
+    for (index, (text, [left, top, right, bottom])) in texts.iter().enumerate() {
         assert!(
             *left >= 0.0 && *top >= 0.0 && *right <= page[2] && *bottom <= page[3],
             "{text:?} at {left:.1} {top:.1} {right:.1} {bottom:.1} leaves the page {page:?}"
         );
-        for (other, [l, t, r, b]) in &texts[..at] {
+        for (other, [l, t, r, b]) in &texts[..index] {
             let apart = left >= r || right <= l || top >= b || bottom <= t;
-            assert!(apart, "{text:?} lies over {other:?}");
+            assert!(apart, "{text:?} overlaps {other:?}");
         }
     }
     texts.into_iter().map(|(text, _)| text).collect()

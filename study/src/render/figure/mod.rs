@@ -1,7 +1,7 @@
-//! Figures: plots ([`plot`]) and maps ([`map`]) under a title, over a legend and notes.
+//! Figures: plots ([`plot`]) and maps ([`map`]) with a title above, a legend and notes below.
 //!
-//! A figure is what to draw, in the units it is drawn in; the sizes are those of print: 160 mm wide,
-//! no letters below 8 pt. Colours are never the only difference ([`style`]).
+//! Values are given in the units in which they are shown. Sizes are those of print: 160 mm wide, texts of
+//! at least 8 pt. Series never differ in colour only ([`style`]).
 
 use self::legend::Legend;
 use self::style::{GREY, LARGE, MARGIN, PAGE_WIDTH, SMALL};
@@ -15,16 +15,16 @@ pub mod style;
 pub mod ticks;
 pub mod unit;
 
-/// What stands above and below the plots.
+/// The texts above and below the plots.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
     /// Title.
     pub title: String,
-    /// Lines below the title: which study, which rows.
+    /// Lines below the title: study and rows.
     pub subtitle: Vec<String>,
     /// Legends, one below the other.
     pub legends: Vec<Legend>,
-    /// What the reader has to know besides.
+    /// Notes below the legends.
     pub notes: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ pub struct Sheet {
 const INNER: f64 = PAGE_WIDTH - 2.0 * MARGIN;
 
 impl Sheet {
-    /// Draws title and subtitle. Where the plots may begin, mm.
+    /// Draws title and subtitle. Returns the upper end of the plots, mm.
     fn head(&self, page: &mut Page) -> f64 {
         let mut y = MARGIN;
         for line in wrapped(&self.title, LARGE, INNER) {
@@ -47,7 +47,7 @@ impl Sheet {
         y + 1.5
     }
 
-    /// Draws legend and notes from `y` on, and finishes the page.
+    /// Draws legends and notes below `y`, mm, and finishes the page.
     fn foot(&self, mut page: Page, y: f64) -> String {
         let mut y = y + 2.0;
         y += legend::draw(&self.legends, &mut page, [MARGIN, y], INNER);
@@ -61,7 +61,7 @@ impl Sheet {
     }
 }
 
-/// Columns that hold so many panels well.
+/// Number of columns for a number of panels.
 pub fn columns(panels: usize) -> usize {
     match panels {
         0 | 1 => 1,

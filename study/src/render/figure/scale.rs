@@ -3,7 +3,7 @@
 /// How values are spread along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spread {
-    /// Evenly.
+    /// Linearly.
     Linear,
     /// By their logarithm; every value is positive.
     Logarithmic,
@@ -13,29 +13,29 @@ pub enum Spread {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     spread: Spread,
-    /// Ends of the axis: values, as spread.
+    /// Values at the ends of the axis, after [`Spread::of`].
     low: f64,
     high: f64,
-    /// Where the ends lie, mm.
-    from: f64,
-    to: f64,
+    /// Positions of the ends, mm.
+    start: f64,
+    end: f64,
 }
 
 impl Scale {
-    /// An axis of values `low < high` that runs from `from` to `to`, mm.
-    pub fn new(spread: Spread, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> Self {
-        Self { spread, low: spread.of(low), high: spread.of(high), from, to }
+    /// An axis of values `low < high` between the positions `start` and `end`, mm.
+    pub fn new(spread: Spread, [low, high]: [f64; 2], [start, end]: [f64; 2]) -> Self {
+        Self { spread, low: spread.of(low), high: spread.of(high), start, end }
     }
 
-    /// Where a value lies, mm.
-    pub fn place(&self, value: f64) -> f64 {
-        let share = (self.spread.of(value) - self.low) / (self.high - self.low);
-        self.from + share * (self.to - self.from)
+    /// Position of a value, mm.
+    pub fn position(&self, value: f64) -> f64 {
+        let fraction = (self.spread.of(value) - self.low) / (self.high - self.low);
+        self.start + fraction * (self.end - self.start)
     }
 
-    /// Where the low end lies, mm.
-    pub fn place_of_low(&self) -> f64 {
-        self.from
+    /// Position of the low end, mm.
+    pub fn start(&self) -> f64 {
+        self.start
     }
 }
 
@@ -47,8 +47,8 @@ impl Spread {
         }
     }
 
-    /// How these values of a parameter are best spread: by their logarithm where they are positive,
-    /// span a decade, and their ratios vary less than their differences.
+    /// The better spread of these values of a parameter: logarithmic if they are positive, span a decade,
+    /// and their ratios vary less than their differences.
     pub fn of_values(values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -78,17 +78,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ends_lie_at_the_ends() {
+    fn the_end_values_lie_at_the_end_positions() {
         let scale = Scale::new(Spread::Linear, [-1.0, 3.0], [100.0, 20.0]);
-        for (value, place) in [(-1.0, 100.0), (1.0, 60.0), (3.0, 20.0)] {
-            assert!((scale.place(value) - place).abs() < 1e-12);
+        for (value, position) in [(-1.0, 100.0), (1.0, 60.0), (3.0, 20.0)] {
+            assert!((scale.position(value) - position).abs() < 1e-12);
         }
         let scale = Scale::new(Spread::Logarithmic, [0.01, 1.0], [0.0, 10.0]);
-        assert!((scale.place(0.1) - 5.0).abs() < 1e-12);
+        assert!((scale.position(0.1) - 5.0).abs() < 1e-12);
     }
 
     #[test]
-    fn decades_are_spread_by_their_logarithm() {
+    fn decades_get_a_logarithmic_axis() {
         for (values, spread) in [
             (&[1.0, 10.0, 100.0][..], Spread::Logarithmic),
             (&[0.001, 0.002, 0.005, 0.01], Spread::Logarithmic),
@@ -104,10 +104,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn places_keep_the_order(a in -1e6..1e6, b in -1e6..1e6) {
+        fn positions_keep_the_order_of_values(a in -1e6..1e6, b in -1e6..1e6) {
             let scale = Scale::new(Spread::Linear, [-1e6, 1e6], [0.0, 100.0]);
-            prop_assert!(a > b || scale.place(a) <= scale.place(b));
-            prop_assert!((0.0..=100.0).contains(&scale.place(a)));
+            prop_assert!(a > b || scale.position(a) <= scale.position(b));
+            prop_assert!((0.0..=100.0).contains(&scale.position(a)));
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What tells one series from another: colour, dashes and marker, each by itself enough.
+//! Styles that distinguish series: colour, dashes and marker. Each one alone is sufficient.
 //!
-//! Colours are those of Okabe and Ito (without the yellow, which print loses on white), told apart
-//! by the colour-blind; dashes and markers say the same in black and white. Cells of a map take
-//! viridis, whose lightness rises evenly, so that it reads in grey as well.
+//! The colours are those of Okabe and Ito, which colour-blind readers can distinguish; their yellow is not
+//! used, because it is not visible on white. Dashes and markers distinguish series in black and white. Maps
+//! use viridis, whose lightness increases evenly, so that they are readable in grey.
 
-use crate::render::page::{Page, Place, Stroke};
+use crate::render::page::{Page, Position, Stroke};
 
 /// Size of the numbers of axes, legends and notes, mm: 8 pt and more.
 pub const SMALL: f64 = 2.9;
@@ -20,18 +20,18 @@ pub const MARGIN: f64 = 4.0;
 /// Colours of series.
 const COLOURS: [&str; 7] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"];
-/// Dashes of series, mm. Five against seven colours and markers: 35 series before one comes back.
+/// Dashes of series, mm. Five dashes and seven colours and markers give 35 different series.
 const DASHES: [&[f64]; 5] =
     [&[], &[2.8, 1.1], &[0.7, 0.8], &[3.2, 0.9, 0.7, 0.9], &[5.0, 0.9, 1.4, 0.9, 1.4, 0.9]];
 /// Width of the line of a series, mm.
 const LINE: f64 = 0.45;
 /// Lines of axes and frames.
 pub const AXIS: Stroke = Stroke::solid("#333333", 0.25);
-/// Lines behind the data.
+/// Grid lines.
 pub const GRID: Stroke = Stroke::solid("#dddddd", 0.15);
-/// Letters of notes.
+/// Colour of notes.
 pub const GREY: &str = "#444444";
-/// Ground of cells and lanes without a value.
+/// Ground of cells without a value, and of lanes.
 pub const EMPTY: &str = "#e8e8e8";
 /// Hatch of cells without a value.
 pub const HATCH: Stroke = Stroke::solid("#b0b0b0", 0.2);
@@ -46,51 +46,72 @@ pub fn line(series: usize) -> Stroke {
     Stroke { colour: colour(series), width: LINE, dashes: DASHES[series % DASHES.len()] }
 }
 
-/// How a marker tells what became of a job.
+/// Style of a marker, which shows the outcome of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fill {
-    /// Whole: all is well.
+    /// Filled: deployed.
     Filled,
-    /// White inside.
+    /// White inside: partial.
     Open,
-    /// White inside, with a cross.
+    /// White inside, with a cross: stalled.
     Crossed,
 }
 
-/// Draws the marker of a series: a shape of its own about `size` mm across.
-pub fn marker(page: &mut Page, at: Place, series: usize, fill: Fill, size: f64) {
+/// Draws the marker of a series, about `size` mm wide.
+pub fn marker(page: &mut Page, centre: Position, series: usize, fill: Fill, size: f64) {
     let colour = colour(series);
     let inside = if fill == Fill::Filled { colour } else { "#ffffff" };
-    // Once the colours begin again, each has the next one's shape.
-    let own = (series + series / COLOURS.len()) % COLOURS.len();
-    shape(page, at, own, colour, (inside, fill), size);
+    // When the colours repeat, each one gets the shape of the next colour.
+    let shape = (series + series / COLOURS.len()) % COLOURS.len();
+    draw_shape(page, centre, shape, colour, (inside, fill), size);
 }
 
-/// Draws the marker of an outcome where no series is meant: a circle in one colour.
-pub fn plain_marker(page: &mut Page, at: Place, colour: &'static str, fill: Fill, size: f64) {
-    shape(page, at, 0, colour, (if fill == Fill::Filled { colour } else { "#ffffff" }, fill), size);
-}
-
-/// The same on the colour of a cell.
-pub fn map_marker(page: &mut Page, at: Place, colour: &'static str, fill: Fill, size: f64) {
-    shape(page, at, 0, colour, (if fill == Fill::Filled { colour } else { "none" }, fill), size);
-}
-
-fn shape(
+/// Draws the marker of an outcome, for no series: a circle in one colour.
+pub fn plain_marker(
     page: &mut Page,
-    at: Place,
-    kind: usize,
+    centre: Position,
+    colour: &'static str,
+    fill: Fill,
+    size: f64,
+) {
+    draw_shape(
+        page,
+        centre,
+        0,
+        colour,
+        (if fill == Fill::Filled { colour } else { "#ffffff" }, fill),
+        size,
+    );
+}
+
+/// The same marker, transparent inside, for a coloured cell.
+pub fn map_marker(page: &mut Page, centre: Position, colour: &'static str, fill: Fill, size: f64) {
+    draw_shape(
+        page,
+        centre,
+        0,
+        colour,
+        (if fill == Fill::Filled { colour } else { "none" }, fill),
+        size,
+    );
+}
+
+/// Draws a marker shape (0 to 6) with its outline, inner colour, and the cross of [`Fill::Crossed`].
+fn draw_shape(
+    page: &mut Page,
+    centre: Position,
+    shape: usize,
     colour: &'static str,
     (inside, fill): (&str, Fill),
     size: f64,
 ) {
     let stroke = Stroke::solid(colour, 0.35);
     let half = 0.5 * size;
-    let corners = |corners: &[Place]| -> Vec<Place> {
-        corners.iter().map(|[x, y]| [at[0] + half * x, at[1] + half * y]).collect()
+    let corners = |corners: &[Position]| -> Vec<Position> {
+        corners.iter().map(|[x, y]| [centre[0] + half * x, centre[1] + half * y]).collect()
     };
-    match kind {
-        0 => page.circle(at, half, inside, &stroke),
+    match shape {
+        0 => page.circle(centre, half, inside, &stroke),
         1 => page.polygon(
             &corners(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
             inside,
@@ -109,20 +130,20 @@ fn shape(
     if fill == Fill::Crossed {
         let thin = Stroke::solid(colour, 0.25);
         let arm = 0.55 * half;
-        page.line([at[0] - arm, at[1] - arm], [at[0] + arm, at[1] + arm], &thin);
-        page.line([at[0] - arm, at[1] + arm], [at[0] + arm, at[1] - arm], &thin);
+        page.line([centre[0] - arm, centre[1] - arm], [centre[0] + arm, centre[1] + arm], &thin);
+        page.line([centre[0] - arm, centre[1] + arm], [centre[0] + arm, centre[1] - arm], &thin);
     }
 }
 
-/// Draws the end of a run that failed: a cross.
-pub fn cross(page: &mut Page, at: Place, colour: &'static str, size: f64) {
+/// Draws the cross at the end of a failed run.
+pub fn cross(page: &mut Page, centre: Position, colour: &'static str, size: f64) {
     let stroke = Stroke::solid(colour, 0.5);
     let arm = 0.5 * size;
-    page.line([at[0] - arm, at[1] - arm], [at[0] + arm, at[1] + arm], &stroke);
-    page.line([at[0] - arm, at[1] + arm], [at[0] + arm, at[1] - arm], &stroke);
+    page.line([centre[0] - arm, centre[1] - arm], [centre[0] + arm, centre[1] + arm], &stroke);
+    page.line([centre[0] - arm, centre[1] + arm], [centre[0] + arm, centre[1] - arm], &stroke);
 }
 
-/// Viridis (S. van der Walt, N. Smith; CC0) at 17 even places, sRGB.
+/// Viridis (S. van der Walt, N. Smith; CC0) at 17 equal intervals, sRGB.
 const VIRIDIS: [[f64; 3]; 17] = [
     [68.0, 1.0, 84.0],
     [72.0, 24.0, 106.0],
@@ -143,12 +164,12 @@ const VIRIDIS: [[f64; 3]; 17] = [
     [253.0, 231.0, 37.0],
 ];
 
-/// Colour of a share (0 to 1) of the range of a map, and black or white, whichever letters on it need.
-pub fn map_colour(share: f64) -> (String, &'static str) {
-    let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+/// Colour of a fraction (0 to 1) of the range of a map, and black or white for text on it.
+pub fn map_colour(fraction: f64) -> (String, &'static str) {
+    let position = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 15")]
-    let below = (place as usize).min(VIRIDIS.len() - 2);
-    let rest = place - below as f64;
+    let below = (position as usize).min(VIRIDIS.len() - 2);
+    let rest = position - below as f64;
     let mixed: [f64; 3] = std::array::from_fn(|channel| {
         VIRIDIS[below][channel] * (1.0 - rest) + VIRIDIS[below + 1][channel] * rest
     });
@@ -157,11 +178,11 @@ pub fn map_colour(share: f64) -> (String, &'static str) {
     (format!("rgb({red},{green},{blue})"), letters)
 }
 
-/// Relative luminance of an sRGB colour, 0 to 1.
+/// Relative luminance of an sRGB colour, 0 to 1. Source: WCAG 2.1.
 fn luminance(colour: [f64; 3]) -> f64 {
     let [red, green, blue] = colour.map(|channel| {
-        let share = channel / 255.0;
-        if share <= 0.040_45 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) }
+        let c = channel / 255.0;
+        if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
     });
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
@@ -171,7 +192,7 @@ mod tests {
     use super::*;
 
     fn rgb(text: &str) -> [f64; 3] {
-        let channel = |at| f64::from(u8::from_str_radix(&text[at..at + 2], 16).unwrap());
+        let channel = |i| f64::from(u8::from_str_radix(&text[i..i + 2], 16).unwrap());
         [channel(1), channel(3), channel(5)]
     }
 
@@ -183,12 +204,11 @@ mod tests {
     }
 
     #[test]
-    fn colours_stand_out_from_white_and_from_one_another() {
-        let contrast =
-            |one: f64, other: f64| (f64::max(one, other) + 0.05) / (f64::min(one, other) + 0.05);
-        for (at, colour) in COLOURS.iter().enumerate() {
+    fn colours_differ_from_white_and_from_each_other() {
+        let contrast = |a: f64, b: f64| (f64::max(a, b) + 0.05) / (f64::min(a, b) + 0.05);
+        for (index, colour) in COLOURS.iter().enumerate() {
             assert!(contrast(luminance(rgb(colour)), 1.0) > 2.0, "{colour}");
-            for other in &COLOURS[..at] {
+            for other in &COLOURS[..index] {
                 let apart: f64 =
                     (0..3).map(|channel| (rgb(colour)[channel] - rgb(other)[channel]).abs()).sum();
                 assert!(apart > 75.0, "{colour} {other}");
@@ -197,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_map_grows_lighter_all_the_way_and_its_letters_are_legible() {
+    fn map_colours_get_lighter_and_their_text_is_legible() {
         let mut last = -1.0;
         for step in 0..=200 {
             let (colour, letters) = map_colour(f64::from(step) / 200.0);

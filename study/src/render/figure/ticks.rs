@@ -1,12 +1,12 @@
-//! Where an axis is marked: steps of 1, 2 or 5 times a power of ten, and how the numbers are written.
+//! Ticks of an axis: steps of 1, 2 or 5 times a power of ten, and their texts.
 
 use crate::input::value::short_number;
 
-/// A mark on an axis: its place, and its number.
+/// A tick: its value and its text.
 pub type Tick = (f64, String);
 
-/// Marks at multiples of a round step within `low ..= high`, no more than `most` (at least 2) of them:
-/// the step is the shortest of 1, 2, 5 times a power of ten that keeps to it.
+/// Ticks at the multiples of a round step within `low ..= high`. The step is the smallest of 1, 2, 5 times a
+/// power of ten that gives at most `most` (at least 2) ticks.
 pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
     let span = high - low;
     if !(span > 0.0 && span.is_finite()) {
@@ -16,23 +16,24 @@ pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
     let decade = libm::pow(10.0, libm::floor(libm::log10(least)));
     for factor in [1.0, 2.0, 5.0, 10.0, 20.0, 50.0] {
         let step = factor * decade;
-        // A mark a hair outside by rounding is inside.
-        let hair = 1e-9 * span;
-        let (first, last) = (libm::ceil((low - hair) / step), libm::floor((high + hair) / step));
+        // A tick outside by a rounding error is inside.
+        let rounding = 1e-9 * span;
+        let (first, last) =
+            (libm::ceil((low - rounding) / step), libm::floor((high + rounding) / step));
         let count = last - first + 1.0;
         if count <= most.max(2) as f64 {
             return (0..most.max(2))
                 .map(|number| first + number as f64)
                 .take_while(|multiple| *multiple <= last)
-                .map(|multiple| (multiple * step, written(multiple * step, step)))
+                .map(|multiple| (multiple * step, tick_text(multiple * step, step)))
                 .collect();
         }
     }
     Vec::new()
 }
 
-/// A number with as many decimals as its step needs.
-fn written(value: f64, step: f64) -> String {
+/// A number with the decimals that its step needs.
+fn tick_text(value: f64, step: f64) -> String {
     if value.abs() < 1e-9 * step {
         return "0".to_owned();
     }
@@ -48,56 +49,57 @@ fn written(value: f64, step: f64) -> String {
     minus(&format!("{value:.decimals$}"))
 }
 
-/// A hyphen before a number reads as a dash: a true minus does not.
+/// A number with a minus sign instead of a hyphen.
 pub fn minus(number: &str) -> String {
     number.replace('-', "−")
 }
 
-/// Marks of a logarithmic axis within `low ..= high`, both positive: 1, 2 and 5 of every decade as far
-/// as `most` allows, else 1, else 1 of every few decades. Where fewer than two would be left, those of a
+/// Ticks of a logarithmic axis within `low ..= high`, both positive: 1, 2 and 5 of every decade if `most`
+/// allows, else 1 of every decade, else 1 of every few decades. If that gives fewer than two, the ticks of a
 /// linear axis.
 pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     if !(low > 0.0 && high > low && high.is_finite()) {
         return linear(low, high, most);
     }
-    let hair = 1e-9;
-    let first = libm::floor(libm::log10(low) + hair);
-    let last = libm::ceil(libm::log10(high) - hair);
-    let inside = |value: &f64| (low * (1.0 - hair)..=high * (1.0 + hair)).contains(value);
-    let marks = |mantissas: &[f64], stride: f64| -> Vec<Tick> {
-        let mut marks = Vec::new();
+    let rounding = 1e-9;
+    let first = libm::floor(libm::log10(low) + rounding);
+    let last = libm::ceil(libm::log10(high) - rounding);
+    let inside = |value: &f64| (low * (1.0 - rounding)..=high * (1.0 + rounding)).contains(value);
+    let decade_ticks = |mantissas: &[f64], stride: f64| -> Vec<Tick> {
+        let mut ticks = Vec::new();
         let mut exponent = first;
         while exponent <= last {
             let decade = libm::pow(10.0, exponent);
             let values = mantissas.iter().map(|mantissa| mantissa * decade);
-            marks.extend(values.filter(inside).map(|value| (value, minus(&short_number(value)))));
+            ticks.extend(values.filter(inside).map(|value| (value, minus(&short_number(value)))));
             exponent += stride;
         }
-        marks
+        ticks
     };
-    let mut choices = vec![marks(&[1.0, 2.0, 5.0], 1.0), marks(&[1.0], 1.0)];
-    choices.extend((2..40).map(|stride| marks(&[1.0], f64::from(stride))));
-    match choices.into_iter().find(|marks| marks.len() <= most.max(2)) {
-        Some(marks) if marks.len() >= 2 => marks,
+    let mut choices = vec![decade_ticks(&[1.0, 2.0, 5.0], 1.0), decade_ticks(&[1.0], 1.0)];
+    choices.extend((2..40).map(|stride| decade_ticks(&[1.0], f64::from(stride))));
+    match choices.into_iter().find(|ticks| ticks.len() <= most.max(2)) {
+        Some(ticks) if ticks.len() >= 2 => ticks,
         _ => linear(low, high, most),
     }
 }
 
-/// A range that holds `low ..= high` with room at both ends; from zero on where zero is near.
-pub fn roomy(low: f64, high: f64) -> (f64, f64) {
+/// A range that contains `low ..= high` with padding at both ends. It starts or ends at zero when zero is
+/// near.
+pub fn padded(low: f64, high: f64) -> (f64, f64) {
     let low = if low >= 0.0 && low <= 0.5 * high { 0.0 } else { low };
     let high = if high <= 0.0 && high >= 0.5 * low { 0.0 } else { high };
     let span = high - low;
-    // One value: a tenth of it to both sides.
-    let room = if span > 1e-9 * high.abs().max(low.abs()) {
+    // A single value: a tenth of it on both sides.
+    let padding = if span > 1e-9 * high.abs().max(low.abs()) {
         0.05 * span
     } else if high == 0.0 {
         1.0
     } else {
         0.1 * high.abs()
     };
-    let below = if low == 0.0 && span > 0.0 { low } else { low - room };
-    let above = if high == 0.0 && span > 0.0 { high } else { high + room };
+    let below = if low == 0.0 && span > 0.0 { low } else { low - padding };
+    let above = if high == 0.0 && span > 0.0 { high } else { high + padding };
     (below, above)
 }
 
@@ -121,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn decades_are_marked_as_far_as_there_is_room() {
+    fn a_logarithmic_axis_has_as_many_ticks_as_fit() {
         assert_eq!(texts(&logarithmic(1.0, 100.0, 8)), ["1", "2", "5", "10", "20", "50", "100"]);
         assert_eq!(texts(&logarithmic(1.0, 1e4, 6)), ["1", "10", "100", "1000", "10000"]);
         assert_eq!(texts(&logarithmic(0.01, 1e6, 5)), ["0.01", "1", "100", "10000", "1000000"]);
@@ -129,18 +131,18 @@ mod tests {
     }
 
     #[test]
-    fn ranges_start_at_zero_where_it_is_near() {
-        assert_eq!(roomy(0.1, 1.0), (0.0, 1.05));
-        assert_eq!(roomy(-2.0, -0.1), (-2.1, 0.0));
-        let (low, high) = roomy(290.0, 300.0);
+    fn ranges_start_at_zero_when_it_is_near() {
+        assert_eq!(padded(0.1, 1.0), (0.0, 1.05));
+        assert_eq!(padded(-2.0, -0.1), (-2.1, 0.0));
+        let (low, high) = padded(290.0, 300.0);
         assert!((low - 289.5).abs() < 1e-9 && (high - 300.5).abs() < 1e-9);
-        assert_eq!(roomy(0.0, 0.0), (-1.0, 1.0));
-        assert_eq!(roomy(5.0, 5.0), (4.5, 5.5));
+        assert_eq!(padded(0.0, 0.0), (-1.0, 1.0));
+        assert_eq!(padded(5.0, 5.0), (4.5, 5.5));
     }
 
     proptest! {
         #[test]
-        fn ticks_lie_inside_in_order_with_different_numbers(
+        fn ticks_lie_inside_the_range_in_order(
             low in -1e9..1e9_f64, exponent in -6..9_i32, most in 2..12_usize,
         ) {
             let high = low + libm::pow(10.0, f64::from(exponent)) * 1.7;
@@ -148,12 +150,12 @@ mod tests {
             let ticks = linear(low, high, most);
             prop_assert!(ticks.len() <= most);
             prop_assert!(most < 4 || ticks.len() >= 2, "{:?}", ticks);
-            let hair = 1e-6 * (high - low);
+            let rounding = 1e-6 * (high - low);
             for pair in ticks.windows(2) {
                 prop_assert!(pair[0].0 < pair[1].0);
             }
             for (value, _) in &ticks {
-                prop_assert!((low - hair..=high + hair).contains(value));
+                prop_assert!((low - rounding..=high + rounding).contains(value));
             }
         }
 
@@ -167,9 +169,9 @@ mod tests {
         }
 
         #[test]
-        fn a_roomy_range_holds_what_it_is_for(one in -1e6..1e6, other in -1e6..1e6) {
-            let (low, high) = (f64::min(one, other), f64::max(one, other));
-            let (below, above) = roomy(low, high);
+        fn a_padded_range_contains_its_range(a in -1e6..1e6, b in -1e6..1e6) {
+            let (low, high) = (f64::min(a, b), f64::max(a, b));
+            let (below, above) = padded(low, high);
             prop_assert!(below <= low && above >= high && above > below);
         }
     }

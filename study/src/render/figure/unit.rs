@@ -1,18 +1,18 @@
-//! Units as people read them: SI inside, but 5 g/s, 32 ms and 1.2 kPa on an axis.
+//! Readable units: values are SI in the program, but an axis shows 5 g/s, 32 ms and 1.2 kPa.
 
-/// The unit a column is shown in.
+/// The unit in which a column is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
     /// Symbol; empty for a pure number.
     pub symbol: String,
-    /// SI units one of it is.
+    /// Its size in the SI unit.
     size: f64,
 }
 
-/// Of an SI unit: symbol, size, and the largest value (in that unit) from which on it is used; the
-/// largest first.
+/// A unit for an SI quantity: symbol, size, and the largest value, in this unit, from which it is used.
 type Choice = (&'static str, f64, f64);
 
+/// Units by SI unit, the largest unit first.
 const CHOICES: &[(&str, &[Choice])] = &[
     ("s", &[("s", 1.0, 1.0), ("ms", 1e-3, 1.0), ("µs", 1e-6, 0.0)]),
     ("m", &[("m", 1.0, 0.2), ("mm", 1e-3, 0.1), ("µm", 1e-6, 0.0)]),
@@ -39,16 +39,16 @@ const CHOICES: &[(&str, &[Choice])] = &[
 ];
 
 impl Unit {
-    /// The unit fit for values of an SI unit of which `largest` is the largest in size.
+    /// The unit for values in an SI unit whose largest absolute value is `largest`.
     pub fn of(si: &str, largest: f64) -> Self {
         let choices = CHOICES.iter().find(|(known, _)| *known == si).map(|(_, choices)| *choices);
         let Some(choices) = choices else {
             return Self::si(si);
         };
         let chosen = if largest > 0.0 {
-            // Rounding up the last digit does not make it a unit more.
-            let holds = |(_, size, from): &&Choice| largest >= (1.0 - 1e-9) * size * from;
-            choices.iter().find(holds)
+            // The factor allows for a rounding error.
+            let fits = |(_, size, least): &&Choice| largest >= (1.0 - 1e-9) * size * least;
+            choices.iter().find(fits)
         } else {
             choices.iter().find(|(_, size, _)| size.total_cmp(&1.0).is_eq())
         };
@@ -61,7 +61,7 @@ impl Unit {
         Self { symbol: raised(if si == "1" { "" } else { si }), size: 1.0 }
     }
 
-    /// The unit fit for these values; those that are no numbers do not count.
+    /// The unit for these values; non-finite values are ignored.
     pub fn fit(si: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let sizes = values.into_iter().filter(|value| value.is_finite()).map(f64::abs);
         Self::of(si, sizes.fold(0.0, f64::max))
@@ -69,7 +69,7 @@ impl Unit {
 
     /// An SI value in this unit.
     pub fn shown(&self, si: f64) -> f64 {
-        // Sizes below 1 are powers of ten that no binary number is: their reciprocals are whole.
+        // Sizes below 1 are inexact powers of ten, but their reciprocals are exact.
         if self.size < 1e-2 && self.symbol != "°" {
             si * libm::round(1.0 / self.size)
         } else {
@@ -77,13 +77,13 @@ impl Unit {
         }
     }
 
-    /// A number, or words for one, with the unit behind it.
-    pub fn behind(&self, text: &str) -> String {
+    /// A number as text, followed by the unit.
+    pub fn after(&self, text: &str) -> String {
         let gap = if self.symbol.is_empty() || self.symbol == "°" { "" } else { " " };
         format!("{text}{gap}{}", self.symbol)
     }
 
-    /// A name with the unit behind it: `pressure (kPa)`; a pure number has none.
+    /// A name followed by the unit: `pressure (kPa)`; a pure number has no unit.
     pub fn label(&self, name: &str) -> String {
         if self.symbol.is_empty() { name.to_owned() } else { format!("{name} ({})", self.symbol) }
     }

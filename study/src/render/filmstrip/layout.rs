@@ -1,30 +1,29 @@
-//! Panels, scale bar and legend of a filmstrip on their page: one scale, rows as high as their highest
-//! shape.
+//! Layout of a filmstrip: panels with one scale, rows as high as their highest shape, scale bar, legend.
 
-use super::{Filmstrip, HEIGHT, LETTER, LINE, MARGIN, WIDTH};
+use super::{Filmstrip, LETTER, LINE, MARGIN, MAX_HEIGHT, WIDTH};
 use crate::input::value::short_number;
 use crate::render::font;
 use crate::render::page::{Letters, Page, Stroke};
 
-/// Where everything lies on the page, mm.
+/// Sizes and positions on the page, mm.
 pub(super) struct Layout {
-    /// Millimetres a metre.
+    /// Millimetres per metre.
     scale: f64,
-    /// Least right and up any shape reaches, m.
+    /// Lower left corner of the bounds of all shapes, m.
     low: [f64; 2],
     /// Width of a panel.
     pub(super) width: f64,
-    /// Heights of the panels of each row: of the highest shape in it.
+    /// Height of each row: that of its highest shape.
     heights: Vec<f64>,
     columns: usize,
 }
 
 impl Layout {
-    /// In the columns that give the largest scale, full rows preferred.
+    /// The layout with the number of columns that gives the largest scale; full rows are preferred.
     pub(super) fn of(strip: &Filmstrip<'_>) -> Self {
         let (mut low, mut right) = ([f64::INFINITY; 2], f64::NEG_INFINITY);
         let mut tops = Vec::with_capacity(strip.frames.len());
-        // Nodes of elements alone: others may lie anywhere.
+        // Only nodes of elements: other nodes may have any position.
         for frame in strip.frames {
             let mut top = f64::NEG_INFINITY;
             for node in strip.triangles.as_flattened() {
@@ -34,7 +33,7 @@ impl Layout {
             }
             tops.push(top);
         }
-        // Film without any extent is still drawn, as a dot.
+        // Film without extent is drawn as a dot.
         let width = (right - low[0]).max(1e-9);
         let heights = |columns: usize| -> Vec<f64> {
             let highest = |row: &[f64]| row.iter().copied().fold(low[1] + 1e-9, f64::max) - low[1];
@@ -43,18 +42,18 @@ impl Layout {
         let fitting = |columns: usize| {
             let heights = heights(columns);
             let across = WIDTH - 2.0 * MARGIN - MARGIN * (columns - 1) as f64;
-            let down = HEIGHT - (LINE + MARGIN) * heights.len() as f64;
+            let down = MAX_HEIGHT - (LINE + MARGIN) * heights.len() as f64;
             (across / (columns as f64 * width)).min(down / heights.iter().sum::<f64>())
         };
-        // A row that is not full is worth as much less.
-        let worth = |columns: usize| {
+        // The score of a layout decreases with empty panels.
+        let score = |columns: usize| {
             let count = strip.frames.len();
-            let places = columns * count.div_ceil(columns);
-            fitting(columns) * count as f64 / places as f64
+            let panels = columns * count.div_ceil(columns);
+            fitting(columns) * count as f64 / panels as f64
         };
         let mut columns = 1;
         for more in 2..=strip.frames.len() {
-            if worth(more) > worth(columns) {
+            if score(more) > score(columns) {
                 columns = more;
             }
         }
@@ -78,51 +77,51 @@ impl Layout {
         self.ground(self.heights.len() - 1) + LINE + MARGIN
     }
 
-    /// Lower left corner of a panel; the columns share the page evenly.
+    /// Lower left corner of a panel; all columns have the same width.
     pub(super) fn corner(&self, number: usize) -> [f64; 2] {
         let (row, column) = (number / self.columns, number % self.columns);
         let cell = (WIDTH - MARGIN) / self.columns as f64;
-        let spare = 0.5 * (cell - MARGIN - self.width);
-        [MARGIN + column as f64 * cell + spare, self.ground(row)]
+        let margin = 0.5 * (cell - MARGIN - self.width);
+        [MARGIN + column as f64 * cell + margin, self.ground(row)]
     }
 
-    /// Where a projected place lies on the page.
-    pub(super) fn page(&self, number: usize, place: [f64; 2]) -> [f64; 2] {
+    /// Position of a projected point on the page.
+    pub(super) fn page(&self, number: usize, point: [f64; 2]) -> [f64; 2] {
         let [x, y] = self.corner(number);
-        let right = self.scale * (place[0] - self.low[0]);
-        let up = self.scale * (place[1] - self.low[1]);
+        let right = self.scale * (point[0] - self.low[0]);
+        let up = self.scale * (point[1] - self.low[1]);
         [x + right, y - up]
     }
 
-    /// Length of the scale bar, m: the longest round one within 30 mm.
+    /// Length of the scale bar, m: the largest round length within 30 mm.
     fn bar(&self) -> f64 {
-        let most = 30.0 / self.scale;
-        let ten = libm::exp10(libm::floor(libm::log10(most)));
-        let fits = [5.0, 2.0].into_iter().find(|times| times * ten <= most);
+        let longest = 30.0 / self.scale;
+        let ten = libm::exp10(libm::floor(libm::log10(longest)));
+        let fits = [5.0, 2.0].into_iter().find(|times| times * ten <= longest);
         fits.unwrap_or(1.0) * ten
     }
 
-    /// A length of 1, 2 or 5 times a power of ten, with its number beside it.
+    /// Draws the scale bar, 1, 2 or 5 times a power of ten long, with its length as text.
     pub(super) fn scale_bar(&self, page: &mut Page, [x, y]: [f64; 2]) {
         let length = self.bar();
         let (end, middle, tick) = (x + length * self.scale, y - 0.35 * LETTER, 0.35 * LETTER);
         let stroke = Stroke::solid("#000000", 0.25);
         page.open("scale", "");
         page.line([x, middle], [end, middle], &stroke);
-        for at in [x, end] {
-            page.line([at, middle - tick], [at, middle + tick], &stroke);
+        for x in [x, end] {
+            page.line([x, middle - tick], [x, middle + tick], &stroke);
         }
         page.close();
         page.text([end + 0.5 * LETTER, y], &Letters::new(LETTER), &length_label(length));
     }
 
-    /// Width of the scale bar, its number and the space behind it.
+    /// Width of the scale bar, its text and the space after it.
     pub(super) fn bar_width(&self) -> f64 {
         let length = self.bar();
         length * self.scale + font::width(&length_label(length), LETTER) + 3.0 * LETTER
     }
 
-    /// Lines of legend below the panels.
+    /// Number of lines of the legend.
     pub(super) fn lines_below(&self, legend: &[(String, [u8; 3])]) -> usize {
         let (mut lines, mut x) = (1, MARGIN + self.bar_width());
         for (name, _) in legend {

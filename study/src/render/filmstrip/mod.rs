@@ -1,15 +1,15 @@
-//! Shapes of one run side by side, as SVG: the same view and the same scale in every panel, the time
-//! under it, one scale bar and one legend for all.
+//! Shapes of one run side by side, as SVG: the same view and scale in every panel, its time below it, one
+//! scale bar and one legend.
 //!
-//! Colours hold for the colour-blind. In grey, neighbouring storeys differ in brightness, and the three
-//! states of the film do so far more than the shading does.
+//! The colours are suitable for colour-blind readers. In grey, neighbouring storeys differ in brightness,
+//! and the three states of the film differ more than the shading of one state.
 
 use billow_solver::mechanics::material::Regime;
 use billow_solver::output::frames::Frame;
 
 use self::layout::Layout;
 use super::font;
-use super::page::{self, Anchor, Letters, Page, Stroke};
+use super::page::{self, Anchor, Letters, Page, Position, Stroke};
 use super::projection::{Facet, View};
 use crate::input::value::short_number;
 
@@ -17,18 +17,18 @@ mod layout;
 
 /// Width of the page, mm: across an A4 page with its margins.
 const WIDTH: f64 = 180.0;
-/// Height all rows together may have, mm.
-const HEIGHT: f64 = 110.0;
+/// Largest height of all rows together, mm.
+const MAX_HEIGHT: f64 = 110.0;
 /// Margin of the page and space between panels, mm.
 const MARGIN: f64 = 4.0;
-/// Size of letters, mm.
+/// Size of texts, mm.
 const LETTER: f64 = 2.8;
 /// Height of a line of text, mm.
 const LINE: f64 = 1.7 * LETTER;
-/// The inside of film is so much darker than its outside.
-const INSIDE: f64 = 0.72;
+/// Brightness of the inside of the film over that of its outside.
+const INSIDE_BRIGHTNESS: f64 = 0.72;
 
-/// Colours of storeys, taken in turn: neighbours differ in hue and in brightness (Okabe and Ito's set).
+/// Colours of storeys, repeated: neighbours differ in hue and brightness (Okabe and Ito).
 const STOREYS: [[u8; 3]; 7] = [
     [0x00, 0x72, 0xb2],
     [0xe6, 0x9f, 0x00],
@@ -40,7 +40,7 @@ const STOREYS: [[u8; 3]; 7] = [
 ];
 /// Colour of both caps.
 const CAPS: [u8; 3] = [0xd9, 0xd9, 0xd9];
-/// Colour of film as such.
+/// Colour of film without storeys.
 const PLAIN: [u8; 3] = [0xc2, 0xd2, 0xe0];
 /// States of the film, from bright to dark.
 const REGIMES: [(Regime, &str, [u8; 3]); 3] = [
@@ -49,36 +49,36 @@ const REGIMES: [(Regime, &str, [u8; 3]); 3] = [
     (Regime::Slack, "slack", [0x3f, 0x1f, 0x63]),
 ];
 
-/// What the colours say.
+/// Meaning of the colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     /// The storey of a capsule.
     Storey,
-    /// What the film does: taut, wrinkled, slack.
+    /// The state of the film: taut, wrinkled, slack.
     Regime,
-    /// Nothing.
+    /// One colour.
     Plain,
 }
 
-/// What is drawn.
+/// A filmstrip to draw.
 #[derive(Debug)]
 pub struct Filmstrip<'a> {
-    /// Heading, cut where it is wider than the page.
+    /// Title, cut if it is wider than the page.
     pub title: &'a str,
     /// Nodes of each element, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
     /// Storey of each element, as [`billow_solver::output::frames::Frames::storeys`].
     pub storeys: &'a [u32],
-    /// Shapes, in the order they are shown; at least one, and no more than a page holds (64 fit).
+    /// Shapes, in the order in which they are shown: 1 to 64.
     pub frames: &'a [Frame],
-    /// Where it is looked at from.
+    /// Direction of view.
     pub view: View,
-    /// What the colours say.
+    /// Meaning of the colours.
     pub colour: Colour,
 }
 
 impl Filmstrip<'_> {
-    /// Draws it.
+    /// The SVG text.
     pub fn svg(&self) -> String {
         let layout = Layout::of(self);
         let legend = self.legend();
@@ -95,24 +95,13 @@ impl Filmstrip<'_> {
             let letters = Letters::new(LETTER).at(Anchor::Middle);
             page.text(under, &letters, &time_label(frame.time, seconds));
         }
-        let mut at = [MARGIN, layout.bottom() + LETTER];
-        layout.scale_bar(&mut page, at);
-        at[0] += layout.bar_width();
-        for (name, colour) in &legend {
-            let width = 1.6 * LETTER + font::width(name, LETTER);
-            if at[0] + width > WIDTH - MARGIN {
-                at = [MARGIN, at[1] + LINE];
-            }
-            let (corner, size) = ([at[0], at[1] - 0.9 * LETTER], [1.2 * LETTER, LETTER]);
-            page.fill(corner, size, &hexadecimal(*colour));
-            page.frame(corner, size, &Stroke::solid("#000000", 0.12));
-            page.text([at[0] + 1.6 * LETTER, at[1]], &Letters::new(LETTER), name);
-            at[0] += width + LETTER;
-        }
+        let baseline = layout.bottom() + LETTER;
+        layout.scale_bar(&mut page, [MARGIN, baseline]);
+        draw_legend(&mut page, &legend, [MARGIN + layout.bar_width(), baseline]);
         page.finish(WIDTH, height, self.title)
     }
 
-    /// One shape. The lines between its elements are thin where there are many.
+    /// Draws one shape. The lines between elements are thinner if there are many elements.
     fn panel(&self, page: &mut Page, layout: &Layout, number: usize, frame: &Frame) {
         let facets = self.view.facets(self.triangles, frame);
         let line = (6.0 / (facets.len() as f64).sqrt()).clamp(0.03, 0.12);
@@ -124,8 +113,8 @@ impl Filmstrip<'_> {
             ),
         );
         for facet in &facets {
-            // Hundredths of a millimetre, each corner from the one before: short, and no error adds
-            // up.
+            // Whole hundredths of a millimetre, relative to the previous corner: short, without
+            // accumulated error.
             let corners =
                 facet.corners.map(|corner| layout.page(number, corner).map(|mm| 100.0 * mm));
             let [a, b, c] = corners.map(|corner| corner.map(f64::round));
@@ -146,25 +135,25 @@ impl Filmstrip<'_> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a share of a colour between 0 and 255"
+        reason = "a colour between 0 and 255"
     )]
     fn fill(&self, facet: &Facet, frame: &Frame) -> [u8; 3] {
         let (colour, dark) = match self.colour {
             Colour::Plain => (PLAIN, 0.4),
             Colour::Storey => (self.storey_colour(self.storeys[facet.element]), 0.45),
-            // Brightness tells the state here; the shading only hints at the shape.
+            // The brightness shows the state; the shading is weak.
             Colour::Regime => {
                 let regime = frame.regimes[facet.element];
                 let known = REGIMES.iter().find(|(known, ..)| *known == regime);
                 (known.map_or(PLAIN, |(.., colour)| *colour), 0.75)
             }
         };
-        let side = if facet.outside { 1.0 } else { INSIDE };
+        let side = if facet.outside { 1.0 } else { INSIDE_BRIGHTNESS };
         let bright = side * (dark + (1.0 - dark) * facet.light);
         colour.map(|part| (f64::from(part) * bright).round() as u8)
     }
 
-    /// Number of the top cap: one above the topmost storey.
+    /// Storey number of the top cap: one more than the last storey.
     fn top_cap(&self) -> u32 {
         self.storeys.iter().copied().max().unwrap_or(0)
     }
@@ -176,7 +165,7 @@ impl Filmstrip<'_> {
         STOREYS[(storey as usize - 1) % STOREYS.len()]
     }
 
-    /// Names and their colours.
+    /// Names and colours of the legend.
     fn legend(&self) -> Vec<(String, [u8; 3])> {
         match self.colour {
             Colour::Plain => Vec::new(),
@@ -185,24 +174,41 @@ impl Filmstrip<'_> {
             }
             Colour::Storey => {
                 let storeys = self.top_cap().saturating_sub(1);
-                // Where the colours begin anew, one swatch stands for all storeys that have it.
-                let turns = u32::try_from(STOREYS.len()).unwrap_or(u32::MAX);
+                // When the colours repeat, one entry stands for all storeys with its colour.
+                let colours = u32::try_from(STOREYS.len()).unwrap_or(u32::MAX);
                 let name = |first: u32| {
                     let all: Vec<String> = (first..=storeys)
                         .step_by(STOREYS.len())
                         .map(|storey| storey.to_string())
                         .collect();
                     let all = match all.as_slice() {
-                        [one, two, three, .., last] => format!("{one}, {two}, {three} … {last}"),
+                        [a, b, c, .., last] => format!("{a}, {b}, {c} … {last}"),
                         few => few.join(", "),
                     };
                     (format!("storey {all}"), self.storey_colour(first))
                 };
-                let mut legend: Vec<_> = (1..=storeys.min(turns)).map(name).collect();
+                let mut legend: Vec<_> = (1..=storeys.min(colours)).map(name).collect();
                 legend.push(("caps".to_owned(), CAPS));
                 legend
             }
         }
+    }
+}
+
+/// Draws a legend, on as many lines as it needs, from `position` on.
+fn draw_legend(page: &mut Page, legend: &[(String, [u8; 3])], position: Position) {
+    let mut position = position;
+    for (name, colour) in legend {
+        let width = 1.6 * LETTER + font::width(name, LETTER);
+        if position[0] + width > WIDTH - MARGIN {
+            position = [MARGIN, position[1] + LINE];
+        }
+        let [x, y] = position;
+        let (corner, size) = ([x, y - 0.9 * LETTER], [1.2 * LETTER, LETTER]);
+        page.fill(corner, size, &hexadecimal(*colour));
+        page.frame(corner, size, &Stroke::solid("#000000", 0.12));
+        page.text([x + 1.6 * LETTER, y], &Letters::new(LETTER), name);
+        position[0] += width + LETTER;
     }
 }
 
@@ -218,7 +224,7 @@ fn hexadecimal([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Hundredths of a millimetre as millimetres, in as few characters as it takes.
+/// Hundredths of a millimetre as millimetres, in as few characters as possible.
 fn short(hundredths: f64) -> String {
     let text = format!("{:.2}", hundredths / 100.0);
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,4 +1,4 @@
-//! Panels, scales, colours of a strip, read back from its SVG.
+//! Panels, scale and colours of a filmstrip, read from its SVG.
 
 use proptest::prelude::*;
 use resvg::usvg::roxmltree::{self, Document};
@@ -13,7 +13,7 @@ fn shape(time: f64, tall: f32) -> Frame {
     Frame { time, positions: places, regimes: REGIMES.map(|(regime, ..)| regime).repeat(6) }
 }
 
-/// Its elements, and their storeys: two storeys and a top cap.
+/// The elements of the box, and their storeys: two storeys and a top cap.
 fn elements() -> (Vec<[u32; 3]>, Vec<u32>) {
     let mut triangles = Vec::new();
     for ring in [0, 4] {
@@ -26,7 +26,7 @@ fn elements() -> (Vec<[u32; 3]>, Vec<u32>) {
     (triangles, [[1; 8].as_slice(), &[2; 8], &[3; 2]].concat())
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "made up")]
+#[expect(clippy::cast_possible_truncation, reason = "invented numbers")]
 fn drawn(times: &[f64], colour: Colour) -> String {
     let (triangles, storeys) = elements();
     let frames: Vec<Frame> =
@@ -66,7 +66,7 @@ fn corners(svg: &Document<'_>, panel: usize) -> Vec<[[f64; 2]; 3]> {
 }
 
 #[test]
-fn every_frame_has_a_panel_and_its_time() {
+fn every_frame_has_a_panel_with_its_time() {
     let svg = drawn(&[0.0, 0.0125, 0.5], Colour::Storey);
     let svg = Document::parse(&svg).unwrap();
     let texts = texts(&svg);
@@ -80,7 +80,7 @@ fn every_frame_has_a_panel_and_its_time() {
 }
 
 #[test]
-fn all_panels_have_one_scale_which_the_bar_tells() {
+fn all_panels_have_the_scale_of_the_scale_bar() {
     let svg = drawn(&[0.0, 0.5, 0.8], Colour::Plain);
     let svg = Document::parse(&svg).unwrap();
     let extent = |panel: usize, axis: usize| {
@@ -88,15 +88,18 @@ fn all_panels_have_one_scale_which_the_bar_tells() {
         let least = all.iter().copied().fold(f64::INFINITY, f64::min);
         all.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
     };
-    // Seen along x, shapes are 0.1 m wide and as high as they are.
+    // Seen along x, the shapes are 0.1 m wide and have their full height.
     let bar = svg.descendants().find(|node| node.attribute("id") == Some("scale")).unwrap();
     let line = bar.children().find(|node| node.has_tag_name("line")).unwrap();
-    let at = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
-    let length = at("x2") - at("x1");
+    let attribute = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
+    let length = attribute("x2") - attribute("x1");
     let label = texts(&svg)[4].clone();
-    let told = label.strip_suffix(" mm").unwrap().parse::<f64>().unwrap() / 1e3;
-    assert!([1.0, 2.0, 5.0].iter().any(|d| (libm::log10(told / d) % 1.0).abs() < 1e-9), "{label}");
-    let scale = length / told;
+    let length_of_label = label.strip_suffix(" mm").unwrap().parse::<f64>().unwrap() / 1e3;
+    assert!(
+        [1.0, 2.0, 5.0].iter().any(|d| (libm::log10(length_of_label / d) % 1.0).abs() < 1e-9),
+        "{label}"
+    );
+    let scale = length / length_of_label;
     for (panel, tall) in [(0, 0.04), (1, 0.14), (2, 0.2)] {
         assert!((extent(panel, 0) - 0.1 * scale).abs() < 0.03, "{panel}");
         assert!((extent(panel, 1) - tall * scale).abs() < 0.03, "{panel}");
@@ -104,21 +107,21 @@ fn all_panels_have_one_scale_which_the_bar_tells() {
 }
 
 #[test]
-fn states_of_the_film_have_three_tones_apart_in_grey() {
+fn the_three_states_of_the_film_differ_in_grey() {
     let svg = drawn(&[0.0], Colour::Regime);
     let svg = Document::parse(&svg).unwrap();
     assert_eq!(texts(&svg)[3..], ["taut", "wrinkled", "slack"]);
     let grey =
         |[r, g, b]: [u8; 3]| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
     let tones: Vec<f64> = REGIMES.iter().map(|(.., colour)| grey(*colour)).collect();
-    // The darkest shade of one is brighter than the brightest of the next.
+    // The darkest shade of a state is brighter than the brightest shade of the next one.
     assert!(0.75 * tones[0] > tones[1] && 0.75 * tones[1] > tones[2], "{tones:?}");
-    let stronger = |pair: &[[u8; 3]]| (grey(pair[0]) - grey(pair[1])).abs() > 20.0;
-    assert!(STOREYS.windows(2).all(stronger), "neighbours differ in grey");
+    let differ = |pair: &[[u8; 3]]| (grey(pair[0]) - grey(pair[1])).abs() > 20.0;
+    assert!(STOREYS.windows(2).all(differ), "neighbours differ in grey");
 }
 
 #[test]
-fn many_storeys_share_colours_and_the_legend_says_which() {
+fn the_legend_lists_storeys_that_share_a_colour() {
     let (triangles, _) = elements();
     let storeys: Vec<u32> = (1..=18).collect();
     let frames = [shape(0.0, 0.1)];
@@ -139,7 +142,7 @@ fn many_storeys_share_colours_and_the_legend_says_which() {
 }
 
 #[test]
-fn numbers_are_short_and_right() {
+fn numbers_are_short_and_correct() {
     for (hundredths, text) in [
         (0.0, "0"),
         (-0.4, "0"),
@@ -182,7 +185,7 @@ proptest! {
                 prop_assert!((0.0..=page[2]).contains(x) && (0.0..=page[3]).contains(y));
                 (low, high) = (low.min(*x), high.max(*x));
             }
-            // Panels of a row stand apart.
+            // Panels of a row do not overlap.
             prop_assert!(low > right || low < right - 1.0 || panel == 0);
             right = high;
         }

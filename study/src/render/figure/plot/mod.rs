@@ -1,29 +1,32 @@
 //! Plots of quantities over one axis: panels that share it, stacked or side by side.
 //!
-//! Panels side by side also share the y axis of their row, so that heights compare at a glance. A job
-//! without a value is a letter in a lane below the plot, never nothing.
+//! Panels side by side also share the y axis of their row, so that heights can be compared. A job without
+//! a value is a letter in a lane below the plot.
 
 use super::scale::{Scale, Spread};
-use super::style::{self, AXIS, Fill, GRID, MARGIN, MEDIUM, SMALL};
+use super::style::{AXIS, Fill, MARGIN, MEDIUM, SMALL};
 use super::ticks::{self, Tick};
-use super::{INNER, Sheet, legend};
+use super::{INNER, Sheet};
 use crate::render::font;
-use crate::render::page::{Anchor, Letters, Page, Place, cut, wrapped};
+use crate::render::page::{Anchor, Letters, Page, cut};
 
 pub mod lane;
+mod line;
+mod panel;
 
 use self::lane::Mark;
+use self::panel::Frame;
 
 /// A figure of plots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plots {
     /// Title, legends, notes.
     pub sheet: Sheet,
-    /// The axis they share.
+    /// The shared x axis.
     pub x: Axis,
     /// The plots, row by row.
     pub panels: Vec<Panel>,
-    /// Plots side by side.
+    /// Number of plots side by side.
     pub across: usize,
 }
 
@@ -36,55 +39,60 @@ pub struct Axis {
     pub spread: Spread,
     /// Its ends, low < high.
     pub range: [f64; 2],
-    /// Marks asked for, where there is room for them; none for round numbers.
+    /// Preferred ticks, used if they fit; without them the ticks are round numbers.
     pub ticks: Vec<Tick>,
-    /// Whether the marks are names, which nothing can stand for.
+    /// Whether the ticks are names, which are always shown.
     pub names: bool,
 }
 
 /// One plot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panel {
-    /// What it shows, above it.
+    /// Title above the plot.
     pub title: String,
     /// Quantity and unit of its y axis.
     pub label: String,
-    /// Ends of its y axis, low < high; those of the first panel of a row hold for the row.
+    /// Ends of its y axis, low < high; those of the first panel of a row apply to the row.
     pub range: [f64; 2],
-    /// Lines, the first lowest.
+    /// Lines, in drawing order.
     pub lines: Vec<Line>,
     /// Jobs without a value.
     pub lane: Vec<Mark>,
-    /// Said in the middle of the plot where there is nothing to draw.
-    pub words: String,
+    /// Text in the middle of an empty plot.
+    pub message: String,
 }
 
 /// One series of a plot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Line {
-    /// Which series: decides colour, dashes, marker.
+    /// Index of the series: gives colour, dashes, marker.
     pub series: usize,
-    /// Runs of points, each joined by a line; all finite.
-    pub runs: Vec<Vec<[f64; 2]>>,
+    /// Pieces of the line, each a list of joined points; all finite.
+    pub pieces: Vec<Vec<[f64; 2]>>,
     /// Markers at given points.
     pub marks: Vec<([f64; 2], Fill)>,
-    /// Markers here and there along the line, to tell it in black and white.
-    pub sparse: bool,
-    /// Crosses: what is left of runs that failed.
+    /// Whether a few markers stand along the line, which identify it in black and white.
+    pub sparse_markers: bool,
+    /// Crosses at the ends of failed runs.
     pub crosses: Vec<[f64; 2]>,
 }
 
-/// Between plots side by side, mm.
-const BETWEEN: f64 = 5.0;
+/// Distance between plots side by side, mm.
+const GAP: f64 = 5.0;
+/// Least distance between the texts of an axis, mm.
+const MIN_TEXT_GAP: f64 = 1.5;
 
-/// Where everything lies.
+/// Sizes of the figure, mm.
 struct Layout {
     /// Left ends of the columns.
     columns: Vec<f64>,
+    /// Width of a plot.
     width: f64,
+    /// Height of a plot.
     height: f64,
-    /// Rows of letters in the lane, by row of plots.
+    /// Number of rows of letters in the lane, by row of plots.
     lanes: Vec<usize>,
+    /// Height of the title line above a plot.
     title: f64,
 }
 
@@ -100,20 +108,28 @@ impl Plots {
         let mut page = Page::new();
         let mut y = self.sheet.head(&mut page);
         let layout = self.layout();
-        let last_full = self.panels.len().saturating_sub(self.across);
+        let last_row = self.panels.len().saturating_sub(self.across);
         for (row, panels) in self.panels.chunks(self.across.max(1)).enumerate() {
             y += layout.title;
             let bottom = y + layout.height;
             let mut below: f64 = 2.0;
             for (column, panel) in panels.iter().enumerate() {
                 let left = layout.columns[column];
-                let x = self.x_scale(left, layout.width);
-                let range = panels[0].range;
-                let scale = Scale::new(Spread::Linear, range, [bottom, y]);
-                self.draw(&mut page, panel, &layout, [left, y], (&x, &scale), (row, column == 0));
-                if row * self.across + column >= last_full {
+                let frame = Frame {
+                    left,
+                    top: y,
+                    width: layout.width,
+                    height: layout.height,
+                    x: self.x_scale(left, layout.width),
+                    y: Scale::new(Spread::Linear, panels[0].range, [bottom, y]),
+                    x_ticks: self.x_ticks(layout.width),
+                    lane_rows: layout.lanes.get(row).copied().unwrap_or(0),
+                    first: column == 0,
+                };
+                panel.draw(&mut page, &frame);
+                if row * self.across + column >= last_row {
                     let top = bottom + layout.lane_height(row);
-                    below = below.max(self.x_axis(&mut page, &x, top, layout.width));
+                    below = below.max(self.draw_x_axis(&mut page, &frame, top));
                 }
             }
             y = bottom + layout.lane_height(row) + below;
@@ -148,13 +164,13 @@ impl Plots {
             gutter = gutter.max(font::width(lane::NAME, SMALL));
         }
         let left = MARGIN + 1.8 * MEDIUM + gutter + 2.0;
-        // Half of the last number of an axis stands out to the right.
-        let room = INNER + MARGIN - left - 3.0;
-        let width = (room - (across - 1) as f64 * BETWEEN) / across as f64;
+        // Half of the last number of the x axis extends beyond the plot.
+        let inner_width = INNER + MARGIN - left - 3.0;
+        let width = (inner_width - (across - 1) as f64 * GAP) / across as f64;
         let columns: Vec<f64> =
-            (0..across).map(|column| left + column as f64 * (width + BETWEEN)).collect();
+            (0..across).map(|column| left + column as f64 * (width + GAP)).collect();
         let x = self.x_scale(0.0, width);
-        let rows = |panel: &Panel| lane::places(&panel.lane, &x, width).1;
+        let rows = |panel: &Panel| lane::positions(&panel.lane, &x, width).1;
         let lanes = self.panels.chunks(across);
         let lanes = lanes.map(|row| row.iter().map(rows).max().unwrap_or(0)).collect();
         let title = if self.panels.iter().any(|panel| !panel.title.is_empty()) { 5.5 } else { 1.5 };
@@ -165,20 +181,21 @@ impl Plots {
         Scale::new(self.x.spread, self.x.range, [left, left + width])
     }
 
-    /// Marks of the x axis that there is room for.
+    /// Ticks of the x axis that fit: the preferred ones, or as many round numbers as possible.
     fn x_ticks(&self, width: f64) -> Vec<Tick> {
         let x = self.x_scale(0.0, width);
         let half = |text: &str| 0.5 * font::width(text, SMALL);
         let apart = |ticks: &[Tick]| {
             ticks.windows(2).all(|pair| {
-                x.place(pair[1].0) - x.place(pair[0].0) > half(&pair[0].1) + half(&pair[1].1) + 1.5
+                x.position(pair[1].0) - x.position(pair[0].0)
+                    > half(&pair[0].1) + half(&pair[1].1) + MIN_TEXT_GAP
             })
         };
-        // The last number of a panel stands clear of the first of the panel beside it.
+        // The last number of a panel must not touch the first one of the next panel.
         let clear = |ticks: &[Tick]| match ticks {
             [first, .., last] if self.across > 1 => {
-                let next = x.place(first.0) + width + BETWEEN;
-                next - x.place(last.0) > half(&first.1) + half(&last.1) + 1.5
+                let next = x.position(first.0) + width + GAP;
+                next - x.position(last.0) > half(&first.1) + half(&last.1) + MIN_TEXT_GAP
             }
             _ => true,
         };
@@ -202,150 +219,32 @@ impl Plots {
         Vec::new()
     }
 
-    fn draw(
-        &self,
-        page: &mut Page,
-        panel: &Panel,
-        layout: &Layout,
-        [left, top]: Place,
-        (x, y): (&Scale, &Scale),
-        (row, first): (usize, bool),
-    ) {
-        let (width, height) = (layout.width, layout.height);
-        let (right, bottom) = (left + width, top + height);
-        let title = cut(&panel.title, SMALL, width);
-        page.text([left, top - 1.6], &Letters::new(SMALL), &title);
-        for (value, text) in y_ticks(panel.range, height) {
-            let at = y.place(value);
-            page.line([left, at], [right, at], &GRID);
-            if first {
-                page.line([left - 1.0, at], [left, at], &AXIS);
-                let place = [left - 1.6, at + 0.36 * SMALL];
-                page.text(place, &Letters::new(SMALL).at(Anchor::End), &text);
-            }
-        }
-        for (value, _) in self.x_ticks(width) {
-            page.line([x.place(value), top], [x.place(value), bottom], &GRID);
-        }
-        if first {
-            let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
-            let label = cut(&panel.label, MEDIUM, height + 4.0);
-            page.text([MARGIN + MEDIUM, 0.5 * (top + bottom)], &letters, &label);
-        }
-        page.clip([left, top], [width, height]);
-        for line in &panel.lines {
-            for run in &line.runs {
-                let places: Vec<Place> =
-                    run.iter().map(|point| [x.place(point[0]), y.place(point[1])]).collect();
-                page.polyline(&thinned(&places), &style::line(line.series));
-            }
-        }
-        page.unclip();
-        page.frame([left, top], [width, height], &AXIS);
-        let sparse = panel.lines.iter().filter(|line| line.sparse).count();
-        for (number, line) in panel.lines.iter().enumerate() {
-            if line.sparse {
-                let step = width / SPARSE;
-                let shift = (number as f64 + 0.5) / sparse as f64;
-                for place in along(line, (x, y), left + shift * step, step) {
-                    if (left..=right).contains(&place[0]) && (top..=bottom).contains(&place[1]) {
-                        style::marker(page, place, line.series, Fill::Filled, 1.7);
-                    }
-                }
-            }
-            for (point, fill) in &line.marks {
-                let place = [x.place(point[0]), y.place(point[1])];
-                style::marker(page, place, line.series, *fill, legend::MARKER);
-            }
-            for [at, value] in line.crosses.iter().copied() {
-                style::cross(page, [x.place(at), y.place(value)], style::colour(line.series), 2.6);
-            }
-        }
-        let rows = layout.lanes.get(row).copied().unwrap_or(0);
-        if rows > 0 {
-            lane::draw(page, &panel.lane, ([left, bottom], [width, lane::height(rows)]), x, first);
-        }
-        if !panel.words.is_empty() {
-            let lines = wrapped(&panel.words, SMALL, width - 6.0);
-            for (number, line) in lines.iter().enumerate() {
-                let below = number as f64 - 0.5 * (lines.len() - 1) as f64;
-                let place = [left + 0.5 * width, top + 0.5 * height + 1.4 * SMALL * below];
-                page.text(place, &Letters::new(SMALL).at(Anchor::Middle), line);
-            }
-        }
-    }
-
-    /// Draws the marks of the x axis below `top`. The height they take, mm.
-    fn x_axis(&self, page: &mut Page, x: &Scale, top: f64, width: f64) -> f64 {
-        let ticks = self.x_ticks(width);
-        let places: Vec<f64> = ticks.iter().map(|(value, _)| x.place(*value)).collect();
-        let nearest = places.windows(2).map(|pair| pair[1] - pair[0]).fold(width, f64::min);
+    /// Draws the x axis of a panel below `top`. Names that are too wide stand alternately on two lines.
+    /// Returns its height, mm.
+    fn draw_x_axis(&self, page: &mut Page, frame: &Frame, top: f64) -> f64 {
+        let ticks = &frame.x_ticks;
+        let positions: Vec<f64> = ticks.iter().map(|(value, _)| frame.x.position(*value)).collect();
+        let nearest =
+            positions.windows(2).map(|pair| pair[1] - pair[0]).fold(frame.width, f64::min);
         let widest = ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
-        // Names that do not fit side by side stand in turn on two lines.
-        let rows: usize = if self.x.names && widest + 1.5 > nearest { 2 } else { 1 };
-        for (number, ((_, text), at)) in ticks.iter().zip(&places).enumerate() {
-            page.line([*at, top], [*at, top + 1.0], &AXIS);
-            let down = (number % rows) as f64 * 1.25 * SMALL;
-            let room = if self.x.names { rows as f64 * nearest - 1.5 } else { f64::INFINITY };
-            let place = [*at, top + 1.6 + 0.8 * SMALL + down];
-            let text = cut(text, SMALL, room);
-            page.text(place, &Letters::new(SMALL).at(Anchor::Middle), &text);
+        let lines: usize = if self.x.names && widest + MIN_TEXT_GAP > nearest { 2 } else { 1 };
+        for (number, ((_, text), x)) in ticks.iter().zip(&positions).enumerate() {
+            page.line([*x, top], [*x, top + 1.0], &AXIS);
+            let down = (number % lines) as f64 * 1.25 * SMALL;
+            let max_width =
+                if self.x.names { lines as f64 * nearest - MIN_TEXT_GAP } else { f64::INFINITY };
+            let position = [*x, top + 1.6 + 0.8 * SMALL + down];
+            let text = cut(text, SMALL, max_width);
+            page.text(position, &Letters::new(SMALL).at(Anchor::Middle), &text);
         }
-        1.6 + rows as f64 * 1.25 * SMALL
+        1.6 + lines as f64 * 1.25 * SMALL
     }
 }
 
-/// Markers along a line that carries them here and there.
-const SPARSE: f64 = 6.0;
-
+/// Ticks of a y axis of this height, mm.
 fn y_ticks([low, high]: [f64; 2], height: f64) -> Vec<Tick> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few")]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 11")]
     ticks::linear(low, high, ((height / 7.0) as usize).clamp(3, 9))
-}
-
-/// Every `step` mm from `from` on, the places where a line is.
-fn along(line: &Line, (x, y): (&Scale, &Scale), from: f64, step: f64) -> Vec<Place> {
-    let mut found = Vec::new();
-    for run in &line.runs {
-        let mut next = 0;
-        for pair in run.windows(2) {
-            let ends = [x.place(pair[0][0]), x.place(pair[1][0])];
-            while from + f64::from(next) * step <= ends[1] {
-                let at = from + f64::from(next) * step;
-                next += 1;
-                if at < ends[0] {
-                    continue;
-                }
-                let share =
-                    if ends[1] > ends[0] { (at - ends[0]) / (ends[1] - ends[0]) } else { 0.0 };
-                found.push([at, y.place(pair[0][1] + share * (pair[1][1] - pair[0][1]))]);
-            }
-        }
-    }
-    found
-}
-
-/// A line with no more points than show: of those within a tenth of a millimetre of the axis the first,
-/// the lowest, the highest and the last.
-fn thinned(places: &[Place]) -> Vec<Place> {
-    const BIN: f64 = 0.1;
-    let bin = |place: &Place| libm::floor(place[0] / BIN);
-    let mut kept = Vec::new();
-    for group in places.chunk_by(|one, other| bin(one).total_cmp(&bin(other)).is_eq()) {
-        if group.len() < 4 {
-            kept.extend_from_slice(group);
-            continue;
-        }
-        let extreme = |better: fn(f64, f64) -> bool| {
-            (0..group.len())
-                .fold(0, |best, at| if better(group[at][1], group[best][1]) { at } else { best })
-        };
-        let (low, high) = (extreme(|a, b| a < b), extreme(|a, b| a > b));
-        let mut picked = vec![0, low.min(high), low.max(high), group.len() - 1];
-        picked.dedup();
-        kept.extend(picked.into_iter().map(|at| group[at]));
-    }
-    kept
 }
 
 #[cfg(test)]

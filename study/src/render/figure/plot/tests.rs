@@ -1,8 +1,12 @@
+//! Plots of any size are valid figures.
+
 use proptest::prelude::*;
 
-use super::super::legend::{Legend, Sample};
+use super::line::thinned;
 use super::*;
+use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::{check, columns};
+use crate::render::page::Position;
 use crate::render::png;
 
 fn axis(low: f64, high: f64) -> Axis {
@@ -20,16 +24,16 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
     let points: Vec<[f64; 2]> = ys
         .iter()
         .enumerate()
-        .map(|(at, y)| [low + (high - low) * at as f64 / ys.len() as f64, *y])
+        .map(|(index, y)| [low + (high - low) * index as f64 / ys.len() as f64, *y])
         .collect();
     let extreme = |start: f64, pick: fn(f64, f64) -> f64| ys.iter().copied().fold(start, pick);
     let (bottom, top) =
-        ticks::roomy(extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max));
+        ticks::padded(extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max));
     let line = |series: usize| Line {
         series,
-        runs: vec![points.clone()],
+        pieces: vec![points.clone()],
         marks: vec![(points[0], Fill::Open)],
-        sparse: true,
+        sparse_markers: true,
         crosses: if series == 0 { vec![points[points.len() - 1]] } else { Vec::new() },
     };
     let lane = (0..series).map(|series| Mark { x: high, series, letter: "S".to_owned() }).collect();
@@ -52,19 +56,19 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
                 range: [bottom, top],
                 lines: (0..series).map(line).collect(),
                 lane: if panel == 0 { Vec::clone(&lane) } else { Vec::new() },
-                words: String::new(),
+                message: String::new(),
             })
             .collect(),
         across,
     }
 }
 
-fn same(one: [f64; 2], other: [f64; 2]) -> bool {
-    one.map(f64::to_bits) == other.map(f64::to_bits)
+fn same(a: [f64; 2], b: [f64; 2]) -> bool {
+    a.map(f64::to_bits) == b.map(f64::to_bits)
 }
 
 #[test]
-fn numbers_of_panels_side_by_side_stand_clear() {
+fn numbers_of_adjacent_panels_do_not_overlap() {
     let range = axis(957.507, 957.507 + 5112.118);
     check::figure(&plots(range, &[0.0], 2, 2, 1).svg());
 }
@@ -72,7 +76,7 @@ fn numbers_of_panels_side_by_side_stand_clear() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
     #[test]
-    fn any_plot_is_a_sound_figure(
+    fn any_plot_is_a_valid_figure(
         low in -1e3..1e3_f64, span in 1e-3..1e4_f64,
         ys in prop::collection::vec(-1e5..1e5_f64, 1..60),
         panels in 1..7_usize, stacked in any::<bool>(), series in 1..9_usize,
@@ -82,43 +86,43 @@ proptest! {
     }
 
     #[test]
-    fn letters_of_a_lane_stand_clear_of_one_another(
-        places in prop::collection::btree_set(0..8_u8, 1..8), marks in 1..9_usize, width in 35.0..140.0_f64,
+    fn letters_of_a_lane_do_not_overlap(
+        positions in prop::collection::btree_set(0..8_u8, 1..8), marks in 1..9_usize, width in 35.0..140.0_f64,
     ) {
         let x = Scale::new(Spread::Linear, [-0.4, 7.4], [10.0, 10.0 + width]);
         let mark = |x: &u8, series| Mark { x: f64::from(*x), series, letter: "S".to_owned() };
         let marks: Vec<Mark> =
-            places.iter().flat_map(|x| (0..marks).map(move |series| mark(x, series))).collect();
-        let (places, rows) = lane::places(&marks, &x, width);
-        for (at, place) in places.iter().enumerate() {
-            prop_assert!(place[0] >= 11.49 && place[0] <= 8.51 + width && place[1] < rows as f64);
+            positions.iter().flat_map(|x| (0..marks).map(move |series| mark(x, series))).collect();
+        let (positions, rows) = lane::positions(&marks, &x, width);
+        for (index, position) in positions.iter().enumerate() {
+            prop_assert!(position[0] >= 11.49 && position[0] <= 8.51 + width && position[1] < rows as f64);
             let clear = |other: &[f64; 2]| {
-                (other[0] - place[0]).abs() >= lane::LANE_LETTER - 1e-9 || (other[1] - place[1]).abs() > 0.5
+                (other[0] - position[0]).abs() >= lane::LANE_LETTER - 1e-9 || (other[1] - position[1]).abs() > 0.5
             };
-            prop_assert!(places[..at].iter().all(clear), "{:?}", places);
+            prop_assert!(positions[..index].iter().all(clear), "{:?}", positions);
         }
     }
 
     #[test]
-    fn a_thinned_line_keeps_its_ends_and_its_reach(ys in prop::collection::vec(-9.0..9.0_f64, 2..900)) {
-        let places: Vec<Place> =
-            ys.iter().enumerate().map(|(at, y)| [0.003 * at as f64, *y]).collect();
-        let kept = thinned(&places);
-        prop_assert!(kept.len() <= 4 * (1 + places.len() * 3 / 100 + 1));
-        prop_assert!(same(kept[0], places[0]));
-        prop_assert!(same(kept[kept.len() - 1], places[places.len() - 1]));
-        let reach = |places: &[Place]| {
-            places.iter().fold([9.0, -9.0], |[low, high]: [f64; 2], p| [low.min(p[1]), high.max(p[1])])
+    fn a_thinned_line_keeps_its_ends_and_extremes(ys in prop::collection::vec(-9.0..9.0_f64, 2..900)) {
+        let positions: Vec<Position> =
+            ys.iter().enumerate().map(|(index, y)| [0.003 * index as f64, *y]).collect();
+        let kept = thinned(&positions);
+        prop_assert!(kept.len() <= 4 * (1 + positions.len() * 3 / 100 + 1));
+        prop_assert!(same(kept[0], positions[0]));
+        prop_assert!(same(kept[kept.len() - 1], positions[positions.len() - 1]));
+        let extremes = |positions: &[Position]| {
+            positions.iter().fold([9.0, -9.0], |[low, high]: [f64; 2], p| [low.min(p[1]), high.max(p[1])])
         };
-        prop_assert!(same(reach(&kept), reach(&places)));
+        prop_assert!(same(extremes(&kept), extremes(&positions)));
         prop_assert!(kept.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
     }
 }
 
 #[test]
-fn quantities_units_legend_and_words_are_on_the_page() {
+fn quantities_units_legend_and_message_are_on_the_page() {
     let mut figure = plots(axis(0.0, 500.0), &[0.0, 0.5, 1.0], 1, 1, 3);
-    figure.panels[0].words = "nothing to draw: no job is done".to_owned();
+    figure.panels[0].message = "nothing to draw: no job is done".to_owned();
     let texts = check::figure(&figure.svg());
     for text in
         ["time (ms)", "z_rim (m)", "N 2", "no value", "S", "nothing to draw: no job is done"]
@@ -133,29 +137,30 @@ fn quantities_units_legend_and_words_are_on_the_page() {
 }
 
 #[test]
-fn long_names_stand_in_turn_on_two_lines() {
+fn long_names_stand_alternately_on_two_lines() {
     let mut x = axis(-0.5, 4.5);
     x.names = true;
     let names =
         ["preinflate with a burst", "residual gas alone", "rapid", "delayed by five seconds", "d"];
-    x.ticks = names.iter().enumerate().map(|(at, name)| (at as f64, (*name).to_owned())).collect();
+    x.ticks =
+        names.iter().enumerate().map(|(index, name)| (index as f64, (*name).to_owned())).collect();
     let texts = check::figure(&plots(x, &[1.0, 2.0], 1, 1, 2).svg());
     assert!(texts.iter().any(|text| text == "preinflate with a burst"), "{texts:?}");
 }
 
 #[test]
-fn many_letters_at_one_place_stand_in_rows() {
+fn many_letters_at_one_position_stand_in_rows() {
     let x = Scale::new(Spread::Linear, [0.0, 2.0], [10.0, 40.0]);
     let mark = |series| Mark { x: 0.0, series, letter: "S".to_owned() };
     let marks: Vec<Mark> = (0..20).map(mark).chain([Mark { x: 2.0, ..mark(0) }]).collect();
-    let (places, rows) = lane::places(&marks, &x, 30.0);
+    let (positions, rows) = lane::positions(&marks, &x, 30.0);
     assert!(rows > 1);
-    for (at, place) in places.iter().enumerate() {
-        assert!((11.0..=39.0).contains(&place[0]), "{place:?}");
+    for (index, position) in positions.iter().enumerate() {
+        assert!((11.0..=39.0).contains(&position[0]), "{position:?}");
         let clear = |other: &[f64; 2]| {
-            (other[0] - place[0]).abs() >= lane::LANE_LETTER - 1e-9
-                || (other[1] - place[1]).abs() > 0.5
+            (other[0] - position[0]).abs() >= lane::LANE_LETTER - 1e-9
+                || (other[1] - position[1]).abs() > 0.5
         };
-        assert!(places[..at].iter().all(clear), "{at}");
+        assert!(positions[..index].iter().all(clear), "{index}");
     }
 }

@@ -1,5 +1,5 @@
-//! What tells the points of a chart apart: the parameters that take more than one value, less those that
-//! go with another.
+//! The parameters of a chart: those with more than one value, without those that change together with
+//! another one.
 
 use std::collections::BTreeMap;
 
@@ -11,46 +11,46 @@ use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
 use crate::store::table::{Column, Table};
 
-/// A parameter and the unit it is shown in.
+/// A parameter and the unit in which it is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter<'a> {
-    /// Its column.
+    /// Column of the table.
     pub column: &'a Column,
-    /// Its unit.
+    /// Unit in which it is shown.
     pub unit: Unit,
 }
 
 impl<'a> Parameter<'a> {
-    /// Of these rows.
+    /// The parameter of a column; its unit fits the values of these rows.
     pub fn new(column: &'a Column, rows: &[usize]) -> Self {
         let values = rows.iter().filter_map(|row| number(&column.cells[*row]));
         Self { column, unit: Unit::fit(&column.unit, values) }
     }
 
-    /// Its name.
+    /// Name.
     pub fn name(&self) -> &'a str {
         &self.column.name
     }
 
-    /// A value as people write it, with its unit. A number among names is SI.
+    /// A value with its unit. A number in a column of texts is SI.
     pub fn text(&self, value: &Value) -> String {
-        let text = self.bare(value);
+        let text = self.without_unit(value);
         match value {
-            Value::Integer(_) | Value::Number(_) => self.unit.behind(&text),
+            Value::Integer(_) | Value::Number(_) => self.unit.after(&text),
             Value::Text(number) if number.parse::<f64>().is_ok() => {
-                Unit::si(&self.column.unit).behind(&text)
+                Unit::si(&self.column.unit).after(&text)
             }
             _ => text,
         }
     }
 
-    /// The value of a row, so written.
+    /// The value of a row, with its unit.
     pub fn of_row(&self, row: usize) -> String {
         self.text(&self.column.cells[row])
     }
 
-    /// Its values along an axis: the label of the axis and their texts. Numbers share the unit of the
-    /// label, names bear their own.
+    /// Label of an axis of this parameter, and the texts of its values. The unit of numbers stands in the
+    /// label; texts have their units themselves.
     pub fn along(&self, values: &[Value], rows: &[usize]) -> (String, Vec<String>) {
         if self.is_number(rows) {
             let shown: Vec<f64> =
@@ -61,8 +61,8 @@ impl<'a> Parameter<'a> {
         }
     }
 
-    /// The same without the unit.
-    pub fn bare(&self, value: &Value) -> String {
+    /// A value without its unit.
+    pub fn without_unit(&self, value: &Value) -> String {
         match value {
             Value::Null => "–".to_owned(),
             Value::Integer(_) | Value::Number(_) => number(value)
@@ -71,20 +71,19 @@ impl<'a> Parameter<'a> {
         }
     }
 
-    /// Its different values over some rows: numbers from the smallest up, what is no number in the
-    /// order of the plan.
+    /// Distinct values in some rows: numbers in increasing order, other values in plan order.
     pub fn values(&self, rows: &[usize]) -> Vec<Value> {
         let mut found = compare::values(self.column, rows);
         if self.is_number(rows) {
-            found.sort_by(|one, other| {
+            found.sort_by(|a, b| {
                 let key = |value| number(value).unwrap_or(f64::INFINITY);
-                key(one).total_cmp(&key(other))
+                key(a).total_cmp(&key(b))
             });
         }
         found
     }
 
-    /// Whether every row has a number of it.
+    /// Whether every row has a number.
     pub fn is_number(&self, rows: &[usize]) -> bool {
         matches!(self.column.cell_type, CellType::Integer | CellType::Number)
             && rows.iter().all(|row| number(&self.column.cells[*row]).is_some())
@@ -96,7 +95,7 @@ impl<'a> Parameter<'a> {
     }
 }
 
-/// Numbers to four significant digits, to six where that would make two of them the same.
+/// Numbers with four significant digits; with six if four make two of them equal.
 fn distinct(numbers: &[f64]) -> Vec<String> {
     let short = |number: &f64| {
         let rounded = format!("{number:.3e}").parse().unwrap_or(*number);
@@ -110,9 +109,9 @@ fn distinct(numbers: &[f64]) -> Vec<String> {
     }
 }
 
-/// Parameters that take more than one value over the rows, in the order of the study, and those that go
-/// with another of them: "`residual_gas_mass` goes with `strategy`". `axes` are not among the first, but
-/// others may go with them.
+/// Parameters with more than one value in the rows, in the order of the study, and notes about those that
+/// change together with another one: "`residual_gas_mass` changes with `strategy`". `axes` are not
+/// returned, but other parameters can change with them.
 pub fn varying<'a>(
     table: &'a Table,
     rows: &[usize],
@@ -122,48 +121,49 @@ pub fn varying<'a>(
     let mut notes = Vec::new();
     for column in table.parameters() {
         let axis = axes.iter().any(|axis| axis.name == column.name);
-        if axis || decides(None, column, rows) {
+        if axis || determines(None, column, rows) {
             continue;
         }
         let mut others = axes.iter().chain(&kept);
-        match others.find(|other| decides(Some(other), column, rows)) {
-            Some(other) => notes.push(format!("{} goes with {}.", column.name, other.name)),
+        match others.find(|other| determines(Some(other), column, rows)) {
+            Some(other) => notes.push(format!("{} changes with {}.", column.name, other.name)),
             None => kept.push(column),
         }
     }
     (kept.into_iter().map(|column| Parameter::new(column, rows)).collect(), notes)
 }
 
-/// Whether one value of `one` always comes with the same value of `other`; without `one`, whether
-/// `other` is the same everywhere.
-fn decides(one: Option<&Column>, other: &Column, rows: &[usize]) -> bool {
+/// Whether equal values of `cause` always have equal values of `effect`; without `cause`, whether `effect`
+/// has one value.
+fn determines(cause: Option<&Column>, effect: &Column, rows: &[usize]) -> bool {
     let mut pairs: BTreeMap<Option<String>, &Value> = BTreeMap::new();
     rows.iter().all(|row| {
-        let key = one.map(|column| canonical(&column.cells[*row]));
-        let value = &other.cells[*row];
+        let key = cause.map(|column| canonical(&column.cells[*row]));
+        let value = &effect.cells[*row];
         *pairs.entry(key).or_insert(value) == value
     })
 }
 
-/// Rows with the same values of some parameters.
+/// Rows with equal values of some parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// Those values: "5, 1 g/s".
+    /// The values: "5, 1 g/s".
     pub values: String,
     /// Names and values: `N 5, mass_flow_rate 1 g/s`.
     pub named: String,
-    /// Its rows.
+    /// The rows.
     pub rows: Vec<usize>,
 }
 
 /// Rows grouped by the values of some parameters, in order of value, the first parameter outermost.
 pub fn groups(parameters: &[Parameter<'_>], rows: &[usize]) -> Vec<Group> {
-    let orders: Vec<Vec<Value>> = parameters.iter().map(|each| each.values(rows)).collect();
+    let orders: Vec<Vec<Value>> =
+        parameters.iter().map(|parameter| parameter.values(rows)).collect();
     let key = |row: usize| -> Vec<usize> {
         let pairs = parameters.iter().zip(&orders);
         pairs
-            .map(|(each, order)| {
-                let value = &each.column.cells[row];
+            .map(|(parameter, order)| {
+                let value = &parameter.column.cells[row];
                 order.iter().position(|known| known == value).unwrap_or(usize::MAX)
             })
             .collect()
@@ -171,14 +171,15 @@ pub fn groups(parameters: &[Parameter<'_>], rows: &[usize]) -> Vec<Group> {
     let mut keyed: Vec<(Vec<usize>, usize)> = rows.iter().map(|row| (key(*row), *row)).collect();
     keyed.sort();
     keyed
-        .chunk_by(|one, other| one.0 == other.0)
+        .chunk_by(|a, b| a.0 == b.0)
         .map(|group| {
             let row = group[0].1;
-            let texts: Vec<String> = parameters.iter().map(|each| each.of_row(row)).collect();
+            let texts: Vec<String> =
+                parameters.iter().map(|parameter| parameter.of_row(row)).collect();
             let named: Vec<String> = parameters
                 .iter()
                 .zip(&texts)
-                .map(|(each, text)| format!("{} {text}", each.name()))
+                .map(|(parameter, text)| format!("{} {text}", parameter.name()))
                 .collect();
             Group {
                 values: texts.join(", "),
@@ -192,7 +193,7 @@ pub fn groups(parameters: &[Parameter<'_>], rows: &[usize]) -> Vec<Group> {
 /// Rows by panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facets<'a> {
-    /// What tells the panels apart, where their titles give values alone; else empty.
+    /// Names of the parameters if the titles give only their values; else empty.
     pub heading: String,
     /// Titles and rows of the panels.
     pub panels: Vec<(String, Vec<usize>)>,
@@ -200,13 +201,13 @@ pub struct Facets<'a> {
     pub parameters: Vec<Parameter<'a>>,
 }
 
-/// Letters the title of a panel has room for, about.
-const TITLE: usize = 26;
+/// Most characters of a panel title, approximately.
+const MAX_TITLE_LENGTH: usize = 26;
 
-/// A panel for every combination of some parameters. Titles name the parameters where there is room.
+/// One panel per combination of some parameters. The titles name the parameters if there is space.
 pub fn facets<'a>(parameters: Vec<Parameter<'a>>, rows: &[usize]) -> Facets<'a> {
     let groups = groups(&parameters, rows);
-    let short = groups.iter().all(|group| group.named.chars().count() <= TITLE);
+    let short = groups.iter().all(|group| group.named.chars().count() <= MAX_TITLE_LENGTH);
     let named = short || parameters.len() == 1;
     let title = |group: &Group| if named { group.named.clone() } else { group.values.clone() };
     Facets {
@@ -226,7 +227,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_along_an_axis_are_short_and_stay_apart() {
+    fn axis_numbers_are_short_and_distinct() {
         assert_eq!(distinct(&[0.1, 0.215_443, 100.0]), ["0.1", "0.2154", "100"]);
         assert_eq!(distinct(&[-1.000_01, 1.0, 1.000_02]), ["−1.00001", "1", "1.00002"]);
         assert!(distinct(&[]).is_empty());

@@ -1,27 +1,33 @@
-//! A page of SVG in millimetres: lines, areas, texts. What is drawn first lies lowest.
+//! A page of SVG in millimetres: lines, areas, texts. Later shapes cover earlier ones.
 //!
-//! Letters are those of [`super::font`]; nothing here knows what a picture shows.
+//! Texts use [`super::font`].
 
 use std::fmt::Write;
 
 use super::font;
 
-/// A place on the page, mm from its upper left corner; y grows downwards.
-pub type Place = [f64; 2];
+mod text;
 
-/// How a line is drawn.
+pub use text::{cut, wrapped};
+
+use text::escaped;
+
+/// A position on the page, mm from its upper left corner; y grows downwards.
+pub type Position = [f64; 2];
+
+/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
     /// Colour, as SVG writes it.
     pub colour: &'static str,
     /// Width, mm.
     pub width: f64,
-    /// Lengths of dashes and gaps in turn, mm; none for a whole line.
+    /// Lengths of dashes and gaps alternately, mm; empty for a solid line.
     pub dashes: &'static [f64],
 }
 
 impl Stroke {
-    /// A whole line.
+    /// A solid line.
     pub const fn solid(colour: &'static str, width: f64) -> Self {
         Self { colour, width, dashes: &[] }
     }
@@ -36,7 +42,7 @@ impl Stroke {
     }
 }
 
-/// Which part of a text stands at its place.
+/// Part of a text that lies at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     /// Its left end.
@@ -47,33 +53,33 @@ pub enum Anchor {
     End,
 }
 
-/// Letters and how they are set.
+/// Style of a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Letters<'a> {
     /// Size, mm.
     pub size: f64,
     /// Colour.
     pub colour: &'a str,
-    /// Which part stands at the place.
+    /// Part of the text at its position.
     pub anchor: Anchor,
-    /// Whether it is read from below to above.
+    /// Whether the text runs upwards.
     pub upwards: bool,
 }
 
 impl Letters<'_> {
-    /// Black letters that begin at their place.
+    /// Black text that starts at its position.
     pub const fn new(size: f64) -> Self {
         Self { size, colour: "#000000", anchor: Anchor::Start, upwards: false }
     }
 
-    /// The same, otherwise anchored.
+    /// The same style with another anchor.
     #[must_use]
     pub const fn at(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
     }
 }
 
-/// A page being drawn. Its size is given at the end, when it is known.
+/// A page that is being drawn. Its size is given at the end.
 #[derive(Debug, Clone, Default)]
 pub struct Page {
     body: String,
@@ -87,7 +93,7 @@ impl Page {
     }
 
     /// A straight line.
-    pub fn line(&mut self, from: Place, to: Place, stroke: &Stroke) {
+    pub fn line(&mut self, from: Position, to: Position, stroke: &Stroke) {
         let _ = writeln!(
             self.body,
             "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>",
@@ -99,30 +105,30 @@ impl Page {
         );
     }
 
-    /// A line through several places; nothing for fewer than two.
-    pub fn polyline(&mut self, places: &[Place], stroke: &Stroke) {
-        if places.len() > 1 {
+    /// A line through several positions; nothing for fewer than two.
+    pub fn polyline(&mut self, positions: &[Position], stroke: &Stroke) {
+        if positions.len() > 1 {
             let _ = writeln!(
                 self.body,
                 "<polyline points=\"{}\" fill=\"none\" stroke-linejoin=\"round\" {}/>",
-                points(places),
+                points(positions),
                 stroke.attributes()
             );
         }
     }
 
     /// A closed area.
-    pub fn polygon(&mut self, places: &[Place], fill: &str, stroke: &Stroke) {
+    pub fn polygon(&mut self, positions: &[Position], fill: &str, stroke: &Stroke) {
         let _ = writeln!(
             self.body,
             "<polygon points=\"{}\" fill=\"{fill}\" {}/>",
-            points(places),
+            points(positions),
             stroke.attributes()
         );
     }
 
     /// A circle.
-    pub fn circle(&mut self, centre: Place, radius: f64, fill: &str, stroke: &Stroke) {
+    pub fn circle(&mut self, centre: Position, radius: f64, fill: &str, stroke: &Stroke) {
         let _ = writeln!(
             self.body,
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{fill}\" {}/>",
@@ -133,8 +139,8 @@ impl Page {
         );
     }
 
-    /// A filled rectangle: its upper left corner, its size. Neighbours meet without a seam.
-    pub fn fill(&mut self, corner: Place, size: [f64; 2], colour: &str) {
+    /// A filled rectangle with this upper left corner and size. Adjacent rectangles show no gap.
+    pub fn fill(&mut self, corner: Position, size: [f64; 2], colour: &str) {
         let _ = writeln!(
             self.body,
             "<rect {} fill=\"{colour}\" shape-rendering=\"crispEdges\"/>",
@@ -142,8 +148,8 @@ impl Page {
         );
     }
 
-    /// The outline of a rectangle: its upper left corner, its size.
-    pub fn frame(&mut self, corner: Place, size: [f64; 2], stroke: &Stroke) {
+    /// The outline of a rectangle with this upper left corner and size.
+    pub fn frame(&mut self, corner: Position, size: [f64; 2], stroke: &Stroke) {
         let _ = writeln!(
             self.body,
             "<rect {} fill=\"none\" {}/>",
@@ -152,8 +158,8 @@ impl Page {
         );
     }
 
-    /// Lines at 45° across a rectangle, `gap` mm from one another along its edges.
-    pub fn hatch(&mut self, corner: Place, size: [f64; 2], gap: f64, stroke: &Stroke) {
+    /// Lines at 45° across a rectangle, at a distance of `gap` mm along its edges.
+    pub fn hatch(&mut self, corner: Position, size: [f64; 2], gap: f64, stroke: &Stroke) {
         let [width, height] = size;
         let mut along = gap;
         while along < width + height {
@@ -165,15 +171,15 @@ impl Page {
         }
     }
 
-    /// A text on one line, its baseline at `place`. Characters that no XML holds are left out.
-    pub fn text(&mut self, place: Place, letters: &Letters<'_>, text: &str) {
-        let [x, y] = place.map(mm);
+    /// A text on one line with its baseline at `position`. Characters that XML does not allow are ignored.
+    pub fn text(&mut self, position: Position, letters: &Letters<'_>, text: &str) {
+        let [x, y] = position.map(mm);
         let anchor = match letters.anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let turned = if letters.upwards {
+        let rotation = if letters.upwards {
             format!(" transform=\"rotate(-90 {x} {y})\"")
         } else {
             String::new()
@@ -181,30 +187,30 @@ impl Page {
         let _ = writeln!(
             self.body,
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" text-anchor=\"{anchor}\" \
-             fill=\"{}\"{turned}>{}</text>",
+             fill=\"{}\"{rotation}>{}</text>",
             mm(letters.size),
             letters.colour,
             escaped(text)
         );
     }
 
-    /// Opens a group of this name whose members share `attributes`, until [`Self::close`].
+    /// Opens a group with this name and these attributes; [`Self::close`] ends it.
     pub fn open(&mut self, name: &str, attributes: &str) {
         let _ = writeln!(self.body, "<g id=\"{name}\" {attributes}>");
     }
 
-    /// A filled path with the stroke of its group; `d` says it as SVG does.
+    /// A filled SVG path `d` with the stroke of its group.
     pub fn path(&mut self, fill: &str, d: &str) {
         let _ = writeln!(self.body, "<path fill=\"{fill}\" d=\"{d}\"/>");
     }
 
-    /// Ends what [`Self::open`] began.
+    /// Ends the group of [`Self::open`].
     pub fn close(&mut self) {
         self.body.push_str("</g>\n");
     }
 
-    /// Draws only what lies in a rectangle, until [`Self::unclip`].
-    pub fn clip(&mut self, corner: Place, size: [f64; 2]) {
+    /// Clips the following shapes to a rectangle; [`Self::unclip`] ends it.
+    pub fn clip(&mut self, corner: Position, size: [f64; 2]) {
         self.clips += 1;
         let _ = writeln!(
             self.body,
@@ -214,12 +220,12 @@ impl Page {
         );
     }
 
-    /// Ends what [`Self::clip`] began.
+    /// Ends the clipping of [`Self::clip`].
     pub fn unclip(&mut self) {
         self.body.push_str("</g>\n");
     }
 
-    /// The SVG text, white behind; `title` is what a reader that cannot see it is told.
+    /// The SVG text on a white ground; `title` is the title for screen readers.
     pub fn finish(self, width: f64, height: f64, title: &str) -> String {
         let (width, height) = (mm(width), mm(height));
         format!(
@@ -234,37 +240,7 @@ impl Page {
     }
 }
 
-/// Breaks a text into lines no wider than `width`, at its spaces; a longer word stands alone.
-pub fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if font::width(&format!("{line} {word}"), size) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
-/// A text cut to a width, with an ellipsis where something is lost.
-pub fn cut(text: &str, size: f64, width: f64) -> String {
-    if font::width(text, size) <= width {
-        return text.to_owned();
-    }
-    let mut kept: Vec<char> = text.chars().collect();
-    loop {
-        kept.pop();
-        let shorter = format!("{}…", kept.iter().collect::<String>().trim_end());
-        if kept.is_empty() || font::width(&shorter, size) <= width {
-            return shorter;
-        }
-    }
-}
-
-fn rectangle([x, y]: Place, [width, height]: [f64; 2]) -> String {
+fn rectangle([x, y]: Position, [width, height]: [f64; 2]) -> String {
     format!(
         "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
         mm(x),
@@ -274,33 +250,17 @@ fn rectangle([x, y]: Place, [width, height]: [f64; 2]) -> String {
     )
 }
 
-fn points(places: &[Place]) -> String {
-    let pairs: Vec<String> = places.iter().map(|[x, y]| format!("{},{}", mm(*x), mm(*y))).collect();
+fn points(positions: &[Position]) -> String {
+    let pairs: Vec<String> =
+        positions.iter().map(|[x, y]| format!("{},{}", mm(*x), mm(*y))).collect();
     pairs.join(" ")
 }
 
-/// Micrometres are enough for any printer.
+/// A length with micrometre resolution, without trailing zeros.
 fn mm(length: f64) -> String {
     let text = format!("{length:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
-fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\t' | '\n' | '\r' => safe.push(' '),
-            '\u{fffe}' | '\u{ffff}' => {}
-            letter if letter.is_control() => {}
-            letter => safe.push(letter),
-        }
-    }
-    safe
 }
 
 #[cfg(test)]
@@ -325,36 +285,17 @@ mod tests {
         }
 
         #[test]
-        fn wrapped_lines_are_narrow_and_lose_nothing(
-            words in prop::collection::vec("[a-z]{1,12}", 1..30), width in 20.0..60.0,
-        ) {
-            let text = words.join(" ");
-            let lines = wrapped(&text, 3.0, width);
-            prop_assert_eq!(lines.join(" "), text);
-            for line in &lines {
-                prop_assert!(!line.contains(' ') || font::width(line, 3.0) <= width);
-            }
-        }
-
-        #[test]
-        fn a_cut_text_fits(text in "[ -~]{0,60}", width in 5.0..80.0) {
-            let shorter = cut(&text, 3.0, width);
-            prop_assert!(font::width(&shorter, 3.0) <= width);
-            prop_assert!(shorter == text || shorter.ends_with('…'));
-        }
-
-        #[test]
-        fn a_hatch_stays_inside(width in 1.0..40.0, height in 1.0..40.0, gap in 0.5..5.0) {
+        fn a_hatch_stays_inside_its_rectangle(width in 1.0..40.0, height in 1.0..40.0, gap in 0.5..5.0) {
             let mut page = Page::new();
             page.hatch([2.0, 3.0], [width, height], gap, &Stroke::solid("#000000", 0.1));
             let svg = page.finish(50.0, 50.0, "");
             let parsed = Document::parse(&svg).unwrap();
             for line in parsed.descendants().filter(|node| node.has_tag_name("line")) {
-                let at = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
-                for x in [at("x1"), at("x2")] {
+                let attribute = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
+                for x in [attribute("x1"), attribute("x2")] {
                     prop_assert!((1.999..=width + 2.001).contains(&x));
                 }
-                for y in [at("y1"), at("y2")] {
+                for y in [attribute("y1"), attribute("y2")] {
                     prop_assert!((2.999..=height + 3.001).contains(&y));
                 }
             }

@@ -1,0 +1,131 @@
+//! Options that several commands share. A command includes only those that apply to it, below its own
+//! options in `--help`.
+
+use std::num::NonZero;
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use crate::platform::error::{Error, Result};
+use crate::run::progress::Loudness;
+
+/// Heading of the shared options in `--help`.
+pub const HEADING: &str = "Global options";
+
+/// Where the results are.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct ResultsOption {
+    /// Folder of the results [default: `results/STUDY` under the current folder].
+    #[arg(long, value_name = "DIR", help_heading = HEADING)]
+    pub results: Option<PathBuf>,
+}
+
+/// Number of threads.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct ThreadsOption {
+    /// Number of threads [default: number of cores]. A job or a case runs on one thread; no result
+    /// depends on this number.
+    #[arg(long, value_name = "N", help_heading = HEADING)]
+    pub threads: Option<usize>,
+}
+
+impl ThreadsOption {
+    /// The number asked for; `None` for one thread per core.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for zero.
+    pub fn count(&self) -> Result<Option<NonZero<usize>>> {
+        let Some(threads) = self.threads else { return Ok(None) };
+        let zero = || {
+            let allowed = "1 or more; without --threads one thread per core";
+            Error::invalid_option("--threads", "0", "zero threads cannot run a job", allowed, "")
+        };
+        Ok(Some(NonZero::new(threads).ok_or_else(zero)?))
+    }
+
+    /// A pool of this many threads.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for zero; [`Error::Disk`] when the system starts none.
+    pub fn pool(&self) -> Result<rayon::ThreadPool> {
+        let threads = self.count()?.map_or(0, NonZero::get);
+        let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        built.map_err(|error| Error::Disk {
+            path: "threads".into(),
+            problem: format!("cannot start: {error}\n  next: use fewer with --threads N"),
+        })
+    }
+}
+
+/// Overrides of the study or scene file.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct SetOption {
+    /// Override a key of the study or scene file, for example --set film.thickness="30 um"; can be
+    /// repeated.
+    #[arg(long, value_name = "KEY=VALUE", help_heading = HEADING)]
+    pub set: Vec<String>,
+}
+
+/// Format of the output.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct OutputOptions {
+    /// Same as --format json.
+    #[arg(long, conflicts_with = "format", help_heading = HEADING)]
+    pub json: bool,
+    /// Format of the output [default: table; for `solve` json].
+    #[arg(long, value_enum, help_heading = HEADING)]
+    pub format: Option<Format>,
+}
+
+impl OutputOptions {
+    /// The format asked for, `default` otherwise.
+    pub fn format_or(&self, default: Format) -> Format {
+        if self.json { Format::Json } else { self.format.unwrap_or(default) }
+    }
+
+    /// The format asked for, a table otherwise.
+    pub fn format(&self) -> Format {
+        self.format_or(Format::Table)
+    }
+}
+
+/// Format of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns.
+    Table,
+    /// Comma-separated values (RFC 4180).
+    Csv,
+    /// JSON.
+    Json,
+}
+
+/// Whether notes are printed.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct QuietOption {
+    /// Print no progress and no notes.
+    #[arg(short, long, help_heading = HEADING)]
+    pub quiet: bool,
+}
+
+/// How much progress is printed.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct ProgressOptions {
+    /// Print no progress and no notes.
+    #[arg(short, long, conflicts_with = "verbose", help_heading = HEADING)]
+    pub quiet: bool,
+    /// Print more progress.
+    #[arg(short, long, help_heading = HEADING)]
+    pub verbose: bool,
+}
+
+impl ProgressOptions {
+    /// The loudness of the progress reporter.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Normal,
+        }
+    }
+}

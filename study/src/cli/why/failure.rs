@@ -1,0 +1,100 @@
+//! Why a job has no result, and what to do about it.
+
+use billow_solver::output::outcome::FailureKind;
+
+use super::Line;
+use crate::input::value::brief_number;
+use crate::job::Status;
+use crate::job::row::{Cells, ColumnId};
+
+/// Peak kinetic energy below which nothing deployed, J. Chosen: a thousandth of the slowest run of the
+/// paper.
+const MIN_DEPLOYMENT_ENERGY: f64 = 5e-3;
+
+/// Lines of a failed or infeasible job, and the next step.
+pub(super) fn explanation(
+    cells: &Cells,
+    status: Status,
+    short_id: &str,
+    root: &str,
+) -> (Vec<Line>, String) {
+    let mut lines = vec![("status", format!("{}: {}", status.name(), meaning(status)))];
+    if let Some(time) = cells.number(ColumnId::StopTime) {
+        lines.push(("time", format!("{} s", brief_number(time))));
+    }
+    for (topic, column) in [
+        ("location", ColumnId::StopLocation),
+        ("reason", ColumnId::Reason),
+        ("nearest", ColumnId::Nearest),
+    ] {
+        if !cells.text(column).is_empty() {
+            let scope = if column == ColumnId::Nearest {
+                " (each for a change of that key only)"
+            } else {
+                ""
+            };
+            lines.push((topic, format!("{}{scope}", cells.text(column))));
+        }
+    }
+    let energy = cells.number(ColumnId::PeakKineticEnergy).unwrap_or(f64::INFINITY);
+    if status == Status::Failed(FailureKind::EnergyDrift) && energy < MIN_DEPLOYMENT_ENERGY {
+        let text = format!(
+            "the film hardly moved (peak kinetic energy {} J): the strain energy of the folded mesh is \
+             as large, so the energy balance has no meaning",
+            brief_number(energy)
+        );
+        lines.push(("energy", text));
+        let next = "check that gas flows in before solver.end_time: gas.mass_flow_rate and the inflow \
+                    windows of the strategy; their times count from the start of the run";
+        return (lines, next.to_owned());
+    }
+    (lines, next_step(status, short_id, root))
+}
+
+/// What a status means.
+fn meaning(status: Status) -> &'static str {
+    match status {
+        Status::Infeasible => "no fold pattern exists for this design; nothing was run",
+        Status::Invalid => "the model refused the scene before the first step",
+        Status::Panicked => "an error in the program billow stopped the job",
+        Status::Failed(FailureKind::Unstable) => {
+            "the state became non-finite, or its energy grew without a source"
+        }
+        Status::Failed(FailureKind::EnergyDrift) => {
+            "the energy ledger did not balance, so the run has no valid result"
+        }
+        Status::Failed(FailureKind::InvertedVolume) => {
+            "the enclosed volume became zero or negative"
+        }
+        Status::Failed(FailureKind::StepLimit) => {
+            "the run used all steps of solver.step_limit before its end time"
+        }
+        Status::Failed(FailureKind::Interpenetrated) => {
+            "film passed through film, or intersects film"
+        }
+        Status::Pending
+        | Status::Done
+        | Status::Cancelled
+        | Status::Paused
+        | Status::NoEquilibrium => "the run stopped before its end time",
+    }
+}
+
+/// What to do about a failure.
+fn next_step(status: Status, short_id: &str, root: &str) -> String {
+    let show = format!("billow show {short_id} {root} --history");
+    match status {
+        Status::Infeasible => {
+            "use a nearest value, or exclude the point with a grid filter".to_owned()
+        }
+        Status::Invalid => "change the key that the reason names".to_owned(),
+        Status::Panicked => format!("report the reason with {root}/study.json and the job id"),
+        Status::Failed(FailureKind::StepLimit) => {
+            format!("{show}: see how the time advanced; then raise solver.step_limit")
+        }
+        Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {
+            format!("{show}; then a smaller step (billow schema: solver)")
+        }
+        _ => show,
+    }
+}
