@@ -4,12 +4,12 @@
 
 use std::hint::black_box;
 
-use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::fold::FoldPattern;
 use billow_solver::integrators::explicit::reference_step::{Moving, fast_step, plain_step};
 use billow_solver::integrators::explicit::update::Push;
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::scene::Film;
+use billow_solver::scene::{Film, paper};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::geometry::field::Field;
@@ -19,33 +19,10 @@ use nalgebra::Vector3;
 
 /// The paper's capsule, stowed, of film at rest.
 fn capsule(subdivisions: u32) -> (FilmModel, Field) {
-    let design = FoldDesign {
-        fit: Fit::Cone,
-        panels: 6,
-        storeys: 3,
-        bottom_radius: 0.5,
-        top_radius: Some(0.365),
-        height: Some(1.0),
-        half_angle: None,
-        alpha1_over_phi: None,
-        chirality: Chirality::Same,
-        stowed_height: 0.04,
-        subdivisions,
-        caps: Caps::Polygon,
-    };
-    let film = Film {
-        youngs_modulus: 3.45e9,
-        poisson_ratio: 0.3,
-        density: 1400.0,
-        thickness: 25.4e-6,
-        compression: 0.0,
-        viscosity: 0.1,
-        temperature: 293.0,
-    };
-    let pattern = FoldPattern::new(&design).expect("a pattern");
-    let mesh = Mesh::new(&pattern, subdivisions, Shape::Stowed(0.04)).expect("a mesh");
+    let pattern = FoldPattern::new(&paper::design(subdivisions)).expect("a pattern");
+    let mesh = Mesh::new(&pattern, subdivisions, Shape::Stowed(paper::STOWED_HEIGHT)).expect("a mesh");
     let shell = Shell::of_mesh(&mesh);
-    let model = FilmModel::of_shell(&film, &shell).expect("a film");
+    let model = FilmModel::of_shell(&Film::PAPER, &shell).expect("a film");
     (model, Field::of(&shell.positions))
 }
 

@@ -1,37 +1,30 @@
-//! The folded capsule with contact, put back on its state: the same bits from any step on.
+//! A resumed run of the folded capsule with contact has the same bits from any step on.
 
-use billow_solver::geometry::mesh::Shape;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::models::film::capsule;
 use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::timeline::Phase;
 
-use crate::geometry::paper_design;
+use crate::film_rig::{INFLOW, stowed};
 use crate::rig::paper_scene;
 
-const INFLOW: Phase =
-    Phase { packed: false, inflow: Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 } };
-
-/// The paper's capsule of film that bears compression, stowed.
-fn stowed() -> Explicit {
+/// The paper's capsule with the full membrane stiffness in compression, stowed.
+fn capsule_in_contact() -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     scene.film.compression = 1.0;
-    let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (mut film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
+    let mut film = stowed(&scene, 0.45);
     film.contact = Some(FilmContact::default());
     capsule::start(&film).unwrap()
 }
 
 #[test]
-fn contact_goes_on_bit_for_bit_from_any_step() {
+fn resumed_contact_has_the_same_bits_from_any_step() {
     let text = |film: &Explicit| serde_json::to_string(&film.state).unwrap();
-    let mut whole = stowed();
+    let mut whole = capsule_in_contact();
     whole.advance(0.02, &INFLOW).unwrap();
     assert!(whole.state.meeting.path > 0.1 && whole.state.works.contact != 0.0);
     for pause in [1, 100, 777, 1500] {
-        let mut film = stowed();
+        let mut film = capsule_in_contact();
         let mut steps = pause;
         assert!(!film.advance_at_most(0.02, &INFLOW, &mut steps).unwrap());
         let state = serde_json::from_str(&text(&film)).unwrap();

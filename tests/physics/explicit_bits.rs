@@ -1,29 +1,22 @@
-//! The same bits whatever the instruction set, and from any step on.
+//! The same bits on every instruction set, and in a run resumed from any step.
 
-use billow_solver::geometry::mesh::Shape;
 use billow_solver::integrators::explicit::{Explicit, State};
 use billow_solver::mechanics::forces::membrane::viscous_forces;
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::timeline::Phase;
 
-use crate::geometry::paper_design;
+use crate::film_rig::{INFLOW, stowed};
 use crate::rig::paper_scene;
 
-fn film(path: InstructionSet) -> Explicit {
+fn film(instruction_set: InstructionSet) -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     scene.film.compression = 0.01;
     scene.gravity = -9.8;
-    let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (mut film, _) = capsule::film_scene(&scene, stowed, 0.45).unwrap();
-    film.solver.path = path;
+    let mut film = stowed(&scene, 0.45);
+    film.solver.path = instruction_set;
     capsule::start(&film).unwrap()
 }
-
-const INFLOW: Phase =
-    Phase { packed: false, inflow: Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 } };
 
 fn bits(state: &State) -> String {
     serde_json::to_string(state).unwrap()
@@ -31,19 +24,19 @@ fn bits(state: &State) -> String {
 
 #[test]
 fn every_instruction_set_gives_the_same_bits() {
-    let end = |path: InstructionSet| {
-        let mut film = film(path);
+    let end = |instruction_set: InstructionSet| {
+        let mut film = film(instruction_set);
         film.advance(8e-3, &INFLOW).unwrap();
         (bits(&film.state), film.ledger())
     };
     let scalar = end(InstructionSet::Scalar);
-    for path in InstructionSet::ALL.into_iter().filter(|path| path.available()) {
-        assert!(end(path) == scalar, "{}", path.name());
+    for instruction_set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
+        assert!(end(instruction_set) == scalar, "{}", instruction_set.name());
     }
 }
 
 #[test]
-fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
+fn a_resumed_run_has_the_same_bits_from_any_step() {
     let whole = {
         let mut film = film(InstructionSet::detect());
         film.advance(2e-3, &INFLOW).unwrap();
@@ -55,7 +48,7 @@ fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
         let mut steps = pause;
         for target in [2e-3, 3e-3] {
             while !film.advance_at_most(target, &INFLOW, &mut steps).unwrap() {
-                // As text and back: what a checkpoint does.
+                // To text and back, as a checkpoint does.
                 let state = serde_json::from_str(&bits(&film.state)).unwrap();
                 film = Explicit::resume(film.model, film.setting, state);
                 steps = u64::MAX;
@@ -65,18 +58,20 @@ fn a_run_put_back_on_its_state_goes_on_bit_for_bit() {
     }
 }
 
-/// Targets that differ by rounding: over a step of next to no time the rounding of a strain is no rate.
+/// Two targets differ by rounding. Over such a short step, the rounding error of a strain must not
+/// count as a strain rate.
 #[test]
-fn a_sliver_of_a_step_leaves_viscosity_as_it_is() {
+fn a_step_of_rounding_length_does_not_change_viscous_forces() {
     let mut film = film(InstructionSet::detect());
     film.advance(2e-3, &INFLOW).unwrap();
-    let drags = |film: &Explicit| viscous_forces(&film.model, &film.state.places, &film.state.past);
-    let (before, steps) = (drags(&film), film.state.steps);
+    let viscous =
+        |film: &Explicit| viscous_forces(&film.model, &film.state.places, &film.state.past);
+    let (before, steps) = (viscous(&film), film.state.steps);
     film.advance(2e-3_f64.next_up(), &INFLOW).unwrap();
     assert_eq!(film.state.steps, steps + 1);
     let size = before.iter().map(|force| force.norm()).fold(0.0, f64::max);
     assert!(size > 0.0);
-    for (now, before) in drags(&film).iter().zip(before.iter()) {
+    for (now, before) in viscous(&film).iter().zip(before.iter()) {
         assert!((now - before).norm() < 1e-9 * size, "{now} {before}");
     }
 }

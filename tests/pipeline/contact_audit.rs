@@ -6,10 +6,10 @@ use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::audit::Audit;
 use billow_solver::output::outcome::{FailureKind, Stop};
 use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::scene::paper;
 use billow_solver::scene::timeline::Timeline;
-use billow_study::cases::capsule_run::paper_capsule;
 use billow_study::cases::contact_capsule::stowed;
-use billow_study::cases::contact_rig::not_returned;
+use billow_study::cases::contact_rig::unrecovered_contact_energy;
 use billow_study::cases::reference::number;
 
 /// What is done to contact.
@@ -18,7 +18,7 @@ type Fault = fn(&mut ContactModel);
 /// The capsule of `capsule_deployed` for 30 ms, its contact changed; how it ended, what was counted,
 /// and the share of its kinetic energy contact did not return.
 fn deploy(fault: Fault) -> (Stop, Audit, f64) {
-    let scene = paper_capsule(5, 0.03);
+    let scene = paper::capsule(5, 0.03);
     let mut run = stowed(&scene, FilmContact::default()).expect("a capsule");
     let Explicit { model, mut setting, state, .. } = run.film;
     fault(setting.contact.as_mut().expect("contact"));
@@ -26,7 +26,7 @@ fn deploy(fault: Fault) -> (Stop, Audit, f64) {
     let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     let kinetic = deployment.history.column("kinetic_energy");
     let peak = kinetic.iter().copied().fold(0.0, f64::max);
-    (deployment.stop, deployment.audit, not_returned(&run.film) / peak)
+    (deployment.stop, deployment.audit, unrecovered_contact_energy(&run.film) / peak)
 }
 
 #[test]

@@ -43,14 +43,14 @@ const JUDGES: [(Term, Judge, Judge); 22] = [
     (Term::GasPressure, FILM_LEDGER, SPHERE_STOPS),
 ];
 
-fn judged(case: &str, mutation: Option<Fault>) -> Judged {
+fn judged(case: &str, fault: Option<Fault>) -> Judged {
     let case = CASES.iter().find(|own| own.name == case).expect("a case");
-    case.run(&Rig { mutation })
+    case.run(&Rig { fault })
 }
 
 /// Whether a judge sees a fault.
-fn sees((case, quantity): Judge, mutation: Option<Fault>) -> bool {
-    let rows = judged(case, mutation).rows;
+fn sees((case, quantity): Judge, fault: Option<Fault>) -> bool {
+    let rows = judged(case, fault).rows;
     rows.iter().any(|row| row.quantity.starts_with(quantity) && !row.pass)
 }
 

@@ -4,6 +4,7 @@
 //! and the version they belong to. Whoever changes physics raises the version, records the hashes
 //! this test prints, and says so in CHANGELOG.
 
+use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet, tube};
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::models;
 use billow_solver::models::run::Model;
@@ -13,13 +14,12 @@ use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::motion::{Motion, Profile, Turn};
+use billow_solver::scene::paper::{self, free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, HeatTransfer, InflowWindow, Scene};
 use billow_study::cases::Rig;
-use billow_study::cases::capsule_run::paper_capsule;
 use billow_study::cases::contact_capsule::stowed;
-use billow_study::cases::rig::{film, held, nitrogen, scene};
-use billow_study::cases::shapes_dynamic::{icosphere, pattern, sheet, tube};
+use billow_study::cases::rig::held;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -67,7 +67,7 @@ fn window(from: f64, to: f64, rate: f64) -> InflowWindow {
 
 /// 5 g/s from the start, with heat exchange and a leak.
 fn rapid() -> String {
-    let mut scene = paper_capsule(5, 0.1);
+    let mut scene = paper::capsule(5, 0.1);
     scene.gas.windows = vec![window(0.0, 1.5, 5e-3)];
     scene.gas.leak_area = 1e-5;
     piston(&scene)
@@ -75,7 +75,7 @@ fn rapid() -> String {
 
 /// Filled while packed, let go at 20 ms, filled on from 50 ms.
 fn preinflated() -> String {
-    let mut scene = paper_capsule(5, 0.1);
+    let mut scene = paper::capsule(5, 0.1);
     scene.gas.windows = vec![window(0.0, 0.01, 5e-3), window(0.05, 0.1, 1e-3)];
     scene.gas.initial_mass = 1.5e-4;
     scene.release_time = 0.02;
@@ -85,7 +85,7 @@ fn preinflated() -> String {
 /// Film on film from the first millisecond on, calm in the end.
 fn capsule() -> String {
     let contact = FilmContact::default();
-    let mut run = stowed(&paper_capsule(2, 0.02), contact).expect("a capsule");
+    let mut run = stowed(&paper::capsule(2, 0.02), contact).expect("a capsule");
     let inflow = Inflow { mass: 5e-3, mass_temperature: 5e-3 * 293.0 };
     let phase = Phase { packed: false, inflow };
     run.advance(0.02, &phase).expect("it runs");
@@ -111,21 +111,21 @@ fn sphere() -> String {
         ambient_pressure: 500.0,
         heat_transfer: HeatTransfer::Coefficient(20.0),
         leak_area: 1e-3,
-        ..nitrogen()
+        ..nitrogen_supply()
     };
     let filling = Filling::Gas { supply, initial_temperature: 350.0 };
-    let scene = FilmScene { filling, ..scene(icosphere(1, 0.5), film()) };
+    let scene = FilmScene { filling, ..free_film(icosphere(1, 0.5), Film::PAPER_ELASTIC) };
     moved(&scene, 3e-3, &Phase::default())
 }
 
 /// A viscous sheet with some compressive stiffness, shaken, falls from two of its corners.
 fn falling_sheet() -> String {
-    let film = Film { viscosity: 0.1, compression: 0.3, ..film() };
+    let film = Film { viscosity: 0.1, compression: 0.3, ..Film::PAPER_ELASTIC };
     let scene = FilmScene {
-        velocities: pattern(30, 1),
+        velocities: pseudo_random(30, 1),
         supports: vec![held(vec![0, 5], "xyz")],
         gravity: Vector3::new(0.0, -3.0, -9.806_65),
-        ..scene(sheet(5, 4, 0.3, 0.2), film)
+        ..free_film(sheet(5, 4, 0.3, 0.2), film)
     };
     moved(&scene, 5e-3, &Phase::default())
 }
@@ -150,7 +150,7 @@ fn turned_tube() -> String {
     let scene = FilmScene {
         filling: Filling::Pressure(100.0),
         supports: vec![held((0..around).collect(), "xyz"), upper],
-        ..scene(tube(around, along, 0.1, 0.2), film())
+        ..free_film(tube(around, along, 0.1, 0.2), Film::PAPER_ELASTIC)
     };
     moved(&scene, 3e-3, &Phase::default())
 }

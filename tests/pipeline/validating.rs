@@ -104,7 +104,7 @@ fn the_list_runs_nothing() {
 fn a_case_out_of_band_is_told_and_ends_in_exit_code_1() {
     let case = CASES.iter().find(|case| case.name == "shear_panel").expect("the case");
     let fault = Fault { term: Term::WrinkledModulus, factor: 1.01 };
-    let judged = [case.run(&Rig { mutation: Some(fault) }), case.run(&Rig::default())];
+    let judged = [case.run(&Rig { fault: Some(fault) }), case.run(&Rig::default())];
     let mut out = Vec::new();
     validate::print(&judged, Format::Json, &mut out).expect("a Vec takes all");
     let rows: Vec<Value> = serde_json::from_slice(&out).expect("JSON");

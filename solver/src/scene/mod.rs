@@ -13,6 +13,7 @@ pub mod film_support;
 pub mod inflow;
 pub mod monitor_settings;
 pub mod motion;
+pub mod paper;
 pub mod plate;
 pub mod timeline;
 mod validate;
@@ -69,20 +70,6 @@ impl Film {
     pub fn area_density(&self) -> f64 {
         self.density * self.thickness
     }
-}
-
-#[cfg(test)]
-impl Film {
-    /// The paper's film as a tension field, with the viscosity it usually has.
-    pub(crate) const PAPER: Self = Self {
-        youngs_modulus: 3.45e9,
-        poisson_ratio: 0.3,
-        density: 1400.0,
-        thickness: 25.4e-6,
-        compression: 0.0,
-        viscosity: 0.1,
-        temperature: 293.0,
-    };
 }
 
 /// The control volume's gas and all that enters or leaves it.

@@ -15,10 +15,10 @@ use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::scene::paper;
 use billow_solver::scene::timeline::Timeline;
 
-use super::capsule_run::paper_capsule;
-use super::contact_rig::not_returned;
+use super::contact_rig::unrecovered_contact_energy;
 use super::reference::number;
 use super::row::worse;
 use super::{Outcome, Rig, Row};
@@ -62,8 +62,8 @@ fn sound(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: f64) -
         Row::at_most(&format!("{name}intersections"), count(audit.intersections), 0.0),
         Row::at_most(&format!("{name}film residual"), audit.ledger_residual, ledger_band),
         Row::at_most(
-            &format!("{name}contact energy not returned"),
-            not_returned(&run.film) / peak,
+            &format!("{name}unrecovered contact energy"),
+            unrecovered_contact_energy(&run.film) / peak,
             number("contact/not_returned_band"),
         ),
     ]
@@ -76,7 +76,7 @@ pub(super) fn capsule_every_step(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for (compression, key) in [(0.0, "ledger_band"), (1.0, "compressed_ledger_band")] {
         for (chirality, name) in [(Chirality::Same, "same"), (Chirality::Alternate, "alternate")] {
-            let mut scene = paper_capsule(2, 0.1);
+            let mut scene = paper::capsule(2, 0.1);
             scene.film.compression = compression;
             scene.design.chirality = chirality;
             let contact = FilmContact { watch, ..FilmContact::default() };
@@ -106,7 +106,7 @@ fn between(quantity: &str, value: f64, path: &str) -> Row {
 
 /// 5 g/s for 0.3 s, on a mesh so fine.
 fn deployed(rig: &Rig, subdivisions: u32) -> Outcome {
-    let scene = paper_capsule(subdivisions, 0.3);
+    let scene = paper::capsule(subdivisions, 0.3);
     let (run, deployment) = deploy(rig, &scene, FilmContact::default())?;
     let column = |name: &str| deployment.history.column(name);
     let largest = |name: &str| column(name).iter().copied().fold(0.0, worse);
@@ -137,7 +137,7 @@ pub(super) fn capsule_deployed_fine(rig: &Rig) -> Outcome {
 
 /// The volume at the end, with half and with twice the contact distance.
 pub(super) fn contact_distance(rig: &Rig) -> Outcome {
-    let scene = paper_capsule(5, 0.3);
+    let scene = paper::capsule(5, 0.3);
     let (run, _) = deploy(rig, &scene, FilmContact::default())?;
     let usual = run.film.setting.contact.as_ref().ok_or("no contact")?.distance;
     let expected = run.volume();

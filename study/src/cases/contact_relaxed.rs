@@ -13,10 +13,10 @@ use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};
 use billow_solver::models::film::{StaticState, capsule, static_states};
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper;
 use billow_solver::scene::timeline::Phase;
 
-use super::capsule_run::paper_capsule;
-use super::contact_rig::crossings;
+use super::contact_rig::intersection_count;
 use super::reference::{number, numbers};
 use super::rig::advance;
 use super::{Outcome, Rig, Row};
@@ -79,12 +79,12 @@ fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
         ),
         Row::at_most(&name("kinetic energy over p V"), share, band("kinetic_share")),
         Row::at_most(&name("passages"), passages, 0.0),
-        Row::at_most(&name("intersections"), crossings(film) as f64, 0.0),
+        Row::at_most(&name("intersections"), intersection_count(film) as f64, 0.0),
     ]
 }
 
 fn meet(rig: &Rig, subdivisions: u32) -> Outcome {
-    let scene = paper_capsule(subdivisions, 1.0);
+    let scene = paper::capsule(subdivisions, 1.0);
     let pressures = numbers("deployed_equals_inflated/pressures");
     let inflated = static_states(&scene, &pressures).map_err(|error| error.to_string())?;
     let mut judged = Vec::new();

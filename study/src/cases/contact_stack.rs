@@ -8,17 +8,19 @@
 //! shifted, so that nodes do not lie on nodes.
 
 use billow_solver::collision::contact::{ContactModel, ContactState};
+use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, moved, plate, together, watched};
+use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::{number, numbers};
-use super::rig::{film, held, scene};
-use super::shapes_dynamic::sheet;
+use super::rig::held;
 use super::{Outcome, Rig, Row};
 
 const LAYERS: u32 = 4;
@@ -35,7 +37,7 @@ fn stack(distance: f64, pressure: f64) -> FilmScene {
         moved(sheet(5, 5, SIDE, SIDE), |x| x + shift)
     };
     let sheets: Vec<Shell> = (0..LAYERS).map(layer).collect();
-    let shell = together(&sheets);
+    let shell = joined(&sheets);
     let (each, all) = (nodes_of(&shell) / LAYERS, nodes_of(&shell));
     let press = PlaneBody {
         normal: Vector3::z(),
@@ -52,8 +54,8 @@ fn stack(distance: f64, pressure: f64) -> FilmScene {
     let floor = plate(Vector3::zeros(), Vector3::z(), None);
     let mut scene = FilmScene {
         supports: vec![held((0..all).collect(), "xy"), top],
-        contact: Some(FilmContact { plates: vec![floor], ..watched(distance) }),
-        ..scene(shell, film())
+        contact: Some(FilmContact { plates: vec![floor], ..monitored_contact(distance) }),
+        ..free_film(shell, Film::PAPER_ELASTIC)
     };
     scene.solver.mass_damping = 3000.0;
     scene
@@ -88,7 +90,7 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for distance in numbers("stack/distances") {
         let mut film = rig.start(&stack(distance, pressure))?;
-        let seen = follow(&mut film, REST, 10, &Phase::default())?;
+        let record = run_recorded(&mut film, REST, 10, &Phase::default())?;
         let law = film.setting.contact.as_ref().ok_or("no contact")?;
         for k in 0..LAYERS - 1 {
             let [mean, largest] = between(&film, law, k);
@@ -101,7 +103,7 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
             let word = format!("largest at a node {largest:.0} Pa");
             judged.push(Row::new(&quantity, mean, pressure, band).with_note(&word));
         }
-        judged.extend(seen.rows(
+        judged.extend(record.rows(
             &film,
             &format!("distance {} mm, ", 1e3 * distance),
             number("contact/ledger_band"),

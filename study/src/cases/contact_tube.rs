@@ -8,16 +8,17 @@
 //! A area of the section, A0 at the start; m. A slice between two symmetry planes, its volume closed by
 //! end fans; its pressure is so low that the film does not stretch.
 
+use billow_solver::geometry::shapes::tube;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, plate, watched};
+use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::{number, rows};
-use super::rig::{film, held, nitrogen, scene};
-use super::shapes_dynamic::tube;
+use super::rig::held;
 use super::{Outcome, Rig, Row};
 
 const AROUND: u32 = 64;
@@ -40,7 +41,7 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     let mut shell: Shell = tube(AROUND, 1, radius, width(radius));
     let tips = shell.close();
     let volume = shell.volume(|node| shell.positions[node as usize]);
-    let nitrogen = nitrogen();
+    let nitrogen = nitrogen_supply();
     let initial_mass = PRESSURE * volume / (nitrogen.species.gas_constant * TEMPERATURE);
     let supply = GasSupply { initial_mass, ..nitrogen };
     // The plates start just off the tube, and end a contact distance off the film.
@@ -52,8 +53,11 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     let mut scene = FilmScene {
         filling: Filling::Gas { supply, initial_temperature: TEMPERATURE },
         supports: vec![held((0..2 * AROUND).collect(), "z"), held(tips, "xyz")],
-        contact: Some(FilmContact { plates: vec![half(1.0), half(-1.0)], ..watched(DISTANCE) }),
-        ..scene(shell, Film { viscosity: 0.1, ..film() })
+        contact: Some(FilmContact {
+            plates: vec![half(1.0), half(-1.0)],
+            ..monitored_contact(DISTANCE)
+        }),
+        ..free_film(shell, Film { viscosity: 0.1, ..Film::PAPER_ELASTIC })
     };
     scene.solver.mass_damping = 300.0;
     scene
@@ -69,7 +73,7 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         let (gap, area, force) = (row[0], row[2], row[3]);
         let mut film = rig.start(&slice(radius, gap))?;
         let start = film.state.volume;
-        let seen = follow(&mut film, REST, 8, &Phase::default())?;
+        let record = run_recorded(&mut film, REST, 8, &Phase::default())?;
         let nodes = 2 * AROUND as usize;
         let top = film.state.places.y.iter().take(nodes).copied().fold(0.0, f64::max);
         let pushed: f64 = film.state.meeting.plates.iter().map(|plate| 0.5 * plate.force).sum();
@@ -87,7 +91,7 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         );
         let share = film.state.volume / start;
         judged.push(Row::new(&format!("{run}A/A0"), share, area, area_band));
-        judged.extend(seen.rows(&film, &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&film, &run, number("contact/ledger_band")));
     }
     Ok(judged)
 }

@@ -7,15 +7,16 @@
 
 use core::f64::consts::{PI, TAU};
 
+use billow_solver::geometry::shapes::{sheet, strip};
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
 use super::oscillation::turns;
 use super::reference::number;
-use super::rig::{advance, film, held, scene};
-use super::shapes_dynamic::{sheet, strip};
+use super::rig::{advance, held};
 use super::{Outcome, Rig, Row};
 
 /// A standing wave along a strip of equal elements, held across.
@@ -24,12 +25,12 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     let shell = strip(columns, length, 0.05);
     let all = (0..2 * (columns + 1)).collect();
     let ends = vec![0, columns, columns + 1, 2 * columns + 1];
-    let film = Film { compression: 1.0, viscosity: 0.1, ..film() };
+    let film = Film { compression: 1.0, viscosity: 0.1, ..Film::PAPER_ELASTIC };
     let wave = |x: &Vector3<f64>| Vector3::x() * (1e-4 * libm::sin(PI * x.x / length));
     let mut scene = FilmScene {
         velocities: shell.positions.iter().map(wave).collect(),
         supports: vec![held(all, "yz"), held(ends, "x")],
-        ..scene(shell, film)
+        ..free_film(shell, film)
     };
     scene.solver.cfl = 0.1;
     let centre = columns as usize / 2;
@@ -61,7 +62,7 @@ pub fn free_flight(rig: &Rig) -> Outcome {
     let shell = sheet(2, 2, 0.1, 0.1);
     let (start, damping, time) = (Vector3::new(3.0, -1.0, 2.0), 40.0, 0.03);
     let velocities = vec![start; shell.positions.len()];
-    let mut scene = FilmScene { velocities, ..scene(shell, film()) };
+    let mut scene = FilmScene { velocities, ..free_film(shell, Film::PAPER_ELASTIC) };
     scene.solver.mass_damping = damping;
     let mut film = rig.start(&scene)?;
     let before = film.kinetic_energy();

@@ -11,15 +11,16 @@
 
 use core::f64::consts::TAU;
 
+use billow_solver::geometry::shapes::{disc, disc_rim};
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::oscillation::frequency;
 use super::reference::{number, rows};
-use super::rig::{film, held, scene};
+use super::rig::held;
 use super::row::{order, richardson};
-use super::shapes_dynamic::{disc, rim};
 use super::{Outcome, Rig, Row};
 
 /// Share of the stable step: a drum's periods are thousands of steps, whose own error is 1e-8.
@@ -49,7 +50,7 @@ pub fn stretched_disc(rig: &Rig) -> Outcome {
     let [radius, tension, share, raw, band, least] =
         ["radius", "tension", "amplitude", "raw_band", "band", "order"]
             .map(|key| number(&format!("stretched_disc/{key}")));
-    let film = film();
+    let film = Film::PAPER_ELASTIC;
     // S = E/(1−ν) e on a strain alike both ways.
     let stress = tension / film.thickness;
     let strain = stress * (1.0 - film.poisson_ratio) / film.youngs_modulus;
@@ -74,8 +75,8 @@ pub fn stretched_disc(rig: &Rig) -> Outcome {
             for place in &mut shell.positions {
                 *place *= stretch;
             }
-            let supports = vec![held(rim(rings), "xyz")];
-            let scene = FilmScene { supports, ..scene(shell, film) };
+            let supports = vec![held(disc_rim(rings), "xyz")];
+            let scene = FilmScene { supports, ..free_film(shell, film) };
             ring(rig, scene, &shape, share * radius, (1.0 / (400.0 * expected), 3))
         };
         let values = [run(8)?, run(16)?, run(32)?];
@@ -104,7 +105,7 @@ fn spun_out(film: &Film, radius: f64, rate: f64, r: f64) -> f64 {
 pub fn spinning_disc(rig: &Rig) -> Outcome {
     let [radius, rate, share, band] =
         ["radius", "rate", "amplitude", "band"].map(|key| number(&format!("spinning_disc/{key}")));
-    let film = film();
+    let film = Film::PAPER_ELASTIC;
     let mut judged = Vec::new();
     for row in rows("spinning_disc") {
         let (diameters, expected) = (row[0], row[2]);
@@ -129,7 +130,7 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
             }
             let spin = Vector3::new(0.0, 0.0, rate);
             let velocities = shell.positions.iter().map(|x| spin.cross(x)).collect();
-            let scene = FilmScene { velocities, ..scene(shell, film) };
+            let scene = FilmScene { velocities, ..free_film(shell, film) };
             let period = TAU / (expected * rate);
             let found = ring(rig, scene, &shape, share * radius, (period / 400.0, 3))?;
             Ok(found * TAU / rate)

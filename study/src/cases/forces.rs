@@ -7,6 +7,7 @@
 //! ```
 
 use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::mechanics::forces::membrane::{strain, strain_energy, viscous_forces};
@@ -14,12 +15,11 @@ use billow_solver::mechanics::forces::pressure;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
-use super::rig::{film, scene};
 use super::row::worse;
-use super::shapes_dynamic::{icosphere, pattern, sheet};
 use super::{Outcome, Rig, Row};
 
 /// Film of this shape at these places (m) and velocities (m/s).
@@ -31,7 +31,7 @@ fn film_at(
     velocities: Vec<Vector3<f64>>,
 ) -> Result<Explicit, String> {
     let shell = Shell { positions: places, ..shell.clone() };
-    rig.start(&FilmScene { velocities, ..scene(shell, film) })
+    rig.start(&FilmScene { velocities, ..free_film(shell, film) })
 }
 
 /// Largest difference between a force and minus the central difference of its energy, over all
@@ -57,7 +57,7 @@ fn defect(force: &Field, places: &Field, step: f64, energy: impl Fn(&Field) -> f
 /// A sheet stretched by (1 + a, 1 + b), with slopes out of its plane, turned in space.
 fn stretched(shell: &Shell, a: f64, b: f64) -> Vec<Vector3<f64>> {
     let turn = Rotation3::from_euler_angles(0.4, -0.9, 1.3);
-    let bumps = pattern(shell.positions.len(), 3);
+    let bumps = pseudo_random(shell.positions.len(), 3);
     let place = |(x, bump): (&Vector3<f64>, Vector3<f64>)| {
         turn * (Vector3::new(x.x * (1.0 + a), x.y * (1.0 + b), 0.0) + bump * 1e-5)
     };
@@ -80,7 +80,7 @@ pub fn force_energy(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for compression in [0.0, 0.01, 1.0] {
         for (name, a, b, regime) in regimes {
-            let film = Film { compression, ..film() };
+            let film = Film { compression, ..Film::PAPER_ELASTIC };
             let moved = film_at(rig, &shell, film, stretched(&shell, a, b), Vec::new())?;
             let (model, places) = (&moved.model, &moved.state.places);
             let mut elements = 0..model.elements();
@@ -98,8 +98,8 @@ pub fn force_energy(rig: &Rig) -> Outcome {
     let off =
         |(x, off): (&Vector3<f64>, Vector3<f64>)| x + off * 0.05 + Vector3::new(1.0, 2.0, -3.0);
     let places: Vec<_> =
-        shell.positions.iter().zip(pattern(shell.positions.len(), 9)).map(off).collect();
-    let moved = film_at(rig, &shell, film(), places, Vec::new())?;
+        shell.positions.iter().zip(pseudo_random(shell.positions.len(), 9)).map(off).collect();
+    let moved = film_at(rig, &shell, Film::PAPER_ELASTIC, places, Vec::new())?;
     let (areas, places) = (moved.forces.areas(), &moved.state.places);
     let volume = |x: &Field| -pressure::volume(&moved.model, x);
     let off = defect(&areas, places, 1e-6, volume) / (0.25 * 0.25);
@@ -110,7 +110,7 @@ pub fn force_energy(rig: &Rig) -> Outcome {
     judged.push(Row::at_most("net moment of pressure over p, m^3", moment.norm(), 1e-13));
 
     let gravity = Vector3::new(1.0, -2.0, -9.806_65);
-    let heavy = rig.start(&FilmScene { gravity, ..scene(piece(), film()) })?;
+    let heavy = rig.start(&FilmScene { gravity, ..free_film(piece(), Film::PAPER_ELASTIC) })?;
     let mut weight = Field::zeros(heavy.model.nodes());
     (0..heavy.model.nodes()).for_each(|node| weight.set(node, heavy.force(node)));
     let masses = &heavy.model.mass;
@@ -126,7 +126,7 @@ pub fn force_energy(rig: &Rig) -> Outcome {
 /// Work of the film's force along a path through all regimes, against its energy.
 pub fn path_energy(rig: &Rig) -> Outcome {
     let shell = piece();
-    let (film, steps) = (Film { compression: 1e-3, ..film() }, 20_000);
+    let (film, steps) = (Film { compression: 1e-3, ..Film::PAPER_ELASTIC }, 20_000);
     // From slack over wrinkled to taut and back to slack on another way.
     let at = |k: u32| {
         let s = 4.0 * f64::from(k) / f64::from(steps);
@@ -159,16 +159,16 @@ pub fn path_energy(rig: &Rig) -> Outcome {
 pub fn dissipation(rig: &Rig) -> Outcome {
     let shell = icosphere(2, 0.5);
     let count = shell.positions.len();
-    let [elastic, viscous] = [0.0, 0.1].map(|viscosity| Film { viscosity, ..film() });
+    let [elastic, viscous] = [0.0, 0.1].map(|viscosity| Film { viscosity, ..Film::PAPER_ELASTIC });
     let [mut least, mut balance, mut force, mut moment] = [f64::INFINITY, 0.0, 0.0, 0.0];
     for seed in 0..5 {
         let places: Vec<Vector3<f64>> = shell
             .positions
             .iter()
-            .zip(pattern(count, seed))
+            .zip(pseudo_random(count, seed))
             .map(|(x, off)| x + off * 0.01)
             .collect();
-        let velocities = pattern(count, seed + 100);
+        let velocities = pseudo_random(count, seed + 100);
         // What viscosity adds to the force, and the power the solver says it takes.
         let drags: Vec<Vector3<f64>> = {
             let film = film_at(rig, &shell, viscous, places.clone(), velocities.clone())?;

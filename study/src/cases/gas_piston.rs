@@ -10,14 +10,15 @@
 
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, Species};
 
+use super::gas_column::column;
 use super::piston_model;
 use super::reference::{number, rows};
-use super::rig::{advance, film, inflow, nitrogen, scene};
-use super::row::{order, own_order};
-use super::shapes_dynamic::column;
+use super::rig::{advance, inflow};
+use super::row::{order, self_convergence_order};
 use super::{Outcome, Rig, Row};
 
 /// A moving plate on gas.
@@ -35,11 +36,11 @@ struct Piston {
 impl Piston {
     fn start(&self, rig: &Rig) -> Result<Explicit, String> {
         let column = column(self.area, self.height);
-        let film = Film { ..film() };
+        let film = Film { ..Film::PAPER_ELASTIC };
         let supports = column.piston(self.mass, film.area_density(), self.speed, self.force);
         let supply = self.supply.clone();
         let filling = Filling::Gas { supply, initial_temperature: self.temperature };
-        let mut scene = FilmScene { filling, supports, ..scene(column.shell, film) };
+        let mut scene = FilmScene { filling, supports, ..free_film(column.shell, film) };
         scene.solver.cfl = self.cfl;
         rig.start(&scene)
     }
@@ -68,7 +69,7 @@ pub fn injected_piston(rig: &Rig) -> Outcome {
             mass,
             speed: 1.5 * c * start.sqrt(),
             force: 0.0,
-            supply: GasSupply { initial_mass: rate * start, ..nitrogen() },
+            supply: GasSupply { initial_mass: rate * start, ..nitrogen_supply() },
             temperature: entering * 2.0 * gamma / (3.0 * gamma - 1.0),
             cfl,
         };
@@ -109,7 +110,7 @@ pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
             mass: number("injected_piston/mass"),
             speed: 0.0,
             force: 0.0,
-            supply: nitrogen(),
+            supply: nitrogen_supply(),
             temperature: 293.0,
             cfl,
         };
@@ -120,7 +121,10 @@ pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
     let values = [run(0.04)?, run(0.02)?, run(0.01)?];
     let expected = piston_model::from_dead_volume(area, volume, 1e-13)?;
     let band = number("injected_piston/offset_band");
-    Ok(vec![Row::new("x at 50 ms, m", values[2], expected, band).with_order(own_order(values))])
+    Ok(vec![
+        Row::new("x at 50 ms, m", values[2], expected, band)
+            .with_order(self_convergence_order(values)),
+    ])
 }
 
 /// Period of a mass on gas against a constant force, at three amplitudes.
@@ -141,7 +145,7 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
                 mass,
                 speed: 0.0,
                 force: -pressure * area,
-                supply: GasSupply { species, initial_mass: content, ..nitrogen() },
+                supply: GasSupply { species, initial_mass: content, ..nitrogen_supply() },
                 temperature: 293.0 * libm::pow(1.0 + amplitude, 1.0 - gamma),
                 cfl,
             };
@@ -156,7 +160,7 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
         let quantity = format!("period over linear period at amplitude {amplitude}");
         judged.push(
             Row::new(&quantity, values[2] / linear, ratio, number("gas_spring/band"))
-                .with_order(own_order(values)),
+                .with_order(self_convergence_order(values)),
         );
     }
     Ok(judged)

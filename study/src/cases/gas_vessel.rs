@@ -8,13 +8,15 @@
 //! ```
 
 use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
+use super::gas_column::column;
 use super::reference::{number, rows};
-use super::rig::{advance, film, inflow, nitrogen, scene, temperature};
-use super::shapes_dynamic::column;
+use super::rig::{advance, inflow, temperature};
 use super::{Outcome, Rig, Row};
 
 /// A vessel of 0.5 m² and this height (m), every node held, with gas of this mass (kg) and
@@ -24,7 +26,7 @@ fn vessel(height: f64, supply: GasSupply, mass: f64, temperature: f64) -> FilmSc
     let supports = column.rigid();
     let supply = GasSupply { initial_mass: mass, ..supply };
     let filling = Filling::Gas { supply, initial_temperature: temperature };
-    FilmScene { filling, supports, ..scene(column.shell, film()) }
+    FilmScene { filling, supports, ..free_film(column.shell, Film::PAPER_ELASTIC) }
 }
 
 /// γ of the cases' nitrogen.
@@ -45,7 +47,7 @@ pub fn tank_filling(rig: &Rig) -> Outcome {
         ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
             .map(|key| number(&format!("tank_filling/{key}")));
     let phase = inflow(rate, entering);
-    let mut tank = rig.start(&vessel(0.6, nitrogen(), initial, start))?;
+    let mut tank = rig.start(&vessel(0.6, nitrogen_supply(), initial, start))?;
     let mut judged = Vec::new();
     for row in rows("tank_filling") {
         advance(&mut tank, (row[0] - initial) / rate, &phase)?;
@@ -53,7 +55,7 @@ pub fn tank_filling(rig: &Rig) -> Outcome {
         judged.push(Row::new(&quantity, temperature(&tank), row[1], band));
     }
     judged.push(Row::at_most("mass defect", mass_defect(&tank, 0.01), 1e-12));
-    let mut empty = rig.start(&vessel(0.6, nitrogen(), 0.0, start))?;
+    let mut empty = rig.start(&vessel(0.6, nitrogen_supply(), 0.0, start))?;
     for until in [1e-3, 1.0] {
         advance(&mut empty, until, &phase)?;
         let quantity = format!("T {until} s after vacuum, K");
@@ -74,7 +76,7 @@ pub fn emptying_time(supply: &GasSupply, volume: f64, temperature: f64) -> f64 {
 /// Blow-down through a choked orifice into vacuum.
 pub fn blow_down(rig: &Rig) -> Outcome {
     let (area, height, mass, start) = (1e-3, 1.0, 0.6, 300.0);
-    let supply = GasSupply { leak_area: area, ..nitrogen() };
+    let supply = GasSupply { leak_area: area, ..nitrogen_supply() };
     let (gamma, band) = (gamma(), number("blow_down/band"));
     let tau = emptying_time(&supply, 0.5 * height, start);
     let mut tank = rig.start(&vessel(height, supply, mass, start))?;
@@ -95,7 +97,8 @@ pub fn blow_down(rig: &Rig) -> Outcome {
 /// A rigid tank takes on the temperature of its film.
 pub fn cooling(rig: &Rig) -> Outcome {
     let (coefficient, mass, start) = (5.0, 0.02, 450.0);
-    let supply = GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen() };
+    let supply =
+        GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen_supply() };
     let scene = vessel(1.0, supply, mass, start);
     let capacity = mass * (number("nitrogen/cp") - number("nitrogen/gas_constant"));
     let rate = coefficient * scene.shell.reference_area() / capacity;

@@ -8,19 +8,20 @@
 //! ```
 
 use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::mechanics::forces::membrane::{
     NodeForces, assemble_membrane, strain, viscous_forces,
 };
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
-use super::rig::{advance, film, nitrogen, scene};
+use super::rig::advance;
 use super::row::worse;
-use super::shapes_dynamic::{icosphere, pattern, sheet};
 use super::{Outcome, Rig, Row};
 
 /// A sheet under a uniform strain has no force inside.
@@ -36,7 +37,7 @@ pub fn patch(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         *x = Vector3::new(1.004 * x.x + 0.002 * x.y, 1.003 * x.y, 0.0);
     }
-    let film = rig.start(&scene(shell, film()))?;
+    let film = rig.start(&free_film(shell, Film::PAPER_ELASTIC))?;
     let scale = number("film/youngs_modulus") * number("film/thickness") * 0.04;
     let force = inside.iter().map(|node| film.forces.film(*node).norm()).fold(0.0, worse);
     let expected = 0.5 * (1.004 * 1.004 - 1.0);
@@ -59,9 +60,10 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         *x = turn * *x + Vector3::new(3.0, -1.0, 2.0);
     }
-    let film = Film { compression: 1.0, viscosity: 0.1, ..film() };
+    let film = Film { compression: 1.0, viscosity: 0.1, ..Film::PAPER_ELASTIC };
     let scale = film.youngs_modulus * film.thickness * 0.1;
-    let film = rig.start(&FilmScene { velocities: velocities.clone(), ..scene(shell, film) })?;
+    let film =
+        rig.start(&FilmScene { velocities: velocities.clone(), ..free_film(shell, film) })?;
     let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
     let drag = viscous_forces(&film.model, &film.state.places, &film.state.past);
     let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
@@ -105,15 +107,15 @@ fn momentum(film: &Explicit) -> (Vector3<f64>, Vector3<f64>, f64) {
 pub fn momenta(rig: &Rig) -> Outcome {
     let shell = icosphere(1, 0.5);
     let (spin, throw) = (Vector3::new(2.0, -3.0, 5.0), Vector3::new(0.3, 0.1, -0.2));
-    let kicks = pattern(shell.positions.len(), 5);
+    let kicks = pseudo_random(shell.positions.len(), 5);
     let velocity = |(x, kick): (&Vector3<f64>, Vector3<f64>)| spin.cross(x) + kick * 0.5 + throw;
     let velocities = shell.positions.iter().zip(kicks).map(velocity).collect();
     let filling = Filling::Gas {
-        supply: GasSupply { initial_mass: 5e-3, ..nitrogen() },
+        supply: GasSupply { initial_mass: 5e-3, ..nitrogen_supply() },
         initial_temperature: 293.0,
     };
-    let film = Film { viscosity: 0.1, ..film() };
-    let mut film = rig.start(&FilmScene { velocities, filling, ..scene(shell, film) })?;
+    let film = Film { viscosity: 0.1, ..Film::PAPER_ELASTIC };
+    let mut film = rig.start(&FilmScene { velocities, filling, ..free_film(shell, film) })?;
     let before = momentum(&film);
     let target = 1e5 * film.stable_step();
     advance(&mut film, target, &Phase::default())?;
@@ -135,7 +137,7 @@ pub fn shear_panel(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         x.x += gamma * x.y;
     }
-    let film = rig.start(&scene(shell, film()))?;
+    let film = rig.start(&free_film(shell, Film::PAPER_ELASTIC))?;
     let volume: f64 = film.model.volume.iter().sum();
     let pull = film.forces.films();
     let pull = pull.iter().zip(&reference.positions);

@@ -4,12 +4,13 @@ use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
 use billow_solver::mechanics::gas::{Gas, GasState};
 use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
 use billow_solver::models::run::Model;
+use billow_solver::scene::paper::nitrogen_supply;
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer, Species, Stepping};
 
 use super::gas_vessel::emptying_time;
 use super::reference::{number, rows};
-use super::rig::{inflow, nitrogen};
+use super::rig::inflow;
 use super::row::order;
 use super::{Outcome, Rig, Row};
 
@@ -46,7 +47,7 @@ fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64) -> PistonRun {
 /// Blow-down of a rigid tank through a choked orifice.
 pub fn blow_down(_: &Rig) -> Outcome {
     let (volume, mass, start) = (0.5, 0.6, 300.0);
-    let supply = GasSupply { leak_area: 1e-3, ..nitrogen() };
+    let supply = GasSupply { leak_area: 1e-3, ..nitrogen_supply() };
     let gas = Gas::new(&supply, 293.0, 1.0);
     let (gamma, tau) = (gas.gamma(), emptying_time(&supply, volume, start));
     let closed = Phase { packed: true, ..Phase::default() };
@@ -70,7 +71,8 @@ pub fn blow_down(_: &Rig) -> Outcome {
 /// A rigid tank takes on the temperature of its film.
 pub fn cooling(_: &Rig) -> Outcome {
     let (coefficient, area, mass, start) = (5.0, 2.0, 0.02, 450.0);
-    let supply = GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen() };
+    let supply =
+        GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen_supply() };
     let gas = Gas::new(&supply, 293.0, area);
     let rate = coefficient * area / (mass * gas.cv);
     let closed = Phase { packed: true, ..Phase::default() };
@@ -94,7 +96,7 @@ pub fn tank_filling(_: &Rig) -> Outcome {
     let [initial, start, entering, band] =
         ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
             .map(|key| number(&format!("tank_filling/{key}")));
-    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let mut run = tank(gas, 0.3, initial, start);
     let phase = Phase { packed: true, ..inflow(5e-3, entering) };
     let mut judged = Vec::new();
@@ -108,7 +110,7 @@ pub fn tank_filling(_: &Rig) -> Outcome {
 
 /// The injected piston from 1 ms on its closed form.
 pub fn injected_piston(_: &Rig) -> Outcome {
-    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let [mass, rate, entering, c, start, end] =
         ["mass", "rate", "inflow_temperature", "C", "start", "end"]
             .map(|key| number(&format!("injected_piston/{key}")));
@@ -138,7 +140,7 @@ pub fn injected_piston(_: &Rig) -> Outcome {
 
 /// Way at 50 ms of a piston that starts at rest on this empty volume (m³), m.
 pub fn from_dead_volume(area: f64, volume: f64, tolerance: f64) -> Result<f64, String> {
-    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     // At z = 0 the height is not yet above zero, so z counts from 0.1 m on.
     let shift = 0.1;
     let piston = tube(area, volume - area * shift, number("injected_piston/mass"), gas);
@@ -193,7 +195,7 @@ pub fn injected_piston_dead_volume(_: &Rig) -> Outcome {
 pub fn gas_spring(_: &Rig) -> Outcome {
     let gamma = number("gas_spring/gamma");
     let species = Species { gas_constant: 296.8, cp: 296.8 * gamma / (gamma - 1.0) };
-    let gas = Gas::new(&GasSupply { species, ..nitrogen() }, 293.0, 1.0);
+    let gas = Gas::new(&GasSupply { species, ..nitrogen_supply() }, 293.0, 1.0);
     let (mass, length, area, pressure) = (0.4, 0.3, 0.02, 2000.0);
     let linear = 2.0 * core::f64::consts::PI * (mass * length / (gamma * pressure * area)).sqrt();
     let mut judged = Vec::new();

@@ -4,17 +4,18 @@
 //! m λ̈ R² = (p 4π R³ λ² − dW/dλ)         p = p0 (λ0/λ)^(3γ),  W = 4π R² t E/(1−ν) ((λ²−1)/2)²
 //! ```
 
+use billow_solver::geometry::shapes::icosphere;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::{Explicit, PressureLoad};
 use billow_solver::models::film::Relaxation;
+use billow_solver::scene::Film;
 use billow_solver::scene::GasSupply;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 
 use super::oscillation::{frequency, turns};
 use super::reference::{number, rows};
-use super::rig::{film, nitrogen, scene};
 use super::row::{order, richardson};
-use super::shapes_dynamic::icosphere;
 use super::{Outcome, Rig, Row};
 
 /// Temperature of the gas, K: that of the film, so that its mass follows from its pressure.
@@ -30,7 +31,8 @@ fn sphere(level: u32) -> Shell {
 /// The sphere at rest under this overpressure, Pa.
 fn rest(rig: &Rig, level: u32, overpressure: f64) -> Result<Explicit, String> {
     let filling = Filling::Pressure(overpressure);
-    let mut film = rig.start(&FilmScene { filling, ..scene(sphere(level), film()) })?;
+    let mut film =
+        rig.start(&FilmScene { filling, ..free_film(sphere(level), Film::PAPER_ELASTIC) })?;
     // What motion is left must be small beside a swing of 1e-5 of the radius.
     let relaxation = Relaxation { kinetic_share: 1e-15, ..Relaxation::default() };
     relaxation
@@ -41,7 +43,7 @@ fn rest(rig: &Rig, level: u32, overpressure: f64) -> Result<Explicit, String> {
 
 /// Gas of this pressure (Pa) in this volume (m³).
 fn filled(pressure: f64, volume: f64) -> Filling {
-    let nitrogen = nitrogen();
+    let nitrogen = nitrogen_supply();
     let initial_mass = pressure * volume / (nitrogen.species.gas_constant * TEMPERATURE);
     Filling::Gas {
         supply: GasSupply { initial_mass, ..nitrogen },
@@ -58,7 +60,8 @@ fn breath(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
     let swing = number("breathing_sphere/amplitude") * 5300.0;
     let velocities = shell.positions.iter().map(|x| x * swing).collect();
     let filling = filled(pressure, rest.state.volume);
-    let mut film = rig.start(&FilmScene { velocities, filling, ..scene(shell, film()) })?;
+    let mut film =
+        rig.start(&FilmScene { velocities, filling, ..free_film(shell, Film::PAPER_ELASTIC) })?;
     let (interval, volume) = (film.stable_step(), rest.state.volume);
     frequency(&mut film, interval, 13, |film| film.state.volume - volume)
 }
@@ -105,11 +108,11 @@ fn let_go(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
     let PressureLoad::Overpressure(_) = rest.setting.interior else { unreachable!("relaxed so") };
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);
-    let species = nitrogen().species;
+    let species = nitrogen_supply().species;
     let gamma = species.cp / (species.cp - species.gas_constant);
     let denser = pressure * libm::pow(rest.state.volume / start, gamma);
     let filling = filled(denser, start);
-    let mut scene = FilmScene { filling, ..scene(empty, film()) };
+    let mut scene = FilmScene { filling, ..free_film(empty, Film::PAPER_ELASTIC) };
     scene.solver.cfl = CFL;
     let mut film = rig.start(&scene)?;
     let interval = film.stable_step();

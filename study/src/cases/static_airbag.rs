@@ -4,14 +4,15 @@
 //! it. There are several minima of energy near each other: the potential energy tells which is
 //! found, and lower is better.
 
+use billow_solver::geometry::shapes::{grid, nodes_where};
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::free_film;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
-use super::shapes_static::{grid, nodes_where};
-use super::static_rest::{at_rest, film};
+use super::rig::held;
+use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
 
 /// Energy, height and volume on three meshes.
@@ -22,7 +23,7 @@ pub fn square_airbag(_: &Rig) -> Outcome {
     let [energy_band, height_band, volume_band] = ["energy_band", "height_band", "volume_band"]
         .map(|key| number(&format!("square_airbag/{key}")));
     let side = 0.5 * diagonal / 2.0_f64.sqrt();
-    let film = Film { youngs_modulus, poisson_ratio, thickness, ..film() };
+    let film = Film { youngs_modulus, poisson_ratio, thickness, ..Film::PAPER_ELASTIC };
     let (mut judged, mut whole) = (Vec::new(), f64::NAN);
     for row in rows("square_airbag") {
         // The rows' first column counts cells.
@@ -35,7 +36,8 @@ pub fn square_airbag(_: &Rig) -> Outcome {
             held(seam, "z"),
         ];
         let filling = Filling::Pressure(pressure);
-        let (state, word) = at_rest(&FilmScene { filling, supports, ..scene(shell, film) })?;
+        let (state, word) =
+            equilibrium(&FilmScene { filling, supports, ..free_film(shell, film) })?;
         let name = |what: &str| format!("{what}, {cells} cells");
         let corner = state.places.get(state.places.len() - 1);
         let inward = 2.0_f64.sqrt() * side - corner.xy().norm();

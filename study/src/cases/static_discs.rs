@@ -9,17 +9,17 @@
 //! found at 10 Pa on 16, 32 and 48 rings, and at 5 kPa on 32 and 48, is dented by 8 to 11 % in places:
 //! the mean rim lies 0.7 to 1.0 % inside, the thickness 0.3 to 0.7 % over, the volume within 0.6 %.
 
+use billow_solver::geometry::shapes::{disc, disc_rim, radial_disc, ring_nodes};
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
+use super::rig::held;
 use super::row::order;
-use super::shapes_dynamic::{disc, rim};
-use super::shapes_static::{polar, ring};
-use super::static_rest::{at_rest, film, mean};
+use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
 /// Thickness of the clamped disc's film, m; only E t counts.
@@ -36,13 +36,13 @@ pub fn clamped_disc(_: &Rig) -> Outcome {
             youngs_modulus: row[1] / THICKNESS,
             poisson_ratio: row[2],
             thickness: THICKNESS,
-            ..film()
+            ..Film::PAPER_ELASTIC
         };
         let run = |rings: u32| -> Result<[f64; 3], String> {
             let filling = Filling::Pressure(pressure);
-            let supports = vec![held(rim(rings), "xyz")];
-            let scene = FilmScene { filling, supports, ..scene(disc(rings, radius), film) };
-            let (state, _) = at_rest(&scene)?;
+            let supports = vec![held(disc_rim(rings), "xyz")];
+            let scene = FilmScene { filling, supports, ..free_film(disc(rings, radius), film) };
+            let (state, _) = equilibrium(&scene)?;
             // The first six elements lie round the centre.
             let pull = |element| {
                 let own = resultants(&state.model, &state.places, element).nominal;
@@ -77,10 +77,14 @@ pub fn mylar_balloon(_: &Rig) -> Outcome {
         let run = |rings: u32| -> Result<([f64; 3], String), String> {
             let filling = Filling::Pressure(pressure);
             let around = 3 * rings;
-            let rim = ring(0, around);
+            let rim = ring_nodes(0, around);
             let supports = vec![held(rim.clone(), "z")];
-            let shell = polar(rings, around, radius);
-            let (state, word) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+            let shell = radial_disc(rings, around, radius);
+            let (state, word) = equilibrium(&FilmScene {
+                filling,
+                supports,
+                ..free_film(shell, Film::PAPER_ELASTIC)
+            })?;
             let middle =
                 Vector3::new(mean(&state, &rim, |x| x.x), mean(&state, &rim, |x| x.y), 0.0);
             let far = |x: Vector3<f64>| (x - middle).norm();

@@ -5,38 +5,24 @@
 //! the tension of wrinkled caps and side; its sizes come near the table's, but the small differences
 //! between two pressures drown in what the mesh does to each: they are told there, not judged.
 
-use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::fold::{Caps, FoldDesign, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::geometry::shapes::capped_frustum;
 use billow_solver::geometry::shell::Shell;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{self, free_film};
 use billow_solver::statics::StaticSolution;
 use nalgebra::Vector3;
 
 use super::reference::{number, numbers, rows};
-use super::rig::scene;
 use super::row::order;
-use super::shapes_static::capped;
-use super::static_rest::{at_rest_from, film, mean};
+use super::static_equilibrium::{equilibrium_from, mean};
 use super::{Outcome, Rig, Row};
 
-/// The capsule's design on this mesh.
+/// The paper's design with circular caps on this mesh.
 fn design(subdivisions: u32) -> FoldDesign {
-    let [bottom, top, height] =
-        ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
-    FoldDesign {
-        fit: Fit::Cone,
-        panels: 6,
-        storeys: 3,
-        bottom_radius: bottom,
-        top_radius: Some(top),
-        height: Some(height),
-        half_angle: None,
-        alpha1_over_phi: None,
-        chirality: Chirality::Same,
-        stowed_height: 0.04,
-        subdivisions,
-        caps: Caps::Circular,
-    }
+    FoldDesign { caps: Caps::Circular, ..paper::design(subdivisions) }
 }
 
 /// A shell whose rims and poles are known.
@@ -75,8 +61,9 @@ fn inflate(known: &Known) -> Result<([[f64; 5]; 2], String), String> {
     let mut words = Vec::new();
     for pressure in pressures {
         let filling = Filling::Pressure(pressure);
-        let scene = FilmScene { filling, ..scene(known.shell.clone(), film()) };
-        let (state, word) = at_rest_from(&scene, last.as_ref().map(|(state, at)| (state, *at)))?;
+        let scene = FilmScene { filling, ..free_film(known.shell.clone(), Film::PAPER_ELASTIC) };
+        let (state, word) =
+            equilibrium_from(&scene, last.as_ref().map(|(state, at)| (state, *at)))?;
         found.push(sizes(&state, known));
         words.push(word);
         last = Some((state, pressure));
@@ -155,7 +142,7 @@ pub fn aligned(_: &Rig) -> Outcome {
     let [bottom, top, height] =
         ["bottom_radius", "top_radius", "height"].map(|key| number(&format!("end_state/{key}")));
     let meshes = [8, 16, 32].map(|fine| {
-        let capped = capped(fine, [bottom, top], height);
+        let capped = capped_frustum(fine, [bottom, top], height);
         Known { shell: capped.shell, rims: capped.rims, poles: capped.poles }
     });
     judge(&meshes, true)

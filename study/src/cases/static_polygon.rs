@@ -6,15 +6,15 @@
 //! another minimum of wrinkled film near by, and narrow enough for a change of physics of a percent.
 
 use billow_solver::models::film::static_states;
+use billow_solver::scene::paper;
 
-use super::capsule_run::paper_capsule;
 use super::reference::{numbers, rows};
 use super::{Outcome, Rig, Row};
 
 /// Volume, rim height and strain energy on this mesh.
 fn on_mesh(subdivisions: u32) -> Outcome {
     let bands = numbers("end_state_polygon/bands");
-    let scene = paper_capsule(subdivisions, 0.3);
+    let scene = paper::capsule(subdivisions, 0.3);
     // The table tells pressures rising; falling ones settle soonest.
     let mut rows = rows("end_state_polygon");
     rows.retain(|row| (row[0] - f64::from(subdivisions)).abs() < 0.5);

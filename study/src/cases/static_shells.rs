@@ -12,17 +12,18 @@
 
 use core::f64::consts::PI;
 
+use billow_solver::geometry::shapes::{icosphere, revolved, ring_nodes};
 use billow_solver::mechanics::resultants::resultants;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
+use super::rig::held;
 use super::row::{order, worse};
-use super::shapes_dynamic::icosphere;
-use super::shapes_static::{revolved, ring};
-use super::static_rest::{at_rest, film, mean};
+use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
 /// Radius of a sphere at rest.
@@ -34,8 +35,9 @@ pub fn sphere(_: &Rig) -> Outcome {
         let (pressure, expected) = (row[0], row[1]);
         let run = |level: u32| -> Result<f64, String> {
             let filling = Filling::Pressure(pressure);
-            let scene = FilmScene { filling, ..scene(icosphere(level, radius), film()) };
-            let (state, _) = at_rest(&scene)?;
+            let scene =
+                FilmScene { filling, ..free_film(icosphere(level, radius), Film::PAPER_ELASTIC) };
+            let (state, _) = equilibrium(&scene)?;
             let loaded: f64 = state.places.iter().map(|x| x.norm()).sum();
             let unloaded: f64 = scene.shell.positions.iter().map(Vector3::norm).sum();
             Ok(loaded / unloaded - 1.0)
@@ -68,11 +70,12 @@ pub fn cylinder(_: &Rig) -> Outcome {
         let around = 8 * along;
         let shell =
             revolved(along, around, false, |k| [radius, length * f64::from(k) / f64::from(along)]);
-        let top = ring(along, around);
+        let top = ring_nodes(along, around);
         let supports =
-            vec![held(ring(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
+            vec![held(ring_nodes(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
         let filling = Filling::Pressure(pressure);
-        let (state, _) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (state, _) =
+            equilibrium(&FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) })?;
         let all: Vec<u32> = (0..(along + 1) * around).collect();
         Ok([
             mean(&state, &all, |x| x.xy().norm()) / radius - 1.0,
@@ -104,12 +107,13 @@ pub fn cone(_: &Rig) -> Outcome {
             [bottom + (top - bottom) * at, height * at]
         });
         let supports = vec![
-            held(ring(0, around), "xyz"),
-            held(ring(along, around), "xy"),
-            plate(ring(along, around), pressure * PI * top * top),
+            held(ring_nodes(0, around), "xyz"),
+            held(ring_nodes(along, around), "xy"),
+            plate(ring_nodes(along, around), pressure * PI * top * top),
         ];
         let filling = Filling::Pressure(pressure);
-        let (state, _) = at_rest(&FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (state, _) =
+            equilibrium(&FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) })?;
         let (mut sum, mut worst, mut count) = ([0.0; 2], [0.0; 2], 0.0);
         for (element, triangle) in state.model.triangles.iter().enumerate() {
             let corners = triangle.map(|node| state.places.get(node as usize));

@@ -9,18 +9,20 @@
 //! the section. The annulus's inner edge is turned; its torque is what it bears, its wrinkle radius
 //! the outer edge of the last ring most of whose elements are wrinkled.
 
+use billow_solver::geometry::shapes::{grid, nodes_where, revolved, ring_nodes};
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::resultants;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::motion::{Motion, Profile, Turn};
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
+use super::rig::held;
 use super::row::order;
-use super::shapes_static::{grid, nodes_where, revolved, ring};
-use super::static_rest::{at_rest, film};
+use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
 
 /// Height and half length of the beam, m.
@@ -30,7 +32,7 @@ const STRAIN: f64 = 1e-4;
 
 /// k and 2M/(P h) of a beam bent and pulled so that k is about `asked`.
 fn bend(rows: u32, asked: f64) -> Result<[f64; 2], String> {
-    let film = film();
+    let film = Film::PAPER_ELASTIC;
     let stiffness = film.youngs_modulus * film.thickness;
     // The whole section is stretched while k ≤ 1: P = E t h ε_mean, ε_max = ε_mean + κ h/2.
     let curvature = if asked > 1.0 {
@@ -59,7 +61,7 @@ fn bend(rows: u32, asked: f64) -> Result<[f64; 2], String> {
         held(foot, "y"),
         held(all, "z"),
     ];
-    let (state, _) = at_rest(&FilmScene { supports, ..scene(shell, film) })?;
+    let (state, _) = equilibrium(&FilmScene { supports, ..free_film(shell, film) })?;
     let (mut force, mut moment) = (0.0, 0.0);
     for node in wall {
         let own = state.forces.x[node as usize];
@@ -109,9 +111,10 @@ fn twist(rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
         turn: Some(Turn { axis: Vector3::z(), centre: Vector3::zeros(), angle }),
     };
     let all: Vec<u32> = (0..(rings + 1) * around).collect();
-    let hub = FilmSupport { motion: Some(motion), ..held(ring(0, around), "xyz") };
-    let supports = vec![hub, held(ring(rings, around), "xyz"), held(all, "z")];
-    let (state, word) = at_rest(&FilmScene { supports, ..scene(pulled, film()) })?;
+    let hub = FilmSupport { motion: Some(motion), ..held(ring_nodes(0, around), "xyz") };
+    let supports = vec![hub, held(ring_nodes(rings, around), "xyz"), held(all, "z")];
+    let (state, word) =
+        equilibrium(&FilmScene { supports, ..free_film(pulled, Film::PAPER_ELASTIC) })?;
     let cells = around as usize * 2;
     let last = (0..rings as usize).rev().find(|ring| {
         let own = ring * cells..(ring + 1) * cells;

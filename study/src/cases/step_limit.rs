@@ -8,16 +8,16 @@
 //! K is put together here from the gradients of the reference, not by the solver; the measured
 //! limit is found by bisection on whether a small motion grows.
 
+use billow_solver::geometry::shapes::{pseudo_random, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::{Matrix2x3, Vector2, Vector3};
 
 use super::reference::number;
-use super::rig::{film, scene};
-use super::shapes_dynamic::{pattern, sheet};
 use super::{Outcome, Rig, Row};
 
 /// The in-plane strain-displacement gradients of an element's reference, corner by corner.
@@ -33,7 +33,7 @@ fn gradients([a, b, c]: [Vector2<f64>; 3]) -> Matrix2x3<f64> {
 fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
     let nu = film.poisson_ratio;
     let k = film.youngs_modulus / (1.0 - nu * nu);
-    let mut mode = pattern(shell.positions.len(), 1);
+    let mut mode = pseudo_random(shell.positions.len(), 1);
     let mut value = 0.0;
     for _ in 0..4000 {
         let mut force = vec![Vector3::<f64>::zeros(); mode.len()];
@@ -66,8 +66,8 @@ fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
 /// Whether a small motion in the plane grows at this share of the step 2/ω.
 fn grows(rig: &Rig, shell: &Shell, film: &Film, share: f64, omega: f64) -> Result<bool, String> {
     let kick = |kick: &Vector3<f64>| Vector3::new(kick.x, kick.y, 0.0) * 1e-6;
-    let velocities = pattern(shell.positions.len(), 4).iter().map(kick).collect();
-    let mut moving = rig.start(&FilmScene { velocities, ..scene(shell.clone(), *film) })?;
+    let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();
+    let mut moving = rig.start(&FilmScene { velocities, ..free_film(shell.clone(), *film) })?;
     moving.setting.cfl = share * moving.model.largest_frequency() / omega;
     let target = 3000.0 * moving.stable_step();
     if moving.advance(target, &Phase::default()).is_err() {
@@ -79,7 +79,7 @@ fn grows(rig: &Rig, shell: &Shell, film: &Film, share: f64, omega: f64) -> Resul
 
 /// The three limits of uneven sheets.
 pub fn step_limit(rig: &Rig) -> Outcome {
-    let film = Film { compression: 1.0, ..film() };
+    let film = Film { compression: 1.0, ..Film::PAPER_ELASTIC };
     let mut judged = Vec::new();
     for (columns, rows, width, height) in [(4, 3, 0.2, 0.15), (6, 2, 0.1, 0.15), (3, 5, 0.4, 0.05)]
     {

@@ -254,26 +254,12 @@ fn stroke(colour: &str, width: f64, dashes: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
+    use billow_solver::scene::paper;
 
     use super::*;
 
     fn paper() -> FoldPattern {
-        FoldPattern::new(&FoldDesign {
-            fit: Fit::Cone,
-            panels: 6,
-            storeys: 3,
-            bottom_radius: 0.5,
-            top_radius: Some(0.365),
-            height: Some(1.0),
-            half_angle: None,
-            alpha1_over_phi: None,
-            chirality: Chirality::Same,
-            stowed_height: 0.04,
-            subdivisions: 1,
-            caps: Caps::Polygon,
-        })
-        .expect("the paper's capsule")
+        FoldPattern::new(&paper::design(1)).expect("the paper's capsule")
     }
 
     /// The lines of one layer, by their lengths.

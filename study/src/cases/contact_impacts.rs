@@ -5,24 +5,24 @@
 //! what was below an element of the other film is below it at the end
 //! ```
 
+use billow_solver::geometry::shapes::{icosphere, joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, moved, plate, together, watched};
+use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::number;
-use super::rig::{film, nitrogen, scene};
-use super::shapes_dynamic::{icosphere, sheet};
 use super::{Outcome, Rig, Row};
 
 /// Contact distance, m.
 const DISTANCE: f64 = 2e-3;
 
 fn viscous() -> Film {
-    Film { viscosity: 0.1, ..film() }
+    Film { viscosity: 0.1, ..Film::PAPER_ELASTIC }
 }
 
 /// A sheet, and a slanted one above it turned by a quarter: their film as one, and the nodes of the lower.
@@ -31,7 +31,7 @@ fn two_films() -> (Shell, usize) {
     let turned = |x: Vector3<f64>| Vector3::new(0.45 - x.y, 0.02 + x.x * 0.9, 0.02 + 0.03 * x.x);
     let high = moved(sheet(5, 4, 0.5, 0.4), turned);
     let nodes = low.positions.len();
-    let mut whole = together(&[low, high.clone()]);
+    let mut whole = joined(&[low, high.clone()]);
     // Where it starts it is free of stress.
     let flat = Shell::relaxed(high.positions, high.triangles).reference;
     let first = whole.reference.len() - flat.len();
@@ -72,8 +72,8 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
         let velocity = |node: usize| Vector3::z() * speeds[usize::from(node >= split)];
         let scene = FilmScene {
             velocities: (0..nodes).map(velocity).collect(),
-            contact: Some(watched(DISTANCE)),
-            ..scene(shell, viscous())
+            contact: Some(monitored_contact(DISTANCE)),
+            ..free_film(shell, viscous())
         };
         let mut film = rig.start(&scene)?;
         let momentum = |film: &Explicit| -> Vector3<f64> {
@@ -82,7 +82,7 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
         };
         let before = momentum(&film);
         let scale: f64 = (0..nodes).map(|n| film.model.mass[n] * velocity(n).norm()).sum();
-        let seen = follow(&mut film, 4e-3, 40, &Phase::default())?;
+        let record = run_recorded(&mut film, 4e-3, 40, &Phase::default())?;
         let mean = |from: usize, to: usize| {
             film.state.velocities.z[from..to].iter().sum::<f64>() / (to - from) as f64
         };
@@ -98,8 +98,8 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
             (momentum(&film) - before).norm() / scale,
             number("contact/momentum_band"),
         ));
-        judged.push(seen.returned(&film, run));
-        judged.extend(seen.rows(&film, run, number("contact/ledger_band")));
+        judged.push(record.unrecovered(&film, run));
+        judged.extend(record.rows(&film, run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
@@ -129,24 +129,24 @@ pub fn squeezed_bag(rig: &Rig) -> Outcome {
     };
     let mut judged = Vec::new();
     for compression in [0.0, 0.1, 1.0] {
-        let supply = GasSupply { initial_mass: 2e-7, ..nitrogen() };
+        let supply = GasSupply { initial_mass: 2e-7, ..nitrogen_supply() };
         let plates = vec![half(1.0), half(-1.0)];
         let scene = FilmScene {
             filling: Filling::Gas { supply, initial_temperature: 293.0 },
-            contact: Some(FilmContact { plates, ..watched(DISTANCE) }),
-            ..scene(shell.clone(), Film { compression, ..viscous() })
+            contact: Some(FilmContact { plates, ..monitored_contact(DISTANCE) }),
+            ..free_film(shell.clone(), Film { compression, ..viscous() })
         };
         let mut film = rig.start(&scene)?;
         let whole = height(&film);
-        let seen = follow(&mut film, closed, 60, &Phase::default())?;
+        let record = run_recorded(&mut film, closed, 60, &Phase::default())?;
         let run = format!("c {compression}: ");
         if compression > 0.0 {
-            judged.extend(seen.counts(&film, &run));
+            judged.extend(record.counts(&film, &run));
             continue;
         }
         let left = height(&film) / whole;
         judged.push(Row::at_most(&format!("{run}height over that at the start"), left, share));
-        judged.extend(seen.rows(&film, &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&film, &run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
@@ -168,16 +168,16 @@ pub fn dropped_sheet(rig: &Rig) -> Outcome {
         let scene = FilmScene {
             velocities: (0..shell.positions.len()).map(slower).collect(),
             gravity: Vector3::new(0.0, 0.0, -500.0),
-            contact: Some(FilmContact { plates: vec![floor], ..watched(DISTANCE) }),
-            ..scene(shell, Film { compression, ..viscous() })
+            contact: Some(FilmContact { plates: vec![floor], ..monitored_contact(DISTANCE) }),
+            ..free_film(shell, Film { compression, ..viscous() })
         };
         let mut film = rig.start(&scene)?;
-        let seen = follow(&mut film, 0.03, 60, &Phase::default())?;
+        let record = run_recorded(&mut film, 0.03, 60, &Phase::default())?;
         let lowest = film.state.places.z.iter().copied().fold(f64::INFINITY, f64::min);
         let run = format!("c {compression}: ");
         judged.push(Row::at_least(&format!("{run}lowest node above the floor, m"), lowest, 0.0));
-        judged.push(seen.returned(&film, &run));
-        judged.extend(seen.rows(&film, &run, number(&format!("contact/{key}"))));
+        judged.push(record.unrecovered(&film, &run));
+        judged.extend(record.rows(&film, &run, number(&format!("contact/{key}"))));
     }
     Ok(judged)
 }

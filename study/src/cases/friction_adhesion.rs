@@ -5,17 +5,18 @@
 //!                                                                   pull-off pressure
 //! ```
 
+use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, moved, together, watched};
+use super::contact_rig::{monitored_contact, run_recorded};
 use super::reference::number;
-use super::rig::{film, held, scene};
+use super::rig::held;
 use super::row::worse;
-use super::shapes_dynamic::sheet;
 use super::{Outcome, Rig, Row};
 
 /// Contact distance, and where the upper sheet starts, m.
@@ -27,7 +28,7 @@ fn on_top(low: Shell, high: Shell) -> (FilmScene, usize) {
     let count = u32::try_from(nodes).expect("under 2^32 nodes");
     let scene = FilmScene {
         supports: vec![held((0..count).collect(), "xyz")],
-        ..scene(together(&[low, high]), Film { viscosity: 0.1, ..film() })
+        ..free_film(joined(&[low, high]), Film { viscosity: 0.1, ..Film::PAPER_ELASTIC })
     };
     (scene, nodes)
 }
@@ -45,11 +46,11 @@ pub fn friction(rig: &Rig) -> Outcome {
             .map(|n| Vector3::x() * if n < split { 0.0 } else { speed })
             .collect(),
         gravity: Vector3::new(0.0, 0.0, -gravity),
-        contact: Some(FilmContact { friction: mu, ..watched(DISTANCE) }),
+        contact: Some(FilmContact { friction: mu, ..monitored_contact(DISTANCE) }),
         ..scene
     };
     let mut film = rig.start(&scene)?;
-    let seen = follow(&mut film, time, 20, &Phase::default())?;
+    let record = run_recorded(&mut film, time, 20, &Phase::default())?;
     let sum = |of: &dyn Fn(usize) -> f64| -> f64 { (split..nodes).map(of).sum() };
     let mass = sum(&|node| film.model.mass[node]);
     let momentum = sum(&|node| film.model.mass[node] * film.state.velocities.x[node]);
@@ -59,7 +60,7 @@ pub fn friction(rig: &Rig) -> Outcome {
         Row::new("speed lost, m/s", lost, mu * gravity * time, band),
         Row::at_least("energy friction took, J", taken, 0.0),
     ];
-    judged.extend(seen.rows(&film, "", number("contact/ledger_band")));
+    judged.extend(record.rows(&film, "", number("contact/ledger_band")));
     Ok(judged)
 }
 
@@ -81,7 +82,7 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     };
     scene.solver.mass_damping = 200.0;
     let mut film = rig.start(&scene)?;
-    follow(&mut film, 0.05, 10, &Phase::default())?;
+    run_recorded(&mut film, 0.05, 10, &Phase::default())?;
     let heights = &film.state.places.z[split..];
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     Ok([lowest, heights.iter().copied().fold(0.0, worse)])
