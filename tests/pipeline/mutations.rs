@@ -9,26 +9,26 @@ use billow_study::cases::{CASES, Judged, Rig};
 /// A case and the beginning of its quantity; `run` where the case comes to no end.
 type Judge = (&'static str, &'static str);
 
-const FILM_LEDGER: Judge = ("sphere_ledger", "film residual");
-const GAS_LEDGER: Judge = ("sphere_ledger", "gas residual");
+const FILM_LEDGER: Judge = ("sphere_ledger", "film energy residual");
+const GAS_LEDGER: Judge = ("sphere_ledger", "gas energy residual");
 const SPHERE_STOPS: Judge = ("sphere_ledger", "run");
 const TAUT_FORCE: Judge = ("force_energy", "film force, taut, c 0,");
 const SPRING: Judge = ("gas_spring", "period");
-const ALL_REGIMES: Judge = ("path_energy", "work against change");
+const ALL_REGIMES: Judge = ("path_energy", "work plus change");
 const PANEL: Judge = ("shear_panel", "P12");
 
 /// Who tells that a term is one per cent off, and who that its sign is lost.
 const JUDGES: [(Term, Judge, Judge); 22] = [
     (Term::Elastic, TAUT_FORCE, TAUT_FORCE),
-    (Term::Viscous, ("strip_damping", "log decrement"), ("dissipation", "power taken")),
-    (Term::ViscousWork, ("strip_damping", "energy taken"), FILM_LEDGER),
+    (Term::Viscous, ("strip_damping", "log decrement"), ("dissipation", "dissipated power")),
+    (Term::ViscousWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
     (Term::PressureForce, FILM_LEDGER, SPHERE_STOPS),
     (Term::Volume, FILM_LEDGER, SPHERE_STOPS),
     (Term::Gravity, ("force_energy", "weight"), FILM_LEDGER),
     (Term::Ambient, FILM_LEDGER, FILM_LEDGER),
     (Term::Kick, SPRING, SPRING),
     (Term::Drift, SPRING, SPRING),
-    (Term::MassDamping, ("free_flight_damping", "energy taken"), FILM_LEDGER),
+    (Term::MassDamping, ("free_flight_damping", "dissipated energy"), FILM_LEDGER),
     (Term::PlaneForce, SPRING, ("gas_spring", "run")),
     (Term::PlaneModulus, ALL_REGIMES, ("sphere_ledger", "run")),
     (Term::WrinkledModulus, PANEL, PANEL),

@@ -102,7 +102,7 @@ impl RunRecord {
 
     /// Rows of passages and intersections.
     pub fn counts(&self, film: &Explicit, run: &str) -> Vec<Row> {
-        let passages = film.watch.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
+        let passages = film.watch.as_ref().map_or(f64::NAN, |monitor| monitor.passages as f64);
         vec![
             Row::at_most(&format!("{run}passages"), passages, 0.0).with_note(&format!(
                 "{} steps monitored, at most {} pairs in contact, {} collision impulses; ledger residual {:.1e}",
@@ -123,7 +123,11 @@ impl RunRecord {
     /// Rows of passages, intersections and ledger residual.
     pub fn rows(&self, film: &Explicit, run: &str, ledger_band: f64) -> Vec<Row> {
         let mut rows = self.counts(film, run);
-        rows.push(Row::at_most(&format!("{run}film residual"), self.residual(), ledger_band));
+        rows.push(Row::at_most(
+            &format!("{run}film energy residual"),
+            self.residual(),
+            ledger_band,
+        ));
         rows
     }
 

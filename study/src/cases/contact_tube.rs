@@ -4,9 +4,9 @@
 //! b = π (R − g/2)        A = b g + π g²/4        force per length = p b,  p = p0 (A0/A)^γ
 //! ```
 //!
-//! Symbols: R radius of the tube, g gap between the films where they lie flat, b width of the contact,
-//! A area of the section, A0 at the start; m. A slice between two symmetry planes, its volume closed by
-//! end fans; its pressure is so low that the film does not stretch.
+//! Symbols: R radius of the tube, g gap between the flat films, b width of the contact, A area of the
+//! section, A0 at the start; m and m². The mesh is a slice between two symmetry planes; end fans close
+//! its volume. The pressure is so low that the film hardly stretches.
 
 use billow_solver::geometry::shapes::tube;
 use billow_solver::geometry::shell::Shell;
@@ -21,14 +21,17 @@ use super::reference::{number, rows};
 use super::rig::held;
 use super::{Outcome, Rig, Row};
 
+/// Elements around the tube.
 const AROUND: u32 = 64;
 /// Pressure at the start, Pa.
 const PRESSURE: f64 = 200.0;
+/// Temperature of the gas, K.
 const TEMPERATURE: f64 = 293.0;
 /// Contact distance, m.
 const DISTANCE: f64 = 5e-4;
-/// When the plates stand, and when the tube has come to rest, s.
+/// Time at which the plates stop, s.
 const CLOSED: f64 = 0.03;
+/// Time at which the tube is at rest, s.
 const REST: f64 = 0.08;
 
 /// Width of the slice, m: that of one element.
@@ -44,7 +47,7 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     let nitrogen = nitrogen_supply();
     let initial_mass = PRESSURE * volume / (nitrogen.species.gas_constant * TEMPERATURE);
     let supply = GasSupply { initial_mass, ..nitrogen };
-    // The plates start just off the tube, and end a contact distance off the film.
+    // The plates start one contact distance off the tube and end one off the film.
     let (start, end) = (radius + DISTANCE, 0.5 * gap + DISTANCE);
     let half = |sign: f64| {
         let up = Vector3::y() * sign;
@@ -63,7 +66,7 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     scene
 }
 
-/// Force and area at both gaps.
+/// Force and area of the section at both gaps.
 pub fn tube_between_plates(rig: &Rig) -> Outcome {
     let radius = number("tube_between_plates/radius");
     let [force_band, area_band] =
@@ -76,18 +79,19 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         let record = run_recorded(&mut film, REST, 8, &Phase::default())?;
         let nodes = 2 * AROUND as usize;
         let top = film.state.places.y.iter().take(nodes).copied().fold(0.0, f64::max);
-        let pushed: f64 = film.state.meeting.plates.iter().map(|plate| 0.5 * plate.force).sum();
+        let force_on_plates: f64 =
+            film.state.meeting.plates.iter().map(|plate| 0.5 * plate.force).sum();
         let run = format!("g {gap} m: ");
-        let word =
+        let note =
             format!("g is {:.6} m; kinetic energy {:.1e} J", 2.0 * top, film.kinetic_energy());
         judged.push(
             Row::new(
                 &format!("{run}force per length over p0, N/m/Pa"),
-                pushed / width(radius) / PRESSURE,
+                force_on_plates / width(radius) / PRESSURE,
                 force,
                 force_band,
             )
-            .with_note(&word),
+            .with_note(&note),
         );
         let share = film.state.volume / start;
         judged.push(Row::new(&format!("{run}A/A0"), share, area, area_band));

@@ -1,4 +1,4 @@
-//! What takes energy from film takes as much as it says.
+//! Dissipation: viscosity and mass damping remove the energy they report.
 //!
 //! ```text
 //! viscosity:     log decrement of a mode 2π ζ ω/ω_e
@@ -14,12 +14,12 @@ use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
-use super::oscillation::turns;
+use super::oscillation::extrema;
 use super::reference::number;
 use super::rig::{advance, held};
 use super::{Outcome, Rig, Row};
 
-/// A standing wave along a strip of equal elements, held across.
+/// A standing wave along a strip of equal elements, held in its transverse directions.
 pub fn strip_decrement(rig: &Rig) -> Outcome {
     let (columns, length) = (40_u32, 1.0);
     let shell = strip(columns, length, 0.05);
@@ -34,13 +34,13 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     };
     scene.solver.cfl = 0.1;
     let centre = columns as usize / 2;
-    let place = scene.shell.positions[centre].x;
+    let position = scene.shell.positions[centre].x;
     let mut film = rig.start(&scene)?;
     let interval = film.stable_step();
-    let turns = turns(&mut film, interval, 9, |film| film.state.places.x[centre] - place)?;
-    // Four periods between eight half waves.
-    let omega = 4.0 * TAU / (turns[8].time - turns[0].time);
-    let decrement = libm::log(turns[0].value / turns[8].value) / 4.0;
+    let extrema = extrema(&mut film, interval, 9, |film| film.state.places.x[centre] - position)?;
+    // Eight half periods.
+    let omega = 4.0 * TAU / (extrema[8].time - extrema[0].time);
+    let decrement = libm::log(extrema[0].value / extrema[8].value) / 4.0;
     let expected = TAU * scene.film.viscosity * omega / film.model.frequency[0];
     let ledger = film.ledger();
     let kinetic: f64 = scene
@@ -53,7 +53,7 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     let band = number("damping/band");
     Ok(vec![
         Row::new("log decrement of a strip's mode", decrement, expected, band),
-        Row::new("energy taken, J", ledger.viscous_work, lost, band),
+        Row::new("dissipated energy, J", ledger.viscous_work, lost, band),
     ])
 }
 
@@ -71,7 +71,7 @@ pub fn free_flight(rig: &Rig) -> Outcome {
     let lost = before - film.kinetic_energy();
     let band = number("damping/band");
     Ok(vec![
-        Row::new("speed left of free flight", share, libm::exp(-damping * time), band),
-        Row::new("energy taken, J", film.ledger().damping_work, lost, band),
+        Row::new("remaining speed of free flight", share, libm::exp(-damping * time), band),
+        Row::new("dissipated energy, J", film.ledger().damping_work, lost, band),
     ])
 }

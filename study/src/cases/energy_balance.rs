@@ -1,5 +1,5 @@
-//! Runs of gas and film whose energy must add up: the paper's capsule without contact, and a sphere
-//! that meets every term of the equations.
+//! Energy balances: the paper's capsule without contact, and a sphere with every term of the
+//! equations.
 //!
 //! ```text
 //! residual = |Δ(kinetic + strain) + viscous + damping − external works| / (peak kinetic + Σ|external works|)
@@ -24,29 +24,29 @@ use super::rig::advance;
 use super::row::worse;
 use super::{Outcome, Rig, Row};
 
-/// The paper's capsule deployed without contact for 0.3 s: its ledgers.
+/// The paper's capsule, deployed without contact for 0.3 s.
 pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     let scene = paper::capsule(5, 0.3);
-    // Nothing here is judged by its static states.
-    let unread = Reference::new(vec![[1.0, 1.0, 1.0]]);
+    // No row here uses static states.
+    let unused = Reference::new(vec![[1.0, 1.0, 1.0]]);
     let mut run =
-        FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(unread)).map_err(|e| e.to_string())?;
+        FilmRun::from_scene(&scene, DEFAULT_CFL, None, Some(unused)).map_err(|e| e.to_string())?;
     run.film = rig.faulty(run.film);
     let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     if deployment.stop != Stop::Done {
         return Err(format!("stopped: {:?}", deployment.stop));
     }
     let audit = &deployment.audit;
-    let viscous = format!("viscous share of the gas work {:.3}", audit.viscous_fraction);
+    let viscous = format!("viscous work over gas work {:.3}", audit.viscous_fraction);
     Ok(vec![
-        Row::at_most("film residual", audit.ledger_residual, number("ledger/band"))
+        Row::at_most("film energy residual", audit.ledger_residual, number("ledger/band"))
             .with_note(&viscous),
-        Row::at_most("gas residual", audit.gas_residual, number("ledger/gas_band")),
+        Row::at_most("gas energy residual", audit.gas_residual, number("ledger/gas_band")),
     ])
 }
 
-/// A viscous sphere thrown upward in air, that is filled, leaks, exchanges heat, and is slowed by
-/// mass damping: every term at once.
+/// A viscous sphere that is thrown upward in air, filled, leaks, exchanges heat and has mass damping:
+/// every term at once.
 pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     let ambient = 1000.0;
     let shell = icosphere(2, 0.5);
@@ -72,16 +72,24 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     let mut film = rig.start(&scene)?;
     let inflow = Inflow { mass: 1.0, mass_temperature: 400.0 };
     let phase = Phase { packed: false, inflow };
-    let (mut ledgers, mut books) = (vec![film.ledger()], vec![film.books()]);
+    let (mut ledgers, mut balances) = (vec![film.ledger()], vec![film.books()]);
     for sample in 1..=40 {
         let time = f64::from(sample) * 1e-3;
         advance(&mut film, time, &phase)?;
         ledgers.push(film.ledger());
-        books.push(GasBalance { mass_in: inflow.mass * time, ..film.books() });
+        balances.push(GasBalance { mass_in: inflow.mass * time, ..film.books() });
     }
     let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
     Ok(vec![
-        Row::at_most("film residual", largest(residuals(&ledgers)), number("ledger/sphere_band")),
-        Row::at_most("gas residual", largest(gas_residuals(&books)), number("ledger/gas_band")),
+        Row::at_most(
+            "film energy residual",
+            largest(residuals(&ledgers)),
+            number("ledger/sphere_band"),
+        ),
+        Row::at_most(
+            "gas energy residual",
+            largest(gas_residuals(&balances)),
+            number("ledger/gas_band"),
+        ),
     ])
 }

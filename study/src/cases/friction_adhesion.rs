@@ -1,8 +1,8 @@
-//! Film that rubs on film, and film that sticks to it.
+//! Friction and adhesion between film and film.
 //!
 //! ```text
-//! friction:  speed lost = μ g t  while it slides         adhesion:  parts where pulled by more than the
-//!                                                                   pull-off pressure
+//! friction:  speed loss = μ g t while it slides
+//! adhesion:  the sheets separate above the pull-off pressure
 //! ```
 
 use billow_solver::geometry::shapes::{joined, moved, sheet};
@@ -19,11 +19,11 @@ use super::rig::held;
 use super::row::worse;
 use super::{Outcome, Rig, Row};
 
-/// Contact distance, and where the upper sheet starts, m.
+/// Contact distance, and initial height of the upper sheet, m.
 const DISTANCE: f64 = 1e-3;
 
-/// A sheet that is held and one a contact distance above it; and where the nodes of the upper begin.
-fn on_top(low: Shell, high: Shell) -> (FilmScene, usize) {
+/// A held sheet and a free one above it; and the first node of the upper one.
+fn two_sheets(low: Shell, high: Shell) -> (FilmScene, usize) {
     let nodes = low.positions.len();
     let count = u32::try_from(nodes).expect("under 2^32 nodes");
     let scene = FilmScene {
@@ -33,13 +33,13 @@ fn on_top(low: Shell, high: Shell) -> (FilmScene, usize) {
     (scene, nodes)
 }
 
-/// A sheet that slides on another under its weight.
+/// A sheet that slides on another one under its weight.
 pub fn friction(rig: &Rig) -> Outcome {
     let (mu, band) = (number("friction/coefficient"), number("friction/band"));
     let (gravity, speed, time) = (9.81, 0.5, 0.06);
     let low = moved(sheet(8, 4, 1.0, 0.4), |x| x - Vector3::new(0.2, 0.05, 0.0));
     let high = moved(sheet(3, 2, 0.2, 0.15), |x| x + Vector3::new(0.0, 0.05, DISTANCE));
-    let (scene, split) = on_top(low, high);
+    let (scene, split) = two_sheets(low, high);
     let nodes = scene.shell.positions.len();
     let scene = FilmScene {
         velocities: (0..nodes)
@@ -55,21 +55,22 @@ pub fn friction(rig: &Rig) -> Outcome {
     let mass = sum(&|node| film.model.mass[node]);
     let momentum = sum(&|node| film.model.mass[node] * film.state.velocities.x[node]);
     let lost = speed - momentum / mass;
-    let taken = film.ledger().friction_work;
+    let dissipated = film.ledger().friction_work;
     let mut judged = vec![
-        Row::new("speed lost, m/s", lost, mu * gravity * time, band),
-        Row::at_least("energy friction took, J", taken, 0.0),
+        Row::new("speed loss, m/s", lost, mu * gravity * time, band),
+        Row::at_least("energy dissipated by friction, J", dissipated, 0.0),
     ];
     judged.extend(record.rows(&film, "", number("contact/ledger_band")));
     Ok(judged)
 }
 
-/// Height of the upper sheet after it was pulled by this pressure (Pa): lowest and highest node, m.
+/// Heights of the lowest and the highest node of the upper sheet, m, after a pull (Pa) against this
+/// pull-off pressure (Pa).
 fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     let low = sheet(16, 16, 0.4, 0.4);
     let high = moved(sheet(4, 4, 0.2, 0.2), |x| x + Vector3::new(0.104, 0.109, DISTANCE));
-    let (scene, split) = on_top(low, high);
-    // Weight upwards: so much an area.
+    let (scene, split) = two_sheets(low, high);
+    // The pull is an upward weight per area.
     let density = scene.film.density * scene.film.thickness;
     let mut scene = FilmScene {
         gravity: Vector3::new(0.0, 0.0, pull / density),
@@ -88,7 +89,7 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     Ok([lowest, heights.iter().copied().fold(0.0, worse)])
 }
 
-/// Sheets that stick, pulled by less and by more than they bear.
+/// Adhesive sheets, pulled below and above the pull-off pressure.
 pub fn adhesion(rig: &Rig) -> Outcome {
     let [pressure, below, above, parted] =
         ["pressure", "below", "above", "parted"].map(|key| number(&format!("adhesion/{key}")));

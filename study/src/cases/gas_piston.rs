@@ -1,12 +1,12 @@
-//! A rigid plate on a column of gas, through the explicit step.
+//! A rigid plate on a column of gas, with the explicit step.
 //!
 //! ```text
 //! injected:  x = C t^1.5,  C² = ṁ cp T_in/(M (0.75/(γ−1) + 1.125)),  T = T_in 2γ/(3γ−1)
 //! spring:    M ẍ = p0 A ((L0/x)^γ − 1)             T_lin = 2π √(M L0/(γ p0 A))
 //! ```
 //!
-//! The plate is film bound to a rigid plane; the walls enclose and are no film. Steps are shares of
-//! the plate's own stable step, halved from one to the next.
+//! The plate is film on a rigid plane; the walls close the volume and are no film. Each run halves the
+//! CFL number of the one before.
 
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
@@ -55,7 +55,7 @@ fn injection() -> Phase {
     inflow(number("injected_piston/rate"), number("injected_piston/inflow_temperature"))
 }
 
-/// From the closed form at 1 ms to 50 ms, in steps halved twice.
+/// From the closed form at 1 ms to 50 ms, with the step halved twice.
 pub fn injected_piston(rig: &Rig) -> Outcome {
     let [mass, rate, entering, c, start, end] =
         ["mass", "rate", "inflow_temperature", "C", "start", "end"]
@@ -83,14 +83,14 @@ pub fn injected_piston(rig: &Rig) -> Outcome {
     let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
     let finest = &runs[2];
     let enthalpy = rate * end * cp * entering;
-    let share = finest.kinetic_energy() / enthalpy;
+    let kinetic_fraction = finest.kinetic_energy() / enthalpy;
     Ok(vec![
         Row::new("x at 50 ms, m", height(finest), expected, number("injected_piston/band"))
             .with_least_order(seen, number("injected_piston/order"))
             .with_errors(errors),
         Row::new(
-            "kinetic energy over enthalpy let in",
-            share,
+            "kinetic energy over enthalpy in",
+            kinetic_fraction,
             number("injected_piston/kinetic_share_of_enthalpy"),
             number("injected_piston/offset_band"),
         ),
@@ -151,7 +151,8 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
             };
             let mut film = piston.start(rig)?;
             advance(&mut film, ratio * linear, &Phase::default())?;
-            // Back at rest after one period: what speed is left tells by how much it was missed.
+            // After one period the plate is at rest: the remaining speed over the acceleration is the
+            // error of the period.
             let speed = film.velocities().z[4];
             let force = film.force_on(&film.setting.supports.bodies[0]) - pressure * area;
             Ok(ratio * linear - speed / (force / mass))

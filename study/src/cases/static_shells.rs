@@ -6,9 +6,9 @@
 //! cone      N_hoop = p r/cos φ,  N_meridional = p r/(2 cos φ)
 //! ```
 //!
-//! Stretches are those of mean radii against the same mesh unloaded. The cylinder's end is a rigid
-//! plane pushed by `p π (R λ_hoop)²`, the cone's a rigid disc pushed by `p π r²`; the cone's forces are
-//! true ones (per width as it is) over its middle third, each at its own radius.
+//! A stretch is the mean radius over that of the unloaded mesh. A rigid plane under the force
+//! `p π (R λ_hoop)²` ends the cylinder, a rigid disc under `p π r²` the cone. Forces of the cone are true
+//! ones (per deformed width) in its middle third, each compared at its own radius.
 
 use core::f64::consts::PI;
 
@@ -26,7 +26,7 @@ use super::row::{order, worse};
 use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
-/// Radius of a sphere at rest.
+/// Stretch of a sphere.
 pub fn sphere(_: &Rig) -> Outcome {
     let [radius, band, least] =
         ["radius", "band", "order"].map(|key| number(&format!("static_sphere/{key}")));
@@ -54,7 +54,7 @@ pub fn sphere(_: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// A plate on these nodes, pushed along z.
+/// A rigid plate on these nodes under a force along z.
 fn plate(nodes: Vec<u32>, force: f64) -> FilmSupport {
     let hold = Hold::Body(PlaneBody { normal: Vector3::z(), mass: 1.0, velocity: 0.0, force });
     FilmSupport { name: "plate".to_owned(), nodes, hold, motion: None }
@@ -65,14 +65,16 @@ pub fn cylinder(_: &Rig) -> Outcome {
     let [radius, length, pressure, axial, hoop, band, least] =
         ["radius", "length", "overpressure", "axial", "hoop", "band", "order"]
             .map(|key| number(&format!("static_cylinder/{key}")));
-    let wide = radius * (1.0 + hoop);
+    let stretched = radius * (1.0 + hoop);
     let run = |along: u32| -> Result<[f64; 2], String> {
         let around = 8 * along;
         let shell =
             revolved(along, around, false, |k| [radius, length * f64::from(k) / f64::from(along)]);
         let top = ring_nodes(along, around);
-        let supports =
-            vec![held(ring_nodes(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
+        let supports = vec![
+            held(ring_nodes(0, around), "z"),
+            plate(top.clone(), pressure * PI * stretched * stretched),
+        ];
         let filling = Filling::Pressure(pressure);
         let (state, _) =
             equilibrium(&FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) })?;
@@ -83,17 +85,17 @@ pub fn cylinder(_: &Rig) -> Outcome {
         ])
     };
     let values = [run(3)?, run(6)?, run(12)?];
-    let row = |at: usize, name: &str, expected: f64| {
-        let errors = values.map(|value| value[at] / expected - 1.0);
+    let row = |index: usize, name: &str, expected: f64| {
+        let errors = values.map(|value| value[index] / expected - 1.0);
         let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
-        Row::new(name, values[2][at], expected, band)
+        Row::new(name, values[2][index], expected, band)
             .with_least_order(seen, least)
             .with_errors(errors)
     };
     Ok(vec![row(0, "lambda_hoop - 1", hoop), row(1, "lambda_axial - 1", axial)])
 }
 
-/// Membrane forces of a cone away from its ends.
+/// Membrane forces of a cone far from its ends.
 pub fn cone(_: &Rig) -> Outcome {
     let [bottom, top, height, pressure, band] =
         ["bottom_radius", "top_radius", "height", "overpressure", "band"]
@@ -103,8 +105,8 @@ pub fn cone(_: &Rig) -> Outcome {
     let run = |along: u32| -> Result<[[f64; 2]; 2], String> {
         let around = 4 * along;
         let shell = revolved(along, around, false, |k| {
-            let at = f64::from(k) / f64::from(along);
-            [bottom + (top - bottom) * at, height * at]
+            let s = f64::from(k) / f64::from(along);
+            [bottom + (top - bottom) * s, height * s]
         });
         let supports = vec![
             held(ring_nodes(0, around), "xyz"),
@@ -119,13 +121,13 @@ pub fn cone(_: &Rig) -> Outcome {
             let corners = triangle.map(|node| state.places.get(node as usize));
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             if (middle.z / height - 0.5).abs() < 1.0 / 6.0 {
-                // The mean distance of the surface itself, not of the chord.
+                // The mean radius of the corners lies nearer to the surface than that of the chord.
                 let radius = corners.iter().map(|x| x.xy().norm()).sum::<f64>() / 3.0;
                 let hoop = pressure * radius / cos;
-                let own = resultants(&state.model, &state.places, element).cauchy;
-                for (at, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
-                    sum[at] += own[at] / expected;
-                    worst[at] = worse(worst[at], (own[at] / expected - 1.0).abs());
+                let force = resultants(&state.model, &state.places, element).cauchy;
+                for (index, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
+                    sum[index] += force[index] / expected;
+                    worst[index] = worse(worst[index], (force[index] / expected - 1.0).abs());
                 }
                 count += 1.0;
             }
@@ -134,15 +136,15 @@ pub fn cone(_: &Rig) -> Outcome {
     };
     let values = [run(12)?, run(24)?, run(48)?];
     let mut judged = Vec::new();
-    for (at, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
-        let errors = values.map(|[mean, _]| mean[at] - 1.0);
+    for (index, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
+        let errors = values.map(|[mean, _]| mean[index] - 1.0);
         judged.push(
-            Row::new(&format!("{name}/(closed form), mean"), values[2][0][at], 1.0, band)
+            Row::new(&format!("{name}/(closed form), mean"), values[2][0][index], 1.0, band)
                 .with_order(order(errors[1], errors[2]))
                 .with_errors(errors),
         );
-        let farthest = values[2][1][at];
-        judged.push(Row::at_most(&format!("{name}, farthest element"), farthest, band));
+        let largest = values[2][1][index];
+        judged.push(Row::at_most(&format!("{name}, largest error of an element"), largest, band));
     }
     Ok(judged)
 }

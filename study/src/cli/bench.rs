@@ -46,7 +46,7 @@ pub fn run(args: &Args, global: &Global, out: &mut dyn Write) -> Result<()> {
             (_, true) => Effort::Full,
             _ => Effort::Usual,
         },
-        path: super::solve::instruction_set()?,
+        instruction_set: super::solve::instruction_set()?,
     };
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let report = bench::run(&plan, &stop, &mut |next| {
