@@ -8,7 +8,7 @@ use billow_solver::platform::simd::InstructionSet;
 use billow_solver::platform::stopwatch::Stage;
 use serde_json::Value;
 
-use crate::resume::signal;
+use crate::interruption::signal;
 
 const TARGETS: [&str; 9] = [
     "step_without_contact_n16",

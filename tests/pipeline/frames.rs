@@ -1,4 +1,4 @@
-//! Frames from the run to the picture: stored, read back, drawn, and refused where there are none.
+//! Frames: stored, read, drawn, and refused if a job has none.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use billow_study::store::history_file::{self, StoredFrames};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 
-use crate::support::{Desk, histories, stderr};
+use crate::support::{TestFolder, histories, stderr};
 
 /// A film study of a few milliseconds: a job with frames, a job without.
 fn study() -> Value {
@@ -25,9 +25,9 @@ fn study() -> Value {
     })
 }
 
-/// A study that has run: its desk, the job with frames, the job without.
-fn ran(threads: &str) -> (Desk, String, String) {
-    let desk = Desk::new(&study());
+/// A finished study: its folder, the job with frames, the job without.
+fn ran(threads: &str) -> (TestFolder, String, String) {
+    let desk = TestFolder::new(&study());
     desk.stdout(&["run", "grid.json", "-q", "--threads", threads]);
     let rows = desk.rows("results/grid");
     assert_eq!(rows.len(), 2);
@@ -35,7 +35,7 @@ fn ran(threads: &str) -> (Desk, String, String) {
     (desk, job(&rows[0]), job(&rows[1]))
 }
 
-fn history(desk: &Desk, job: &str) -> PathBuf {
+fn history(desk: &TestFolder, job: &str) -> PathBuf {
     desk.results().join("jobs").join(&job[..2]).join(format!("{job}.h5"))
 }
 
@@ -65,7 +65,7 @@ fn panels(path: &Path) -> Vec<usize> {
 }
 
 #[test]
-fn a_job_keeps_its_shapes_and_they_are_drawn() {
+fn frames_of_a_job_are_stored_and_drawn() {
     let (desk, job, _) = ran("1");
     let path = history(&desk, &job);
     let (stored, all) = frames(&path);
@@ -79,12 +79,12 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     assert_eq!(all.len(), 4);
     assert_eq!(stored.times()[0].to_bits(), 0.0_f64.to_bits());
     assert_eq!(stored.times()[3].to_bits(), 0.004_f64.to_bits());
-    // Frames are shapes at samples: their highest node is the sample's.
+    // A frame is the shape at a sample: both have the same highest node.
     let history = history_file::read(&path).unwrap().history;
     for frame in &all {
         let times = history.column("time");
         let sample = times.iter().position(|time| time.to_bits() == frame.time.to_bits()).unwrap();
-        #[expect(clippy::cast_possible_truncation, reason = "as frames have it")]
+        #[expect(clippy::cast_possible_truncation, reason = "frames are stored in f32")]
         let z_max = history.column("z_max")[sample] as f32;
         let highest = frame.places.iter().map(|place| place[2]).fold(f32::MIN, f32::max);
         assert_eq!(highest.to_bits(), z_max.to_bits(), "at {}", frame.time);
@@ -105,7 +105,7 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     assert!(text.contains("storey 3") && text.contains("caps") && text.contains(">4 ms<"));
     assert_eq!(pixels(&png)[0], 180 * 12);
 
-    // Again, the same bytes; and from the file itself.
+    // A repetition gives the same bytes; a history file may be named directly.
     let [first, first_png] = [&svg, &png].map(|path| fs::read(path).unwrap());
     desk.stdout(&["frames", &job, "grid.json", "-q"]);
     assert!(fs::read(&svg).unwrap() == first && fs::read(&png).unwrap() == first_png);
@@ -121,20 +121,20 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
 }
 
 #[test]
-fn frames_are_the_same_bytes_whatever_runs_beside_them() {
+fn frames_have_the_same_bytes_on_any_number_of_threads() {
     let (one, job, without) = ran("1");
     let (two, ..) = ran("2");
     let (files, others) = (histories(&one.results()), histories(&two.results()));
     assert_eq!(files.len(), 2);
     assert!(files == others);
-    // Equal runs but for the frames: the content hash tells them apart.
+    // The histories are equal, but the content hash covers the frames.
     let stored = [&job, &without].map(|job| history_file::read(&history(&one, job)).unwrap());
     assert_eq!(stored[0].history, stored[1].history);
     assert_ne!(stored[0].content_hash, stored[1].content_hash);
 }
 
 #[test]
-fn what_cannot_be_drawn_is_one_clear_error() {
+fn invalid_requests_give_one_error() {
     let (desk, job, without) = ran("2");
     let refused = |arguments: &[&str], parts: &[&str]| {
         let output = desk.run(&[&["frames"], arguments].concat());
@@ -169,8 +169,8 @@ fn what_cannot_be_drawn_is_one_clear_error() {
 }
 
 #[test]
-fn a_scene_solved_by_itself_keeps_frames_as_well() {
-    let desk = Desk::new(&study());
+fn a_solved_scene_stores_frames_too() {
+    let desk = TestFolder::new(&study());
     let mut scene = study();
     for section in ["grid", "solver"] {
         scene.as_object_mut().unwrap().remove(section);

@@ -1,24 +1,24 @@
-//! Deliberate faults: a term of the equations that lost its sign, or is one per cent off, must be
-//! noticed by a judge: a ledger or a quantity of a case.
+//! Fault injection: a term of the equations with the wrong sign, or wrong by 1 %, must be detected by a
+//! quantity of a reference case.
 
 use std::collections::BTreeSet;
 
 use billow_solver::platform::fault_injection::{Fault, Term};
 use billow_study::cases::{CASES, Judged, Rig};
 
-/// A case and the beginning of its quantity; `run` where the case comes to no end.
-type Judge = (&'static str, &'static str);
+/// A case and the start of a quantity's name; `run` if the case fails to run.
+type Detector = (&'static str, &'static str);
 
-const FILM_LEDGER: Judge = ("sphere_ledger", "film energy residual");
-const GAS_LEDGER: Judge = ("sphere_ledger", "gas energy residual");
-const SPHERE_STOPS: Judge = ("sphere_ledger", "run");
-const TAUT_FORCE: Judge = ("force_energy", "film force, taut, c 0,");
-const SPRING: Judge = ("gas_spring", "period");
-const ALL_REGIMES: Judge = ("path_energy", "work plus change");
-const PANEL: Judge = ("shear_panel", "P12");
+const FILM_LEDGER: Detector = ("sphere_ledger", "film energy residual");
+const GAS_LEDGER: Detector = ("sphere_ledger", "gas energy residual");
+const SPHERE_STOPS: Detector = ("sphere_ledger", "run");
+const TAUT_FORCE: Detector = ("force_energy", "film force, taut, c 0,");
+const SPRING: Detector = ("gas_spring", "period");
+const ALL_REGIMES: Detector = ("path_energy", "work plus change");
+const PANEL: Detector = ("shear_panel", "P12");
 
-/// Who tells that a term is one per cent off, and who that its sign is lost.
-const JUDGES: [(Term, Judge, Judge); 22] = [
+/// For each term: the detector of an error of 1 %, and that of the wrong sign.
+const DETECTORS: [(Term, Detector, Detector); 22] = [
     (Term::Elastic, TAUT_FORCE, TAUT_FORCE),
     (Term::Viscous, ("strip_damping", "log decrement"), ("dissipation", "dissipated power")),
     (Term::ViscousWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
@@ -44,39 +44,39 @@ const JUDGES: [(Term, Judge, Judge); 22] = [
 ];
 
 fn judged(case: &str, fault: Option<Fault>) -> Judged {
-    let case = CASES.iter().find(|own| own.name == case).expect("a case");
+    let case = CASES.iter().find(|known| known.name == case).expect("a case");
     case.run(&Rig { fault })
 }
 
-/// Whether a judge sees a fault.
-fn sees((case, quantity): Judge, fault: Option<Fault>) -> bool {
+/// Whether a detector is out of band.
+fn detects((case, quantity): Detector, fault: Option<Fault>) -> bool {
     let rows = judged(case, fault).rows;
     rows.iter().any(|row| row.quantity.starts_with(quantity) && !row.pass)
 }
 
 #[test]
-fn every_fault_is_noticed() {
-    let named: Vec<Term> = JUDGES.iter().map(|(term, ..)| *term).collect();
-    assert_eq!(named, Term::ALL, "a judge for every term, in their order");
-    let mut survivors = Vec::new();
-    for (term, slight, lost) in JUDGES {
-        for (judge, factor) in [(slight, 1.01), (lost, -1.0)] {
-            if !sees(judge, Some(Fault { term, factor })) {
-                survivors.push(format!("{term:?} times {factor}: {judge:?} did not notice"));
+fn every_fault_is_detected() {
+    let named: Vec<Term> = DETECTORS.iter().map(|(term, ..)| *term).collect();
+    assert_eq!(named, Term::ALL, "detectors for every term, in their order");
+    let mut undetected = Vec::new();
+    for (term, of_one_per_cent, of_wrong_sign) in DETECTORS {
+        for (detector, factor) in [(of_one_per_cent, 1.01), (of_wrong_sign, -1.0)] {
+            if !detects(detector, Some(Fault { term, factor })) {
+                undetected.push(format!("{term:?} times {factor}: {detector:?} is in band"));
             }
         }
     }
-    assert!(survivors.is_empty(), "{}", survivors.join("\n"));
+    assert!(undetected.is_empty(), "{}", undetected.join("\n"));
 }
 
 #[test]
-fn judges_see_no_fault_where_there_is_none() {
-    let cases: BTreeSet<&str> = JUDGES.iter().flat_map(|(_, a, b)| [a.0, b.0]).collect();
+fn no_detector_reports_a_fault_without_one() {
+    let cases: BTreeSet<&str> = DETECTORS.iter().flat_map(|(_, a, b)| [a.0, b.0]).collect();
     for case in cases {
         let judged = judged(case, None);
         assert!(judged.pass(), "{case}: {:?}", judged.rows);
     }
-    // A factor of one is no fault.
+    // A factor of 1 is not a fault.
     let idle = Fault { term: Term::Elastic, factor: 1.0 };
-    assert!(!sees(TAUT_FORCE, Some(idle)));
+    assert!(!detects(TAUT_FORCE, Some(idle)));
 }
