@@ -13,23 +13,23 @@ use crate::support::stderr;
 #[test]
 fn the_schema_has_every_key() {
     let schema = scene_schema();
-    let has = |place: &str, key: &str| {
-        let found = schema.pointer(&format!("{place}/properties/{key}"));
-        let found = found.unwrap_or_else(|| panic!("{key} of {place} is missing"));
+    let has = |location: &str, key: &str| {
+        let found = schema.pointer(&format!("{location}/properties/{key}"));
+        let found = found.unwrap_or_else(|| panic!("{key} of {location} is missing"));
         assert!(found["description"].as_str().is_some_and(|text| text.len() > 5), "{key}");
     };
     for key in &SCENE.keys {
         let (section, leaf) = key.path.rsplit_once('.').unwrap_or(("", key.path));
-        // A species is a word or an object of its own.
+        // A species is a name or an object.
         if section == "gas.species" {
             assert!(schema["properties"]["gas"].to_string().contains(&format!("{leaf:?}")));
             continue;
         }
-        let place = if section.is_empty() { "" } else { &format!("/properties/{section}") };
-        has(place, leaf);
+        let location = if section.is_empty() { "" } else { &format!("/properties/{section}") };
+        has(location, leaf);
     }
     let support = "/properties/supports/items";
-    for (place, keys) in [
+    for (location, keys) in [
         ("/properties/mesh".to_owned(), MESH_KEYS),
         ("/properties/gas/properties/windows/items".to_owned(), SCENE_WINDOW_KEYS),
         (support.to_owned(), SUPPORT_KEYS),
@@ -41,10 +41,10 @@ fn the_schema_has_every_key() {
         ("/properties/outputs".to_owned(), OUTPUT_KEYS),
     ] {
         for key in keys {
-            has(&place, key.path);
+            has(&location, key.path);
         }
     }
-    for (place, key) in [
+    for (location, key) in [
         ("/properties/mesh", "reference"),
         ("/properties/mesh", "closure"),
         (support, "nodes"),
@@ -52,7 +52,7 @@ fn the_schema_has_every_key() {
         ("/properties/outputs", "elements"),
         ("", "gravity"),
     ] {
-        has(place, key);
+        has(location, key);
     }
 }
 

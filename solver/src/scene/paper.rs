@@ -32,7 +32,7 @@ pub const TEMPERATURE: f64 = 293.0;
 impl Film {
     /// The paper's film as a tension field (c = 0), with the damping ratio ζ = 0.1 of its runs.
     ///
-    /// E 3.45 GPa, ν 0.3, ρ 1400 kg/m³, t 25.4 µm. Source: the paper.
+    /// E 3.45e9 Pa, ν 0.3, ρ 1400 kg/m³, t 25.4 µm. Source: the paper.
     pub const PAPER: Self = Self {
         youngs_modulus: 3.45e9,
         poisson_ratio: 0.3,

@@ -25,12 +25,12 @@ pub fn column(area: f64, height: f64) -> Column {
     Column { shell: gas_column(area, height) }
 }
 
-impl Column {
-    /// Supports of a rigid vessel: both plates are held.
-    pub fn rigid(&self) -> Vec<FilmSupport> {
-        vec![held([LOWER, UPPER].concat(), "xyz")]
-    }
+/// Supports of a rigid vessel: both plates of a column are held.
+pub fn rigid_vessel() -> Vec<FilmSupport> {
+    vec![held([LOWER, UPPER].concat(), "xyz")]
+}
 
+impl Column {
     /// Supports of a piston: the lower plate is held, the upper one is a rigid plane. Its mass (kg)
     /// includes the film of this area density (kg/m²). It moves along z, from this speed (m/s) on,
     /// under a constant force (N).

@@ -14,7 +14,7 @@ use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
-use super::gas_column::column;
+use super::gas_column::{column, rigid_vessel};
 use super::reference::{number, rows};
 use super::rig::{advance, inflow, temperature};
 use super::{Outcome, Rig, Row};
@@ -23,7 +23,7 @@ use super::{Outcome, Rig, Row};
 /// temperature (K).
 fn vessel(height: f64, supply: GasSupply, mass: f64, temperature: f64) -> FilmScene {
     let column = column(0.5, height);
-    let supports = column.rigid();
+    let supports = rigid_vessel();
     let supply = GasSupply { initial_mass: mass, ..supply };
     let filling = Filling::Gas { supply, initial_temperature: temperature };
     FilmScene { filling, supports, ..free_film(column.shell, Film::PAPER_ELASTIC) }
