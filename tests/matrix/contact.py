@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Deploys the paper's capsule with contact over meshes, loads, compressions, chiralities and seeds.
+"""Deploys the paper's capsule with contact for many meshes, loads, compressions, chiralities and seeds.
 
-Every finished run is kept as one JSON summary and is not run again. Exit code 1 if a run is not
-done, let film through film or left its ledger's bound.
+The JSON summary of every finished run is stored; a stored run is not repeated. Exit code 1 if a run is
+not done, has a passage or an intersection, or exceeds a bound of its energy.
 """
 
 import argparse
@@ -13,12 +13,12 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-# Scene and simulated time of each load.
+# Scene and simulated time (s) of each load.
 LOADS = {"inflow": ("capsule.json", 1.5), "residual": ("residual_gas.json", 3.0)}
-# Largest ledger residual by compression fraction.
-RESIDUAL = {0: 5e-3, 1: 2e-2}
-# Most energy contact may keep, of the peak kinetic energy.
-NOT_RETURNED = 0.01
+# Largest allowed ledger residual for each compression fraction.
+MAX_LEDGER_RESIDUAL = {0: 5e-3, 1: 2e-2}
+# Largest allowed unrecovered contact energy over the peak kinetic energy.
+MAX_UNRECOVERED = 0.01
 
 COARSE = [
     (5, load, c, chirality, seed)
@@ -32,7 +32,7 @@ FINE = [
 
 COLUMNS = (
     "n load      c chirality seed status V/m3   z/m     p/Pa   peak_vz KE/J   passages "
-    "intersections residual kept     gap/mm impulses ns/step/element"
+    "intersections residual unrecov. gap/mm impulses ns/step/element"
 )
 
 
@@ -58,50 +58,50 @@ def solve(run, billow, scenes, folder):
     for key, value in sets.items():
         command += ["--set", f"{key}={value}"]
     command += ["--shape", str(path.with_suffix(".obj"))]
-    told = subprocess.run(command, capture_output=True, text=True)
-    if told.returncode not in (0, 1) or not told.stdout:
-        sys.exit(f"{name(run)}: exit code {told.returncode}: {told.stderr}")
+    process = subprocess.run(command, capture_output=True, text=True)
+    if process.returncode not in (0, 1) or not process.stdout:
+        sys.exit(f"{name(run)}: exit code {process.returncode}: {process.stderr}")
     unfinished = path.with_suffix(".part")
-    unfinished.write_text(told.stdout)
+    unfinished.write_text(process.stdout)
     unfinished.rename(path)
-    return json.loads(told.stdout)
+    return json.loads(process.stdout)
 
 
-def sound(run, told):
-    peak = told["measures"]["peak_kinetic_energy"] or 0.0
+def in_band(run, summary):
+    peak = summary["measures"]["peak_kinetic_energy"] or 0.0
     return (
-        told["status"] == "done"
-        and told["passages"] == 0
-        and told["intersections"] == 0
-        and told["ledger"]["residual"] <= RESIDUAL[run[2]]
-        and abs(told["contact"]["unrecovered_contact_energy"]) <= NOT_RETURNED * peak
+        summary["status"] == "done"
+        and summary["passages"] == 0
+        and summary["intersections"] == 0
+        and summary["ledger"]["residual"] <= MAX_LEDGER_RESIDUAL[run[2]]
+        and abs(summary["contact"]["unrecovered_contact_energy"]) <= MAX_UNRECOVERED * peak
     )
 
 
-def line(run, told):
+def table_row(run, summary):
     n, load, c, chirality, seed = run
-    contact, measures = told["contact"], told["measures"]
+    contact, measures = summary["contact"], summary["measures"]
     peak = measures["peak_kinetic_energy"] or float("nan")
-    cost = told["wall_seconds"] / (told["steps"] * told["elements"]) * 1e9
+    cost = summary["wall_seconds"] / (summary["steps"] * summary["elements"]) * 1e9
     return (
-        f"{n} {load:9} {c} {chirality:9} {seed:4} {told['status']:6} {told['volume']:.4f} "
-        f"{told['nodes']['top_centre'][2]:.4f} {told['pressure']:7.1f} "
-        f"{measures['peak_vz'] or float('nan'):7.2f} {peak:6.2f} {told['passages']:8} "
-        f"{told['intersections']:13} {told['ledger']['residual']:.2e} "
+        f"{n} {load:9} {c} {chirality:9} {seed:4} {summary['status']:6} {summary['volume']:.4f} "
+        f"{summary['nodes']['top_centre'][2]:.4f} {summary['pressure']:7.1f} "
+        f"{measures['peak_vz'] or float('nan'):7.2f} {peak:6.2f} {summary['passages']:8} "
+        f"{summary['intersections']:13} {summary['ledger']['residual']:.2e} "
         f"{contact['unrecovered_contact_energy'] / peak:+.1e} {contact['smallest_gap'] * 1e3:.4f} "
         f"{contact['collision_impulses']:8} {cost:.0f}"
-        + ("" if sound(run, told) else "  OUT OF BAND")
+        + ("" if in_band(run, summary) else "  OUT OF BAND")
     )
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path, help="folder the runs are kept in")
+    parser.add_argument("results", type=Path, help="folder of the stored summaries")
     parser.add_argument("--billow", default="billow", help="the program")
     parser.add_argument("--scenes", type=Path, default=Path(__file__).parents[2] / "scenes")
-    parser.add_argument("--subdivisions", type=int, choices=(5, 8), help="this mesh alone")
-    parser.add_argument("--seeds", type=int, help="seeds up to this one alone")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at once")
+    parser.add_argument("--subdivisions", type=int, choices=(5, 8), help="only this mesh")
+    parser.add_argument("--seeds", type=int, help="only seeds up to this one")
+    parser.add_argument("--jobs", type=int, default=2, help="number of parallel runs")
     args = parser.parse_args()
     args.results.mkdir(parents=True, exist_ok=True)
     runs = [
@@ -112,10 +112,10 @@ def main():
     print(COLUMNS)
     bad = 0
     with ThreadPoolExecutor(args.jobs) as pool:
-        told = pool.map(lambda run: solve(run, args.billow, args.scenes, args.results), runs)
-        for run, own in zip(runs, told):
-            print(line(run, own), flush=True)
-            bad += not sound(run, own)
+        summaries = pool.map(lambda run: solve(run, args.billow, args.scenes, args.results), runs)
+        for run, summary in zip(runs, summaries):
+            print(table_row(run, summary), flush=True)
+            bad += not in_band(run, summary)
     print(f"{len(runs)} runs, {bad} out of band")
     sys.exit(bad > 0)
 

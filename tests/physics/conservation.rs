@@ -1,12 +1,13 @@
-//! Whatever the scene, energy and gas add up, and the same scene gives the same bits.
+//! Random scenes of the piston: energy and gas balance, and the same scene gives the same bits.
 
 use billow_solver::geometry::fold::{Chirality, Fit, FoldDesign};
 use billow_solver::output::outcome::Stop;
+use billow_solver::scene::paper::window;
 use billow_solver::scene::{HeatTransfer, Scene, Stepping};
 use proptest::prelude::*;
 
 use crate::geometry::paper_design;
-use crate::rig::{paper_scene, run, window};
+use crate::rig::{paper_scene, run};
 
 fn designs() -> impl Strategy<Value = FoldDesign> {
     prop_oneof![
@@ -50,16 +51,16 @@ fn scenes() -> impl Strategy<Value = Scene> {
     })
 }
 
-/// Never falls, but for the error of its own integration: a billionth of all of it.
-fn rises(values: &[f64]) -> bool {
+/// Never falls by more than the integration error, 1e-9 of the largest value.
+fn never_falls(values: &[f64]) -> bool {
     let slack = 1e-9 * values.iter().copied().fold(0.0, f64::max);
     values.windows(2).all(|pair| pair[1] >= pair[0] - slack)
 }
 
-/// Fast heat exchange into an empty capsule that barely fills, and a bounce whose recoil ends as
-/// the film goes slack: both found by the properties below.
+/// Fast heat exchange into an empty capsule that hardly fills, and a bounce whose recoil ends as the
+/// film goes slack. The property tests below found both.
 #[test]
-fn hard_starts_and_bounces_add_up() {
+fn energy_balances_in_hard_starts_and_bounces() {
     let mut barely = paper_scene();
     barely.film.thickness = 1e-5;
     barely.film.viscosity = 0.0;
@@ -93,17 +94,17 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(96) })]
 
     #[test]
-    fn energy_and_gas_add_up(scene in scenes()) {
+    fn energy_and_gas_balance(scene in scenes()) {
         let deployment = run(&scene);
         let stopped = match &deployment.stop {
             Stop::Done => false,
-            // Under gravity and without gas it falls through its stack: typed, not averaged.
+            // Under gravity and without gas the top falls through the stowed stack.
             Stop::Failed(failure) => {
                 prop_assert_eq!(failure.kind.name(), "inverted_volume");
                 prop_assert!(scene.gravity < 0.0);
                 true
             }
-            Stop::Cancelled => unreachable!("nobody cancels"),
+            Stop::Cancelled => unreachable!("no observer cancels"),
         };
         prop_assert_eq!(deployment.measures.verdict.is_none(), stopped);
         let history = &deployment.history;
@@ -112,9 +113,9 @@ proptest! {
         }
         prop_assert!(deployment.audit.ledger_residual < 1e-6, "{:?}", deployment.audit);
         prop_assert!(deployment.audit.gas_residual < 1e-6, "{:?}", deployment.audit);
-        prop_assert!(rises(history.column("enthalpy_in")));
-        prop_assert!(rises(history.column("enthalpy_out")));
-        prop_assert!(rises(history.column("viscous_work")), "viscosity gave energy");
+        prop_assert!(never_falls(history.column("enthalpy_in")));
+        prop_assert!(never_falls(history.column("enthalpy_out")));
+        prop_assert!(never_falls(history.column("viscous_work")), "viscosity produced energy");
         prop_assert!(history.column("volume").iter().all(|v| *v > 0.0));
         prop_assert!(history.column("pressure").iter().all(|p| *p >= 0.0));
         if scene.gas.leak_area == 0.0 {
@@ -128,12 +129,12 @@ proptest! {
 
     #[test]
     fn the_same_scene_gives_the_same_bits(scene in scenes()) {
-        let (one, two) = (run(&scene), run(&scene));
-        for ((_, one), (_, two)) in one.history.iter().zip(two.history.iter()) {
+        let (first, second) = (run(&scene), run(&scene));
+        for ((_, a), (_, b)) in first.history.iter().zip(second.history.iter()) {
             let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-            prop_assert_eq!(bits(one), bits(two));
+            prop_assert_eq!(bits(a), bits(b));
         }
-        prop_assert_eq!(one, two);
+        prop_assert_eq!(first, second);
     }
 
     #[test]
@@ -145,14 +146,14 @@ proptest! {
         scene.solver.stepping = Stepping::Fixed(5e-5);
         let fixed = run(&scene);
         let heights = |d: &billow_solver::output::outcome::Deployment| d.history.column("z_rim").to_vec();
-        for (one, two) in heights(&adaptive).iter().zip(heights(&fixed)) {
-            prop_assert!((one - two).abs() < 1e-5, "{one} {two}");
+        for (a, b) in heights(&adaptive).iter().zip(heights(&fixed)) {
+            prop_assert!((a - b).abs() < 1e-5, "{a} {b}");
         }
     }
 }
 
 #[test]
-fn a_leaking_capsule_pressed_shut_has_no_volume() {
+fn a_leaking_capsule_that_collapses_has_an_inverted_volume() {
     let mut scene = paper_scene();
     scene.film.thickness = 7.3e-5;
     scene.film.viscosity = 0.0;

@@ -1,31 +1,22 @@
 //! The folded capsule with contact and tunnelling monitor: the same bits on every instruction set, and
 //! after a resume from any step.
 
-use billow_solver::geometry::mesh::Shape;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::monitor_settings::MonitorSettings;
-use billow_solver::scene::timeline::Phase;
 
-use crate::geometry::paper_design;
+use crate::film_rig::{INFLOW, stowed};
 use crate::rig::paper_scene;
-
-const INFLOW: Phase = Phase {
-    packed: false,
-    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
-};
 
 /// The paper's capsule, stowed, of film that resists compression, with friction. The monitor checks every
 /// step of about half of the blocks.
-fn stowed(instruction_set: InstructionSet) -> Explicit {
+fn capsule_in_contact(instruction_set: InstructionSet) -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     scene.film.compression = 1.0;
-    let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (mut film, _) = capsule::film_scene(instruction_set, &scene, stowed, 0.45).unwrap();
+    let mut film = stowed(instruction_set, &scene, 0.45);
     let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
     film.contact = Some(FilmContact { friction: 0.2, monitor, ..FilmContact::default() });
     capsule::start(&film).unwrap()
@@ -42,7 +33,7 @@ fn passages(film: &Explicit) -> u64 {
 #[test]
 fn contact_and_monitor_bits_are_equal_on_every_instruction_set() {
     let end = |instruction_set: InstructionSet| {
-        let mut film = stowed(instruction_set);
+        let mut film = capsule_in_contact(instruction_set);
         film.advance(0.02, &INFLOW).unwrap();
         film
     };
@@ -61,11 +52,11 @@ fn contact_and_monitor_bits_are_equal_on_every_instruction_set() {
 
 #[test]
 fn a_resumed_run_with_contact_has_the_same_bits() {
-    let mut whole = stowed(InstructionSet::detect());
+    let mut whole = capsule_in_contact(InstructionSet::detect());
     whole.advance(0.02, &INFLOW).unwrap();
     assert!(whole.state.contact_state.path_length > 0.1 && whole.state.works.contact != 0.0);
     for pause in [1, 100, 777, 1500] {
-        let mut film = stowed(InstructionSet::detect());
+        let mut film = capsule_in_contact(InstructionSet::detect());
         let mut steps = pause;
         assert!(!film.advance_at_most(0.02, &INFLOW, &mut steps).unwrap());
         let state = serde_json::from_str(&text(&film)).unwrap();

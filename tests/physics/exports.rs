@@ -1,4 +1,4 @@
-//! What other programs read: FOLD and OBJ.
+//! Files for other programs: FOLD and OBJ.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use billow_solver::geometry::mesh_io::{fold, obj};
 use crate::geometry::{paper_design, solved};
 
 #[test]
-fn fold_file_says_what_the_stowed_shape_does() {
+fn fold_assignments_agree_with_the_stowed_shape() {
     for chirality in [Chirality::Same, Chirality::Alternate] {
         let pattern = solved(&FoldDesign { chirality, ..paper_design() });
         let text = fold::crease_pattern(&pattern, "test");
@@ -22,7 +22,7 @@ fn fold_file_says_what_the_stowed_shape_does() {
         // A disc: V − E + F = 1.
         assert_eq!(vertices + faces, edges + 1);
         assert_eq!(count("edges_assignment"), edges);
-        // Each assignment agrees with the folded form's own dihedral angle, nearly flat.
+        // Each assignment agrees with the dihedral angle of the folded form, which is nearly flat.
         let folded = &file["file_frames"][0]["edges_foldAngle"];
         let mut seen = HashMap::new();
         for (i, letter) in file["edges_assignment"].as_array().expect("letters").iter().enumerate()
@@ -45,7 +45,7 @@ fn fold_file_says_what_the_stowed_shape_does() {
 }
 
 #[test]
-fn obj_holds_the_mesh() {
+fn obj_keeps_every_digit_of_the_mesh() {
     let pattern = solved(&paper_design());
     let mesh = Mesh::new(&pattern, 5, Shape::Stowed(0.04)).expect("foldable");
     let text = obj::mesh(&mesh, "stowed");
@@ -58,7 +58,6 @@ fn obj_holds_the_mesh() {
     let (vertices, faces) = (numbers("v "), numbers("f "));
     assert_eq!(vertices.len(), mesh.positions.len());
     assert_eq!(faces.len(), 1200);
-    // Every digit is kept.
     for (written, position) in vertices.iter().zip(&mesh.positions) {
         assert_eq!(written.as_slice(), position.as_slice());
     }

@@ -1,4 +1,4 @@
-//! The paper's capsule as film without contact: what it keeps, and its static states.
+//! The paper's capsule as film without contact: conservation, and its static states.
 
 use std::time::Instant;
 
@@ -9,26 +9,23 @@ use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
-use billow_solver::scene::{HeatTransfer, Scene};
+use billow_solver::scene::{HeatTransfer, Scene, paper};
 
-use crate::rig::{paper_scene, window};
-
-/// Its static states are not judged here; a stand-in that no assertion reads.
-fn unread() -> Reference {
+/// A placeholder for the static states, which no assertion here reads.
+fn unused_reference() -> Reference {
     Reference::new(vec![[1.0, 1.0, 1.0]])
 }
 
-fn injected(subdivisions: u32, end_time: f64) -> Scene {
-    let mut scene = paper_scene();
-    scene.design.subdivisions = subdivisions;
-    scene.gas.windows = vec![window(0.0, 1.5, 0.005)];
-    scene.solver.end_time = end_time;
-    scene
-}
-
 fn run(scene: &Scene, cfl: f64) -> Deployment {
-    film::solve(InstructionSet::detect(), scene, cfl, None, Some(unread()), &mut Unobserved)
-        .expect("a scene that can be run")
+    film::solve(
+        InstructionSet::detect(),
+        scene,
+        cfl,
+        None,
+        Some(unused_reference()),
+        &mut Unobserved,
+    )
+    .expect("a valid scene")
 }
 
 fn report(name: &str, deployment: &Deployment, wall: f64) {
@@ -74,8 +71,8 @@ fn timed(name: &str, scene: &Scene, cfl: f64) -> Deployment {
 }
 
 #[test]
-fn a_coarse_capsule_keeps_its_energy_and_its_bits() {
-    let scene = injected(2, 0.06);
+fn a_coarse_capsule_balances_its_energy_and_repeats_its_bits() {
+    let scene = paper::capsule(2, 0.06);
     let deployment = timed("n 2, 60 ms", &scene, DEFAULT_CFL);
     assert_eq!(deployment.stop, Stop::Done);
     assert!(deployment.audit.ledger_residual < 5e-3);
@@ -87,16 +84,16 @@ fn a_coarse_capsule_keeps_its_energy_and_its_bits() {
 
 #[test]
 #[ignore = "long: 0.3 s of the paper's capsule at n 5"]
-fn five_grams_a_second_without_contact() {
-    let deployment = timed("n 5, 0.3 s", &injected(5, 0.3), DEFAULT_CFL);
+fn deployment_at_5_g_per_s_without_contact_balances_its_energy() {
+    let deployment = timed("n 5, 0.3 s", &paper::capsule(5, 0.3), DEFAULT_CFL);
     assert_eq!(deployment.stop, Stop::Done);
     assert!(deployment.audit.ledger_residual <= 5e-3, "{}", deployment.audit.ledger_residual);
     assert!(deployment.audit.gas_residual < 1e-10, "{}", deployment.audit.gas_residual);
 }
 
 #[test]
-fn packed_it_waits_and_presses_on_the_lid() {
-    let mut scene = injected(2, 0.02);
+fn a_packed_capsule_stays_and_presses_on_its_lid() {
+    let mut scene = paper::capsule(2, 0.02);
     scene.release_time = 0.01;
     scene.outputs.sample_interval = 1e-3;
     let deployment = run(&scene, DEFAULT_CFL);
@@ -106,7 +103,7 @@ fn packed_it_waits_and_presses_on_the_lid() {
         assert_eq!(column("volume")[index], column("volume")[0]);
         assert_eq!(column("kinetic_energy")[index], 0.0);
     }
-    // The gas does the work of a uniform stretch: p dV/dz, V nearly linear in the height.
+    // The lid force is p dV/dz for a uniform stretch; V is nearly linear in the height.
     let (force, pressure) = (column("lid_force")[10], column("pressure")[10]);
     let expected = pressure * column("volume")[0] / 0.04;
     assert!(force > 0.9 * expected && force < 1.1 * expected, "{force} {expected}");
@@ -114,12 +111,12 @@ fn packed_it_waits_and_presses_on_the_lid() {
     assert!(deployment.audit.ledger_residual < 5e-3);
 }
 
-/// n 4, coarser than any verdict is given at: the film sags between its folds, so both lie below
-/// the cone's, rise with pressure, and the volume is that of a capsule.
+/// n 4 is coarser than any mesh that decides a verdict. The film sags between its folds, so volume
+/// and rim height lie below those of the cone. Both rise with pressure.
 #[test]
 fn static_states_rise_with_pressure() {
     for subdivisions in [4, 5] {
-        let scene = injected(subdivisions, 0.3);
+        let scene = paper::capsule(subdivisions, 0.3);
         let start = Instant::now();
         let states =
             static_states(InstructionSet::detect(), &scene, &[1000.0, 100.0, 10.0, 1.0]).unwrap();
@@ -139,22 +136,22 @@ fn static_states_rise_with_pressure() {
 
 #[test]
 #[ignore = "long: the paper's capsule at three steps and two viscosities"]
-fn what_the_ledger_misses_falls_with_the_step() {
-    let scene = injected(5, 0.3);
+fn the_ledger_residual_falls_with_the_step() {
+    let scene = paper::capsule(5, 0.3);
     let residuals: Vec<f64> = [0.9, 0.45, 0.225]
         .map(|cfl| timed(&format!("n 5, CFL {cfl}"), &scene, cfl).audit.ledger_residual)
         .to_vec();
     assert!(residuals[1] < residuals[0] && residuals[2] < residuals[1], "{residuals:?}");
-    let mut thin = injected(5, 0.3);
+    let mut thin = paper::capsule(5, 0.3);
     thin.film.viscosity = 0.05;
     let deployment = timed("n 5, zeta 0.05", &thin, DEFAULT_CFL);
     assert!(deployment.audit.ledger_residual <= 5e-3, "{:?}", deployment.audit);
 }
 
-/// Everything that can do work or carry energy at once, on the ground and released late.
+/// Everything that can do work or carry energy takes part, on the ground and with a late release.
 #[test]
-fn every_entry_of_the_ledger_is_kept() {
-    let mut scene = injected(2, 0.1);
+fn every_ledger_entry_takes_part_in_the_balance() {
+    let mut scene = paper::capsule(2, 0.1);
     scene.gravity = -9.806_65;
     scene.gas.ambient_pressure = 20.0;
     scene.gas.initial_mass = 1e-5;
@@ -179,14 +176,14 @@ fn every_entry_of_the_ledger_is_kept() {
 }
 
 #[test]
-fn a_step_share_out_of_range_is_refused() {
+fn a_cfl_number_out_of_range_is_refused() {
     for cfl in [0.0, 1.5, f64::NAN] {
         let refused = film::solve(
             InstructionSet::detect(),
-            &injected(2, 0.1),
+            &paper::capsule(2, 0.1),
             cfl,
             None,
-            Some(unread()),
+            Some(unused_reference()),
             &mut Unobserved,
         );
         assert!(matches!(refused, Err(SceneError::Invalid { key, .. }) if key == "cfl"));

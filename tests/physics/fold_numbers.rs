@@ -1,7 +1,8 @@
-//! The paper's capsule and its neighbours, to every digit known (physics of the fold, section 1).
+//! The fold of the paper's capsule and of similar designs, to every digit known.
 
 use billow_solver::geometry::fold::{FoldDesign, FoldError, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Shape};
+use billow_solver::scene::Film;
 
 use crate::geometry::{crossings, paper_angles, paper_design, paper_height, solved};
 
@@ -116,8 +117,8 @@ fn stowed_at_forty_millimetres() {
     let strain = pattern.stowed_strain(0.04);
     assert!(strain < 2.8e-5, "{strain:e}");
     prints(pattern.stowed_volume(0.04), "0.01512");
-    // 0.135954 kg of developed film; 0.13596 measures the stowed shape, slightly strained.
-    let mass = pattern.film_area() * 1400.0 * 25.4e-6;
+    // 0.135954 kg of developed film; the stowed shape, slightly strained, has 0.13596 kg.
+    let mass = pattern.film_area() * Film::PAPER.area_density();
     prints(mass, "0.13595");
     for (subdivisions, elements) in [(5, 1200), (8, 3072), (16, 12_288)] {
         let mesh = Mesh::new(&pattern, subdivisions, Shape::Stowed(0.04)).expect("foldable");
@@ -131,8 +132,8 @@ fn stowed_at_forty_millimetres() {
 }
 
 #[test]
-fn a_tangled_mesh_is_seen() {
-    // The judge itself: push one node of the stowed shape through its neighbours.
+fn a_tangled_mesh_has_crossings() {
+    // One node of the stowed shape is pushed through its neighbours.
     let pattern = solved(&paper_design());
     let mut mesh = Mesh::new(&pattern, 3, Shape::Stowed(0.04)).expect("foldable");
     let top = mesh.top_centre as usize;
@@ -161,7 +162,7 @@ fn erected_on_the_cone() {
 }
 
 #[test]
-fn requests_that_are_none() {
+fn invalid_designs_name_their_key() {
     let broken: [(&str, FoldDesign); 14] = [
         ("N", FoldDesign { panels: 3, ..paper_design() }),
         ("M", FoldDesign { storeys: 0, ..paper_design() }),
@@ -186,9 +187,10 @@ fn requests_that_are_none() {
     }
 }
 
-/// The pattern closes but cannot be packed so high: infeasible, and the nearest lower stack is one.
+/// The pattern closes but cannot be stowed at this height. The design is infeasible, and the error
+/// gives the nearest lower height.
 #[test]
-fn a_stack_too_high_to_pack_has_a_nearest_lower_one() {
+fn a_stowed_height_too_large_has_a_nearest_smaller_one() {
     for (top_radius, stowed_height) in [(0.365, 2.0), (0.365, 0.9), (0.02, 0.3)] {
         let design = FoldDesign {
             storeys: 4,
@@ -197,7 +199,7 @@ fn a_stack_too_high_to_pack_has_a_nearest_lower_one() {
             ..paper_design()
         };
         let Err(FoldError::Infeasible { reason, nearest }) = FoldPattern::new(&design) else {
-            panic!("{stowed_height} m is too high a stack");
+            panic!("{stowed_height} m is too large a stowed height");
         };
         assert!(reason.starts_with("stowed_height: "), "{reason}");
         assert_eq!(nearest.len(), 1);
@@ -210,10 +212,10 @@ fn a_stack_too_high_to_pack_has_a_nearest_lower_one() {
     }
 }
 
-/// Far from any pattern there is still a nearest one, and each nearest value alone is enough: for
-/// the stack as for the pattern.
+/// Designs far from any feasible pattern have nearest values too. Each of them alone makes the design
+/// feasible.
 #[test]
-fn nearest_values_are_feasible_however_far() {
+fn nearest_values_are_feasible_for_distant_designs() {
     let far = FoldDesign { alpha1_over_phi: Some(1e-3), ..paper_height(3) };
     let short = FoldDesign { top_radius: Some(1e-3), storeys: 1, ..paper_design() };
     for design in [far, short] {

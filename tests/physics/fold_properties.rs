@@ -1,4 +1,4 @@
-//! What every feasible pattern has in common.
+//! Properties of every feasible fold pattern.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -71,7 +71,7 @@ proptest! {
     }
 
     #[test]
-    fn edges_keep_their_lengths_flat(pattern in patterns()) {
+    fn edges_keep_their_lengths_in_the_flat_state(pattern in patterns()) {
         let panels = pattern.design.panels;
         let polygons = pattern.flat_polygons();
         for facet in pattern.facets() {
@@ -83,7 +83,7 @@ proptest! {
             let mut drawn = [0, 1, 2].map(|i| (developed[(i + 1) % 3] - developed[i]).norm());
             for i in 0..3 {
                 let length = (flat[(i + 1) % 3] - flat[i]).norm();
-                // Beside the edge's own rounding that of the coordinates it is the difference of.
+                // The rounding of the length, and that of the coordinates whose difference it is.
                 let allowed = 1e-12 * length + 1e-15 * pattern.bottom_radius;
                 prop_assert!((length - drawn[i]).abs() < allowed, "{length} against {}", drawn[i]);
             }
@@ -97,15 +97,15 @@ proptest! {
         }
     }
 
-    /// Kawasaki and Maekawa at every interior vertex, from the drawn pattern and the folded shape,
-    /// not from the formulas.
+    /// The theorems of Kawasaki and Maekawa at every interior vertex, checked on the drawn pattern
+    /// and the folded shape, not on the formulas.
     #[test]
     fn interior_vertices_fold_flat(pattern in patterns()) {
         let panels = pattern.design.panels;
         let stowed = pattern.stowed_polygons(pattern.design.stowed_height);
-        let place = |c: Corner| stowed[c.ring as usize].corner(c.corner % panels, panels);
+        let position = |c: Corner| stowed[c.ring as usize].corner(c.corner % panels, panels);
         for ring in 1..pattern.design.storeys {
-            // A vertex away from the seam: corner 2, with its facets in the developed plane.
+            // Corner 2 lies away from the seam; its facets are in the developed plane.
             let vertex = Corner { ring, corner: 2 };
             let middle = pattern.erected_angle(vertex);
             let at = pattern.developed(vertex, middle);
@@ -125,13 +125,13 @@ proptest! {
             }).collect();
             let alternate = sectors[0] + sectors[2] + sectors[4];
             prop_assert!((alternate - PI).abs() < 1e-12, "alternate angles sum to {alternate}");
-            // Mountain or valley by the folded shape: the side of the next facet the far corner is on.
+            // Mountain or valley: on which side of one facet the far corner of the next one lies.
             let mut mountains = 0;
             for i in 0..6 {
                 let (before, edge, after) = (spokes[(i + 5) % 6].1, spokes[i].1, spokes[(i + 1) % 6].1);
-                let (v, e) = (place(vertex), place(edge));
-                let normal = (place(before) - v).cross(&(e - v));
-                mountains += usize::from(normal.dot(&(place(after) - v)) < 0.0);
+                let (v, e) = (position(vertex), position(edge));
+                let normal = (position(before) - v).cross(&(e - v));
+                mountains += usize::from(normal.dot(&(position(after) - v)) < 0.0);
             }
             prop_assert_eq!(mountains, 4, "four mountains, two valleys");
         }
@@ -162,13 +162,13 @@ proptest! {
             prop_assert!((area / pattern.film_area() - 1.0).abs() < 1e-12, "{area}");
             for (reference, part) in mesh.reference.iter().zip(&mesh.parts) {
                 let [a, b, c] = *reference;
-                prop_assert!((b - a).perp(&(c - a)) > 0.0, "{part:?} turned over");
+                prop_assert!((b - a).perp(&(c - a)) > 0.0, "{part:?} is inverted");
             }
             if shape != Shape::Flat {
                 prop_assert!(mesh.volume() > 0.0);
             }
-            // The cone, unrolled again, is the developed film: rolling strains nothing but curves
-            // facets, so chords are shorter, never longer.
+            // Rolling the developed film to the cone curves facets without strain: chords are never
+            // longer than the flat edges.
             if shape == Shape::Erected {
                 for ((corners, reference), part) in mesh.corners().zip(&mesh.reference).zip(&mesh.parts) {
                     if matches!(part, Part::Storey(_)) {

@@ -1,15 +1,16 @@
-//! The gas laws against independent quadratures and the schedule's closed form. Filling, blow-down
-//! and cooling are reference cases of `billow validate`.
+//! The gas against independent quadratures, and inflow windows against their closed form. Filling,
+//! blow-down and cooling are reference cases of `billow validate`.
 
 use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
 use billow_solver::mechanics::gas::Gas;
 use billow_solver::models::piston::{PistonRun, PistonState};
 use billow_solver::models::run::Model;
 use billow_solver::scene::inflow::{Inflow, Schedule};
+use billow_solver::scene::paper::{nitrogen_supply, window};
 use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{GasSupply, HeatTransfer};
+use billow_solver::scene::{GasSupply, HeatTransfer, Species};
 
-use crate::rig::{adaptive, nitrogen, paper_scene, run, supply, tube, window};
+use crate::rig::{adaptive, paper_scene, run, tube};
 
 /// A rigid tank of `volume` m³: a packed piston.
 fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64, control: Control) -> PistonRun {
@@ -26,10 +27,10 @@ fn near(value: f64, expected: f64, band: f64, what: &str) {
 }
 
 /// Time for a rigid adiabatic tank to fall from p0 to p1 through a subsonic orifice, by Simpson's
-/// rule on dt = −dm/ṁ along the isentrope; in s = √(1 − `p_ambient`/p), which removes the root at the
-/// end of the outflow.
+/// rule on dt = −dm/ṁ along the isentrope. The variable s = √(1 − `p_ambient`/p) removes the square
+/// root at the end of the outflow.
 fn subsonic_time(p0: f64, p1: f64, ambient: f64, volume: f64, mass: f64, area: f64) -> f64 {
-    let species = nitrogen();
+    let species = Species::NITROGEN;
     let gamma = species.cp / (species.cp - species.gas_constant);
     let rate = |s: f64| {
         let ratio = 1.0 - s * s;
@@ -52,17 +53,17 @@ fn subsonic_time(p0: f64, p1: f64, ambient: f64, volume: f64, mass: f64, area: f
 #[test]
 fn subsonic_leak_against_a_quadrature() {
     let (ambient, volume, area) = (1e5, 0.5, 2e-4);
-    let leaky = GasSupply { leak_area: area, ambient_pressure: ambient, ..supply() };
+    let leaky = GasSupply { leak_area: area, ambient_pressure: ambient, ..nitrogen_supply() };
     let gas = Gas::new(&leaky, 293.0, 1.0);
     let (p0, start) = (1.5e5, 300.0);
-    let mass = p0 * volume / (nitrogen().gas_constant * start);
+    let mass = p0 * volume / (Species::NITROGEN.gas_constant * start);
     for p1 in [1.3e5, 1.1e5, 1.01e5] {
         let mut run = tank(gas, volume, mass, start, adaptive(1e-10));
         let time = subsonic_time(p0, p1, ambient, volume, mass, 0.6 * area);
         run.advance(time, &packed(Inflow::default())).unwrap();
         near(run.sample(&packed(Inflow::default())).pressure, p1, 1e-7, "p");
     }
-    // Emptied to ambient pressure, it stays there: nothing comes back in.
+    // At ambient pressure the outflow ends, and nothing flows back in.
     let mut run = tank(gas, volume, mass, start, adaptive(1e-8));
     run.advance(60.0, &packed(Inflow::default())).unwrap();
     near(run.sample(&packed(Inflow::default())).pressure, ambient, 1e-5, "p at rest");
@@ -71,7 +72,7 @@ fn subsonic_leak_against_a_quadrature() {
 #[test]
 fn isothermal_gas_in_a_moving_piston() {
     let exchange = HeatTransfer::Isothermal;
-    let gas = Gas::new(&GasSupply { heat_transfer: exchange, ..supply() }, 293.0, 1.0);
+    let gas = Gas::new(&GasSupply { heat_transfer: exchange, ..nitrogen_supply() }, 293.0, 1.0);
     let start = PistonState { height: 0.1, speed: 0.0, gas: gas.at_temperature(0.001, 293.0) };
     let (area, mass) = (0.5, 0.1);
     let piston = tube(area, 0.0, mass, gas);
@@ -82,19 +83,24 @@ fn isothermal_gas_in_a_moving_piston() {
         let now = run.sample(&phase);
         assert_eq!(now.temperature, 293.0);
         // p V = m R T: the work is m R T ln(V/V0), and all of it was heat.
-        let work = 0.001 * nitrogen().gas_constant * 293.0 * (now.z_rim / 0.1).ln();
+        let work = 0.001 * Species::NITROGEN.gas_constant * 293.0 * (now.z_rim / 0.1).ln();
         near(now.ledger.gas_work, work, 1e-7, "work");
         near(now.gas.heat, work, 1e-7, "heat");
         near(now.ledger.kinetic, work, 1e-7, "kinetic energy");
-        near(now.pressure * now.volume, 0.001 * nitrogen().gas_constant * 293.0, 1e-13, "p V");
+        near(
+            now.pressure * now.volume,
+            0.001 * Species::NITROGEN.gas_constant * 293.0,
+            1e-13,
+            "p V",
+        );
     }
 }
 
 #[test]
-fn windows_let_in_their_mass_to_rounding_whatever_the_step() {
+fn windows_admit_their_mass_to_rounding_at_any_step() {
     use billow_solver::scene::Stepping;
     let mut scene = paper_scene();
-    // Edges off the samples, overlapping, one after the end.
+    // Windows start and end between samples, overlap, and one ends after the run.
     scene.gas.windows = vec![
         window(0.0, 0.0101, 0.005),
         window(0.003_333, 0.2, 0.001),

@@ -1,25 +1,13 @@
-//! Geometry the tests judge by, kept apart from the code they judge.
+//! Fold designs of the tests, and an intersection count that shares no code with the solver.
 
-use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldPattern};
+use billow_solver::geometry::fold::{Fit, FoldDesign, FoldPattern};
 use billow_solver::geometry::mesh::Mesh;
+use billow_solver::scene::paper;
 use nalgebra::Vector3;
 
-/// The paper's capsule (r2 0.5, r1 0.365, H 1 m; N 6, M 3), fit `cone`.
+/// The paper's capsule at n 5, fit `cone`.
 pub fn paper_design() -> FoldDesign {
-    FoldDesign {
-        fit: Fit::Cone,
-        panels: 6,
-        storeys: 3,
-        bottom_radius: 0.5,
-        top_radius: Some(0.365),
-        height: Some(1.0),
-        half_angle: None,
-        alpha1_over_phi: None,
-        chirality: Chirality::Same,
-        stowed_height: 0.04,
-        subdivisions: 5,
-        caps: Caps::Polygon,
-    }
+    paper::design(5)
 }
 
 /// The paper's capsule with α1/ϕ = 1, fit `angles` on the nominal cone.

@@ -1,4 +1,4 @@
-//! Physics against numbers: analytic cases, properties, conservation.
+//! Tests of the solver: closed forms, conservation, equal bits, properties.
 
 #![allow(
     clippy::disallowed_methods,
@@ -6,11 +6,10 @@
     clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,
     clippy::cast_sign_loss,
-    reason = "judges by tolerances, not by bits; counts are small"
+    reason = "results are compared within tolerances, not by bits; counts are small"
 )]
 
 mod allocation;
-mod capsule;
 mod conservation;
 mod contact_bits;
 mod explicit_bits;
@@ -23,6 +22,7 @@ mod fold_properties;
 mod gas_cases;
 mod geometry;
 mod membrane_cases;
+mod piston_capsule;
 mod piston_cases;
 mod quiescence;
 mod rig;

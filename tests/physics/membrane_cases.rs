@@ -1,16 +1,17 @@
-//! What is no film, and the factors of damping. Film forces against their energies, rigid motions,
-//! the patch and the stable step are reference cases of `billow validate`.
+//! Invalid films, and the factors of damping. Film forces against their energies, rigid motions, the
+//! patch test and the stable step are reference cases of `billow validate`.
 
+use billow_solver::geometry::shapes::sheet;
+use billow_solver::geometry::shell::Shell;
 use billow_solver::mechanics::film_model::{FilmError, FilmModel};
 use billow_solver::mechanics::forces::damping;
-
-use crate::film_rig::{ELASTIC, Piece, sheet};
+use billow_solver::scene::Film;
 
 #[test]
-fn what_is_no_film_is_refused() {
+fn invalid_films_are_refused() {
     let piece = sheet(2, 2, 0.1, 0.1);
-    let model = |piece: &Piece, nodes| {
-        FilmModel::new(&ELASTIC, nodes, &piece.triangles, &piece.reference).unwrap_err()
+    let model = |piece: &Shell, nodes| {
+        FilmModel::new(&Film::PAPER_ELASTIC, nodes, &piece.triangles, &piece.reference).unwrap_err()
     };
     assert_eq!(model(&piece, 10), FilmError::LooseNode { node: 9 });
     assert!(matches!(model(&piece, 8), FilmError::UnknownNode { nodes: 8, .. }));
@@ -20,7 +21,7 @@ fn what_is_no_film_is_refused() {
 }
 
 #[test]
-fn damping_factors() {
+fn damping_factors_match_their_closed_forms() {
     assert_eq!(damping::kick_factors(0.0, 1e-3), (1.0, 1e-3));
     let (keep, gain) = damping::kick_factors(2.0, 0.5);
     assert!((keep - 1.0 / 3.0).abs() < 1e-15 && (gain - 1.0 / 3.0).abs() < 1e-15);

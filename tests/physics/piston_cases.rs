@@ -1,14 +1,16 @@
-//! The order of the moving mass's step, and its end film. Its closed forms are reference cases of
-//! `billow validate`.
+//! The order of the piston's integrator, and the film at the end of its stroke. The closed forms are
+//! reference cases of `billow validate`.
 
 use billow_solver::integrators::dormand_prince::Control;
 use billow_solver::mechanics::gas::Gas;
 use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState};
 use billow_solver::models::run::Model;
+use billow_solver::scene::Film;
 use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::paper::{BOTTOM_RADIUS, HEIGHT, TOP_RADIUS, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 
-use crate::rig::{adaptive, fixed, number, supply, tube};
+use crate::rig::{adaptive, fixed, number, tube};
 
 fn injection() -> Phase {
     let rate = number("injected_piston/rate");
@@ -19,9 +21,9 @@ fn injection() -> Phase {
     }
 }
 
-/// Position at 50 ms of the piston in vacuum, from the closed form at 1 ms on.
+/// The piston in vacuum at 50 ms, started on the closed form at 1 ms.
 fn injected(control: Control) -> PistonRun {
-    let gas = Gas::new(&supply(), 293.0, 1.0);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let c = number("injected_piston/C");
     let (start, end) = (number("injected_piston/start"), number("injected_piston/end"));
     let gamma = gas.gamma();
@@ -32,7 +34,7 @@ fn injected(control: Control) -> PistonRun {
         speed: 1.5 * c * start.sqrt(),
         gas: gas.at_temperature(number("injected_piston/rate") * start, temperature),
     };
-    // The closed form does not depend on the area: any will do.
+    // The closed form does not depend on the area.
     let piston = tube(0.7, 0.0, number("injected_piston/mass"), gas);
     let mut run = PistonRun::new(piston, start, state, control);
     run.advance(end, &injection()).unwrap();
@@ -52,10 +54,17 @@ fn fixed_steps_converge_with_order_five() {
     }
 }
 
-/// Bounces of a driven mass on its end film.
+/// The end film of the paper's cone, for a moving mass of 70 g.
+fn end_film() -> EndFilm {
+    let film = Film::PAPER;
+    let modulus = (film.youngs_modulus, film.thickness);
+    EndFilm::of_cone((BOTTOM_RADIUS, TOP_RADIUS), HEIGHT, modulus, film.viscosity, 0.07)
+}
+
+/// A driven mass that bounces on its end film.
 fn on_its_end(control: Control) -> PistonRun {
-    let gas = Gas::new(&supply(), 293.0, 1.0);
-    let end = EndFilm::of_cone((0.5, 0.365), 1.0, (3.45e9, 25.4e-6), 0.1, 0.07);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
+    let end = end_film();
     let piston = Piston { end, ..tube(0.6, 0.0, 0.07, gas) };
     let start = PistonState { height: 0.8, speed: 20.0, gas: gas.at_temperature(5e-5, 293.0) };
     let mut run = PistonRun::new(piston, 0.0, start, control);
@@ -80,8 +89,8 @@ fn the_kink_at_full_height_costs_no_accuracy() {
 
 #[test]
 fn strain_work_is_the_strain_energy() {
-    let gas = Gas::new(&supply(), 293.0, 1.0);
-    let end = EndFilm::of_cone((0.5, 0.365), 1.0, (3.45e9, 25.4e-6), 0.1, 0.07);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
+    let end = end_film();
     let piston = Piston { end, ..tube(0.6, 0.0, 0.07, gas) };
     let start = PistonState { height: 0.9, speed: 20.0, gas: gas.at_temperature(5e-5, 293.0) };
     let mut run = PistonRun::new(piston, 0.0, start, adaptive(1e-9));

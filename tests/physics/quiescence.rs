@@ -1,38 +1,28 @@
-//! Quiescent film takes longer steps without a larger error, until it is active again.
+//! Quiescent film takes longer steps without a larger error, until activity is detected.
 
-use billow_solver::geometry::mesh::Shape;
 use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit, State};
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::inflow::Inflow;
-use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
-use crate::geometry::paper_design;
+use crate::film_rig::{INFLOW, stowed};
 use crate::rig::paper_scene;
 
-const INFLOW: Phase = Phase {
-    packed: false,
-    inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
-};
-
-/// The paper's capsule at n 3, stowed.
-fn stowed() -> Explicit {
+/// The paper's capsule at n 3 with contact, stowed.
+fn capsule_in_contact() -> Explicit {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
-    let stowed = Shape::Stowed(paper_design().stowed_height);
-    let (mut film, _) =
-        capsule::film_scene(InstructionSet::detect(), &scene, stowed, DEFAULT_CFL).unwrap();
+    let mut film = stowed(InstructionSet::detect(), &scene, DEFAULT_CFL);
     film.contact = Some(FilmContact::default());
     capsule::start(&film).unwrap()
 }
 
-/// The film after so many milliseconds; with `always_active` it is never quiescent.
-fn after(milliseconds: u32, always_active: bool) -> Explicit {
-    let mut film = stowed();
+/// The film after this time (ms). With `never_quiescent`, activity is reported every millisecond.
+fn after(milliseconds: u32, never_quiescent: bool) -> Explicit {
+    let mut film = capsule_in_contact();
     for target in 1..=milliseconds {
-        if always_active {
+        if never_quiescent {
             film.state.quiescence.last_active = film.state.time;
         }
         film.advance(1e-3 * f64::from(target), &INFLOW).unwrap();
@@ -41,26 +31,26 @@ fn after(milliseconds: u32, always_active: bool) -> Explicit {
 }
 
 #[test]
-fn quiescent_film_takes_longer_steps_without_a_larger_error() {
-    let at_first = after(20, false);
+fn quiescent_film_takes_longer_steps_without_a_larger_energy_error() {
+    let early = after(20, false);
     let (film, control) = (after(400, false), after(400, true));
-    assert_eq!(after(20, true).state.positions, at_first.state.positions);
+    assert_eq!(after(20, true).state.positions, early.state.positions);
     let (steps, all) = (film.state.steps, control.state.steps);
     assert!(f64::from(u32::try_from(steps).unwrap()) < 0.8 * all as f64, "{steps} of {all}");
-    assert!(film.state.last_step > 1.7 * at_first.state.last_step);
-    assert!(film.state.last_step < 1.8 * at_first.state.last_step);
+    assert!(film.state.last_step > 1.7 * early.state.last_step);
+    assert!(film.state.last_step < 1.8 * early.state.last_step);
 
-    let (ledger, expected) = (film.ledger(), control.ledger());
+    let (ledger, control_ledger) = (film.ledger(), control.ledger());
     assert!((film.state.volume / control.state.volume - 1.0).abs() < 1e-4);
-    // The energy errors agree to 1e-5 of the work of the gas, 40 J.
-    let start = stowed().ledger();
-    let (error, expected_error) = (ledger.defect(&start), expected.defect(&start));
-    assert!((error - expected_error).abs() < 1e-5 * ledger.gas_work, "{error} {expected_error}");
-    assert!((ledger.viscous_work / expected.viscous_work - 1.0).abs() < 1e-3);
+    // Both ledgers have the same defect to 1e-5 of the work of the gas, 40 J.
+    let start = capsule_in_contact().ledger();
+    let (defect, control_defect) = (ledger.defect(&start), control_ledger.defect(&start));
+    assert!((defect - control_defect).abs() < 1e-5 * ledger.gas_work, "{defect} {control_defect}");
+    assert!((ledger.viscous_work / control_ledger.viscous_work - 1.0).abs() < 1e-3);
 }
 
-/// Quiescent film within an interval of 60 ms gets a downward velocity. Stepped one by one with resumes,
-/// and in one call.
+/// Quiescent film in an interval of 60 ms gets a downward velocity. The steps become short again, in
+/// a run step by step with resumed states as in one call.
 #[test]
 fn activity_shortens_the_steps_of_quiescent_film() {
     let struck = {
@@ -69,33 +59,33 @@ fn activity_shortens_the_steps_of_quiescent_film() {
         assert!(!film.advance_at_most(0.46, &INFLOW, &mut steps).unwrap());
         assert!(film.state.step_interval.as_ref().is_some_and(|interval| interval.quiescent));
         for node in 0..film.model.nodes() {
-            let place = film.state.positions.get(node);
-            let down = Vector3::new(0.0, 0.0, -60.0 * place.z.max(0.0));
+            let position = film.state.positions.get(node);
+            let down = Vector3::new(0.0, 0.0, -60.0 * position.z.max(0.0));
             film.state.velocities.set(node, down);
         }
         film
     };
-    let max_step = struck.stable_step() * (1.0 + 1e-9);
+    let short_step = struck.stable_step() * (1.0 + 1e-9);
     let text = |film: &Explicit| serde_json::to_string(&film.state).unwrap();
-    let again = |film: Explicit| {
+    let resumed = |film: Explicit| {
         let state: State = serde_json::from_str(&text(&film)).unwrap();
         Explicit::resume(film.model, film.parameters, state)
     };
 
-    let (mut film, mut active, mut taken) = (again(struck.clone()), false, 0_u32);
+    let (mut film, mut active, mut taken) = (resumed(struck.clone()), false, 0_u32);
     let mut steps = 1;
     while !film.advance_at_most(0.46, &INFLOW, &mut steps).unwrap() {
-        assert!(!active || film.state.last_step <= max_step, "after {taken} steps");
+        assert!(!active || film.state.last_step <= short_step, "after {taken} steps");
         let moves = film.state.quiescence.last_active > struck.state.quiescence.last_active;
         active |= !film.state.contact_state.contacts.is_empty() || moves;
         (steps, taken) = (1, taken + 1);
         if taken % 97 == 0 {
-            film = again(film);
+            film = resumed(film);
         }
     }
     assert!(active && taken > 1000);
 
-    let mut whole = again(struck);
+    let mut whole = resumed(struck);
     whole.advance(0.46, &INFLOW).unwrap();
-    assert!(text(&whole) == text(&film), "single steps with resumes differ");
+    assert!(text(&whole) == text(&film), "step by step and resumed");
 }

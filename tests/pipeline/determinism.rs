@@ -1,12 +1,12 @@
-//! The same job gives the same bits, whatever runs beside it.
+//! The same job gives the same bits, whatever other jobs run.
 
-use crate::support::{Desk, histories, small_grid, without_costs};
+use crate::support::{TestFolder, histories, small_grid, without_costs};
 
 #[test]
 fn one_and_two_threads_give_the_same_bits() {
-    let one = Desk::new(&small_grid());
+    let one = TestFolder::new(&small_grid());
     one.stdout(&["run", "grid.json", "-q", "--threads", "1"]);
-    let two = Desk::new(&small_grid());
+    let two = TestFolder::new(&small_grid());
     two.stdout(&["run", "grid.json", "-q", "--threads", "2"]);
     let (rows, others) = (one.rows("results/grid"), two.rows("results/grid"));
     assert_eq!(without_costs(rows.clone()), without_costs(others));
@@ -21,13 +21,13 @@ fn one_and_two_threads_give_the_same_bits() {
 }
 
 #[test]
-fn a_job_is_the_same_in_whatever_study_it_stands() {
-    let whole = Desk::new(&small_grid());
+fn a_job_has_the_same_history_in_every_study() {
+    let whole = TestFolder::new(&small_grid());
     whole.stdout(&["run", "grid.json", "-q"]);
     let mut study = small_grid();
     study["grid"]["N"] = serde_json::json!([6]);
     study["grid"]["M"] = serde_json::json!([3, 2]);
-    let part = Desk::new(&study);
+    let part = TestFolder::new(&study);
     part.stdout(&["run", "grid.json", "-q"]);
     let all = histories(&whole.results());
     let some = histories(&part.results());

@@ -1,4 +1,4 @@
-//! Studies on the film model: trusted rows, shared static states, the same bits whatever the threads.
+//! Studies with the film model: sound rows, shared static states, the same bits on any threads.
 
 use std::fs;
 use std::thread::sleep;
@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::support::{Desk, histories, stderr, without_costs};
+use crate::support::{TestFolder, histories, stderr, without_costs};
 
 /// Two designs and two flows on the coarsest film, for some milliseconds.
 fn study() -> Value {
@@ -22,15 +22,15 @@ fn study() -> Value {
 }
 
 #[test]
-fn a_study_on_the_film_gives_trusted_rows_and_the_same_bits_on_any_threads() {
-    let desk = Desk::new(&study());
-    let planned = stderr(&desk.run(&["plan", "grid.json"]));
+fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
+    let folder = TestFolder::new(&study());
+    let planned = stderr(&folder.run(&["plan", "grid.json"]));
     assert!(planned.contains("forecast: 4 jobs of film, "), "{planned}");
-    let told = desk.run(&["run", "grid.json", "--threads", "1", "--results", "one"]);
-    assert!(told.status.success(), "{}", stderr(&told));
-    assert!(!stderr(&told).contains("piston"), "{}", stderr(&told));
-    desk.stdout(&["run", "grid.json", "--threads", "2", "--results", "two"]);
-    let (one, two) = (desk.rows("one"), desk.rows("two"));
+    let output = folder.run(&["run", "grid.json", "--threads", "1", "--results", "one"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("piston"), "{}", stderr(&output));
+    folder.stdout(&["run", "grid.json", "--threads", "2", "--results", "two"]);
+    let (one, two) = (folder.rows("one"), folder.rows("two"));
     for row in &one {
         assert_eq!(row["status"], "done", "{row}");
         assert_eq!((&row["passages"], &row["intersections"]), (&json!(0), &json!(0)));
@@ -40,23 +40,23 @@ fn a_study_on_the_film_gives_trusted_rows_and_the_same_bits_on_any_threads() {
         assert!(row["interlayer_pressure"].as_f64().unwrap() >= 0.0, "{row}");
         let elements = 2 * row["N"].as_i64().unwrap() * 4 * 4;
         assert_eq!(row["elements"].as_i64(), Some(elements));
-        // The forecast counts the very steps of film that never gets calm.
+        // For film that never becomes quiescent, the forecast is the exact number of steps.
         let mut alone = study();
         alone["grid"] = json!({"N": [row["N"]], "mass_flow_rate": [row["mass_flow_rate"]]});
-        let said = stderr(&Desk::new(&alone).run(&["plan", "grid.json"]));
+        let said = stderr(&TestFolder::new(&alone).run(&["plan", "grid.json"]));
         let millions = row["steps"].as_f64().unwrap() * row["elements"].as_f64().unwrap() / 1e6;
         assert!(said.contains(&format!("1 job of film, about {millions:.0} million")), "{said}");
         assert!(row["ns_per_element_step"].as_f64().unwrap() > 0.0);
     }
-    // More gas lifts the top higher within the time.
+    // More gas lifts the top higher in the same time.
     let height = |row: &Value| row["final_z_rim"].as_f64().unwrap();
     assert!(height(&one[1]) > height(&one[0]) && height(&one[3]) > height(&one[2]));
     assert_eq!(without_costs(one), without_costs(two));
-    let file = |folder: &str| histories(&desk.path().join(folder));
-    assert_eq!(file("one"), file("two"), "the files are equal byte for byte");
-    // Two designs, two flows: static states are looked for once a design.
+    let files = |results: &str| histories(&folder.path().join(results));
+    assert_eq!(files("one"), files("two"));
+    // Two designs, two flows: static states are computed once per design.
     let stored = || {
-        let entries = fs::read_dir(desk.path().join("one/references")).unwrap();
+        let entries = fs::read_dir(folder.path().join("one/references")).unwrap();
         let mut names: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
         names.sort();
         names
@@ -64,35 +64,35 @@ fn a_study_on_the_film_gives_trusted_rows_and_the_same_bits_on_any_threads() {
     let references = stored();
     assert_eq!(references.len(), 2);
 
-    // A damaged one is found again, and gives the same row.
+    // A damaged one is computed again and gives the same row.
     let (kept, lost) = (fs::read(&references[0]).unwrap(), &references[0]);
     fs::write(lost, &kept[..20]).unwrap();
-    let rows = desk.rows("one");
-    for job in fs::read_dir(desk.path().join("one/jobs")).unwrap() {
+    let rows = folder.rows("one");
+    for job in fs::read_dir(folder.path().join("one/jobs")).unwrap() {
         fs::remove_dir_all(job.unwrap().path()).unwrap();
     }
-    desk.stdout(&["run", "grid.json", "--results", "one"]);
-    assert_eq!(without_costs(desk.rows("one")), without_costs(rows));
+    folder.stdout(&["run", "grid.json", "--results", "one"]);
+    assert_eq!(without_costs(folder.rows("one")), without_costs(rows));
     assert_eq!(fs::read(lost).unwrap(), kept);
 }
 
 #[test]
-fn models_stand_side_by_side_and_a_fixed_step_is_the_pistons() {
+fn models_mix_in_a_grid_and_only_the_piston_has_a_fixed_step() {
     let mut mixed = study();
     mixed["solver"] = json!({"end_time": "2 ms"});
     mixed["grid"] = json!({"model": ["piston", "film"]});
     mixed["design"]["N"] = json!(5);
     mixed["gas"] = json!({"mass_flow_rate": "5 g/s"});
-    let desk = Desk::new(&mixed);
-    let told = desk.run(&["run", "grid.json"]);
+    let folder = TestFolder::new(&mixed);
+    let told = folder.run(&["run", "grid.json"]);
     assert!(told.status.success(), "{}", stderr(&told));
     assert!(stderr(&told).contains("model piston: it gives times and upper bounds"));
-    let rows = desk.rows("results/grid");
+    let rows = folder.rows("results/grid");
     assert_eq!((&rows[0]["model"], &rows[1]["model"]), (&json!("piston"), &json!("film")));
     assert!(rows[0]["passages"].is_null() && rows[0]["smallest_gap"].is_null());
     assert_eq!(rows[1]["passages"], 0);
 
-    let refused = desk.run(&["plan", "grid.json", "--set", "solver.stepping.fixed=1e-6"]);
+    let refused = folder.run(&["plan", "grid.json", "--set", "solver.stepping.fixed=1e-6"]);
     assert_eq!(refused.status.code(), Some(2));
     let text = stderr(&refused);
     assert!(text.contains("solver.stepping.fixed") && text.contains("solver.cfl"), "{text}");
@@ -101,29 +101,32 @@ fn models_stand_side_by_side_and_a_fixed_step_is_the_pistons() {
 /// The shipped study, killed ten times; longer than the quick tier.
 #[test]
 #[ignore = "long: a study of film twice over"]
-fn first_json_killed_ten_times_ends_in_the_table_of_an_undisturbed_run() {
+fn first_json_killed_ten_times_has_the_table_of_an_undisturbed_run() {
     let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../studies/first.json");
     let first: Value = serde_json::from_str(&fs::read_to_string(shipped).unwrap()).unwrap();
-    let whole = Desk::new(&first);
+    let whole = TestFolder::new(&first);
     let start = Instant::now();
     whole.stdout(&["run", "grid.json", "-q"]);
     let undisturbed = start.elapsed();
-    let desk = Desk::new(&first);
+    let folder = TestFolder::new(&first);
     let mut killed = 0;
-    // Odd moments of a run, however fast the machine: on the way of the first jobs, at their ends, within
-    // static states. The first five together are shorter than the study.
+    // Fractions of the undisturbed wall time: within the first jobs, at their ends, within static states.
+    // The first five together are shorter than the study.
     for round in 0..10 {
-        let mut child = desk.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+        let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
         sleep(undisturbed.mul_f64(0.037 + 0.049 * f64::from(round)));
         killed += u32::from(child.try_wait().unwrap().is_none());
         let _ = child.kill();
         child.wait().unwrap();
     }
-    assert!(killed >= 5, "only {killed} of ten runs were caught in the middle");
-    desk.stdout(&["run", "grid.json", "-q"]);
-    assert_eq!(without_costs(desk.rows("results/grid")), without_costs(whole.rows("results/grid")));
-    assert_eq!(histories(&desk.results()), histories(&whole.results()));
-    for row in desk.rows("results/grid") {
+    assert!(killed >= 5, "only {killed} of ten runs were killed before their end");
+    folder.stdout(&["run", "grid.json", "-q"]);
+    assert_eq!(
+        without_costs(folder.rows("results/grid")),
+        without_costs(whole.rows("results/grid"))
+    );
+    assert_eq!(histories(&folder.results()), histories(&whole.results()));
+    for row in folder.rows("results/grid") {
         assert_eq!(
             (&row["status"], &row["verdict"]),
             (&json!("done"), &json!("deployed")),

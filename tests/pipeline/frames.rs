@@ -1,4 +1,4 @@
-//! Frames from the run to the picture: stored, read back, drawn, and refused where there are none.
+//! Frames: stored, read, drawn, and refused if a job has none.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use billow_study::store::history_file::{self, StoredFrames};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 
-use crate::support::{Desk, histories, stderr};
+use crate::support::{TestFolder, histories, stderr};
 
 /// A film study of a few milliseconds: a job with frames, a job without.
 fn study() -> Value {
@@ -25,18 +25,18 @@ fn study() -> Value {
     })
 }
 
-/// A study that has run: its desk, the job with frames, the job without.
-fn ran(threads: &str) -> (Desk, String, String) {
-    let desk = Desk::new(&study());
-    desk.stdout(&["run", "grid.json", "-q", "--threads", threads]);
-    let rows = desk.rows("results/grid");
+/// A finished study: its folder, the job with frames, the job without.
+fn ran(threads: &str) -> (TestFolder, String, String) {
+    let folder = TestFolder::new(&study());
+    folder.stdout(&["run", "grid.json", "-q", "--threads", threads]);
+    let rows = folder.rows("results/grid");
     assert_eq!(rows.len(), 2);
     let job = |row: &Value| row["job"].as_str().unwrap().to_owned();
-    (desk, job(&rows[0]), job(&rows[1]))
+    (folder, job(&rows[0]), job(&rows[1]))
 }
 
-fn history(desk: &Desk, job: &str) -> PathBuf {
-    desk.results().join("jobs").join(&job[..2]).join(format!("{job}.h5"))
+fn history(folder: &TestFolder, job: &str) -> PathBuf {
+    folder.results().join("jobs").join(&job[..2]).join(format!("{job}.h5"))
 }
 
 fn frames(path: &Path) -> (StoredFrames, Vec<Frame>) {
@@ -65,12 +65,12 @@ fn panels(path: &Path) -> Vec<usize> {
 }
 
 #[test]
-fn a_job_keeps_its_shapes_and_they_are_drawn() {
-    let (desk, job, _) = ran("1");
-    let path = history(&desk, &job);
+fn frames_of_a_job_are_stored_and_drawn() {
+    let (folder, job, _) = ran("1");
+    let path = history(&folder, &job);
     let (stored, all) = frames(&path);
     let elements = stored.triangles().len();
-    let rows = desk.rows("results/grid");
+    let rows = folder.rows("results/grid");
     assert_eq!(rows[0]["elements"].as_u64(), Some(elements as u64));
     for storey in 0..=4 {
         assert!(stored.storeys().contains(&storey), "caps 0 and 4, storeys 1 to 3");
@@ -79,24 +79,24 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     assert_eq!(all.len(), 4);
     assert_eq!(stored.times()[0].to_bits(), 0.0_f64.to_bits());
     assert_eq!(stored.times()[3].to_bits(), 0.004_f64.to_bits());
-    // Frames are shapes at samples: their highest node is the sample's.
+    // A frame is the shape at a sample: both have the same highest node.
     let history = history_file::read(&path).unwrap().history;
     for frame in &all {
         let times = history.column("time");
         let sample = times.iter().position(|time| time.to_bits() == frame.time.to_bits()).unwrap();
-        #[expect(clippy::cast_possible_truncation, reason = "as frames have it")]
+        #[expect(clippy::cast_possible_truncation, reason = "frames are stored in f32")]
         let z_max = history.column("z_max")[sample] as f32;
         let highest = frame.positions.iter().map(|place| place[2]).fold(f32::MIN, f32::max);
         assert_eq!(highest.to_bits(), z_max.to_bits(), "at {}", frame.time);
     }
 
-    let table = desk.stdout(&["frames", &job[..6], "results/grid", "--json"]);
+    let table = folder.stdout(&["frames", &job[..6], "results/grid", "--json"]);
     let rows: Value = serde_json::from_str(&table).unwrap();
-    let charts = desk.results().join("charts");
+    let charts = folder.results().join("charts");
     let [svg, png] = ["svg", "png"].map(|kind| charts.join(format!("frames_{}.{kind}", &job[..8])));
     assert_eq!(rows.as_array().unwrap().len(), 2);
-    assert_eq!(desk.path().join(rows[0]["file"].as_str().unwrap()), svg);
-    assert_eq!(desk.path().join(rows[1]["file"].as_str().unwrap()), png);
+    assert_eq!(folder.path().join(rows[0]["file"].as_str().unwrap()), svg);
+    assert_eq!(folder.path().join(rows[1]["file"].as_str().unwrap()), png);
     assert_eq!((&rows[0]["frames"], &rows[0]["to"]), (&json!(4), &json!(0.004)));
     assert_eq!(panels(&svg), [elements; 4]);
     let text = fs::read_to_string(&svg).unwrap();
@@ -105,39 +105,39 @@ fn a_job_keeps_its_shapes_and_they_are_drawn() {
     assert!(text.contains("storey 3") && text.contains("caps") && text.contains(">4 ms<"));
     assert_eq!(pixels(&png)[0], 180 * 12);
 
-    // Again, the same bytes; and from the file itself.
+    // A repetition gives the same bytes; a history file may be named directly.
     let [first, first_png] = [&svg, &png].map(|path| fs::read(path).unwrap());
-    desk.stdout(&["frames", &job, "grid.json", "-q"]);
+    folder.stdout(&["frames", &job, "grid.json", "-q"]);
     assert!(fs::read(&svg).unwrap() == first && fs::read(&png).unwrap() == first_png);
     let path = path.to_str().unwrap();
     let arguments = ["--count", "2", "--colour", "regime", "--view=-60,35", "--out", "two.svg"];
-    desk.stdout(&[&["frames", path], arguments.as_slice()].concat());
-    assert_eq!(panels(&desk.path().join("two.svg")), [elements; 2]);
-    assert!(fs::read_to_string(desk.path().join("two.svg")).unwrap().contains("wrinkled"));
-    let output = desk.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "a.PNG"]);
+    folder.stdout(&[&["frames", path], arguments.as_slice()].concat());
+    assert_eq!(panels(&folder.path().join("two.svg")), [elements; 2]);
+    assert!(fs::read_to_string(folder.path().join("two.svg")).unwrap().contains("wrinkled"));
+    let output = folder.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "a.PNG"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("1 of these 3 times"), "{}", stderr(&output));
-    assert_eq!(pixels(&desk.path().join("a.PNG"))[0], 180 * 12);
+    assert_eq!(pixels(&folder.path().join("a.PNG"))[0], 180 * 12);
 }
 
 #[test]
-fn frames_are_the_same_bytes_whatever_runs_beside_them() {
+fn frames_have_the_same_bytes_on_any_number_of_threads() {
     let (one, job, without) = ran("1");
     let (two, ..) = ran("2");
     let (files, others) = (histories(&one.results()), histories(&two.results()));
     assert_eq!(files.len(), 2);
     assert!(files == others);
-    // Equal runs but for the frames: the content hash tells them apart.
+    // The histories are equal, but the content hash covers the frames.
     let stored = [&job, &without].map(|job| history_file::read(&history(&one, job)).unwrap());
     assert_eq!(stored[0].history, stored[1].history);
     assert_ne!(stored[0].content_hash, stored[1].content_hash);
 }
 
 #[test]
-fn what_cannot_be_drawn_is_one_clear_error() {
-    let (desk, job, without) = ran("2");
+fn invalid_requests_give_one_error() {
+    let (folder, job, without) = ran("2");
     let refused = |arguments: &[&str], parts: &[&str]| {
-        let output = desk.run(&[&["frames"], arguments].concat());
+        let output = folder.run(&[&["frames"], arguments].concat());
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
         assert_eq!(said.matches("billow: ").count(), 1, "{said}");
@@ -158,19 +158,19 @@ fn what_cannot_be_drawn_is_one_clear_error() {
     refused(&[&job, results, "--out", "a.gif"], &["a.gif", ".svg or .png"]);
     refused(&[&job, results, "--out", "grid.json/a.svg"], &["grid.json"]);
 
-    let path = history(&desk, &job);
+    let path = history(&folder, &job);
     let mut bytes = fs::read(&path).unwrap();
     bytes.truncate(bytes.len() / 2);
     fs::write(&path, &bytes).unwrap();
     refused(&[&job, results], &[&job, "next: "]);
     fs::remove_file(&path).unwrap();
     refused(&[&job, results], &[&job, "no such file"]);
-    assert!(!desk.results().join("charts").exists(), "nothing was drawn");
+    assert!(!folder.results().join("charts").exists(), "nothing was drawn");
 }
 
 #[test]
-fn a_scene_solved_by_itself_keeps_frames_as_well() {
-    let desk = Desk::new(&study());
+fn a_solved_scene_stores_frames_too() {
+    let folder = TestFolder::new(&study());
     let mut scene = study();
     for section in ["grid", "solver"] {
         scene.as_object_mut().unwrap().remove(section);
@@ -181,12 +181,12 @@ fn a_scene_solved_by_itself_keeps_frames_as_well() {
         json!({ "species": "nitrogen", "windows": [{ "from": 0, "mass_flow_rate": "5 g/s" }] });
     scene["solver"] = json!({ "end_time": "4 ms" });
     scene["outputs"]["frames"] = json!(3);
-    fs::write(desk.path().join("scene.json"), scene.to_string()).unwrap();
-    desk.stdout(&["solve", "scene.json", "--out", "run.h5"]);
-    let (stored, all) = frames(&desk.path().join("run.h5"));
+    fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    folder.stdout(&["solve", "scene.json", "--out", "run.h5"]);
+    let (stored, all) = frames(&folder.path().join("run.h5"));
     assert_eq!(all.len(), 3);
     assert_eq!(stored.storeys().iter().max(), Some(&4));
-    desk.stdout(&["frames", "run.h5"]);
-    assert_eq!(panels(&desk.path().join("run_frames.svg")), [stored.triangles().len(); 3]);
-    assert_eq!(pixels(&desk.path().join("run_frames.png"))[0], 180 * 12);
+    folder.stdout(&["frames", "run.h5"]);
+    assert_eq!(panels(&folder.path().join("run_frames.svg")), [stored.triangles().len(); 3]);
+    assert_eq!(pixels(&folder.path().join("run_frames.png"))[0], 180 * 12);
 }

@@ -7,10 +7,10 @@ use crate::support::{ran, stderr};
 
 #[test]
 fn every_simulating_command_refuses_an_unknown_instruction_set() {
-    let desk = ran();
+    let folder = ran();
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     for file in ["sphere.json", "sphere.obj"] {
-        fs::copy(scenes.join(file), desk.path().join(file)).unwrap();
+        fs::copy(scenes.join(file), folder.path().join(file)).unwrap();
     }
     for arguments in [
         &["run", "grid.json"][..],
@@ -19,7 +19,7 @@ fn every_simulating_command_refuses_an_unknown_instruction_set() {
         &["bench", "--quick"],
         &["solve", "sphere.json"],
     ] {
-        let output = desk.billow(arguments).env("BILLOW_SIMD", "neon").output().unwrap();
+        let output = folder.billow(arguments).env("BILLOW_SIMD", "neon").output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
         let message = stderr(&output);
         assert!(message.contains("BILLOW_SIMD = neon: unknown instruction set"), "{message}");

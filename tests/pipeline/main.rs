@@ -1,32 +1,32 @@
-//! The binary end to end.
+//! The program end to end: commands, files, messages, exit codes.
 
-#![allow(clippy::disallowed_methods, reason = "looks at the disk with its own eyes")]
+#![allow(clippy::disallowed_methods, reason = "tests read and damage files directly")]
 
 mod bench;
-mod broken_studies;
-mod charts;
-mod comparing;
-mod contact;
-mod contact_audit;
+mod chart;
+mod compare_and_answer;
+mod contact_scenes;
 mod determinism;
+mod doctor_and_rerun;
+mod fault_injection;
 mod film_study;
-mod folding;
+mod fold;
 mod frames;
 mod instruction_sets;
-mod keeping;
-mod mutations;
+mod interruption;
+mod invalid_studies;
+mod monitor_detects_faults;
 mod old_results;
 mod physics_version;
-mod planning;
-mod reading;
+mod plan;
 mod reference;
 mod reference_columns;
 mod reference_commands;
-mod resume;
-mod running;
+mod results_folder;
+mod run_and_table;
 mod scene_files;
-mod solving;
-mod storage;
+mod solve;
+mod status_why_show;
 mod study_files;
 mod support;
-mod validating;
+mod validate;

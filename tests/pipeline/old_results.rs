@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::support::{Desk, histories, json_of, stderr};
+use crate::support::{TestFolder, histories, json_of, stderr};
 
 /// The job that the old version called `drifted`.
 const DRIFTED: &str = "9ffb7487";
@@ -30,48 +30,48 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// A folder with a copy of the old results in `old`.
-fn desk() -> Desk {
-    let desk = Desk::new(&json!({}));
+fn folder() -> TestFolder {
+    let folder = TestFolder::new(&json!({}));
     let stored = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/old-results");
-    copy(&stored, &desk.path().join("old"));
-    desk
+    copy(&stored, &folder.path().join("old"));
+    folder
 }
 
 #[test]
 fn a_run_finds_every_old_job_finished() {
-    let desk = desk();
-    let before = histories(&desk.path().join("old"));
-    fs::copy(desk.path().join("old/study.json"), desk.path().join("study.json")).unwrap();
-    let ended = desk.run(&["run", "study.json", "--results", "old", "--json"]);
+    let folder = folder();
+    let before = histories(&folder.path().join("old"));
+    fs::copy(folder.path().join("old/study.json"), folder.path().join("study.json")).unwrap();
+    let ended = folder.run(&["run", "study.json", "--results", "old", "--json"]);
     let summary: Value = serde_json::from_slice(&ended.stdout).unwrap();
     assert_eq!(summary["ran"], 0, "{summary}");
     assert_eq!(summary["status"], json!({"done": 5, "energy_drift": 1}));
     assert_eq!(summary["near_threshold"], 1);
-    assert_eq!(before, histories(&desk.path().join("old")));
-    let health = desk.stdout(&["doctor", "old"]);
+    assert_eq!(before, histories(&folder.path().join("old")));
+    let health = folder.stdout(&["doctor", "old"]);
     assert!(health.contains("old: sound"), "{health}");
     // The run wrote the table again, with the current names.
-    let rows = desk.rows("old");
+    let rows = folder.rows("old");
     assert_eq!(rows.len(), 6);
     assert_eq!(rows[1]["near_threshold"], true);
 }
 
 #[test]
 fn an_old_job_that_runs_again_gives_the_same_bits() {
-    let desk = desk();
+    let folder = folder();
     // The exit code is 1: another job of the study failed.
-    let ended = desk.run(&["rerun", DONE, "old", "--json"]);
+    let ended = folder.run(&["rerun", DONE, "old", "--json"]);
     let done: Value = serde_json::from_slice(&ended.stdout).unwrap();
     assert_eq!((&done["same_bits"], &done["other_bits"]), (&json!(1), &json!([])), "{done}");
 }
 
 #[test]
 fn old_rows_have_the_current_names() {
-    let desk = desk();
-    let status = json_of(&desk, &["status", "old"]);
+    let folder = folder();
+    let status = json_of(&folder, &["status", "old"]);
     assert_eq!((&status["done"], &status["failed"]), (&json!(5), &json!(1)), "{status}");
     assert_eq!(status["broken"], 0, "{status}");
-    for row in desk.rows("old") {
+    for row in folder.rows("old") {
         let row = row.as_object().unwrap();
         for (old, current) in [
             ("close", "near_threshold"),
@@ -81,29 +81,29 @@ fn old_rows_have_the_current_names() {
             assert!(!row.contains_key(old) && row.contains_key(current), "{old}");
         }
     }
-    let why = json_of(&desk, &["why", DRIFTED, "old"]);
+    let why = json_of(&folder, &["why", DRIFTED, "old"]);
     assert_eq!(why["status"], "energy_drift");
     assert!(why["stop_location"].as_str().unwrap().starts_with("energy ledger"), "{why}");
-    let shown = desk.stdout(&["show", DRIFTED, "old"]);
+    let shown = folder.stdout(&["show", DRIFTED, "old"]);
     assert!(shown.contains("energy_drift") && shown.contains("near_threshold_margin"), "{shown}");
 }
 
 #[test]
 fn old_histories_have_the_current_names() {
-    let desk = desk();
-    let all = json_of(&desk, &["show", DONE, "old", "--history"]);
+    let folder = folder();
+    let all = json_of(&folder, &["show", DONE, "old", "--history"]);
     let sample = all[0].as_object().unwrap();
     assert!(sample.contains_key("broad_phase_rebuilds"), "{sample:?}");
     assert!(!sample.contains_key("contact_searches"), "{sample:?}");
     let columns = ["show", DONE, "old", "--history", "--columns", "time,contact_searches"];
-    let output = desk.run(&columns);
+    let output = folder.run(&columns);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("is now called \"broad_phase_rebuilds\""));
 }
 
 #[test]
 fn old_names_in_options_work_with_a_note() {
-    let desk = desk();
+    let folder = folder();
     for (arguments, note) in [
         (&["table", "old", "--columns", "job,close"] as &[&str], "\"near_threshold\""),
         (&["table", "old", "--sort", "close_margin"], "\"near_threshold_margin\""),
@@ -122,22 +122,22 @@ fn old_names_in_options_work_with_a_note() {
             "\"broad_phase_rebuilds\"",
         ),
     ] {
-        let output = desk.run(arguments);
+        let output = folder.run(arguments);
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
         let notes = stderr(&output);
         assert!(notes.contains("is now called") && notes.contains(note), "{arguments:?}: {notes}");
     }
     for (condition, number) in [("close", 1), ("status == 'drifted'", 1), ("not close", 4)] {
-        let rows = json_of(&desk, &["table", "old", "--where", condition]);
+        let rows = json_of(&folder, &["table", "old", "--where", condition]);
         assert_eq!(rows.as_array().unwrap().len(), number, "{condition}");
     }
 }
 
 #[test]
 fn comparisons_and_charts_of_old_results_work() {
-    let desk = desk();
-    let compared = desk.stdout(&["compare", "old", "--by", "model", "--base", "piston"]);
+    let folder = folder();
+    let compared = folder.stdout(&["compare", "old", "--by", "model", "--base", "piston"]);
     assert!(compared.contains("peak_vz"), "{compared}");
-    let drawn = desk.stdout(&["chart", "old"]);
+    let drawn = folder.stdout(&["chart", "old"]);
     assert!(drawn.contains(".svg"), "{drawn}");
 }

@@ -1,9 +1,10 @@
-//! The physics version is guarded: six small runs, whose bits may change only with it.
+//! The guard of the physics version: the bits of six small runs change only with it.
 //!
-//! `tests/reference/physics.json` holds the SHA-256 of the bits of each run's history or end state,
-//! and the version they belong to. Whoever changes physics raises the version, records the hashes
-//! this test prints, and says so in CHANGELOG.
+//! `tests/reference/physics.json` holds the physics version and the SHA-256 of the bits of each run's
+//! history or end state. After a change of the physics, raise the version, record the hashes that this
+//! test prints, and add a line to CHANGELOG.
 
+use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet, tube};
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::models;
 use billow_solver::models::run::Model;
@@ -14,13 +15,12 @@ use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::motion::{Motion, Profile, Rotation};
+use billow_solver::scene::paper::{self, free_film, nitrogen_supply, window};
 use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply, HeatTransfer, InflowWindow, Scene};
+use billow_solver::scene::{Film, GasSupply, HeatTransfer, Scene};
 use billow_study::cases::Rig;
-use billow_study::cases::capsule_run::paper_capsule;
 use billow_study::cases::contact_capsule::stowed;
-use billow_study::cases::rig::{film, held, nitrogen, scene};
-use billow_study::cases::shapes_dynamic::{icosphere, pattern, sheet, tube};
+use billow_study::cases::rig::held;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -32,7 +32,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
     sha.finalize().iter().fold(String::new(), |text, byte| format!("{text}{byte:02x}"))
 }
 
-/// Of a piston's whole history.
+/// The hash of a piston's whole history.
 fn piston(scene: &Scene) -> String {
     let deployment = models::solve(InstructionSet::detect(), scene, None, &mut Unobserved)
         .expect("a scene that can be run");
@@ -40,7 +40,7 @@ fn piston(scene: &Scene) -> String {
     hash(columns.flatten().copied())
 }
 
-/// Of film's end state: places, velocities, gas, works; that of contact where there is any.
+/// The hash of a film's end state: positions, velocities, gas, work; work of contact if there is any.
 fn end_state(film: &Explicit) -> String {
     let state = &film.state;
     let fields = [&state.positions, &state.velocities].map(|field| [&field.x, &field.y, &field.z]);
@@ -59,35 +59,31 @@ fn end_state(film: &Explicit) -> String {
         works.viscous,
         works.damping,
     ];
-    let met = film.parameters.contact.as_ref().map(|_| works.contact);
-    hash(nodes.chain(scalars).chain(met))
-}
-
-fn window(from: f64, to: f64, rate: f64) -> InflowWindow {
-    InflowWindow { from, to, mass_flow_rate: rate, temperature: 293.0 }
+    let contact_work = film.parameters.contact.as_ref().map(|_| works.contact);
+    hash(nodes.chain(scalars).chain(contact_work))
 }
 
 /// 5 g/s from the start, with heat exchange and a leak.
 fn rapid() -> String {
-    let mut scene = paper_capsule(5, 0.1);
+    let mut scene = paper::capsule(5, 0.1);
     scene.gas.windows = vec![window(0.0, 1.5, 5e-3)];
     scene.gas.leak_area = 1e-5;
     piston(&scene)
 }
 
-/// Filled while packed, let go at 20 ms, filled on from 50 ms.
+/// Filled while packed, released at 20 ms, filled again from 50 ms.
 fn preinflated() -> String {
-    let mut scene = paper_capsule(5, 0.1);
+    let mut scene = paper::capsule(5, 0.1);
     scene.gas.windows = vec![window(0.0, 0.01, 5e-3), window(0.05, 0.1, 1e-3)];
     scene.gas.initial_mass = 1.5e-4;
     scene.release_time = 0.02;
     piston(&scene)
 }
 
-/// Film on film from the first millisecond on, calm in the end.
+/// Film on film from the first millisecond, quiescent at the end.
 fn capsule() -> String {
     let contact = FilmContact::default();
-    let mut run = stowed(&Rig::default(), &paper_capsule(2, 0.02), contact).expect("a capsule");
+    let mut run = stowed(&Rig::default(), &paper::capsule(2, 0.02), contact).expect("a capsule");
     let inflow = Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 };
     let phase = Phase { packed: false, inflow };
     run.advance(0.02, &phase).expect("it runs");
@@ -100,39 +96,39 @@ fn capsule() -> String {
     end_state(&run.film)
 }
 
-fn moved(scene: &FilmScene, time: f64, phase: &Phase) -> String {
+fn end_state_at(scene: &FilmScene, time: f64, phase: &Phase) -> String {
     let mut film = Rig::default().start(scene).expect("a scene");
     film.advance(time, phase).expect("it runs");
     end_state(&film)
 }
 
-/// Gas that leaks into air and exchanges heat.
+/// A sphere with gas that leaks into air and exchanges heat.
 fn sphere() -> String {
     let supply = GasSupply {
         initial_mass: 2e-2,
         ambient_pressure: 500.0,
         heat_transfer: HeatTransfer::Coefficient(20.0),
         leak_area: 1e-3,
-        ..nitrogen()
+        ..nitrogen_supply()
     };
     let filling = Filling::Gas { supply, initial_temperature: 350.0 };
-    let scene = FilmScene { filling, ..scene(icosphere(1, 0.5), film()) };
-    moved(&scene, 3e-3, &Phase::default())
+    let scene = FilmScene { filling, ..free_film(icosphere(1, 0.5), Film::PAPER_ELASTIC) };
+    end_state_at(&scene, 3e-3, &Phase::default())
 }
 
-/// A viscous sheet with some compressive stiffness, shaken, falls from two of its corners.
+/// A viscous sheet with some compressive stiffness and random velocities swings from two corners.
 fn falling_sheet() -> String {
-    let film = Film { viscosity: 0.1, compression: 0.3, ..film() };
+    let film = Film { viscosity: 0.1, compression: 0.3, ..Film::PAPER_ELASTIC };
     let scene = FilmScene {
-        velocities: pattern(30, 1),
+        velocities: pseudo_random(30, 1),
         supports: vec![held(vec![0, 5], "xyz")],
         gravity: Vector3::new(0.0, -3.0, -9.806_65),
-        ..scene(sheet(5, 4, 0.3, 0.2), film)
+        ..free_film(sheet(5, 4, 0.3, 0.2), film)
     };
-    moved(&scene, 5e-3, &Phase::default())
+    end_state_at(&scene, 5e-3, &Phase::default())
 }
 
-/// A tube whose upper end is moved and turned, the lower one held.
+/// A tube whose upper end is moved and rotated while the lower one is held.
 fn turned_tube() -> String {
     let (around, along) = (8, 4);
     let turn = Rotation { axis: Vector3::z(), centre: Vector3::zeros(), angle: 0.02 };
@@ -152,9 +148,9 @@ fn turned_tube() -> String {
     let scene = FilmScene {
         filling: Filling::Pressure(100.0),
         supports: vec![held((0..around).collect(), "xyz"), upper],
-        ..scene(tube(around, along, 0.1, 0.2), film())
+        ..free_film(tube(around, along, 0.1, 0.2), Film::PAPER_ELASTIC)
     };
-    moved(&scene, 3e-3, &Phase::default())
+    end_state_at(&scene, 3e-3, &Phase::default())
 }
 
 #[test]

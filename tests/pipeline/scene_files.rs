@@ -1,4 +1,4 @@
-//! Scene files: meshes of other programs, and what is wrong with broken scenes, flags and files.
+//! Scene files: meshes of other programs, and errors of invalid scenes, flags and files.
 
 use billow_study::input::keys::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, ROTATION_KEYS, SCENE, SCENE_WINDOW_KEYS,
@@ -7,29 +7,29 @@ use billow_study::input::keys::{
 use billow_study::input::schema::scene_schema;
 use serde_json::{Value, json};
 
-use crate::solving::{CUBE, capsule, cube, desk, done, number, solve};
+use crate::solve::{CUBE, capsule, cube, done, number, scene_folder, solve};
 use crate::support::stderr;
 
 #[test]
 fn the_schema_has_every_key() {
     let schema = scene_schema();
-    let has = |place: &str, key: &str| {
-        let found = schema.pointer(&format!("{place}/properties/{key}"));
-        let found = found.unwrap_or_else(|| panic!("{key} of {place} is missing"));
+    let has = |location: &str, key: &str| {
+        let found = schema.pointer(&format!("{location}/properties/{key}"));
+        let found = found.unwrap_or_else(|| panic!("{key} of {location} is missing"));
         assert!(found["description"].as_str().is_some_and(|text| text.len() > 5), "{key}");
     };
     for key in &SCENE.keys {
         let (section, leaf) = key.path.rsplit_once('.').unwrap_or(("", key.path));
-        // A species is a word or an object of its own.
+        // A species is a name or an object.
         if section == "gas.species" {
             assert!(schema["properties"]["gas"].to_string().contains(&format!("{leaf:?}")));
             continue;
         }
-        let place = if section.is_empty() { "" } else { &format!("/properties/{section}") };
-        has(place, leaf);
+        let location = if section.is_empty() { "" } else { &format!("/properties/{section}") };
+        has(location, leaf);
     }
     let support = "/properties/supports/items";
-    for (place, keys) in [
+    for (location, keys) in [
         ("/properties/mesh".to_owned(), MESH_KEYS),
         ("/properties/gas/properties/windows/items".to_owned(), SCENE_WINDOW_KEYS),
         (support.to_owned(), SUPPORT_KEYS),
@@ -41,10 +41,10 @@ fn the_schema_has_every_key() {
         ("/properties/outputs".to_owned(), OUTPUT_KEYS),
     ] {
         for key in keys {
-            has(&place, key.path);
+            has(&location, key.path);
         }
     }
-    for (place, key) in [
+    for (location, key) in [
         ("/properties/mesh", "reference"),
         ("/properties/mesh", "closure"),
         (support, "nodes"),
@@ -52,7 +52,7 @@ fn the_schema_has_every_key() {
         ("/properties/outputs", "elements"),
         ("", "gravity"),
     ] {
-        has(place, key);
+        has(location, key);
     }
 }
 
@@ -62,7 +62,7 @@ fn meshes_of_other_programs_are_read() {
     let volume = |mesh: &Value, files: &[(&str, &str)]| {
         let scene = cube(mesh, &gas);
         assert!(jsonschema::validator_for(&scene_schema()).unwrap().is_valid(&scene));
-        number(&done(desk(&scene, files).path(), &["scene.json", "-q"], ""), "/volume")
+        number(&done(scene_folder(&scene, files).path(), &["scene.json", "-q"], ""), "/volume")
     };
     let cube_file = ("cube.obj", CUBE);
     let near =
@@ -70,12 +70,12 @@ fn meshes_of_other_programs_are_read() {
     near(volume(&json!({"positions": "cube.obj"}), &[cube_file]), 1.0);
     near(volume(&json!({"positions": "cube.obj", "scale": 0.1}), &[cube_file]), 1e-3);
     near(volume(&json!({"positions": "cube.obj", "closure": ["lid"]}), &[cube_file]), 1.0);
-    // Without its lid it is open, and a fan closes it; or faces of another file do.
+    // Without its lid the cube is open: a fan closes it, or faces of another file do.
     let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\r\n");
     near(volume(&json!({"positions": "open.obj"}), &[("open.obj", &open)]), 1.0);
     let lid = [("open.obj", open.as_str()), ("lid.obj", "f 5 6 7 8\n")];
     near(volume(&json!({"positions": "open.obj", "closure": "lid.obj"}), &lid), 1.0);
-    // Every face with vertices of its own: joined where asked.
+    // Every face has separate vertices: `weld` joins them.
     let (vertices, faces): (Vec<&str>, Vec<&str>) =
         CUBE.lines().partition(|line| line.starts_with("v "));
     let mut apart = String::new();
@@ -90,11 +90,11 @@ fn meshes_of_other_programs_are_read() {
     near(volume(&json!({"positions": "apart.obj", "weld": 0}), &apart), 1.0);
     near(volume(&json!({"positions": "apart.obj", "weld": "1 um"}), &apart), 1.0);
     let scene = cube(&json!({"positions": "apart.obj"}), &gas);
-    let output = solve(desk(&scene, &apart).path(), &["scene.json"], "");
+    let output = solve(scene_folder(&scene, &apart).path(), &["scene.json"], "");
     assert_eq!(output.status.code(), Some(2));
     let error = stderr(&output);
     assert!(error.contains("leaks") && error.contains("mesh.weld"), "{error}");
-    // A reference cut apart, as flattening programs leave it, and the same face by face.
+    // A reference with separate faces, as flattening programs write it, and the same inline.
     let flat = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n".repeat(6)
         + "f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\nf 13 14 15 16\nf 17 18 19 20\nf 21 22 23 24\n";
     let files = [cube_file, ("flat.obj", flat.as_str())];
@@ -198,7 +198,7 @@ fn every_error_names_its_key_once() {
         let mut scene = sound.clone();
         let (parent, leaf) = pointer.rsplit_once('/').unwrap();
         scene.pointer_mut(parent).unwrap()[leaf] = value.clone();
-        let output = solve(desk(&scene, &files).path(), &["scene.json"], "");
+        let output = solve(scene_folder(&scene, &files).path(), &["scene.json"], "");
         let error = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{pointer} = {value}: {error}");
         assert!(output.stdout.is_empty(), "{pointer} = {value}");
@@ -207,12 +207,12 @@ fn every_error_names_its_key_once() {
         }
         assert_eq!(error.matches("billow: ").count(), 1, "{error}");
     }
-    assert!(solve(desk(&sound, &files).path(), &["scene.json", "-q"], "").status.success());
+    assert!(solve(scene_folder(&sound, &files).path(), &["scene.json", "-q"], "").status.success());
 }
 
 #[test]
 fn invalid_flags_are_refused() {
-    let folder = desk(&capsule(), &[("rest.json", ""), ("broken", "{\"format\": 1}")]);
+    let folder = scene_folder(&capsule(), &[("rest.json", ""), ("broken", "{\"format\": 1}")]);
     for (arguments, simd, expected) in [
         (&["scene.json"][..], "neon", "scalar"),
         (&["scene.json", "--resume", "gone"], "", "gone"),
@@ -227,7 +227,7 @@ fn invalid_flags_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
     }
-    // A checkpoint is of its own scene.
+    // A checkpoint belongs to one scene.
     let pause = ["scene.json", "-q", "--stop-after", "9", "--checkpoint", "state"];
     done(folder.path(), &pause, "");
     let other = ["scene.json", "-q", "--resume", "state", "--set", "film.viscosity=0.05"];
@@ -236,9 +236,9 @@ fn invalid_flags_are_refused() {
     assert!(stderr(&output).contains("of another scene"), "{}", stderr(&output));
 }
 
-/// Two square sheets on each other, sewn along the rim.
+/// Two square sheets on each other, joined at the rim.
 #[test]
-fn a_flat_bag_opens_under_a_pressure_and_holds_no_gas() {
+fn a_flat_bag_opens_under_pressure_and_cannot_contain_gas() {
     let mut text = String::new();
     for [x, y] in [[0, 0], [2, 0], [2, 2], [0, 2], [1, 1], [1, 1]] {
         text.push_str(&["v", &x.to_string(), &y.to_string(), "0\n"].join(" "));
@@ -253,16 +253,16 @@ fn a_flat_bag_opens_under_a_pressure_and_holds_no_gas() {
         })
     };
     let files = [("bag.obj", text.as_str())];
-    let folder = desk(&scene(&json!({"pressure": "100 Pa"})), &files);
+    let folder = scene_folder(&scene(&json!({"pressure": "100 Pa"})), &files);
     let rest = ["scene.json", "--set", "solver.static=true"];
     let summary = done(folder.path(), &rest, "");
     assert!(number(&summary, "/volume") > 0.1, "{summary}");
-    // Drawn empty, it turns inside out: no result.
+    // A negative pressure turns it inside out: no result.
     let output = solve(folder.path(), &[&rest[..], &["--set", "gas.pressure=-100"]].concat(), "");
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stderr(&output).contains("inverted_volume"), "{}", stderr(&output));
 
-    let folder = desk(&scene(&json!({"initial_mass": "1 g"})), &files);
+    let folder = scene_folder(&scene(&json!({"initial_mass": "1 g"})), &files);
     let output = solve(folder.path(), &["scene.json"], "");
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("encloses no volume: its layers touch each other"));
@@ -276,7 +276,7 @@ fn keys_without_effect_are_noted() {
     scene["gas"] = json!({"windows": [{"mass_flow_rate": "5 g/s"}]});
     scene["outputs"]["sample_interval"] = json!("10 ms");
     scene["solver"] = json!({"end_time": "10 ms"});
-    let folder = desk(&scene, &[]);
+    let folder = scene_folder(&scene, &[]);
     let summary = done(folder.path(), &["scene.json", "-q"], "");
     let notes = summary["notes"].to_string();
     assert!(notes.contains("the node nearest to [200.0, 0.0, 500.0] m is"), "{notes}");

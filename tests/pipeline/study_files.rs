@@ -1,4 +1,4 @@
-//! The study files that ship: each is sound by the schema, plans, and is listed with its question.
+//! The shipped study files: each is valid by the schema, plans, and is listed with its question.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ fn ids(study: &Study) -> Vec<JobId> {
 }
 
 #[test]
-fn every_file_is_sound_by_the_schema_and_plans() {
+fn every_shipped_study_is_valid_and_plans() {
     let schema = study_schema();
     jsonschema::meta::validate(&schema).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
@@ -53,7 +53,7 @@ fn every_file_is_sound_by_the_schema_and_plans() {
 }
 
 #[test]
-fn a_resolved_study_is_a_study_of_the_same_jobs() {
+fn a_resolved_study_has_the_same_jobs() {
     let validator = jsonschema::validator_for(&study_schema()).unwrap();
     for path in shipped() {
         let study = Study::load(&path, &[]).unwrap();
@@ -70,7 +70,7 @@ fn a_resolved_study_is_a_study_of_the_same_jobs() {
     }
 }
 
-/// What the schema refuses, the program refuses; so an editor that knows the schema never lies.
+/// The program refuses what the schema refuses, so an editor with the schema gives no false errors.
 #[test]
 fn the_schema_refuses_what_the_program_refuses() {
     let validator = jsonschema::validator_for(&study_schema()).unwrap();
@@ -102,7 +102,7 @@ fn the_schema_refuses_what_the_program_refuses() {
     ] {
         let mut broken = sound.clone();
         match broken.pointer_mut(pointer) {
-            Some(place) => *place = value.clone(),
+            Some(member) => *member = value.clone(),
             None => broken[&pointer[1..]] = value.clone(),
         }
         assert!(!validator.is_valid(&broken), "the schema takes {pointer} = {value}");
@@ -140,7 +140,7 @@ fn schema_and_plan_print_json() {
             other => panic!("{other}"),
         }
     }
-    // The paper's ratio: two storeys of six panels reach no metre, three do.
+    // At the paper's ratio, two storeys of six panels cannot reach 1 m, three can.
     let feasible = |panels: u64, storeys: u64| {
         rows.iter().any(|row| {
             row["N"] == panels

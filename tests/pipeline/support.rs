@@ -1,4 +1,4 @@
-//! Running the binary: a folder, a study file in it, commands, and what they leave.
+//! Runs the program in a temporary folder and reads its results.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,30 +7,30 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A folder to run commands in.
-pub struct Desk {
+/// A temporary folder in which commands run.
+pub struct TestFolder {
     folder: tempfile::TempDir,
 }
 
-impl Desk {
-    /// With this study in `study.json`.
+impl TestFolder {
+    /// A folder with this study in `grid.json`.
     pub fn new(study: &Value) -> Self {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("grid.json"), study.to_string()).unwrap();
         Self { folder }
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Results of the study, where `billow run` puts them.
+    /// Default results folder of the study.
     pub fn results(&self) -> PathBuf {
         self.path().join("results/grid")
     }
 
-    /// `billow` with arguments, to run in the folder.
+    /// The command `billow` with arguments, in this folder.
     pub fn billow(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
         command.args(arguments).current_dir(self.path());
@@ -38,12 +38,12 @@ impl Desk {
         command
     }
 
-    /// Runs it to its end.
+    /// Runs the command to its end.
     pub fn run(&self, arguments: &[&str]) -> Output {
         self.billow(arguments).output().unwrap()
     }
 
-    /// Runs it; it must succeed. What it printed.
+    /// Runs the command, which must succeed; its stdout.
     pub fn stdout(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
@@ -57,12 +57,12 @@ impl Desk {
     }
 }
 
-/// What a command said on stderr.
+/// The stderr of a command.
 pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The user's main grid, small: N × M × flow × residual gas, with points no pattern meets.
+/// A small grid, N × M × ratio × residual gas, with infeasible points.
 pub fn small_grid() -> Value {
     grid(&serde_json::json!({
         "N": [5, 6], "M": [2, 3], "alpha1_over_phi": [0.8, 1, 9.0],
@@ -70,7 +70,7 @@ pub fn small_grid() -> Value {
     }))
 }
 
-/// A study of that grid on the piston.
+/// A piston study with these axes.
 pub fn grid(axes: &Value) -> Value {
     serde_json::json!({
         "design": { "fit": "height", "bottom_radius": "500 mm", "height": "1 m" },
@@ -80,7 +80,7 @@ pub fn grid(axes: &Value) -> Value {
     })
 }
 
-/// Rows without what a run cost and who made it.
+/// Rows without cost and provenance.
 pub fn without_costs(rows: Vec<Value>) -> Vec<Value> {
     let strip = |mut row: Value| {
         for column in ["wall_seconds", "ns_per_element_step", "commit", "program_version"] {
@@ -91,7 +91,7 @@ pub fn without_costs(rows: Vec<Value>) -> Vec<Value> {
     rows.into_iter().map(strip).collect()
 }
 
-/// Bytes of every history file, by name.
+/// The bytes of every history file, by name.
 pub fn histories(results: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     for folder in fs::read_dir(results.join("jobs")).unwrap() {
@@ -104,35 +104,35 @@ pub fn histories(results: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// The small grid, run.
-pub fn ran() -> Desk {
-    let desk = Desk::new(&small_grid());
-    desk.stdout(&["run", "grid.json", "-q"]);
-    desk
+/// The finished small grid.
+pub fn ran() -> TestFolder {
+    let folder = TestFolder::new(&small_grid());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    folder
 }
 
-/// The small grid, with jobs that all fail.
-pub fn failed() -> Desk {
+/// The small grid with a step limit at which every job fails.
+pub fn failed() -> TestFolder {
     let mut study = small_grid();
     study["solver"]["step_limit"] = serde_json::json!(3);
-    let desk = Desk::new(&study);
-    desk.run(&["run", "grid.json", "-q"]);
-    desk
+    let folder = TestFolder::new(&study);
+    folder.run(&["run", "grid.json", "-q"]);
+    folder
 }
 
-/// What a command prints as JSON; it must succeed.
-pub fn json_of(desk: &Desk, arguments: &[&str]) -> Value {
-    serde_json::from_str(&desk.stdout(&[arguments, &["--json"]].concat())).unwrap()
+/// The JSON output of a command, which must succeed.
+pub fn json_of(folder: &TestFolder, arguments: &[&str]) -> Value {
+    serde_json::from_str(&folder.stdout(&[arguments, &["--json"]].concat())).unwrap()
 }
 
-/// Ids of the rows of that status.
-pub fn ids(desk: &Desk, status: &str) -> Vec<String> {
-    let rows = desk.rows("results/grid");
-    let own = rows.iter().filter(|row| row["status"] == status);
-    own.map(|row| row["job"].as_str().unwrap().to_owned()).collect()
+/// Job ids of the rows with a status.
+pub fn ids(folder: &TestFolder, status: &str) -> Vec<String> {
+    let rows = folder.rows("results/grid");
+    let matching = rows.iter().filter(|row| row["status"] == status);
+    matching.map(|row| row["job"].as_str().unwrap().to_owned()).collect()
 }
 
 /// The history file of a job.
-pub fn file_of(desk: &Desk, id: &str) -> PathBuf {
-    desk.results().join(format!("jobs/{}/{id}.h5", &id[..2]))
+pub fn file_of(folder: &TestFolder, id: &str) -> PathBuf {
+    folder.results().join(format!("jobs/{}/{id}.h5", &id[..2]))
 }

@@ -1,11 +1,10 @@
-"""Checks that what billow stores opens in the tools people use: values, units, types.
+"""Checks that common tools read what billow stores: values, units, types.
 
     tests/readers/check.sh RESULTS
 
-RESULTS is the folder of a study that has run. Every history file is opened with h5py and with
-xarray (h5netcdf), its frames with VTK's own reader, which is ParaView's, summary.parquet with pandas
-and with pyarrow, and all are held against each other. The first thing found wrong ends the program
-with exit code 1.
+RESULTS is the results folder of a finished study. Every history file is opened with h5py and with xarray
+(h5netcdf), its frames with the reader of VTK and ParaView, summary.parquet with pandas and with pyarrow.
+All of them are compared. The first difference ends the program with exit code 1.
 """
 
 import hashlib
@@ -45,7 +44,7 @@ HISTORY_UNITS = {
     "passages": "1",
     "intersections": "1",
 }
-# What runs of film with contact follow beside.
+# Further columns of film with contact.
 FILM_UNITS = {
     "vz_centre": "m/s",
     "interlayer_pressure": "Pa",
@@ -99,15 +98,15 @@ def check(holds, what):
         raise SystemExit(f"check.py: {what}")
 
 
-def same(one, other):
-    """Equal to the bit, or both missing."""
-    if other is None or (isinstance(other, float) and np.isnan(other)):
-        return one is None or (isinstance(one, float) and np.isnan(one))
-    return one == other
+def same(a, b):
+    """Equal values, or both missing."""
+    if b is None or (isinstance(b, float) and np.isnan(b)):
+        return a is None or (isinstance(a, float) and np.isnan(a))
+    return a == b
 
 
 def content_hash(arrays):
-    """As history_file.rs computes it: names, lengths, values."""
+    """The hash of history_file.rs: names, lengths, values."""
     digest = hashlib.sha256()
     for name, values in arrays:
         digest.update(struct.pack("<Q", len(name)) + name.encode())
@@ -122,12 +121,12 @@ def check_table(path):
         check(schema.get(name, "").replace("_view", "") == kind, f"{path}: {name} is {schema.get(name)}, not {kind}")
     metadata = json.loads(pq.read_metadata(path).metadata[b"billow"])
     check(metadata["format"] == "billow-table" and metadata["version"] == 1, f"{path}: {metadata}")
-    told = {column["name"]: column for column in metadata["columns"]}
-    check(list(told) == table.column_names, f"{path}: the metadata names other columns")
-    check(all(column["meaning"] for column in told.values()), f"{path}: a column without meaning")
+    described = {column["name"]: column for column in metadata["columns"]}
+    check(list(described) == table.column_names, f"{path}: the metadata names other columns")
+    check(all(column["meaning"] for column in described.values()), f"{path}: a column without meaning")
     for name, unit in TABLE_UNITS.items():
-        check(told[name]["unit"] == unit, f"{path}: {name} in {told[name]['unit']}, not {unit}")
-    for name, column in told.items():
+        check(described[name]["unit"] == unit, f"{path}: {name} in {described[name]['unit']}, not {unit}")
+    for name, column in described.items():
         check(column["unit"] in UNITS, f"{path}: {name} in {column['unit']}")
 
     frame = pd.read_parquet(path)
@@ -146,7 +145,7 @@ def check_table(path):
 
 
 def check_history(path, row):
-    """Its number of frames."""
+    """Checks one history file; returns its number of frames."""
     with h5py.File(path) as file:
         check(file.attrs["format"] == "billow-history", f"{path}: format")
         check(file.attrs["version"] == 1 and file.attrs["complete"] == 1, f"{path}: version, complete")
@@ -181,7 +180,7 @@ def check_history(path, row):
         hashed = content_hash(columns + frames)
         check(hashed == file.attrs["content_hash"] == row["content_hash"], f"{path}: content hash {hashed}")
 
-    check((np.diff(values["time"]) > 0).all(), f"{path}: time does not grow")
+    check((np.diff(values["time"]) > 0).all(), f"{path}: time does not increase")
     for column, measure in [
         ("volume", "final_volume"),
         ("pressure", "final_pressure"),
@@ -210,14 +209,14 @@ def check_history(path, row):
 
 
 def check_frames(path, values, stored):
-    """The frames as VTK's reader plays them, held against the arrays and the history. How many."""
+    """Compares the frames of VTK's reader with the arrays and the history; returns their number."""
     reader = vtkHDFReader()
     check(reader.CanReadFile(str(path)), f"{path}: no file for vtkHDFReader")
     reader.SetFileName(str(path))
     reader.UpdateInformation()
     times = stored["VTKHDF/Steps/Values"]
-    told = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
-    check(reader.GetHasTemporalData() and list(told) == list(times), f"{path}: VTK sees the times {told}")
+    vtk_times = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    check(reader.GetHasTemporalData() and list(vtk_times) == list(times), f"{path}: VTK sees the times {vtk_times}")
     check(reader.GetNumberOfSteps() == len(times), f"{path}: VTK sees {reader.GetNumberOfSteps()} steps")
     check(times[0] == 0 and times[-1] == values["time"][-1], f"{path}: frames from {times[0]} to {times[-1]}")
     cells = stored["VTKHDF/Connectivity"].reshape(-1, 3)
@@ -227,15 +226,15 @@ def check_frames(path, values, stored):
     check(regimes.max() <= 2, f"{path}: a regime unknown")
     check(set(storeys) == set(range(storeys.max() + 1)), f"{path}: a storey without elements")
     for step, time in enumerate(times):
-        # By number and by time, as a script and as ParaView ask.
+        # By number as in a script, and by time as in ParaView.
         reader.SetStep(step)
         reader.UpdateTimeStep(time)
         grid = reader.GetOutputDataObject(0)
         check(grid.IsA("vtkUnstructuredGrid"), f"{path}: VTK reads a {grid.GetClassName()}")
-        places = vtk_to_numpy(grid.GetPoints().GetData())
-        check(places.dtype == np.float32, f"{path}: places of {places.dtype}")
+        positions = vtk_to_numpy(grid.GetPoints().GetData())
+        check(positions.dtype == np.float32, f"{path}: positions of {positions.dtype}")
         expected = stored["VTKHDF/Points"][step * nodes : (step + 1) * nodes]
-        check((places == expected).all(), f"{path}: VTK reads other places at {time} s")
+        check((positions == expected).all(), f"{path}: VTK reads other positions at {time} s")
         check((vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 3) == cells).all()
               and grid.GetNumberOfCells() == len(cells)
               and all(grid.GetCellType(cell) == VTK_TRIANGLE for cell in range(len(cells))),

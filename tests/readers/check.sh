@@ -1,6 +1,6 @@
 #!/bin/sh
 # Opens a results folder with h5py, xarray, pandas, pyarrow and vtk:  tests/readers/check.sh RESULTS
-# The packages go into .venv beside this script, once.
+# The packages are installed once, into .venv next to this script.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 venv=${VENV:-$here/.venv}

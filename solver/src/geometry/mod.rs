@@ -5,5 +5,6 @@ pub mod field;
 pub mod fold;
 pub mod mesh;
 pub mod mesh_io;
+pub mod shapes;
 pub mod shell;
 pub mod topology;

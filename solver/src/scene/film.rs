@@ -28,17 +28,3 @@ impl Film {
         self.density * self.thickness
     }
 }
-
-#[cfg(test)]
-impl Film {
-    /// The paper's film as a tension field, with ζ = 0.1.
-    pub(crate) const PAPER: Self = Self {
-        youngs_modulus: 3.45e9,
-        poisson_ratio: 0.3,
-        density: 1400.0,
-        thickness: 25.4e-6,
-        compression: 0.0,
-        viscosity: 0.1,
-        temperature: 293.0,
-    };
-}

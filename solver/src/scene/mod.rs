@@ -14,6 +14,7 @@ pub mod inflow;
 pub mod monitor_settings;
 pub mod motion;
 mod outputs;
+pub mod paper;
 pub mod plate;
 mod solver;
 mod support;

@@ -1,7 +1,7 @@
-//! The capsule the bench times: the paper's, as `scenes/capsule.json` has it, on a way of 1.5 s.
+//! The capsule of the bench: the paper's capsule from `scenes/capsule.json`, for up to 1.5 s.
 //!
-//! A journey is one run from the stowed shape on, as `billow solve` runs it. At its marks it leaves
-//! the state, from which stages are timed, and what it has cost so far.
+//! It runs from the stowed shape as in `billow solve`. At each mark the bench keeps the state, from
+//! which stages are timed, or the cost so far.
 
 use std::path::Path;
 use std::time::Instant;
@@ -18,65 +18,65 @@ use crate::platform::error::{Error, Result};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 
-/// The scene, as it ships.
+/// The shipped scene.
 const SCENE: &str = include_str!("../../../scenes/capsule.json");
-/// What errors call it.
+/// Its name in error messages.
 const NAME: &str = "scenes/capsule.json";
-/// End of its inflow, s: beyond all that is timed, so that the end of the 1.5 s case goes on as it is.
-const END: &str = "solver.end_time=\"1.6 s\"";
+/// End time of the scene: later than every timed run, so that inflow lasts through the 1.5 s case.
+const END_TIME: &str = "solver.end_time=\"1.6 s\"";
 
 /// The capsule of one mesh.
 #[derive(Debug, Clone)]
 pub struct Capsule {
-    /// n.
+    /// Elements along each edge of the pattern, n.
     pub subdivisions: u32,
-    /// What is run.
+    /// The scene.
     pub scene: SceneFile,
-    /// What happens when.
-    pub course: Timeline,
+    /// Its timeline.
+    pub timeline: Timeline,
 }
 
 impl Capsule {
-    /// On this mesh and this instruction set.
+    /// The capsule on this mesh with this instruction set.
     ///
     /// # Errors
-    /// Where the scene is none on this mesh.
-    pub fn new(subdivisions: u32, path: simd::InstructionSet) -> Result<Self> {
-        let sets = [END.to_owned(), format!("design.subdivisions={subdivisions}")];
-        let scene = SceneFile::from_text(SCENE, Path::new(NAME), &sets, path)?;
-        let course = Timeline::of_film(&scene.film);
-        Ok(Self { subdivisions, scene, course })
+    /// If the scene is invalid on this mesh.
+    pub fn new(subdivisions: u32, instruction_set: simd::InstructionSet) -> Result<Self> {
+        let sets = [END_TIME.to_owned(), format!("design.subdivisions={subdivisions}")];
+        let scene = SceneFile::from_text(SCENE, Path::new(NAME), &sets, instruction_set)?;
+        let timeline = Timeline::of_film(&scene.film);
+        Ok(Self { subdivisions, scene, timeline })
     }
 
-    /// The same film passing through itself: contact and what watches it left out.
+    /// The same without contact and without the tunnelling monitor: film passes through film.
     #[must_use]
     pub fn without_contact(mut self) -> Self {
         self.scene.film.contact = None;
         self
     }
 
-    /// Stowed, at time 0.
+    /// The stowed capsule at time 0.
     ///
     /// # Errors
-    /// Where the film is none.
+    /// If the film is invalid.
     pub fn stowed(&self) -> Result<FilmRun> {
         let failed = |error| Error::JobsFailed(format!("n {}: {error}", self.subdivisions));
         FilmRun::of(&self.scene.film, self.scene.rings.clone()).map_err(failed)
     }
 }
 
-/// A moment of a journey.
+/// A time at which a run is interrupted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Simulated time, s: that of a sample.
+    /// Simulated time of a sample, s.
     pub time: f64,
-    /// The state's name, where stages are timed from it.
+    /// Name of the state, if stages are timed from it.
     pub state: Option<&'static str>,
-    /// Whether it is told what the way so far has cost.
+    /// Whether the cost so far becomes a case.
     pub case: bool,
 }
 
-/// A state on the way.
+/// A state of a run, from which stages are timed.
 #[derive(Debug, Clone)]
 pub struct State {
     /// Its name.
@@ -87,41 +87,41 @@ pub struct State {
     pub run: FilmRun,
 }
 
-/// What a way from the start has cost.
+/// Cost of a run from the start to a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// n.
+    /// Elements along each edge of the pattern, n.
     pub subdivisions: u32,
     /// Simulated time, s.
     pub end_time: f64,
-    /// Elements.
+    /// Number of elements.
     pub elements: usize,
-    /// Steps.
+    /// Number of steps.
     pub steps: u64,
-    /// Wall time, samples included, s.
+    /// Wall time with samples, s.
     pub wall_seconds: f64,
-    /// Time on a core, s: without whoever else uses it. `None` where the system does not say.
+    /// Time on a processor core, s, without other processes. `None` if the system does not report it.
     pub core_seconds: Option<f64>,
-    /// Residual of the energy ledger: what the speed is worth.
+    /// Residual of the energy ledger: a fast run must also be a sound one.
     pub ledger_residual: f64,
-    /// Film through film.
+    /// Passages of film through film.
     pub passages: Option<u64>,
-    /// Most memory the process has held so far, bytes.
+    /// Peak memory of the process so far, bytes.
     pub peak_memory: Option<u64>,
 }
 
 impl Case {
-    /// Wall time of an element's step, ns.
+    /// Wall time per element and step, ns.
     pub fn nanoseconds(&self) -> f64 {
         1e9 * self.wall_seconds / (self.steps as f64 * self.elements as f64)
     }
 
-    /// Share of the wall time it was on a core; `None` where nothing says, or the way was too short.
+    /// Fraction of the wall time on a core; `None` if unknown, or if the run is too short.
     pub fn core_share(&self) -> Option<f64> {
         machine::core_share(self.core_seconds, self.wall_seconds)
     }
 
-    /// As a row.
+    /// As a row of the report.
     pub fn line(&self) -> Line {
         let count = |number: u64| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
         let maybe = |number: Option<u64>| number.map_or(Value::Null, count);
@@ -141,7 +141,7 @@ impl Case {
     }
 }
 
-/// Ends a way at a sample.
+/// Ends a run at a sample, or on a signal.
 struct Until<'a> {
     time: f64,
     stop: &'a Stop,
@@ -153,23 +153,28 @@ impl Observer for Until<'_> {
     }
 }
 
-/// Runs a capsule to its last mark; marks rise.
+/// Runs a capsule to its last mark; marks are in ascending order.
 ///
 /// # Errors
-/// A run that stops short; a signal.
-pub fn travel(capsule: &Capsule, marks: &[Mark], stop: &Stop) -> Result<(Vec<State>, Vec<Case>)> {
+/// A failure of the run; a signal.
+pub fn run_to_marks(
+    capsule: &Capsule,
+    marks: &[Mark],
+    stop: &Stop,
+) -> Result<(Vec<State>, Vec<Case>)> {
     let (mut model, mut run) = (capsule.stowed()?, Run::default());
     let (mut states, mut cases) = (Vec::new(), Vec::new());
     let (mut wall_seconds, mut core_seconds) = (0.0, Some(0.0));
     for mark in marks {
         if mark.time > 0.0 {
-            // Samples are whole multiples of the interval; half of one takes rounding out.
-            let time = mark.time - 0.5 * capsule.course.sample_interval;
+            // Samples are multiples of the interval; half an interval less avoids rounding errors.
+            let time = mark.time - 0.5 * capsule.timeline.sample_interval;
             let (start, core) = (Instant::now(), machine::core_seconds());
-            let end = run.advance(&mut model, &capsule.course, u64::MAX, &mut Until { time, stop });
+            let end =
+                run.advance(&mut model, &capsule.timeline, u64::MAX, &mut Until { time, stop });
             wall_seconds += start.elapsed().as_secs_f64();
             let on_core = machine::core_seconds().zip(core).map(|(now, then)| now - then);
-            core_seconds = core_seconds.zip(on_core).map(|(so_far, more)| so_far + more);
+            core_seconds = core_seconds.zip(on_core).map(|(before, more)| before + more);
             interrupted(stop)?;
             if let Some(End::Failed(failure)) = end {
                 return Err(Error::JobsFailed(format!(
@@ -185,7 +190,7 @@ pub fn travel(capsule: &Capsule, marks: &[Mark], stop: &Stop) -> Result<(Vec<Sta
             states.push(State { name, time: mark.time, run: model.clone() });
         }
         if mark.case {
-            let audit = run.clone().finish(&model, &capsule.course, End::Cancelled).audit;
+            let audit = run.clone().finish(&model, &capsule.timeline, End::Cancelled).audit;
             cases.push(Case {
                 subdivisions: capsule.subdivisions,
                 end_time: mark.time,

@@ -1,31 +1,31 @@
-//! The clock of the bench: what each stage of a step takes.
+//! The stopwatch of the bench: wall time of each stage of a step.
 
 use std::time::{Duration, Instant};
 
 use billow_solver::platform::stopwatch::{Stage, Stopwatch};
 
-/// Adds up the time of each stage.
+/// Total time of each stage.
 #[derive(Debug, Default)]
 pub struct Clock {
-    spent: [Duration; Stage::ALL.len()],
+    totals: [Duration; Stage::ALL.len()],
     running: Option<(Stage, Instant)>,
 }
 
 impl Clock {
-    /// The stage that runs has ended, and none begins.
+    /// Ends the running stage; none follows.
     pub fn stop(&mut self) {
-        self.book(Instant::now());
+        self.add(Instant::now());
         self.running = None;
     }
 
-    /// Time of a stage so far, s.
+    /// Total time of a stage so far, s.
     pub fn seconds(&self, stage: Stage) -> f64 {
-        self.spent[stage as usize].as_secs_f64()
+        self.totals[stage as usize].as_secs_f64()
     }
 
-    fn book(&mut self, now: Instant) {
+    fn add(&mut self, now: Instant) {
         if let Some((stage, since)) = self.running {
-            self.spent[stage as usize] += now - since;
+            self.totals[stage as usize] += now - since;
         }
     }
 }
@@ -33,7 +33,7 @@ impl Clock {
 impl Stopwatch for Clock {
     fn begins(&mut self, stage: Stage) {
         let now = Instant::now();
-        self.book(now);
+        self.add(now);
         self.running = Some((stage, now));
     }
 }

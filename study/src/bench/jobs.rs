@@ -1,5 +1,5 @@
-//! Jobs per hour: a study of 64 film jobs through the runner of `billow run`, histories, journal and
-//! table on the disk, static states of its two designs looked for once.
+//! Jobs per hour: a study of 64 film jobs, run as by `billow run`, with histories, journal and table on
+//! disk. Static states of its two designs are computed once.
 
 use std::num::NonZero;
 use std::time::Instant;
@@ -23,21 +23,21 @@ use crate::study::{Limits, Study};
 
 /// The study.
 const STUDY: &str = include_str!("study.json");
-/// What makes it a short one.
+/// Overrides that make it short, for `--quick`.
 const QUICK: [&str; 2] = ["design.subdivisions=2", "solver.end_time=\"12 ms\""];
-/// Threads it is run on.
+/// Numbers of threads to run it on.
 pub const THREADS: [u32; 2] = [1, 2];
 
-/// What the study took.
+/// Cost of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobsRow {
-    /// Threads over jobs.
+    /// Number of threads; each runs one job at a time.
     pub threads: u32,
-    /// Jobs run.
+    /// Number of jobs run.
     pub jobs: usize,
-    /// Those that came to their end.
+    /// Number of jobs with status `done`.
     pub done: usize,
-    /// n.
+    /// Elements along each edge of the pattern, n.
     pub subdivisions: u32,
     /// Simulated time of a job, s.
     pub end_time: f64,
@@ -46,12 +46,12 @@ pub struct JobsRow {
 }
 
 impl JobsRow {
-    /// Jobs an hour.
+    /// Jobs per hour.
     pub fn per_hour(&self) -> f64 {
         3600.0 * self.jobs as f64 / self.wall_seconds
     }
 
-    /// As a row.
+    /// As a row of the report.
     pub fn line(&self) -> Line {
         let count = |count: usize| Value::Integer(i64::try_from(count).unwrap_or(i64::MAX));
         vec![
@@ -66,10 +66,10 @@ impl JobsRow {
     }
 }
 
-/// Runs the study on so many threads, in a folder of its own that is removed again.
+/// Runs the study on a number of threads, in a temporary folder.
 ///
 /// # Errors
-/// A disk that fails; a signal.
+/// A disk error; a signal.
 pub fn measure(
     threads: u32,
     instruction_set: InstructionSet,

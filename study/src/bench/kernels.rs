@@ -1,5 +1,5 @@
-//! What film alone takes: membrane, gas and update of a step without contact, beside a plain scalar
-//! reference in the same run, on the same state.
+//! Cost of a step without contact: membrane, gas and update, and a plain scalar reference in the same
+//! run, from the same state.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -13,8 +13,8 @@ use billow_solver::platform::simd::InstructionSet;
 use billow_solver::platform::stopwatch::Untimed;
 use billow_solver::scene::timeline::Timeline;
 
-use super::capsule::{Capsule, Mark, travel};
-use super::stages::take;
+use super::capsule::{Capsule, Mark, run_to_marks};
+use super::stages::take_steps;
 use super::{Effort, Line, RISING, interrupted};
 use crate::input::value::Value;
 use crate::platform::error::Result;
@@ -27,62 +27,64 @@ pub const FILM: &str = "film";
 /// Name of the scalar reference of the film's part.
 pub const REFERENCE: &str = "reference";
 
-/// What a kernel takes.
+/// Cost of a kernel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KernelRow {
-    /// n.
+    /// Elements along each edge of the pattern, n.
     pub subdivisions: u32,
     /// Its name: [`STEP`], [`FILM`], [`REFERENCE`].
     pub kernel: &'static str,
     /// Instruction set.
-    pub path: InstructionSet,
-    /// ns per element and step.
+    pub instruction_set: InstructionSet,
+    /// Wall time per element and step, ns.
     pub cost: f64,
 }
 
 impl KernelRow {
-    /// As a row.
+    /// As a row of the report.
     pub fn line(&self) -> Line {
         vec![
             ("subdivisions", Value::Integer(self.subdivisions.into())),
             ("kernel", Value::Text(self.kernel.to_owned())),
-            ("path", Value::Text(self.path.name().to_owned())),
+            ("instruction_set", Value::Text(self.instruction_set.name().to_owned())),
             ("ns_per_element_step", Value::Number(self.cost)),
         ]
     }
 }
 
-/// Times the kernels on a mesh: the step and the film's part of it on every instruction set up to
-/// `path`, the reference.
+/// Times the kernels on a mesh: the step and the film's part of it on every available instruction set
+/// up to the given one, and the scalar reference.
 ///
 /// # Errors
-/// A run that stops short; a signal.
+/// A failure of the run; a signal.
 pub fn measure(
     subdivisions: u32,
-    path: InstructionSet,
+    instruction_set: InstructionSet,
     effort: Effort,
     stop: &Stop,
 ) -> Result<Vec<KernelRow>> {
-    let capsule = Capsule::new(subdivisions, path)?.without_contact();
-    // Part of the film is taut by then, part wrinkled, part slack.
+    let capsule = Capsule::new(subdivisions, instruction_set)?.without_contact();
+    // At this time part of the film is taut, part wrinkled, part slack.
     let mark = Mark { time: RISING, state: Some("rising"), case: false };
-    let (states, _) = travel(&capsule, &[mark], stop)?;
+    let (states, _) = run_to_marks(&capsule, &[mark], stop)?;
     let film = &states[0].run.film;
     let (elements, steps) = (film.model.elements(), effort.kernel_steps());
-    let row = |kernel, path, seconds: f64| KernelRow {
+    let row = |kernel, instruction_set, seconds: f64| KernelRow {
         subdivisions,
         kernel,
-        path,
+        instruction_set,
         cost: 1e9 * seconds / (steps as f64 * elements as f64),
     };
     let mut rows = Vec::new();
-    let widths = InstructionSet::ALL.into_iter().take_while(|narrow| *narrow != path).chain([path]);
-    let widths: Vec<InstructionSet> = widths.filter(|width| width.available()).collect();
-    for width in widths.iter().copied() {
-        let seconds = least(effort, stop, &mut || stepped(film, width, &capsule.course, steps))?;
-        rows.push(row(STEP, width, seconds));
+    let narrower = InstructionSet::ALL.into_iter().take_while(|set| *set != instruction_set);
+    let sets = narrower.chain([instruction_set]);
+    let sets: Vec<InstructionSet> = sets.filter(|set| set.available()).collect();
+    for set in sets.iter().copied() {
+        let seconds =
+            least(effort, stop, &mut || step_seconds(film, set, &capsule.timeline, steps))?;
+        rows.push(row(STEP, set, seconds));
     }
-    // The same work as the step's, at a fixed pressure: nothing else is in either.
+    // Membrane and update as in the step, at a fixed pressure.
     let push = KickParameters {
         overpressure: film.overpressure(),
         gravity: film.parameters.gravity,
@@ -92,46 +94,51 @@ pub fn measure(
         contact_active: false,
     };
     let (free, length) = (&film.parameters.supports.free, film.state.last_step);
-    let moving = |path| {
-        let (places, velocities) = (film.state.positions.clone(), film.state.velocities.clone());
-        FilmMotion::new(path, &film.model, places, velocities)
+    let moving = |set| {
+        let (positions, velocities) = (film.state.positions.clone(), film.state.velocities.clone());
+        FilmMotion::new(set, &film.model, positions, velocities)
     };
-    for width in widths {
+    for set in sets {
         let seconds = least(effort, stop, &mut || {
-            let mut own = moving(width);
+            let mut motion = moving(set);
             Ok(timed(steps, &mut || {
-                black_box(vector_step(width, &film.model, &push, free, length, &mut own));
+                black_box(vector_step(set, &film.model, &push, free, length, &mut motion));
             }))
         })?;
-        rows.push(row(FILM, width, seconds));
+        rows.push(row(FILM, set, seconds));
     }
     let seconds = least(effort, stop, &mut || {
-        let mut own = moving(InstructionSet::Scalar);
+        let mut motion = moving(InstructionSet::Scalar);
         Ok(timed(steps, &mut || {
-            black_box(reference_step(&film.model, &push, free, length, &mut own));
+            black_box(reference_step(&film.model, &push, free, length, &mut motion));
         }))
     })?;
     rows.push(row(REFERENCE, InstructionSet::Scalar, seconds));
     Ok(rows)
 }
 
-/// Seconds of so many steps on a path.
-fn stepped(film: &Explicit, path: InstructionSet, course: &Timeline, steps: u64) -> Result<f64> {
+/// Seconds of a number of steps with an instruction set.
+fn step_seconds(
+    film: &Explicit,
+    instruction_set: InstructionSet,
+    timeline: &Timeline,
+    steps: u64,
+) -> Result<f64> {
     let mut film = film.clone();
-    film.parameters.instruction_set = path;
+    film.parameters.instruction_set = instruction_set;
     let start = Instant::now();
-    take(&mut film, course, steps, &mut Untimed)?;
+    take_steps(&mut film, timeline, steps, &mut Untimed)?;
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// Seconds of so many calls.
+/// Seconds of a number of calls.
 fn timed(calls: u64, work: &mut dyn FnMut()) -> f64 {
     let start = Instant::now();
     (0..calls).for_each(|_| work());
     start.elapsed().as_secs_f64()
 }
 
-/// The least of some repeats, s.
+/// The shortest of several repeats, s.
 fn least(effort: Effort, stop: &Stop, once: &mut dyn FnMut() -> Result<f64>) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..effort.kernel_repeats() {

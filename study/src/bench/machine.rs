@@ -1,8 +1,8 @@
-//! What the machine itself can do, so that a slow one shows.
+//! Speed of the machine itself, to compare reports of different machines.
 //!
-//! Arithmetic: multiplications and additions of f64 on one core, not fused, as billow's own are.
-//! Memory: a copy between two buffers, bytes read and bytes written counted; once larger than any
-//! core's own cache, once within it. A shared cache may be larger still than what is copied.
+//! Arithmetic: multiplications and additions of f64 on one core, not fused, as in billow's kernels.
+//! Memory: a copy between two buffers, bytes read plus bytes written; one copy larger than the private
+//! cache of a core, one within it. A shared cache may be larger than both.
 
 use std::path::Path as FilePath;
 use std::time::Instant;
@@ -17,37 +17,37 @@ use crate::platform::files::{Disk, Files};
 use crate::platform::provenance;
 use crate::platform::stop::Stop;
 
-/// Bytes of a buffer beyond a core's own cache.
+/// Bytes of a buffer larger than the private cache of a core. Chosen.
 const LARGE: usize = 64 << 20;
-/// Bytes of a buffer within it.
+/// Bytes of a buffer within that cache. Chosen.
 const SMALL: usize = 256 << 10;
 
-/// What was measured of the machine.
+/// Measurements of the machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine {
-    /// Processor, as the system calls it.
+    /// Processor, as named by the system.
     pub cpu: Option<String>,
-    /// Threads the system gives.
+    /// Number of threads the system offers.
     pub cores: Option<usize>,
     /// Instruction set in use.
-    pub path: InstructionSet,
-    /// Pairs of a multiplication and an addition, 1/s of one core.
+    pub instruction_set: InstructionSet,
+    /// Pairs of a multiplication and an addition per second, on one core.
     pub multiply_adds: Option<f64>,
-    /// Bytes read and written a second, beyond a core's own cache.
+    /// Bytes read and written per second, beyond the private cache.
     pub copied: Option<f64>,
-    /// The same within it.
+    /// The same within the private cache.
     pub copied_in_cache: Option<f64>,
-    /// Most memory the process has held, bytes.
+    /// Peak memory of the process, bytes.
     pub peak_memory: Option<u64>,
 }
 
 impl Machine {
-    /// Its name, unmeasured.
-    pub fn named(path: InstructionSet) -> Self {
+    /// The machine before any measurement.
+    pub fn named(instruction_set: InstructionSet) -> Self {
         Self {
             cpu: cpu(),
             cores: std::thread::available_parallelism().ok().map(std::num::NonZero::get),
-            path,
+            instruction_set,
             multiply_adds: None,
             copied: None,
             copied_in_cache: None,
@@ -55,7 +55,7 @@ impl Machine {
         }
     }
 
-    /// Measures it.
+    /// Measures the machine.
     ///
     /// # Errors
     /// A signal.
@@ -67,7 +67,8 @@ impl Machine {
         let mut best = 0.0_f64;
         for _ in 0..repeats {
             let start = Instant::now();
-            let (pairs, sum) = probe::multiply_add(self.path, std::hint::black_box(rounds));
+            let (pairs, sum) =
+                probe::multiply_add(self.instruction_set, std::hint::black_box(rounds));
             std::hint::black_box(sum);
             best = best.max(pairs as f64 / start.elapsed().as_secs_f64());
             interrupted(stop)?;
@@ -79,7 +80,7 @@ impl Machine {
         interrupted(stop)
     }
 
-    /// As a row.
+    /// As a row of the report.
     pub fn line(&self) -> Line {
         let text = |text: &str| Value::Text(text.to_owned());
         let number = |number: Option<f64>| number.map_or(Value::Null, Value::Number);
@@ -87,7 +88,7 @@ impl Machine {
         vec![
             ("cpu", self.cpu.as_deref().map_or(Value::Null, text)),
             ("cores", self.cores.map_or(Value::Null, |cores| count(cores as u64))),
-            ("path", text(self.path.name())),
+            ("instruction_set", text(self.instruction_set.name())),
             ("multiply_adds_per_second", number(self.multiply_adds)),
             ("copy_bytes_per_second", number(self.copied)),
             ("copy_bytes", count(LARGE as u64)),
@@ -100,7 +101,7 @@ impl Machine {
     }
 }
 
-/// Most bytes read and written a second, copying `bytes` from one buffer to another.
+/// Largest number of bytes read and written per second while `bytes` are copied between two buffers.
 fn copy(bytes: usize, repeats: u32, passes: u32) -> f64 {
     let source = vec![1.0_f64; bytes / size_of::<f64>()];
     let mut target = vec![0.0_f64; source.len()];
@@ -115,8 +116,8 @@ fn copy(bytes: usize, repeats: u32, passes: u32) -> f64 {
     (0..repeats).map(once).fold(0.0, f64::max)
 }
 
-/// A line `name : value` of a file the system writes.
-fn said(file: &str, name: &str) -> Option<String> {
+/// The value of a line `name : value` in a file of the system.
+fn system_value(file: &str, name: &str) -> Option<String> {
     let bytes = Disk.read(FilePath::new(file)).ok()?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let value = |line: &str| {
@@ -127,11 +128,11 @@ fn said(file: &str, name: &str) -> Option<String> {
 }
 
 fn cpu() -> Option<String> {
-    said("/proc/cpuinfo", "model name")
+    system_value("/proc/cpuinfo", "model name")
 }
 
-/// Time this thread has run on a core so far, s; `None` where the system does not say. Unlike wall time
-/// it leaves out who else uses the core.
+/// Time this thread has run on a core so far, s, without other processes; `None` if the system does
+/// not report it.
 pub fn core_seconds() -> Option<f64> {
     let bytes = Disk.read(FilePath::new("/proc/thread-self/schedstat")).ok()?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
@@ -139,28 +140,28 @@ pub fn core_seconds() -> Option<f64> {
     Some(1e-9 * nanoseconds as f64)
 }
 
-/// Wall time below which the share on a core is not told, s: the system books a thread's time a tick of
-/// some milliseconds after it is spent.
-const TELLING: f64 = 0.1;
+/// Shortest wall time with a known core share, s. Chosen: the system accounts a thread's time in ticks
+/// of some milliseconds.
+const MIN_WALL_TIME: f64 = 0.1;
 
-/// Share of a wall time (s) a thread was on a core for so long (s); `None` where that is not known, or
-/// the wall time too short to tell.
+/// Fraction of a wall time (s) in which a thread ran on a core (s); `None` if that is unknown, or if
+/// the wall time is too short.
 pub fn core_share(core: Option<f64>, wall: f64) -> Option<f64> {
-    core.filter(|_| wall >= TELLING).map(|core| core / wall)
+    core.filter(|_| wall >= MIN_WALL_TIME).map(|core| core / wall)
 }
 
-/// Memory of this machine, bytes; `None` where the system does not say.
+/// Memory of this machine, bytes; `None` if the system does not report it.
 pub fn memory() -> Option<u64> {
     kibibytes("/proc/meminfo", "MemTotal")
 }
 
-/// Most memory this process has held, bytes; `None` where the system does not say.
+/// Peak memory of this process, bytes; `None` if the system does not report it.
 pub fn peak_memory() -> Option<u64> {
     kibibytes("/proc/self/status", "VmHWM")
 }
 
-/// A line `name : value kB` of a file the system writes, bytes.
+/// The value of a line `name : value kB` in a file of the system, bytes.
 fn kibibytes(file: &str, name: &str) -> Option<u64> {
-    let kibibytes: u64 = said(file, name)?.strip_suffix("kB")?.trim().parse().ok()?;
+    let kibibytes: u64 = system_value(file, name)?.strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes << 10)
 }

@@ -1,13 +1,13 @@
-//! What billow costs: what `billow bench` measures, on this machine, in this run.
+//! Speed of billow on this machine: the measurements of `billow bench`.
 //!
 //! ```text
 //! cost = wall time / (steps × elements)        ns per element and step
 //! ```
 //!
-//! The paper's capsule under 5 g/s ([`capsule`]), in three states: stowed, rising, at the end of its
-//! way. Stage by stage ([`stages`]), the whole way ([`capsule::Case`]), film alone beside a plain
-//! scalar reference ([`kernels`]), many jobs ([`jobs`]), the machine itself ([`machine`]); and what is
-//! asked of all that ([`targets`]). Speed is a figure: no target that is missed is an error.
+//! The paper's capsule under 5 g/s ([`capsule`]) is measured in three states: stowed, rising, at the
+//! end. Parts: stages of a step ([`stages`]), whole runs ([`capsule::Case`]), the step without contact
+//! and a plain scalar reference ([`kernels`]), many jobs ([`jobs`]), the machine itself ([`machine`]).
+//! [`targets`] compares the results with the goals of the project; a missed target is not an error.
 
 use billow_solver::platform::simd::InstructionSet;
 
@@ -35,32 +35,32 @@ pub type Line = Vec<(&'static str, Value)>;
 
 /// Name of the state at time 0.
 pub const STOWED: &str = "stowed";
-/// Time of the state on the way up, s.
+/// Time of the state `rising`, s.
 pub const RISING: f64 = 0.03;
-/// Time to which meshes of every size are run, s: the growth of the cost is told of it.
+/// Time to which meshes of every size are run, s, to compare their costs.
 pub const EARLY: f64 = 0.005;
-/// Wall time of a way that is gone more than once, s: at most this.
-const BRIEF: f64 = 0.5;
-/// Times a case is told at, s.
-const CASES: [f64; 4] = [EARLY, 0.1, 0.3, 1.5];
-/// Meshes timed unless others are asked for: n.
+/// Longest wall time of a run that is repeated, s. Chosen.
+const MAX_REPEATED_WALL_TIME: f64 = 0.5;
+/// End times of the cases, s.
+const CASE_END_TIMES: [f64; 4] = [EARLY, 0.1, 0.3, 1.5];
+/// Default meshes, n.
 const MESHES: [u32; 4] = [5, 8, 16, 32];
-/// The same where it is to be quick.
+/// Default meshes with `--quick`, n.
 const QUICK_MESHES: [u32; 1] = [5];
-/// Largest mesh whose kernels are timed and which is run beyond [`EARLY`]: n.
+/// Largest mesh whose kernels are timed and which runs beyond [`EARLY`], n.
 pub const LARGEST_RUN: u32 = 16;
 
-/// What is told of a bench that a signal ends.
+/// Message of a bench that a signal ends.
 const INTERRUPTED: &str = "no figure is kept";
 
 /// A part of the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Part {
-    /// What the machine can do.
+    /// Speed of the machine.
     Machine,
-    /// Film alone, beside the scalar reference.
+    /// Steps without contact, and the scalar reference.
     Kernels,
-    /// Each stage of a step, in three states.
+    /// Stages of a step, in three states.
     Stages,
     /// Whole runs.
     Cases,
@@ -69,24 +69,24 @@ pub enum Part {
 }
 
 impl Part {
-    /// Every part, in the order they are run.
+    /// Every part, in the order of measurement.
     pub const ALL: [Self; 5] =
         [Self::Machine, Self::Kernels, Self::Stages, Self::Cases, Self::Jobs];
 }
 
-/// How long it may take.
+/// Extent of a bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
-    /// Seconds: n 5 for a short way.
+    /// Seconds: n 5, short runs.
     Quick,
     /// Minutes.
     Usual,
-    /// With the whole cases.
+    /// As usual, and the whole cases.
     Full,
 }
 
 impl Effort {
-    /// Name, as in JSON.
+    /// Name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quick => "quick",
@@ -107,8 +107,8 @@ impl Effort {
         if self == Self::Quick { 50 } else { 200 }
     }
 
-    /// How far a mesh is run, s: as far as it goes in a bearable time.
-    fn reach(self, subdivisions: u32) -> f64 {
+    /// End time of a mesh's run, s. Chosen: the run takes minutes at most.
+    fn end_time(self, subdivisions: u32) -> f64 {
         match (self, subdivisions) {
             (Self::Quick, n) if n > LARGEST_RUN => 0.0,
             (Self::Quick, _) => 0.05,
@@ -119,20 +119,21 @@ impl Effort {
         }
     }
 
-    /// Where a run is looked at.
+    /// Times at which a run is interrupted.
     fn marks(self, subdivisions: u32) -> Vec<Mark> {
-        let reach = self.reach(subdivisions);
+        let end_time = self.end_time(subdivisions);
         let mut marks = vec![Mark { time: 0.0, state: Some(STOWED), case: false }];
         let case = |time| Mark { time, state: None, case: true };
-        let early = CASES.into_iter().filter(|time| *time < reach && self != Self::Quick);
+        let early =
+            CASE_END_TIMES.into_iter().filter(|time| *time < end_time && self != Self::Quick);
         marks.extend(early.map(case));
         if subdivisions <= LARGEST_RUN {
             marks.push(Mark { time: RISING, state: Some("rising"), case: false });
-            marks.push(Mark { time: reach, state: Some("end"), case: true });
-        } else if reach > 0.0 {
-            marks.push(case(reach));
+            marks.push(Mark { time: end_time, state: Some("end"), case: true });
+        } else if end_time > 0.0 {
+            marks.push(case(end_time));
         }
-        marks.sort_by(|one, other| one.time.total_cmp(&other.time));
+        marks.sort_by(|a, b| a.time.total_cmp(&b.time));
         marks
     }
 }
@@ -142,21 +143,21 @@ impl Effort {
 pub struct Plan {
     /// Which parts.
     pub parts: Vec<Part>,
-    /// Which meshes, n; the usual ones where none is named.
+    /// Which meshes, n; empty for the default ones.
     pub subdivisions: Vec<u32>,
-    /// How long it may take.
+    /// Extent.
     pub effort: Effort,
     /// Instruction set.
-    pub path: InstructionSet,
+    pub instruction_set: InstructionSet,
 }
 
 impl Plan {
-    /// The meshes to time, rising.
+    /// The meshes to time, in ascending order.
     fn meshes(&self) -> Vec<u32> {
         let mut meshes = match (self.subdivisions.as_slice(), self.effort) {
             ([], Effort::Quick) => QUICK_MESHES.to_vec(),
             ([], _) => MESHES.to_vec(),
-            (asked, _) => asked.to_vec(),
+            (requested, _) => requested.to_vec(),
         };
         meshes.sort_unstable();
         meshes.dedup();
@@ -164,14 +165,14 @@ impl Plan {
     }
 }
 
-/// What was measured.
+/// Results of a bench.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// How long it was allowed to take.
+    /// Its extent.
     pub effort: Effort,
     /// The machine.
     pub machine: Machine,
-    /// Film alone.
+    /// Steps without contact.
     pub kernels: Vec<KernelRow>,
     /// Stages of a step.
     pub stages: Vec<StageRow>,
@@ -182,11 +183,11 @@ pub struct Report {
 }
 
 impl Report {
-    /// Before anything is measured.
-    pub fn empty(effort: Effort, path: InstructionSet) -> Self {
+    /// A report without measurements.
+    pub fn empty(effort: Effort, instruction_set: InstructionSet) -> Self {
         Self {
             effort,
-            machine: Machine::named(path),
+            machine: Machine::named(instruction_set),
             kernels: Vec::new(),
             stages: Vec::new(),
             cases: Vec::new(),
@@ -204,100 +205,99 @@ impl Report {
         self.targets().iter().all(|target| target.met() == Some(true))
     }
 
-    /// Least share of its wall time that a run was on a core; `None` where nothing says.
+    /// Smallest fraction of its wall time that a run was on a core; `None` if unknown.
     pub fn least_core_share(&self) -> Option<f64> {
         let stages = self.stages.iter().filter_map(|row| row.core_share);
         stages.chain(self.cases.iter().filter_map(Case::core_share)).reduce(f64::min)
     }
 
-    /// Names of the targets nothing was measured of.
+    /// Names of the targets without a measurement.
     pub fn not_measured(&self) -> Vec<&'static str> {
-        let open = |target: &Target| target.measured.is_none().then_some(target.name);
-        self.targets().iter().filter_map(open).collect()
+        let unmeasured = |target: &Target| target.measured.is_none().then_some(target.name);
+        self.targets().iter().filter_map(unmeasured).collect()
     }
 }
 
-/// Measures; `tell` hears what comes next.
+/// Runs the bench; `progress` receives the name of each measurement before it starts.
 ///
 /// # Errors
-/// A run that stops short, a disk that fails, a signal.
-pub fn run(plan: &Plan, stop: &Stop, tell: &mut dyn FnMut(&str)) -> Result<Report> {
-    let mut report = Report::empty(plan.effort, plan.path);
+/// A failure of a run, a disk error, a signal.
+pub fn run(plan: &Plan, stop: &Stop, progress: &mut dyn FnMut(&str)) -> Result<Report> {
+    let mut report = Report::empty(plan.effort, plan.instruction_set);
     let has = |part: Part| plan.parts.contains(&part);
     if has(Part::Machine) {
-        tell("machine");
+        progress("machine");
         report.machine.measure(plan.effort, stop)?;
     }
     let meshes = plan.meshes();
     for n in &meshes {
         if has(Part::Kernels) && *n <= LARGEST_RUN {
-            tell(&format!("kernels, n {n}"));
-            report.kernels.extend(kernels::measure(*n, plan.path, plan.effort, stop)?);
+            progress(&format!("kernels, n {n}"));
+            report.kernels.extend(kernels::measure(*n, plan.instruction_set, plan.effort, stop)?);
         }
     }
     for n in &meshes {
         if has(Part::Stages) || has(Part::Cases) {
-            capsule_of(*n, plan, stop, tell, &mut report)?;
+            measure_capsule(*n, plan, stop, progress, &mut report)?;
         }
     }
     if has(Part::Jobs) {
         for threads in jobs::THREADS {
-            tell(&format!("64 jobs, threads {threads}"));
-            report.jobs.push(jobs::measure(threads, plan.path, plan.effort, stop)?);
+            progress(&format!("64 jobs, threads {threads}"));
+            report.jobs.push(jobs::measure(threads, plan.instruction_set, plan.effort, stop)?);
         }
     }
     report.machine.peak_memory = machine::peak_memory();
     Ok(report)
 }
 
-/// The run of one mesh, and the stages from its states on.
-fn capsule_of(
+/// Runs one mesh and times the stages from its states.
+fn measure_capsule(
     subdivisions: u32,
     plan: &Plan,
     stop: &Stop,
-    tell: &mut dyn FnMut(&str),
+    progress: &mut dyn FnMut(&str),
     report: &mut Report,
 ) -> Result<()> {
     let marks = plan.effort.marks(subdivisions);
-    let reach = marks.last().map_or(0.0, |mark| mark.time);
-    if reach > 0.0 {
-        tell(&format!("run, n {subdivisions}, {reach} s"));
+    let end_time = marks.last().map_or(0.0, |mark| mark.time);
+    if end_time > 0.0 {
+        progress(&format!("run, n {subdivisions}, {end_time} s"));
     }
-    let capsule = Capsule::new(subdivisions, plan.path)?;
-    let (states, cases) = capsule::travel(&capsule, &marks, stop)?;
+    let capsule = Capsule::new(subdivisions, plan.instruction_set)?;
+    let (states, cases) = capsule::run_to_marks(&capsule, &marks, stop)?;
     if plan.parts.contains(&Part::Cases) {
         for case in cases {
-            report.cases.push(least(case, &capsule, plan.effort, stop)?);
+            report.cases.push(fastest(case, &capsule, plan.effort, stop)?);
         }
     }
     if !plan.parts.contains(&Part::Stages) {
         return Ok(());
     }
     for state in &states {
-        tell(&format!("stages, n {subdivisions}, {}", state.name));
+        progress(&format!("stages, n {subdivisions}, {}", state.name));
         report.stages.push(stages::measure(&capsule, state, plan.effort, stop)?);
     }
     Ok(())
 }
 
-/// A way so short that a moment of somebody else's shows in it is gone again from the start, and the
-/// least kept.
-fn least(mut case: Case, capsule: &Capsule, effort: Effort, stop: &Stop) -> Result<Case> {
-    let way = [Mark { time: case.end_time, state: None, case: true }];
+/// Repeats a short run, which other processes disturb most, and keeps the fastest.
+fn fastest(mut case: Case, capsule: &Capsule, effort: Effort, stop: &Stop) -> Result<Case> {
+    let mark = [Mark { time: case.end_time, state: None, case: true }];
     for _ in 1..effort.repeats() {
-        if case.wall_seconds > BRIEF {
+        if case.wall_seconds > MAX_REPEATED_WALL_TIME {
             break;
         }
-        for again in capsule::travel(capsule, &way, stop)?.1 {
-            if again.wall_seconds < case.wall_seconds {
-                case = again;
+        for repeat in capsule::run_to_marks(capsule, &mark, stop)?.1 {
+            if repeat.wall_seconds < case.wall_seconds {
+                case = repeat;
             }
         }
     }
     Ok(case)
 }
 
-/// Whether a signal ends the bench.
+/// An error if a signal ends the bench.
 fn interrupted(stop: &Stop) -> Result<()> {
     stop.requested()
         .map_or(Ok(()), |signal| Err(Error::Interrupted { signal, next: INTERRUPTED.to_owned() }))
@@ -308,7 +308,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_rise_and_the_whole_cases_are_of_a_full_bench_only() {
+    fn marks_ascend_and_only_a_full_bench_has_the_whole_cases() {
         for effort in [Effort::Quick, Effort::Usual, Effort::Full] {
             for n in [1, 5, 8, 16, 17, 32] {
                 let marks = effort.marks(n);
@@ -337,7 +337,7 @@ mod tests {
             parts: vec![Part::Cases],
             subdivisions: vec![1],
             effort: Effort::Full,
-            path: InstructionSet::detect(),
+            instruction_set: InstructionSet::detect(),
         };
         let error = run(&plan, &stop, &mut |_| ()).expect_err("a signal came");
         assert!(matches!(error, Error::Interrupted { signal: 2, .. }), "{error}");

@@ -1,8 +1,8 @@
-//! What a step takes, stage by stage, from a state on.
+//! Wall time of a step, stage by stage, from a state.
 //!
-//! The same steps are taken again and again from one state, with the samples of its course on the
-//! way, once with a clock in every stage and once without: a stage is the least over the repeats, the
-//! whole the least without a clock. Whoever else uses the machine only adds.
+//! The same steps are repeated from one state, alternately with a clock in every stage and without.
+//! The time of a stage is its minimum over the repeats, the whole is the minimum without clocks: other
+//! processes can only add time.
 
 use std::time::Instant;
 
@@ -18,34 +18,34 @@ use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::stop::Stop;
 
-/// Steps between two looks of the audit: what is timed is a whole number of them.
+/// Steps in a block of the tunnelling monitor; a whole number of blocks is timed.
 const BLOCK: u64 = 50;
 
-/// Costs from one state on, ns per element and step.
+/// Costs from one state, ns per element and step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StageRow {
-    /// n.
+    /// Elements along each edge of the pattern, n.
     pub subdivisions: u32,
     /// Name of the state.
     pub state: &'static str,
     /// Its time, s.
     pub time: f64,
-    /// Elements.
+    /// Number of elements.
     pub elements: usize,
     /// Length of a step, s.
     pub step: f64,
     /// Each stage, in the order of [`Stage::ALL`], ns.
     pub stages: [f64; Stage::ALL.len()],
-    /// A sample and a frame every sample interval, shared among the steps between, ns.
+    /// One sample and one frame per sample interval, divided by the steps between, ns.
     pub output: f64,
-    /// A step without a clock in it, and the output, ns.
+    /// A step without clocks, and the output, ns.
     pub whole: f64,
-    /// Share of the wall time of those steps this thread was on a core: below 1 where somebody else was.
+    /// Fraction of the wall time of those steps in which this thread ran on a core.
     pub core_share: Option<f64>,
 }
 
 impl StageRow {
-    /// As a row.
+    /// As a row of the report.
     pub fn line(&self) -> Line {
         let rate = 1.0 / self.step;
         let mut line = vec![
@@ -66,10 +66,10 @@ impl StageRow {
     }
 }
 
-/// Times the stages from a state on.
+/// Times the stages from a state.
 ///
 /// # Errors
-/// A run that stops short; a signal.
+/// A failure of the run; a signal.
 pub fn measure(capsule: &Capsule, state: &State, effort: Effort, stop: &Stop) -> Result<StageRow> {
     let elements = state.run.elements();
     let (steps, repeats) = (steps(effort, elements), effort.repeats());
@@ -79,7 +79,7 @@ pub fn measure(capsule: &Capsule, state: &State, effort: Effort, stop: &Stop) ->
     for _ in 0..repeats {
         let mut film = state.run.film.clone();
         let (start, core) = (Instant::now(), machine::core_seconds());
-        take(&mut film, &capsule.course, steps, &mut Untimed)?;
+        take_steps(&mut film, &capsule.timeline, steps, &mut Untimed)?;
         let wall = start.elapsed().as_secs_f64();
         if share * wall < whole {
             whole = share * wall;
@@ -90,14 +90,14 @@ pub fn measure(capsule: &Capsule, state: &State, effort: Effort, stop: &Stop) ->
         interrupted(stop)?;
 
         let (mut film, mut clock) = (state.run.film.clone(), Clock::default());
-        take(&mut film, &capsule.course, steps, &mut clock)?;
+        take_steps(&mut film, &capsule.timeline, steps, &mut clock)?;
         clock.stop();
         for (least, stage) in least.iter_mut().zip(Stage::ALL) {
             *least = least.min(share * clock.seconds(stage));
         }
         interrupted(stop)?;
     }
-    let output = output(capsule, state, repeats) * step / capsule.course.sample_interval;
+    let output = output(capsule, state, repeats) * step / capsule.timeline.sample_interval;
     let output = 1e9 * output / elements as f64;
     Ok(StageRow {
         subdivisions: capsule.subdivisions,
@@ -112,7 +112,7 @@ pub fn measure(capsule: &Capsule, state: &State, effort: Effort, stop: &Stop) ->
     })
 }
 
-/// Steps to time: whole blocks of the audit, fewer of a large mesh.
+/// Number of steps to time: whole blocks of the monitor, fewer for a large mesh.
 fn steps(effort: Effort, elements: usize) -> u64 {
     let blocks = match effort {
         Effort::Quick => 2,
@@ -122,21 +122,21 @@ fn steps(effort: Effort, elements: usize) -> u64 {
     blocks * BLOCK
 }
 
-/// Takes so many steps along a course, landing where a run lands.
+/// Takes a number of steps along a timeline, with the same interval ends as a run.
 ///
 /// # Errors
-/// A run that stops short.
-pub fn take(
+/// A failure of the run.
+pub fn take_steps(
     film: &mut Explicit,
-    course: &Timeline,
+    timeline: &Timeline,
     mut steps: u64,
     stopwatch: &mut dyn Stopwatch,
 ) -> Result<()> {
-    let breaks = course.breakpoints();
+    let breakpoints = timeline.breakpoints();
     let mut time = film.state.time;
     loop {
-        let to = landing(course, &breaks, time);
-        let phase = course.phase(time, to);
+        let to = next_stop(timeline, &breakpoints, time);
+        let phase = timeline.phase(time, to);
         let arrived = film.advance_timed(to, &phase, &mut steps, stopwatch).map_err(|failure| {
             Error::JobsFailed(format!(
                 "{} at {} s: {}",
@@ -152,27 +152,28 @@ pub fn take(
     }
 }
 
-/// The first break or sample after a time, s.
-fn landing(course: &Timeline, breaks: &[f64], time: f64) -> f64 {
+/// The first breakpoint or sample after a time, s.
+fn next_stop(timeline: &Timeline, breakpoints: &[f64], time: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
-    let passed = libm::floor(time / course.sample_interval + 1e-6) as u64;
-    let sample = course.sample_time(passed + 1);
-    breaks.iter().copied().find(|at| *at > time).map_or(sample, |at| at.min(sample))
+    let passed = libm::floor(time / timeline.sample_interval + 1e-6) as u64;
+    let sample = timeline.sample_time(passed + 1);
+    let next = breakpoints.iter().copied().find(|breakpoint| *breakpoint > time);
+    next.map_or(sample, |breakpoint| breakpoint.min(sample))
 }
 
-/// Least time of a sample and a frame, s.
+/// Shortest time of a sample and a frame, s.
 fn output(capsule: &Capsule, state: &State, repeats: usize) -> f64 {
     let time = state.run.film.state.time;
-    let phase = capsule.course.phase(time, time + capsule.course.sample_interval);
-    let mut followed = Vec::new();
+    let phase = capsule.timeline.phase(time, time + capsule.timeline.sample_interval);
+    let mut tracked = Vec::new();
     let times = (0..repeats.max(3)).map(|_| {
         let start = Instant::now();
         let sample = state.run.sample(&phase);
-        followed.clear();
-        state.run.follow(&mut followed);
+        tracked.clear();
+        state.run.follow(&mut tracked);
         let frame = state.run.frame();
         let seconds = start.elapsed().as_secs_f64();
-        std::hint::black_box((sample, &followed, frame));
+        std::hint::black_box((sample, &tracked, frame));
         seconds
     });
     times.fold(f64::INFINITY, f64::min)

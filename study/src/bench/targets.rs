@@ -1,4 +1,4 @@
-//! What is asked of billow's speed, and whether it is met. What was not measured is not met.
+//! Speed goals of the project, and whether a report meets them. An unmeasured target is not met.
 
 use super::capsule::Case;
 use super::kernels::{KernelRow, REFERENCE, STEP};
@@ -11,17 +11,17 @@ pub struct Target {
     /// Its name.
     pub name: &'static str,
     /// What is measured, in words.
-    pub asks: &'static str,
+    pub meaning: &'static str,
     /// Its bound.
     pub bound: f64,
-    /// Whether more than the bound is asked, or at most the bound.
+    /// Whether the bound is a minimum; otherwise it is a maximum.
     pub at_least: bool,
-    /// What was measured.
+    /// Measured value.
     pub measured: Option<f64>,
 }
 
 impl Target {
-    /// Whether it is met; `None` where nothing was measured.
+    /// Whether it is met; `None` if it was not measured.
     pub fn met(&self) -> Option<bool> {
         let holds = |value: f64| {
             if self.at_least { value >= self.bound } else { value <= self.bound }
@@ -29,97 +29,107 @@ impl Target {
         self.measured.map(holds)
     }
 
-    /// As a row.
+    /// As a row of the report.
     pub fn line(&self) -> Line {
         let sign = if self.at_least { "at least" } else { "at most" };
         vec![
             ("target", Value::Text(self.name.to_owned())),
-            ("asked", Value::Text(sign.to_owned())),
+            ("required", Value::Text(sign.to_owned())),
             ("bound", Value::Number(self.bound)),
             ("measured", self.measured.map_or(Value::Null, Value::Number)),
             ("met", self.met().map_or(Value::Null, Value::Bool)),
-            ("of", Value::Text(self.asks.to_owned())),
+            ("meaning", Value::Text(self.meaning.to_owned())),
         ]
     }
 }
 
-/// A target bounded from above.
-fn at_most(name: &'static str, bound: f64, asks: &'static str, measured: Option<f64>) -> Target {
-    Target { name, asks, bound, at_least: false, measured }
+/// A target with a maximum.
+fn at_most(name: &'static str, bound: f64, meaning: &'static str, measured: Option<f64>) -> Target {
+    Target { name, meaning, bound, at_least: false, measured }
 }
 
-/// One bounded from below.
-fn at_least(name: &'static str, bound: f64, asks: &'static str, measured: Option<f64>) -> Target {
-    Target { name, asks, bound, at_least: true, measured }
+/// A target with a minimum.
+fn at_least(
+    name: &'static str,
+    bound: f64,
+    meaning: &'static str,
+    measured: Option<f64>,
+) -> Target {
+    Target { name, meaning, bound, at_least: true, measured }
 }
 
-/// Every target, with what a report measured of it.
+/// Every target with its measurement in a report.
 pub fn of(report: &Report) -> Vec<Target> {
     let step = kernel(report, 16, STEP);
     let reference = kernel(report, 16, REFERENCE);
     let over = step.zip(reference).map(|(step, reference)| reference.cost / step.cost);
-    let first_tenth = |n| case(report, n, 0.1).map(Case::nanoseconds);
+    let to_100_ms = |n| case(report, n, 0.1).map(Case::nanoseconds);
     let whole = case(report, 8, 1.5);
     vec![
         at_most(
-            "membrane_update_n16",
+            "step_without_contact_n16",
             8.0,
-            "ns per element and step of membrane, gas and update, n 16",
+            "ns per element and step without contact, n 16",
             step.map(|row| row.cost),
         ),
         at_least(
-            "membrane_over_reference_n16",
+            "speedup_over_reference_n16",
             2.5,
-            "the plain scalar reference over the same",
+            "time of the plain scalar reference over that of the step without contact, n 16",
             over,
         ),
         at_most(
-            "whole_first_tenth_n8",
+            "step_to_100_ms_n8",
             40.0,
-            "ns per element and step over the first 0.1 s, contact on, n 8",
-            first_tenth(8),
+            "ns per element and step to 0.1 s with contact, n 8",
+            to_100_ms(8),
         ),
-        at_most("whole_first_tenth_n16", 40.0, "the same, n 16", first_tenth(16)),
         at_most(
-            "whole_case_n8",
+            "step_to_100_ms_n16",
+            40.0,
+            "ns per element and step to 0.1 s with contact, n 16",
+            to_100_ms(16),
+        ),
+        at_most(
+            "step_to_1500_ms_n8",
             20.0,
-            "ns per element and step over the 1.5 s case, n 8",
+            "ns per element and step to 1.5 s with contact, n 8",
             whole.map(Case::nanoseconds),
         ),
         at_most(
-            "whole_case_n8_seconds",
+            "seconds_to_1500_ms_n8",
             20.0,
-            "wall seconds of the 1.5 s case on one core, n 8",
+            "wall time to 1.5 s on one core, n 8, s",
             whole.map(|case| case.wall_seconds),
         ),
         at_most(
-            "whole_case_n16_03",
+            "seconds_to_300_ms_n16",
             50.0,
-            "wall seconds of 0.3 s on one core, n 16",
+            "wall time to 0.3 s on one core, n 16, s",
             case(report, 16, 0.3).map(|case| case.wall_seconds),
         ),
         at_least(
             "jobs",
             1.5,
-            "jobs per hour of the 64-job study on two cores, over twice those of one job on one core",
+            "jobs per hour of the 64-job study on two cores, over twice those on one core",
             jobs(report),
         ),
         at_most(
-            "linear",
+            "mesh_scaling",
             1.5,
-            "largest over smallest cost per element and step from n 5 to n 32, over the first 5 ms",
-            linear(report),
+            "largest over smallest cost per element and step to 5 ms, n 5 to n 32",
+            mesh_scaling(report),
         ),
     ]
 }
 
-/// A kernel on the instruction set in use; of the reference its only one.
+/// A kernel with the instruction set in use; the reference has only one.
 fn kernel<'a>(report: &'a Report, subdivisions: u32, name: &str) -> Option<&'a KernelRow> {
-    let own = |row: &&KernelRow| {
-        let path = row.path == report.machine.path || name == REFERENCE;
-        row.subdivisions == subdivisions && row.kernel == name && path
+    let matches = |row: &&KernelRow| {
+        let in_use = row.instruction_set == report.machine.instruction_set || name == REFERENCE;
+        row.subdivisions == subdivisions && row.kernel == name && in_use
     };
-    report.kernels.iter().find(own)
+    report.kernels.iter().find(matches)
 }
 
 fn case(report: &Report, subdivisions: u32, end_time: f64) -> Option<&Case> {
@@ -128,8 +138,7 @@ fn case(report: &Report, subdivisions: u32, end_time: f64) -> Option<&Case> {
     report.cases.iter().find(same)
 }
 
-/// What two threads gain of the two they could, each with a job of its own; a quick bench's jobs are
-/// too short to tell.
+/// Speedup of two threads with one job each, over two. The jobs of a quick bench are too short.
 fn jobs(report: &Report) -> Option<f64> {
     let per_hour = |threads: u32| {
         let row = report.jobs.iter().find(|row| row.threads == threads)?;
@@ -138,9 +147,9 @@ fn jobs(report: &Report) -> Option<f64> {
     Some(per_hour(2)? / (2.0 * per_hour(1)?))
 }
 
-/// Largest over smallest cost on the same way of the film, where both ends were measured. The same
-/// number of steps would not do: of a coarse mesh they reach farther, where more is near.
-fn linear(report: &Report) -> Option<f64> {
+/// Largest over smallest cost to the same simulated time, if n 5 and n 32 were measured. The same
+/// number of steps is no basis: a coarse mesh gets farther with them and has more contacts.
+fn mesh_scaling(report: &Report) -> Option<f64> {
     let costs: Vec<f64> =
         (5..=32).filter_map(|n| case(report, n, EARLY)).map(Case::nanoseconds).collect();
     case(report, 5, EARLY).and(case(report, 32, EARLY))?;
@@ -169,20 +178,25 @@ mod tests {
     }
 
     fn named<'a>(targets: &'a [Target], name: &str) -> &'a Target {
-        targets.iter().find(|target| target.name == name).expect("a target of that name")
+        targets.iter().find(|target| target.name == name).expect("a target with that name")
     }
 
     #[test]
-    fn nothing_measured_is_nothing_met() {
+    fn an_unmeasured_target_is_not_met() {
         let report = Report::empty(Effort::Usual, InstructionSet::Scalar);
         assert!(of(&report).iter().all(|target| target.met().is_none()));
         assert!(!report.targets_met());
     }
 
     #[test]
-    fn bounds_hold_from_their_side() {
+    fn minima_and_maxima_bound_from_their_side() {
         let mut report = Report::empty(Effort::Usual, InstructionSet::Avx2);
-        let row = |kernel, path, cost| KernelRow { subdivisions: 16, kernel, path, cost };
+        let row = |kernel, instruction_set, cost| KernelRow {
+            subdivisions: 16,
+            kernel,
+            instruction_set,
+            cost,
+        };
         report.kernels = vec![
             row(STEP, InstructionSet::Scalar, 30.0),
             row(STEP, InstructionSet::Avx2, 8.0),
@@ -190,19 +204,19 @@ mod tests {
         ];
         report.cases = vec![early(5, 50.0), early(8, 40.0), early(32, 30.0)];
         let targets = of(&report);
-        assert_eq!(named(&targets, "membrane_update_n16").met(), Some(true));
-        let over = named(&targets, "membrane_over_reference_n16");
+        assert_eq!(named(&targets, "step_without_contact_n16").met(), Some(true));
+        let over = named(&targets, "speedup_over_reference_n16");
         assert_eq!((over.measured, over.met()), (Some(2.0), Some(false)));
-        assert_eq!(named(&targets, "linear").met(), Some(false));
+        assert_eq!(named(&targets, "mesh_scaling").met(), Some(false));
         report.cases[0].wall_seconds = 0.04;
-        assert_eq!(named(&of(&report), "linear").met(), Some(true));
+        assert_eq!(named(&of(&report), "mesh_scaling").met(), Some(true));
         report.cases.remove(0);
-        assert_eq!(named(&of(&report), "linear").met(), None, "n 5 was not measured");
+        assert_eq!(named(&of(&report), "mesh_scaling").met(), None, "n 5 was not measured");
         assert!(!report.targets_met());
     }
 
     #[test]
-    fn jobs_are_held_against_a_job_a_core() {
+    fn the_jobs_target_is_the_speedup_per_core() {
         let mut report = Report::empty(Effort::Usual, InstructionSet::Scalar);
         let row = |threads, wall_seconds| JobsRow {
             threads,

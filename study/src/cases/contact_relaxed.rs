@@ -1,36 +1,37 @@
-//! The folded capsule deployed and relaxed meets the erected one inflated statically.
+//! The folded capsule, deployed and relaxed, against the static equilibrium of the erected one.
 //!
 //! ```text
 //! stowed: m a = f_film + f_contact + p ∂V/∂x − c m v    until kinetic energy < 1e-6 p V
 //! erected, same caps, same supports: f_film + p ∂V/∂x = 0
 //! ```
 //!
-//! N-gon caps, bottom ring on its stowed N-gon. What is compared is V, the height of the top rim and
-//! the strain energy; the reference is the static state, so no number is stored.
+//! Caps are N-gons, the bottom ring is held on its stowed N-gon. Volume, height of the top rim and
+//! strain energy are compared. The reference is the static state, so no number is stored.
 
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};
 use billow_solver::models::film::{StaticState, capsule, static_states};
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper;
 use billow_solver::scene::timeline::Phase;
 
-use super::capsule_run::paper_capsule;
-use super::contact_rig::crossings;
+use super::contact_rig::intersection_count;
 use super::reference::{number, numbers};
 use super::rig::advance;
 use super::{Outcome, Rig, Row};
 
-/// Mass damping, 1/s: little against the deployment, enough to come to rest.
+/// Mass damping, 1/s. Chosen: small against the rates of the deployment, large enough to reach rest
+/// before [`LATEST`].
 const DAMPING: f64 = 30.0;
-/// Before this nothing is at rest, s: it starts at rest too.
+/// Earliest time at which low kinetic energy counts as rest, s: the film also starts at rest.
 const EARLIEST: f64 = 0.1;
-/// After this it will not come to rest, s.
+/// Time without rest at which the case fails, s.
 const LATEST: f64 = 5.0;
-/// Time between two looks, s.
-const LOOK: f64 = 0.01;
+/// Time between two checks, s.
+const CHECK_INTERVAL: f64 = 0.01;
 
-/// The stowed capsule under a fixed pressure (Pa), come to rest.
+/// The stowed capsule at rest under a fixed pressure (Pa).
 fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), String> {
     let stowed = Shape::Stowed(scene.design.stowed_height);
     let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)
@@ -43,16 +44,16 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), 
     film.solver.mass_damping = DAMPING;
     let mut film = rig.start(&film)?;
     let share = number("deployed_equals_inflated/kinetic_share");
-    // Twice in a row: a motion that turns back has no kinetic energy either.
-    let mut calm = 0;
-    while calm < 2 {
-        let target = film.state.time + LOOK;
+    // Twice in succession: a motion that reverses has no kinetic energy for a moment either.
+    let mut quiet_checks = 0;
+    while quiet_checks < 2 {
+        let target = film.state.time + CHECK_INTERVAL;
         if target > LATEST {
             return Err(format!("not at rest at {LATEST} s"));
         }
         advance(&mut film, target, &Phase::default())?;
         let settled = film.kinetic_energy().abs() < share * pressure * film.state.volume;
-        calm = if settled && target > EARLIEST { calm + 1 } else { 0 };
+        quiet_checks = if settled && target > EARLIEST { quiet_checks + 1 } else { 0 };
     }
     Ok((film, mesh))
 }
@@ -64,12 +65,12 @@ fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
     let rim = mesh.top_ring.iter().map(|node| film.state.positions.z[*node as usize]).sum::<f64>()
         / mesh.top_ring.len() as f64;
     let share = film.kinetic_energy() / (expected.overpressure * film.state.volume);
-    let passages = film.monitor.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
-    let word = format!("at rest after {:.2} s, {} steps", film.state.time, film.state.steps);
+    let passages = film.monitor.as_ref().map_or(f64::NAN, |monitor| monitor.passages as f64);
+    let note = format!("at rest after {:.2} s, {} steps", film.state.time, film.state.steps);
     let strain = film.strain_energy();
     vec![
         Row::new(&name("volume, m3"), film.state.volume, expected.volume, band("volume_band"))
-            .with_note(&word),
+            .with_note(&note),
         Row::new(&name("rim height, m"), rim, expected.z_rim, band("rim_height_band")),
         Row::new(
             &name("strain energy, J"),
@@ -79,12 +80,12 @@ fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
         ),
         Row::at_most(&name("kinetic energy over p V"), share, band("kinetic_share")),
         Row::at_most(&name("passages"), passages, 0.0),
-        Row::at_most(&name("intersections"), crossings(film) as f64, 0.0),
+        Row::at_most(&name("intersections"), intersection_count(film) as f64, 0.0),
     ]
 }
 
-fn meet(rig: &Rig, subdivisions: u32) -> Outcome {
-    let scene = paper_capsule(subdivisions, 1.0);
+fn judge(rig: &Rig, subdivisions: u32) -> Outcome {
+    let scene = paper::capsule(subdivisions, 1.0);
     let pressures = numbers("deployed_equals_inflated/pressures");
     let inflated = static_states(rig.instruction_set, &scene, &pressures)
         .map_err(|error| error.to_string())?;
@@ -98,10 +99,10 @@ fn meet(rig: &Rig, subdivisions: u32) -> Outcome {
 
 /// On a coarse mesh.
 pub fn deployed_equals_inflated(rig: &Rig) -> Outcome {
-    meet(rig, 5)
+    judge(rig, 5)
 }
 
-/// On a finer one.
+/// On a finer mesh.
 pub fn deployed_equals_inflated_fine(rig: &Rig) -> Outcome {
-    meet(rig, 8)
+    judge(rig, 8)
 }

@@ -1,12 +1,11 @@
-//! What the contact cases share: pieces of film as one, plates, and runs whose passages are counted.
+//! What the contact cases share: monitored contact, plates, and runs that count passages.
 //!
 //! ```text
-//! not returned = |energy that went into contact − energy it stores now + energy impulses took|
-//!                / largest kinetic energy
+//! unrecovered = |work into contact − energy stored in contact + energy change by impulses|
+//!               / largest kinetic energy
 //! ```
 
 use billow_solver::collision::contact::intersections::intersections;
-use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::output::ledger::{Ledger, residuals};
 use billow_solver::scene::film_scene::FilmContact;
@@ -21,8 +20,8 @@ use super::reference::number;
 use super::rig::advance;
 use super::row::worse;
 
-/// Contact at this distance (m), the audit looking at every step.
-pub fn watched(distance: f64) -> FilmContact {
+/// Contact at this distance (m), with the tunnelling monitor at every step.
+pub fn monitored_contact(distance: f64) -> FilmContact {
     FilmContact {
         distance: Some(distance),
         monitor: MonitorSettings::EVERY_STEP,
@@ -30,35 +29,14 @@ pub fn watched(distance: f64) -> FilmContact {
     }
 }
 
-/// Several pieces of film as one, without closing faces.
-///
-/// # Panics
-/// Beyond 2^32 nodes.
-pub fn together(pieces: &[Shell]) -> Shell {
-    let mut whole = Shell::default();
-    for piece in pieces {
-        let first = u32::try_from(whole.positions.len()).expect("under 2^32 nodes");
-        whole.positions.extend(&piece.positions);
-        whole.triangles.extend(piece.triangles.iter().map(|t| t.map(|node| node + first)));
-        whole.reference.extend(&piece.reference);
-    }
-    whole
-}
-
-/// A piece elsewhere, its reference as it was.
-pub fn moved(mut piece: Shell, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Shell {
-    piece.positions.iter_mut().for_each(|place| *place = map(*place));
-    piece
-}
-
-/// A plate through this point (m), its normal towards the film, that stands or moves by `way` (m)
-/// until `to` (s), from rest to rest.
+/// A plate through this point (m), its normal towards the film. It is fixed, or moves by a
+/// displacement (m) until a time (s), from rest to rest.
 pub fn plate(
     point: Vector3<f64>,
     normal: Vector3<f64>,
     motion: Option<(Vector3<f64>, f64)>,
 ) -> Plate {
-    let moves = |(translation, to): (Vector3<f64>, f64)| Motion {
+    let motion_of = |(translation, to): (Vector3<f64>, f64)| Motion {
         from: 0.0,
         to,
         profile: Profile::Smooth,
@@ -66,64 +44,68 @@ pub fn plate(
         rotation: None,
     };
     let name = "plate".to_owned();
-    Plate { name, point, normal, motion: motion.map(moves), removal_time: f64::INFINITY }
+    Plate { name, point, normal, motion: motion.map(motion_of), removal_time: f64::INFINITY }
 }
 
-/// What was seen of a run.
+/// What was recorded of a run.
 #[derive(Debug, Clone)]
-pub struct Seen {
-    /// Intersections at the worst sample.
+pub struct RunRecord {
+    /// Most intersections at a sample.
     intersections: usize,
-    /// Pairs of film pressed together, at the sample with most.
+    /// Most pairs with contact force at a sample.
     pairs: usize,
-    /// The film's ledger at every sample.
+    /// Energy ledger at every sample.
     ledgers: Vec<Ledger>,
 }
 
-/// Advances film to `end` (s), looking at it so many times on the way.
+/// Advances film to `end` (s) and records it at this number of samples.
 ///
 /// # Errors
-/// What stopped it; a passage does.
-pub fn follow(film: &mut Explicit, end: f64, samples: u32, phase: &Phase) -> Result<Seen, String> {
-    let mut seen = Seen { intersections: 0, pairs: 0, ledgers: vec![film.ledger()] };
+/// A failure; a passage is one.
+pub fn run_recorded(
+    film: &mut Explicit,
+    end: f64,
+    samples: u32,
+    phase: &Phase,
+) -> Result<RunRecord, String> {
+    let mut record = RunRecord { intersections: 0, pairs: 0, ledgers: vec![film.ledger()] };
     for sample in 1..=samples {
         advance(film, end * f64::from(sample) / f64::from(samples), phase)?;
-        seen.intersections = seen.intersections.max(crossings(film));
+        record.intersections = record.intersections.max(intersection_count(film));
         let contacts = &film.state.contact_state.contacts;
-        let pressed = contacts.iter().filter(|contact| contact.energy > 0.0).count();
-        seen.pairs = seen.pairs.max(pressed);
-        seen.ledgers.push(film.ledger());
+        let pairs = contacts.iter().filter(|contact| contact.energy > 0.0).count();
+        record.pairs = record.pairs.max(pairs);
+        record.ledgers.push(film.ledger());
     }
-    Ok(seen)
+    Ok(record)
 }
 
-/// Intersections of the whole film now.
-pub fn crossings(film: &Explicit) -> usize {
-    let law = film.parameters.contact.as_ref();
-    law.map_or(0, |law| intersections(&law.mesh, &film.state.positions).len())
+/// Number of intersections of the whole film in its present state.
+pub fn intersection_count(film: &Explicit) -> usize {
+    let model = film.parameters.contact.as_ref();
+    model.map_or(0, |model| intersections(&model.mesh, &film.state.positions).len())
 }
 
-/// Energy that went into contact and neither is stored nor was taken by impulses, J.
-pub fn not_returned(film: &Explicit) -> f64 {
+/// Work into contact that is neither stored in contact nor accounted for by impulses, J.
+pub fn unrecovered_contact_energy(film: &Explicit) -> f64 {
     let meeting = &film.state.contact_state;
     let pairs: f64 = meeting.contacts.iter().map(|contact| contact.energy).sum();
     let plates: f64 = meeting.plates.iter().map(|plate| plate.energy).sum();
     (film.ledger().contact - pairs - plates + meeting.collision_dissipation).abs()
 }
 
-impl Seen {
+impl RunRecord {
     /// Largest kinetic energy, J.
     pub fn peak_kinetic(&self) -> f64 {
         self.ledgers.iter().map(|ledger| ledger.kinetic).fold(0.0, worse)
     }
 
-    /// Passages at any step, and intersections.
+    /// Rows of passages and intersections.
     pub fn counts(&self, film: &Explicit, run: &str) -> Vec<Row> {
-        let passages = film.monitor.as_ref().map_or(f64::NAN, |watch| watch.passages as f64);
+        let passages = film.monitor.as_ref().map_or(f64::NAN, |monitor| monitor.passages as f64);
         vec![
             Row::at_most(&format!("{run}passages"), passages, 0.0).with_note(&format!(
-                "{} steps looked at, {} pairs pressed at most, {} approaches taken out; film residual \
-                 {:.1e}",
+                "{} steps monitored, at most {} pairs in contact, {} collision impulses; ledger residual {:.1e}",
                 film.state.steps,
                 self.pairs,
                 film.state.contact_state.collision_impulses,
@@ -138,18 +120,22 @@ impl Seen {
         residuals(&self.ledgers).into_iter().fold(0.0, worse)
     }
 
-    /// The same and the ledger.
+    /// Rows of passages, intersections and ledger residual.
     pub fn rows(&self, film: &Explicit, run: &str, ledger_band: f64) -> Vec<Row> {
         let mut rows = self.counts(film, run);
-        rows.push(Row::at_most(&format!("{run}film residual"), self.residual(), ledger_band));
+        rows.push(Row::at_most(
+            &format!("{run}film energy residual"),
+            self.residual(),
+            ledger_band,
+        ));
         rows
     }
 
-    /// What contact did not return, over the largest kinetic energy.
-    pub fn returned(&self, film: &Explicit, run: &str) -> Row {
-        let share = not_returned(film) / self.peak_kinetic();
+    /// Row of the unrecovered contact energy over the largest kinetic energy.
+    pub fn unrecovered(&self, film: &Explicit, run: &str) -> Row {
+        let share = unrecovered_contact_energy(film) / self.peak_kinetic();
         Row::at_most(
-            &format!("{run}contact energy not returned"),
+            &format!("{run}unrecovered contact energy"),
             share,
             number("contact/not_returned_band"),
         )

@@ -1,33 +1,35 @@
-//! Sheets of film pressed flat.
+//! Flat sheets of film pressed together.
 //!
 //! ```text
 //! force of sheet k on sheet k + 1 = p A         the same in every layer, at any contact distance
 //! ```
 //!
-//! The lowest sheet lies on a plate, the highest is a rigid plane under the force p A; the meshes are
+//! The lowest sheet lies on a plate. The highest is a rigid plane under the force p A. Each mesh is
 //! shifted, so that nodes do not lie on nodes.
 
 use billow_solver::collision::contact::{ContactModel, ContactState};
+use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, moved, plate, together, watched};
+use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::{number, numbers};
-use super::rig::{film, held, scene};
-use super::shapes_dynamic::sheet;
+use super::rig::held;
 use super::{Outcome, Rig, Row};
 
 const LAYERS: u32 = 4;
 /// Side of a sheet, m.
 const SIDE: f64 = 0.3;
-/// Time to come to rest, s.
+/// Time after which the stack is at rest, s.
 const REST: f64 = 0.02;
 
-/// A stack at rest at this contact distance (m), every sheet a distance above the one below.
+/// A stack at this contact distance (m); neighbouring sheets are one distance apart.
 fn stack(distance: f64, pressure: f64) -> FilmScene {
     let layer = |k: u32| -> Shell {
         let k = f64::from(k);
@@ -35,7 +37,7 @@ fn stack(distance: f64, pressure: f64) -> FilmScene {
         moved(sheet(5, 5, SIDE, SIDE), |x| x + shift)
     };
     let sheets: Vec<Shell> = (0..LAYERS).map(layer).collect();
-    let shell = together(&sheets);
+    let shell = joined(&sheets);
     let (each, all) = (nodes_of(&shell) / LAYERS, nodes_of(&shell));
     let press = PlaneBody {
         normal: Vector3::z(),
@@ -52,8 +54,8 @@ fn stack(distance: f64, pressure: f64) -> FilmScene {
     let floor = plate(Vector3::zeros(), Vector3::z(), None);
     let mut scene = FilmScene {
         supports: vec![held((0..all).collect(), "xy"), top],
-        contact: Some(FilmContact { plates: vec![floor], ..watched(distance) }),
-        ..scene(shell, film())
+        contact: Some(FilmContact { plates: vec![floor], ..monitored_contact(distance) }),
+        ..free_film(shell, Film::PAPER_ELASTIC)
     };
     scene.solver.mass_damping = 3000.0;
     scene
@@ -63,21 +65,21 @@ fn nodes_of(shell: &Shell) -> u32 {
     u32::try_from(shell.positions.len()).expect("under 2^32 nodes")
 }
 
-/// Mean and largest interlayer pressure between sheet `k` and the next, Pa.
-fn between(film: &Explicit, law: &ContactModel, k: u32) -> [f64; 2] {
+/// Mean and largest interlayer pressure between sheet `k` and the next one, Pa.
+fn between(film: &Explicit, model: &ContactModel, k: u32) -> [f64; 2] {
     let each = film.model.mass.len() / LAYERS as usize;
     let layer = |node: u32| node as usize / each;
-    let mut meeting = ContactState::default();
-    let own = film.state.contact_state.contacts.iter().filter(|contact| {
-        let layers = contact.pair.nodes(&law.mesh.topology).map(layer);
+    let mut state = ContactState::default();
+    let contacts = film.state.contact_state.contacts.iter().filter(|contact| {
+        let layers = contact.pair.nodes(&model.mesh.topology).map(layer);
         let (low, high) = (layers.iter().min(), layers.iter().max());
         low == Some(&(k as usize)) && high == Some(&(k as usize + 1))
     });
-    meeting.contacts = own.copied().collect();
-    let areas: Vec<f64> = film.model.mass.iter().map(|mass| mass / law.area_density).collect();
-    let pressed = law.interlayer_pressure(&film.state.positions, &areas, &meeting);
+    state.contacts = contacts.copied().collect();
+    let areas: Vec<f64> = film.model.mass.iter().map(|mass| mass / model.area_density).collect();
+    let pressed = model.interlayer_pressure(&film.state.positions, &areas, &state);
     let whole: f64 = areas.iter().sum();
-    // Each of the two sheets bears the force once.
+    // Each of the two sheets carries the force once.
     let force = 0.5 * pressed.mean * pressed.area_fraction * whole;
     [force / (SIDE * SIDE), pressed.largest]
 }
@@ -88,20 +90,20 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for distance in numbers("stack/distances") {
         let mut film = rig.start(&stack(distance, pressure))?;
-        let seen = follow(&mut film, REST, 10, &Phase::default())?;
-        let law = film.parameters.contact.as_ref().ok_or("no contact")?;
+        let record = run_recorded(&mut film, REST, 10, &Phase::default())?;
+        let model = film.parameters.contact.as_ref().ok_or("no contact")?;
         for k in 0..LAYERS - 1 {
-            let [mean, largest] = between(&film, law, k);
+            let [mean, largest] = between(&film, model, k);
             let quantity = format!(
                 "distance {} mm, sheets {} and {}: interlayer pressure, Pa",
                 1e3 * distance,
                 k + 1,
                 k + 2
             );
-            let word = format!("largest at a node {largest:.0} Pa");
-            judged.push(Row::new(&quantity, mean, pressure, band).with_note(&word));
+            let note = format!("largest at a node {largest:.0} Pa");
+            judged.push(Row::new(&quantity, mean, pressure, band).with_note(&note));
         }
-        judged.extend(seen.rows(
+        judged.extend(record.rows(
             &film,
             &format!("distance {} mm, ", 1e3 * distance),
             number("contact/ledger_band"),

@@ -4,30 +4,34 @@
 //! b = π (R − g/2)        A = b g + π g²/4        force per length = p b,  p = p0 (A0/A)^γ
 //! ```
 //!
-//! Symbols: R radius of the tube, g gap between the films where they lie flat, b width of the contact,
-//! A area of the section, A0 at the start; m. A slice between two symmetry planes, its volume closed by
-//! end fans; its pressure is so low that the film does not stretch.
+//! Symbols: R radius of the tube, g gap between the flat films, b width of the contact, A area of the
+//! section, A0 at the start; m and m². The mesh is a slice between two symmetry planes; end fans close
+//! its volume. The pressure is so low that the film hardly stretches.
 
+use billow_solver::geometry::shapes::tube;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, plate, watched};
+use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::{number, rows};
-use super::rig::{film, held, nitrogen, scene};
-use super::shapes_dynamic::tube;
+use super::rig::held;
 use super::{Outcome, Rig, Row};
 
+/// Elements around the tube.
 const AROUND: u32 = 64;
 /// Pressure at the start, Pa.
 const PRESSURE: f64 = 200.0;
+/// Temperature of the gas, K.
 const TEMPERATURE: f64 = 293.0;
 /// Contact distance, m.
 const DISTANCE: f64 = 5e-4;
-/// When the plates stand, and when the tube has come to rest, s.
+/// Time at which the plates stop, s.
 const CLOSED: f64 = 0.03;
+/// Time at which the tube is at rest, s.
 const REST: f64 = 0.08;
 
 /// Width of the slice, m: that of one element.
@@ -40,10 +44,10 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     let mut shell: Shell = tube(AROUND, 1, radius, width(radius));
     let tips = shell.close();
     let volume = shell.volume(|node| shell.positions[node as usize]);
-    let nitrogen = nitrogen();
+    let nitrogen = nitrogen_supply();
     let initial_mass = PRESSURE * volume / (nitrogen.species.gas_constant * TEMPERATURE);
     let supply = GasSupply { initial_mass, ..nitrogen };
-    // The plates start just off the tube, and end a contact distance off the film.
+    // The plates start one contact distance off the tube and end one off the film.
     let (start, end) = (radius + DISTANCE, 0.5 * gap + DISTANCE);
     let half = |sign: f64| {
         let up = Vector3::y() * sign;
@@ -52,14 +56,17 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
     let mut scene = FilmScene {
         filling: Filling::Gas { supply, initial_temperature: TEMPERATURE },
         supports: vec![held((0..2 * AROUND).collect(), "z"), held(tips, "xyz")],
-        contact: Some(FilmContact { plates: vec![half(1.0), half(-1.0)], ..watched(DISTANCE) }),
-        ..scene(shell, Film { viscosity: 0.1, ..film() })
+        contact: Some(FilmContact {
+            plates: vec![half(1.0), half(-1.0)],
+            ..monitored_contact(DISTANCE)
+        }),
+        ..free_film(shell, Film { viscosity: 0.1, ..Film::PAPER_ELASTIC })
     };
     scene.solver.mass_damping = 300.0;
     scene
 }
 
-/// Force and area at both gaps.
+/// Force and area of the section at both gaps.
 pub fn tube_between_plates(rig: &Rig) -> Outcome {
     let radius = number("tube_between_plates/radius");
     let [force_band, area_band] =
@@ -69,26 +76,26 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
         let (gap, area, force) = (row[0], row[2], row[3]);
         let mut film = rig.start(&slice(radius, gap))?;
         let start = film.state.volume;
-        let seen = follow(&mut film, REST, 8, &Phase::default())?;
+        let record = run_recorded(&mut film, REST, 8, &Phase::default())?;
         let nodes = 2 * AROUND as usize;
         let top = film.state.positions.y.iter().take(nodes).copied().fold(0.0, f64::max);
-        let pushed: f64 =
+        let force_on_plates: f64 =
             film.state.contact_state.plates.iter().map(|plate| 0.5 * plate.force).sum();
         let run = format!("g {gap} m: ");
-        let word =
+        let note =
             format!("g is {:.6} m; kinetic energy {:.1e} J", 2.0 * top, film.kinetic_energy());
         judged.push(
             Row::new(
                 &format!("{run}force per length over p0, N/m/Pa"),
-                pushed / width(radius) / PRESSURE,
+                force_on_plates / width(radius) / PRESSURE,
                 force,
                 force_band,
             )
-            .with_note(&word),
+            .with_note(&note),
         );
         let share = film.state.volume / start;
         judged.push(Row::new(&format!("{run}A/A0"), share, area, area_band));
-        judged.extend(seen.rows(&film, &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&film, &run, number("contact/ledger_band")));
     }
     Ok(judged)
 }

@@ -1,4 +1,4 @@
-//! Discs that vibrate out of their plane: stretched by the rim, and by their own spin.
+//! Discs that vibrate out of their plane: under tension from the rim, and under their own spin.
 //!
 //! ```text
 //! stretched:  f = j/(2π a) √(S t/(ρ t)),  j a zero of J_m               w = J_m(j r/a) cos mθ
@@ -6,35 +6,37 @@
 //!             (2,0): w = r² cos 2θ      (0,1): w = 1 − 2 (r/a)²
 //! ```
 //!
-//! The frequency is that of the projection Σ m w φ on the mode, so that what the mesh mixes in
-//! counts by its square.
+//! The signal is the projection Σ m w φ on the mode φ: an admixture of other modes by the mesh has an
+//! effect of second order only.
 
 use core::f64::consts::TAU;
 
+use billow_solver::geometry::shapes::{disc, disc_rim};
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::oscillation::frequency;
 use super::reference::{number, rows};
-use super::rig::{film, held, scene};
+use super::rig::held;
 use super::row::{order, richardson};
-use super::shapes_dynamic::{disc, rim};
 use super::{Outcome, Rig, Row};
 
-/// Share of the stable step: a drum's periods are thousands of steps, whose own error is 1e-8.
+/// CFL number. Chosen: a period takes thousands of steps, so the error of the step is about 1e-8.
 const CFL: f64 = 0.9;
 
-/// Frequency of a scene's disc, let go in this shape of amplitude (m), over so many crossings.
-fn ring(
+/// Frequency of a disc released in a shape with this amplitude (m), sampled at an interval (s), over a
+/// number of zero crossings.
+fn ringing_frequency(
     rig: &Rig,
     mut scene: FilmScene,
     shape: &[f64],
     amplitude: f64,
     (interval, crossings): (f64, usize),
 ) -> Result<f64, String> {
-    for (place, shape) in scene.shell.positions.iter_mut().zip(shape) {
-        place.z = amplitude * shape;
+    for (position, shape) in scene.shell.positions.iter_mut().zip(shape) {
+        position.z = amplitude * shape;
     }
     scene.solver.cfl = CFL;
     let mut film = rig.start(&scene)?;
@@ -44,13 +46,13 @@ fn ring(
     })
 }
 
-/// The drum: a disc whose film is stretched alike both ways, its rim held.
+/// The drum: a disc under equal biaxial tension with its rim held.
 pub fn stretched_disc(rig: &Rig) -> Outcome {
     let [radius, tension, share, raw, band, least] =
         ["radius", "tension", "amplitude", "raw_band", "band", "order"]
             .map(|key| number(&format!("stretched_disc/{key}")));
-    let film = film();
-    // S = E/(1−ν) e on a strain alike both ways.
+    let film = Film::PAPER_ELASTIC;
+    // S = E/(1−ν) e for an equal biaxial strain e.
     let stress = tension / film.thickness;
     let strain = stress * (1.0 - film.poisson_ratio) / film.youngs_modulus;
     let stretch = (1.0 + 2.0 * strain).sqrt();
@@ -63,20 +65,20 @@ pub fn stretched_disc(rig: &Rig) -> Outcome {
                 .positions
                 .iter()
                 .map(|x| {
-                    let at = zero * x.norm() / radius;
+                    let argument = zero * x.norm() / radius;
                     if diameters == 0.0 {
-                        libm::j0(at)
+                        libm::j0(argument)
                     } else {
-                        libm::j1(at) * libm::cos(libm::atan2(x.y, x.x))
+                        libm::j1(argument) * libm::cos(libm::atan2(x.y, x.x))
                     }
                 })
                 .collect();
-            for place in &mut shell.positions {
-                *place *= stretch;
+            for position in &mut shell.positions {
+                *position *= stretch;
             }
-            let supports = vec![held(rim(rings), "xyz")];
-            let scene = FilmScene { supports, ..scene(shell, film) };
-            ring(rig, scene, &shape, share * radius, (1.0 / (400.0 * expected), 3))
+            let supports = vec![held(disc_rim(rings), "xyz")];
+            let scene = FilmScene { supports, ..free_film(shell, film) };
+            ringing_frequency(rig, scene, &shape, share * radius, (1.0 / (400.0 * expected), 3))
         };
         let values = [run(8)?, run(16)?, run(32)?];
         let errors = values.map(|value| value / expected - 1.0);
@@ -93,8 +95,8 @@ pub fn stretched_disc(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// Strains of a free disc spinning at this rate (1/s) bring each point out by this much, m.
-fn spun_out(film: &Film, radius: f64, rate: f64, r: f64) -> f64 {
+/// Radial displacement, m, of a free disc that spins at this rate (1/s), at the radius r (m).
+fn centrifugal_displacement(film: &Film, radius: f64, rate: f64, r: f64) -> f64 {
     let nu = film.poisson_ratio;
     let scale = film.density * rate * rate * (1.0 - nu * nu) / (8.0 * film.youngs_modulus);
     scale * r * ((3.0 + nu) / (1.0 + nu) * radius * radius - r * r)
@@ -104,7 +106,7 @@ fn spun_out(film: &Film, radius: f64, rate: f64, r: f64) -> f64 {
 pub fn spinning_disc(rig: &Rig) -> Outcome {
     let [radius, rate, share, band] =
         ["radius", "rate", "amplitude", "band"].map(|key| number(&format!("spinning_disc/{key}")));
-    let film = film();
+    let film = Film::PAPER_ELASTIC;
     let mut judged = Vec::new();
     for row in rows("spinning_disc") {
         let (diameters, expected) = (row[0], row[2]);
@@ -121,17 +123,17 @@ pub fn spinning_disc(rig: &Rig) -> Outcome {
                     }
                 })
                 .collect();
-            for place in &mut shell.positions {
-                let r = place.norm();
+            for position in &mut shell.positions {
+                let r = position.norm();
                 if r > 0.0 {
-                    *place *= 1.0 + spun_out(&film, radius, rate, r) / r;
+                    *position *= 1.0 + centrifugal_displacement(&film, radius, rate, r) / r;
                 }
             }
             let spin = Vector3::new(0.0, 0.0, rate);
             let velocities = shell.positions.iter().map(|x| spin.cross(x)).collect();
-            let scene = FilmScene { velocities, ..scene(shell, film) };
+            let scene = FilmScene { velocities, ..free_film(shell, film) };
             let period = TAU / (expected * rate);
-            let found = ring(rig, scene, &shape, share * radius, (period / 400.0, 3))?;
+            let found = ringing_frequency(rig, scene, &shape, share * radius, (period / 400.0, 3))?;
             Ok(found * TAU / rate)
         };
         let values = [run(4)?, run(8)?, run(16)?];

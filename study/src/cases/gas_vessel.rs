@@ -1,4 +1,4 @@
-//! Gas in a rigid vessel, through the explicit step: filling, blow-down, cooling.
+//! Gas in a rigid vessel, with the explicit step: filling, blow-down, cooling.
 //!
 //! ```text
 //! filling from vacuum at T0:   m T = m0 T0 + (m − m0) γ T_in
@@ -8,44 +8,46 @@
 //! ```
 
 use billow_solver::integrators::explicit::Explicit;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer};
 
+use super::gas_column::{column, rigid_vessel};
 use super::reference::{number, rows};
-use super::rig::{advance, film, inflow, nitrogen, scene, temperature};
-use super::shapes_dynamic::column;
+use super::rig::{advance, inflow, temperature};
 use super::{Outcome, Rig, Row};
 
 /// A vessel of 0.5 m² and this height (m), every node held, with gas of this mass (kg) and
 /// temperature (K).
 fn vessel(height: f64, supply: GasSupply, mass: f64, temperature: f64) -> FilmScene {
     let column = column(0.5, height);
-    let supports = column.rigid();
+    let supports = rigid_vessel();
     let supply = GasSupply { initial_mass: mass, ..supply };
     let filling = Filling::Gas { supply, initial_temperature: temperature };
-    FilmScene { filling, supports, ..scene(column.shell, film()) }
+    FilmScene { filling, supports, ..free_film(column.shell, Film::PAPER_ELASTIC) }
 }
 
-/// γ of the cases' nitrogen.
+/// γ of nitrogen.
 fn gamma() -> f64 {
     let (cp, gas_constant) = (number("nitrogen/cp"), number("nitrogen/gas_constant"));
     cp / (cp - gas_constant)
 }
 
-/// Mass balance in a share of the mass held.
+/// Relative error of the gas mass.
 fn mass_defect(film: &Explicit, expected: f64) -> f64 {
     (film.state.gas.mass / expected - 1.0).abs()
 }
 
-/// Filling from vacuum, on top of gas that is in already.
+/// Filling of a vessel that contains gas, and of an empty one.
 pub fn tank_filling(rig: &Rig) -> Outcome {
     let rate = 5e-3;
     let [initial, start, entering, band] =
         ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
             .map(|key| number(&format!("tank_filling/{key}")));
     let phase = inflow(rate, entering);
-    let mut tank = rig.start(&vessel(0.6, nitrogen(), initial, start))?;
+    let mut tank = rig.start(&vessel(0.6, nitrogen_supply(), initial, start))?;
     let mut judged = Vec::new();
     for row in rows("tank_filling") {
         advance(&mut tank, (row[0] - initial) / rate, &phase)?;
@@ -53,16 +55,16 @@ pub fn tank_filling(rig: &Rig) -> Outcome {
         judged.push(Row::new(&quantity, temperature(&tank), row[1], band));
     }
     judged.push(Row::at_most("mass defect", mass_defect(&tank, 0.01), 1e-12));
-    let mut empty = rig.start(&vessel(0.6, nitrogen(), 0.0, start))?;
+    let mut empty = rig.start(&vessel(0.6, nitrogen_supply(), 0.0, start))?;
     for until in [1e-3, 1.0] {
         advance(&mut empty, until, &phase)?;
-        let quantity = format!("T {until} s after vacuum, K");
+        let quantity = format!("T {until} s after the start from vacuum, K");
         judged.push(Row::new(&quantity, temperature(&empty), gamma() * entering, band));
     }
     Ok(judged)
 }
 
-/// τ of a choked orifice on this volume (m³) at this temperature (K), s.
+/// τ of a choked orifice for this volume (m³) at this temperature (K), s.
 pub fn emptying_time(supply: &GasSupply, volume: f64, temperature: f64) -> f64 {
     let gamma = gamma();
     let exponent = (gamma + 1.0) / (2.0 * (gamma - 1.0));
@@ -74,7 +76,7 @@ pub fn emptying_time(supply: &GasSupply, volume: f64, temperature: f64) -> f64 {
 /// Blow-down through a choked orifice into vacuum.
 pub fn blow_down(rig: &Rig) -> Outcome {
     let (area, height, mass, start) = (1e-3, 1.0, 0.6, 300.0);
-    let supply = GasSupply { leak_area: area, ..nitrogen() };
+    let supply = GasSupply { leak_area: area, ..nitrogen_supply() };
     let (gamma, band) = (gamma(), number("blow_down/band"));
     let tau = emptying_time(&supply, 0.5 * height, start);
     let mut tank = rig.start(&vessel(height, supply, mass, start))?;
@@ -82,8 +84,8 @@ pub fn blow_down(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for share in [0.1, 0.5, 1.0, 3.0] {
         advance(&mut tank, share * tau, &Phase::default())?;
-        let slower = 1.0 + 0.5 * (gamma - 1.0) * share;
-        let cooled = 1.0 / (slower * slower);
+        let root = 1.0 + 0.5 * (gamma - 1.0) * share;
+        let cooled = 1.0 / (root * root);
         let pressure = libm::pow(cooled, gamma / (gamma - 1.0));
         let [of_temperature, of_pressure] = ["T/T0", "p/p0"].map(|q| format!("{q} at {share} tau"));
         judged.push(Row::new(&of_temperature, temperature(&tank) / start, cooled, band));
@@ -92,23 +94,24 @@ pub fn blow_down(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// A rigid tank takes on the temperature of its film.
+/// The gas in a rigid tank approaches the temperature of its film.
 pub fn cooling(rig: &Rig) -> Outcome {
     let (coefficient, mass, start) = (5.0, 0.02, 450.0);
-    let supply = GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen() };
+    let supply =
+        GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen_supply() };
     let scene = vessel(1.0, supply, mass, start);
     let capacity = mass * (number("nitrogen/cp") - number("nitrogen/gas_constant"));
     let rate = coefficient * scene.shell.reference_area() / capacity;
     let (around, band) = (scene.film.temperature, number("cooling/band"));
     let mut tank = rig.start(&scene)?;
     let mut judged = Vec::new();
-    for turns in [0.3, 1.0, 4.0] {
-        advance(&mut tank, turns / rate, &Phase::default())?;
+    for elapsed in [0.3, 1.0, 4.0] {
+        advance(&mut tank, elapsed / rate, &Phase::default())?;
         let share = (temperature(&tank) - around) / (start - around);
-        let quantity = format!("(T - T_film)/(T0 - T_film) at {turns} time constants");
-        judged.push(Row::new(&quantity, share, libm::exp(-turns), band));
+        let quantity = format!("(T - T_film)/(T0 - T_film) at {elapsed} time constants");
+        judged.push(Row::new(&quantity, share, libm::exp(-elapsed), band));
     }
-    let given = capacity * (start - around) * (libm::exp(-4.0) - 1.0);
-    judged.push(Row::new("heat given by the film, J", tank.state.gas_balance.heat, given, band));
+    let heat = capacity * (start - around) * (libm::exp(-4.0) - 1.0);
+    judged.push(Row::new("heat from the film, J", tank.state.gas_balance.heat, heat, band));
     Ok(judged)
 }

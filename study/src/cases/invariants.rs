@@ -1,29 +1,30 @@
-//! What film must keep: a uniform strain, rigid motion, momentum; and a panel in pure shear.
+//! Invariants of film: uniform strain, rigid motion, momentum; and a panel in simple shear.
 //!
 //! ```text
-//! patch:     F uniform  →  no force inside
-//! rotation:  x = R X + t  →  no strain, force or power
-//! momentum:  Σ m v and Σ m x × v of free film, in shares of Σ |m v|
+//! patch:     F uniform  →  zero force on inner nodes
+//! rotation:  x = R X + t  →  zero strain, force and power
+//! momentum:  Σ m v and Σ m x × v of free film, relative to Σ |m v|
 //! shear:     F = 1 + γ e1⊗e2  →  P12 = −Σ f·e1 X·e2/V
 //! ```
 
 use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::mechanics::forces::membrane::{
     NodeForces, assemble_membrane, strain, viscous_forces,
 };
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
-use super::rig::{advance, film, nitrogen, scene};
+use super::rig::advance;
 use super::row::worse;
-use super::shapes_dynamic::{icosphere, pattern, sheet};
 use super::{Outcome, Rig, Row};
 
-/// A sheet under a uniform strain has no force inside.
+/// A sheet under a uniform strain has zero force on its inner nodes.
 pub fn patch(rig: &Rig) -> Outcome {
     let (width, height, band) = (0.2, 0.15, number("patch/band"));
     let mut shell = sheet(5, 4, width, height);
@@ -36,7 +37,7 @@ pub fn patch(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         *x = Vector3::new(1.004 * x.x + 0.002 * x.y, 1.003 * x.y, 0.0);
     }
-    let film = rig.start(&scene(shell, film()))?;
+    let film = rig.start(&free_film(shell, Film::PAPER_ELASTIC))?;
     let scale = number("film/youngs_modulus") * number("film/thickness") * 0.04;
     let force = inside.iter().map(|node| film.forces.film(*node).norm()).fold(0.0, worse);
     let expected = 0.5 * (1.004 * 1.004 - 1.0);
@@ -44,12 +45,12 @@ pub fn patch(rig: &Rig) -> Outcome {
         .map(|element| (strain(&film.model, &film.state.positions, element).xx - expected).abs())
         .fold(0.0, worse);
     Ok(vec![
-        Row::at_most("force inside, of E t h", force / scale, band),
-        Row::at_most("strain off the uniform one", off, band),
+        Row::at_most("force on inner nodes over E t h", force / scale, band),
+        Row::at_most("strain minus the uniform strain", off, band),
     ])
 }
 
-/// A rigid motion strains nothing.
+/// Rigid motion causes no strain.
 pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let axis = Vector3::new(1.0, -2.0, 0.5);
     let turn = Rotation3::new(axis);
@@ -59,37 +60,39 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         *x = turn * *x + Vector3::new(3.0, -1.0, 2.0);
     }
-    let film = Film { compression: 1.0, viscosity: 0.1, ..film() };
+    let film = Film { compression: 1.0, viscosity: 0.1, ..Film::PAPER_ELASTIC };
     let scale = film.youngs_modulus * film.thickness * 0.1;
-    let film = rig.start(&FilmScene { velocities: velocities.clone(), ..scene(shell, film) })?;
+    let film =
+        rig.start(&FilmScene { velocities: velocities.clone(), ..free_film(shell, film) })?;
     let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
-    let drag = viscous_forces(&film.model, &film.state.positions, &film.state.viscous_history);
-    let power: f64 = drag.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
-    // On the way, by steps of any size: a turn of the whole in one.
-    let mut past = film.state.viscous_history.clone();
+    let viscous = viscous_forces(&film.model, &film.state.positions, &film.state.viscous_history);
+    let power: f64 = viscous.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
+    // A large rotation in a single step.
+    let mut history = film.state.viscous_history.clone();
     let mut out = NodeForces::new(&film.model);
     let spun = film.state.positions.iter().map(|x| turn * x).collect::<Vec<_>>();
-    let (spun, path) = (Field::of(&spun), film.parameters.instruction_set);
-    let stepped = assemble_membrane(path, &film.model, &spun, 1e-5, &mut past, &mut out);
-    let dragged = viscous_forces(&film.model, &spun, &past);
-    let dragged = dragged.iter().map(|force| force.norm()).fold(0.0, worse);
+    let (spun, instruction_set) = (Field::of(&spun), film.parameters.instruction_set);
+    let stepped =
+        assemble_membrane(instruction_set, &film.model, &spun, 1e-5, &mut history, &mut out);
+    let after = viscous_forces(&film.model, &spun, &history);
+    let after = after.iter().map(|force| force.norm()).fold(0.0, worse);
     let band = number("patch/band");
     Ok(vec![
-        Row::at_most("force, of E t h", force / scale, band),
-        Row::at_most("viscous force after a turn in one step, of E t h", dragged / scale, band),
+        Row::at_most("force over E t h", force / scale, band),
+        Row::at_most("viscous force after a rotation in one step, over E t h", after / scale, band),
         Row::at_most(
-            "viscous work of it, of E t h^2",
+            "viscous work of this rotation over E t h^2",
             stepped.viscous_work.abs() / (scale * 0.1),
             band,
         ),
-        Row::at_most("strain energy, of E t h^2", film.strain_energy() / (scale * 0.1), band),
-        Row::at_most("viscous power, of E t h m/s", power.abs() / scale, band),
+        Row::at_most("strain energy over E t h^2", film.strain_energy() / (scale * 0.1), band),
+        Row::at_most("viscous power over E t h m/s", power.abs() / scale, band),
     ])
 }
 
 /// Σ m v, Σ m x × v and Σ |m v|.
 fn momentum(film: &Explicit) -> (Vector3<f64>, Vector3<f64>, f64) {
-    // The places half a step ago, where these velocities are.
+    // The positions half a step earlier, at the time of the velocities.
     let back = -0.5 * film.state.last_step;
     let (mut sum, mut moment, mut size) = (Vector3::zeros(), Vector3::zeros(), 0.0);
     for (node, mass) in film.model.mass.iter().enumerate() {
@@ -101,33 +104,41 @@ fn momentum(film: &Explicit) -> (Vector3<f64>, Vector3<f64>, f64) {
     (sum, moment, size)
 }
 
-/// A sphere of film and gas, thrown and spun, keeps both momenta over 1e5 steps.
+/// A free sphere of film and gas conserves linear and angular momentum over 1e5 steps.
 pub fn momenta(rig: &Rig) -> Outcome {
     let shell = icosphere(1, 0.5);
     let (spin, throw) = (Vector3::new(2.0, -3.0, 5.0), Vector3::new(0.3, 0.1, -0.2));
-    let kicks = pattern(shell.positions.len(), 5);
+    let kicks = pseudo_random(shell.positions.len(), 5);
     let velocity = |(x, kick): (&Vector3<f64>, Vector3<f64>)| spin.cross(x) + kick * 0.5 + throw;
     let velocities = shell.positions.iter().zip(kicks).map(velocity).collect();
     let filling = Filling::Gas {
-        supply: GasSupply { initial_mass: 5e-3, ..nitrogen() },
+        supply: GasSupply { initial_mass: 5e-3, ..nitrogen_supply() },
         initial_temperature: 293.0,
     };
-    let film = Film { viscosity: 0.1, ..film() };
-    let mut film = rig.start(&FilmScene { velocities, filling, ..scene(shell, film) })?;
+    let film = Film { viscosity: 0.1, ..Film::PAPER_ELASTIC };
+    let mut film = rig.start(&FilmScene { velocities, filling, ..free_film(shell, film) })?;
     let before = momentum(&film);
     let target = 1e5 * film.stable_step();
     advance(&mut film, target, &Phase::default())?;
     let after = momentum(&film);
     let band = number("momentum/band");
-    let share = |off: Vector3<f64>| off.norm() / before.2;
+    let relative = |change: Vector3<f64>| change.norm() / before.2;
     Ok(vec![
         Row::at_least("steps", film.state.steps as f64, 1e5),
-        Row::at_most("momentum gained, of sum |m v|", share(after.0 - before.0), band),
-        Row::at_most("moment gained, of sum |m v|, m", share(after.1 - before.1), band),
+        Row::at_most(
+            "change of linear momentum over sum of |m v|",
+            relative(after.0 - before.0),
+            band,
+        ),
+        Row::at_most(
+            "change of angular momentum over sum of |m v|, m",
+            relative(after.1 - before.1),
+            band,
+        ),
     ])
 }
 
-/// Simple shear without stretch across, wrinkled: the stress of the tension field.
+/// Wrinkled film in simple shear without transverse stretch: the stress of the tension field.
 pub fn shear_panel(rig: &Rig) -> Outcome {
     let gamma = number("shear_panel/gamma");
     let reference = sheet(6, 4, 0.3, 0.2);
@@ -135,11 +146,11 @@ pub fn shear_panel(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         x.x += gamma * x.y;
     }
-    let film = rig.start(&scene(shell, film()))?;
+    let film = rig.start(&free_film(shell, Film::PAPER_ELASTIC))?;
     let volume: f64 = film.model.volume.iter().sum();
-    let pull = film.forces.films();
-    let pull = pull.iter().zip(&reference.positions);
-    let stress = -pull.map(|(force, x)| force.x * x.y).sum::<f64>() / volume;
+    let forces = film.forces.films();
+    let forces = forces.iter().zip(&reference.positions);
+    let stress = -forces.map(|(force, x)| force.x * x.y).sum::<f64>() / volume;
     let (expected, band) = (number("shear_panel/P12"), number("shear_panel/band"));
     Ok(vec![Row::new("P12, Pa", stress, expected, band)])
 }

@@ -1,13 +1,13 @@
-//! The reference cases: what `billow validate` runs, judged against closed forms and series.
+//! The reference cases of `billow validate`: results against closed forms, series and quadratures.
 //!
 //! ```text
-//! error = |value/reference − 1|        in band where error ≤ band and order ≥ what is asked
+//! error = |value/reference − 1|        in band: error ≤ band and order ≥ least order
 //! ```
 //!
-//! A case is a row of [`CASES`] and a function; it gives one [`Row`] a quantity. Cases go through
-//! the functions a capsule goes through: the scene of a film, its explicit step, its gas, its model.
-//! Numbers and bands come from `tests/reference` and are never loosened here. A case that fails or
-//! panics is a row out of band that says why.
+//! A case is an entry of [`CASES`] and a function that gives one [`Row`] for each quantity. Cases run
+//! the same code as a capsule: the scene of a film, its explicit step, its gas, its model. Numbers and
+//! bands come from `tests/reference`. A case that fails or panics gives a row out of band with the
+//! reason.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -20,21 +20,20 @@ use rayon::ThreadPool;
 pub mod reference;
 pub mod rig;
 mod row;
-pub mod shapes_dynamic;
-mod shapes_static;
 mod table;
 
-pub mod capsule_run;
 pub mod contact_capsule;
-mod contact_meetings;
+mod contact_impacts;
 mod contact_relaxed;
 pub mod contact_rig;
-mod contact_rubbing;
 mod contact_stack;
 mod contact_tube;
 mod damping;
 mod drum;
+mod energy_balance;
 mod forces;
+mod friction_adhesion;
+mod gas_column;
 mod gas_piston;
 mod gas_vessel;
 mod invariants;
@@ -44,8 +43,8 @@ mod sphere_motion;
 mod static_airbag;
 mod static_discs;
 mod static_end_state;
+mod static_equilibrium;
 mod static_polygon;
-mod static_rest;
 mod static_shells;
 mod static_wrinkling;
 mod step_limit;
@@ -54,16 +53,16 @@ pub use rig::Rig;
 pub use row::Row;
 pub use table::CASES;
 
-/// When a case is run.
+/// Whether a case is part of `--quick`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tier {
-    /// Always.
+    /// Always run.
     Quick,
-    /// Not with `--quick`.
+    /// Skipped with `--quick`.
     Long,
 }
 
-/// What a case gives: its rows, or why it has none.
+/// The rows of a case, or the reason why it has none.
 pub type Outcome = Result<Vec<Row>, String>;
 
 /// One reference case.
@@ -71,15 +70,15 @@ pub type Outcome = Result<Vec<Row>, String>;
 pub struct Case {
     /// Its name.
     pub name: &'static str,
-    /// What it compares with what.
+    /// What it compares.
     pub compares: &'static str,
-    /// When it is run.
+    /// Whether `--quick` skips it.
     pub tier: Tier,
-    /// Its body.
+    /// The function that runs it.
     pub body: fn(&Rig) -> Outcome,
 }
 
-/// A case that was run.
+/// The result of a case.
 #[derive(Debug, Clone)]
 pub struct Judged {
     /// Its name.
@@ -98,48 +97,48 @@ impl Judged {
 }
 
 impl Case {
-    /// Runs it. What goes wrong on the way is a row out of band.
+    /// Runs the case. An error or a panic gives a row out of band.
     pub fn run(&self, rig: &Rig) -> Judged {
         let start = Instant::now();
         let outcome = catch_unwind(AssertUnwindSafe(|| (self.body)(rig)));
         let rows = match outcome {
             Ok(Ok(rows)) if !rows.is_empty() => rows,
-            Ok(Ok(_)) => vec![Row::failed("the case judged nothing")],
+            Ok(Ok(_)) => vec![Row::failed("the case has no rows")],
             Ok(Err(reason)) => vec![Row::failed(&reason)],
-            Err(panic) => vec![Row::failed(&format!("panicked: {}", told(panic.as_ref())))],
+            Err(panic) => vec![Row::failed(&format!("panicked: {}", message(panic.as_ref())))],
         };
         Judged { name: self.name, rows, seconds: start.elapsed().as_secs_f64() }
     }
 }
 
-/// What a panic said.
-fn told(panic: &(dyn std::any::Any + Send)) -> &str {
+/// The message of a panic.
+fn message(panic: &(dyn std::any::Any + Send)) -> &str {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message")
 }
 
-/// Runs cases on a pool, telling each as it ends; what comes back is in the order given, whatever
-/// the threads.
+/// Runs cases on a pool and reports each as it ends. The results are in the given order, whatever the
+/// number of threads.
 pub fn run_all(
     pool: &ThreadPool,
     cases: &[&Case],
     rig: &Rig,
-    tell: &(dyn Fn(&Judged) + Sync),
+    report: &(dyn Fn(&Judged) + Sync),
 ) -> Vec<Judged> {
     let next = AtomicUsize::new(0);
     let ended = Mutex::new(Vec::with_capacity(cases.len()));
     pool.broadcast(|_| {
-        while let Some((at, case)) = {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            cases.get(at).map(|case| (at, case))
+        while let Some((index, case)) = {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            cases.get(index).map(|case| (index, case))
         } {
             let judged = case.run(rig);
-            tell(&judged);
-            ended.lock().unwrap_or_else(PoisonError::into_inner).push((at, judged));
+            report(&judged);
+            ended.lock().unwrap_or_else(PoisonError::into_inner).push((index, judged));
         }
     });
     let mut ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);
-    ended.sort_by_key(|(at, _)| *at);
+    ended.sort_by_key(|(index, _)| *index);
     ended.into_iter().map(|(_, judged)| judged).collect()
 }
 

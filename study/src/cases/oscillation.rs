@@ -1,19 +1,19 @@
-//! Reading an oscillation: by where it crosses nought, and by where it turns.
+//! Frequency and extrema of an oscillation.
 
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::scene::timeline::Phase;
 
 use super::rig::advance;
 
-/// Looks a period may take at most: a run that does not oscillate ends.
-const PATIENCE: usize = 200_000;
+/// Most samples of a signal. Chosen: ends a run that does not oscillate.
+const MAX_SAMPLES: usize = 200_000;
 
-/// Frequency, Hz, of a signal of film in motion: from its first crossing of nought to the last of
-/// `crossings`, half a period each. Between two looks `interval` (s) apart a crossing is found by a
-/// straight line; a sine is straight there up to the third order of the interval.
+/// Frequency, Hz, of a signal of moving film, from a number of zero crossings, half a period apart.
+/// The signal is sampled at an interval (s). A crossing is interpolated linearly between two samples:
+/// for a sine the error is of third order in the interval.
 ///
 /// # Errors
-/// What stopped the film, or that it does not oscillate.
+/// A failure of the film, or that it does not oscillate.
 pub fn frequency(
     film: &mut Explicit,
     interval: f64,
@@ -21,7 +21,7 @@ pub fn frequency(
     signal: impl Fn(&Explicit) -> f64,
 ) -> Result<f64, String> {
     let (mut found, mut before) = (Vec::with_capacity(crossings), signal(film));
-    for _ in 0..PATIENCE {
+    for _ in 0..MAX_SAMPLES {
         let time = film.state.time;
         advance(film, time + interval, &Phase::default())?;
         let now = signal(film);
@@ -34,43 +34,43 @@ pub fn frequency(
         }
         before = now;
     }
-    Err(format!("no oscillation: {} crossings by {} s", found.len(), film.state.time))
+    Err(format!("no oscillation: {} zero crossings until {} s", found.len(), film.state.time))
 }
 
-/// A place where a signal turns.
+/// An extremum of a signal.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn {
-    /// When, s.
+pub struct Extremum {
+    /// Time, s.
     pub time: f64,
-    /// Its value there.
+    /// Value of the signal.
     pub value: f64,
 }
 
-/// The first turning points of a signal, by parabolas through three looks `interval` (s) apart.
+/// The first extrema of a signal, from parabolas through three samples at an interval (s).
 ///
 /// # Errors
 /// As [`frequency`].
-pub fn turns(
+pub fn extrema(
     film: &mut Explicit,
     interval: f64,
     count: usize,
     signal: impl Fn(&Explicit) -> f64,
-) -> Result<Vec<Turn>, String> {
+) -> Result<Vec<Extremum>, String> {
     let mut last = [signal(film); 3];
     let mut found = Vec::with_capacity(count);
-    for look in 1..PATIENCE {
+    for sample in 1..MAX_SAMPLES {
         let time = film.state.time;
         advance(film, time + interval, &Phase::default())?;
         last = [last[1], last[2], signal(film)];
         let (rise, fall) = (last[1] - last[0], last[2] - last[1]);
-        if look > 2 && rise * fall < 0.0 {
+        if sample > 2 && rise * fall < 0.0 {
             let shift = 0.5 * (rise + fall) / (rise - fall);
             let value = last[1] + 0.25 * (rise + fall) * shift;
-            found.push(Turn { time: time + shift * interval, value });
+            found.push(Extremum { time: time + shift * interval, value });
             if found.len() == count {
                 return Ok(found);
             }
         }
     }
-    Err(format!("no oscillation: {} turns by {} s", found.len(), film.state.time))
+    Err(format!("no oscillation: {} extrema until {} s", found.len(), film.state.time))
 }

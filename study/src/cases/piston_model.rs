@@ -1,15 +1,16 @@
-//! The piston model on the gas cases it stands for: the same closed forms, without film.
+//! The piston model on the gas cases: the same closed forms, without film.
 
 use billow_solver::integrators::dormand_prince::{Control, DEFAULT_TOLERANCE};
 use billow_solver::mechanics::gas::{Gas, GasState};
 use billow_solver::models::piston::{EndFilm, Piston, PistonRun, PistonState, VolumeLaw};
 use billow_solver::models::run::Model;
+use billow_solver::scene::paper::nitrogen_supply;
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{GasSupply, HeatTransfer, Species, Stepping};
 
 use super::gas_vessel::emptying_time;
 use super::reference::{number, rows};
-use super::rig::{inflow, nitrogen};
+use super::rig::inflow;
 use super::row::order;
 use super::{Outcome, Rig, Row};
 
@@ -36,7 +37,7 @@ fn injection() -> Phase {
     inflow(number("injected_piston/rate"), number("injected_piston/inflow_temperature"))
 }
 
-/// A rigid tank (m³): a packed piston.
+/// A rigid tank of this volume (m³): a packed piston.
 fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64) -> PistonRun {
     let gas_state = gas.at_temperature(mass, temperature);
     let state = PistonState { height: 1.0, speed: 0.0, gas: gas_state };
@@ -46,7 +47,7 @@ fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64) -> PistonRun {
 /// Blow-down of a rigid tank through a choked orifice.
 pub fn blow_down(_: &Rig) -> Outcome {
     let (volume, mass, start) = (0.5, 0.6, 300.0);
-    let supply = GasSupply { leak_area: 1e-3, ..nitrogen() };
+    let supply = GasSupply { leak_area: 1e-3, ..nitrogen_supply() };
     let gas = Gas::new(&supply, 293.0, 1.0);
     let (gamma, tau) = (gas.gamma(), emptying_time(&supply, volume, start));
     let closed = Phase { packed: true, ..Phase::default() };
@@ -57,8 +58,8 @@ pub fn blow_down(_: &Rig) -> Outcome {
     for share in [0.1, 0.5, 1.0, 3.0] {
         advance(&mut run, share * tau, &closed)?;
         let now = run.sample(&closed);
-        let slower = 1.0 + 0.5 * (gamma - 1.0) * share;
-        let cooled = 1.0 / (slower * slower);
+        let root = 1.0 + 0.5 * (gamma - 1.0) * share;
+        let cooled = 1.0 / (root * root);
         let pressure = libm::pow(cooled, gamma / (gamma - 1.0));
         let [of_temperature, of_pressure] = ["T/T0", "p/p0"].map(|q| format!("{q} at {share} tau"));
         judged.push(Row::new(&of_temperature, now.temperature / start, cooled, band));
@@ -67,25 +68,26 @@ pub fn blow_down(_: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// A rigid tank takes on the temperature of its film.
+/// The gas in a rigid tank approaches the temperature of its film.
 pub fn cooling(_: &Rig) -> Outcome {
     let (coefficient, area, mass, start) = (5.0, 2.0, 0.02, 450.0);
-    let supply = GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen() };
+    let supply =
+        GasSupply { heat_transfer: HeatTransfer::Coefficient(coefficient), ..nitrogen_supply() };
     let gas = Gas::new(&supply, 293.0, area);
     let rate = coefficient * area / (mass * gas.cv);
     let closed = Phase { packed: true, ..Phase::default() };
     let mut run = tank(gas, 0.5, mass, start);
     let band = number("cooling/band");
     let mut judged = Vec::new();
-    for turns in [0.3, 1.0, 4.0] {
-        advance(&mut run, turns / rate, &closed)?;
+    for elapsed in [0.3, 1.0, 4.0] {
+        advance(&mut run, elapsed / rate, &closed)?;
         let share = (run.sample(&closed).temperature - 293.0) / (start - 293.0);
-        let quantity = format!("(T - T_film)/(T0 - T_film) at {turns} time constants");
-        judged.push(Row::new(&quantity, share, libm::exp(-turns), band));
+        let quantity = format!("(T - T_film)/(T0 - T_film) at {elapsed} time constants");
+        judged.push(Row::new(&quantity, share, libm::exp(-elapsed), band));
     }
-    let given = mass * gas.cv * (start - 293.0) * (libm::exp(-4.0) - 1.0);
+    let expected = mass * gas.cv * (start - 293.0) * (libm::exp(-4.0) - 1.0);
     let heat = run.sample(&closed).gas.heat;
-    judged.push(Row::new("heat given by the film, J", heat, given, band));
+    judged.push(Row::new("heat from the film, J", heat, expected, band));
     Ok(judged)
 }
 
@@ -94,7 +96,7 @@ pub fn tank_filling(_: &Rig) -> Outcome {
     let [initial, start, entering, band] =
         ["initial_mass", "initial_temperature", "inflow_temperature", "band"]
             .map(|key| number(&format!("tank_filling/{key}")));
-    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let mut run = tank(gas, 0.3, initial, start);
     let phase = Phase { packed: true, ..inflow(5e-3, entering) };
     let mut judged = Vec::new();
@@ -106,9 +108,9 @@ pub fn tank_filling(_: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// The injected piston from 1 ms on its closed form.
+/// The injected piston, started at 1 ms on its closed form.
 pub fn injected_piston(_: &Rig) -> Outcome {
-    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
     let [mass, rate, entering, c, start, end] =
         ["mass", "rate", "inflow_temperature", "C", "start", "end"]
             .map(|key| number(&format!("injected_piston/{key}")));
@@ -136,10 +138,13 @@ pub fn injected_piston(_: &Rig) -> Outcome {
     ])
 }
 
-/// Way at 50 ms of a piston that starts at rest on this empty volume (m³), m.
+/// Displacement at 50 ms, m, of a piston that starts at rest on an empty volume (m³).
+///
+/// # Errors
+/// A failure of the run.
 pub fn from_dead_volume(area: f64, volume: f64, tolerance: f64) -> Result<f64, String> {
-    let gas = Gas::new(&nitrogen(), 293.0, 1.0);
-    // At z = 0 the height is not yet above zero, so z counts from 0.1 m on.
+    let gas = Gas::new(&nitrogen_supply(), 293.0, 1.0);
+    // The height of a piston must be positive, so z starts at 0.1 m.
     let shift = 0.1;
     let piston = tube(area, volume - area * shift, number("injected_piston/mass"), gas);
     let state = PistonState { height: shift, speed: 0.0, gas: GasState::default() };
@@ -148,8 +153,8 @@ pub fn from_dead_volume(area: f64, volume: f64, tolerance: f64) -> Result<f64, S
     Ok(run.state().height - shift)
 }
 
-/// Way at 50 ms by the classical Runge-Kutta rule on the balance of energy, U = Ḣ t − M ẋ²/2, with
-/// Richardson's extrapolation: independent of the solver's integrator and of its gas.
+/// Displacement at 50 ms, m, by the classical Runge-Kutta method on the energy balance
+/// U = Ḣ t − M ẋ²/2, with Richardson's extrapolation. It shares no code with the solver.
 fn extrapolated(area: f64, volume: f64) -> f64 {
     let [mass, rate, entering, end] = ["mass", "rate", "inflow_temperature", "end"]
         .map(|key| number(&format!("injected_piston/{key}")));
@@ -193,7 +198,7 @@ pub fn injected_piston_dead_volume(_: &Rig) -> Outcome {
 pub fn gas_spring(_: &Rig) -> Outcome {
     let gamma = number("gas_spring/gamma");
     let species = Species { gas_constant: 296.8, cp: 296.8 * gamma / (gamma - 1.0) };
-    let gas = Gas::new(&GasSupply { species, ..nitrogen() }, 293.0, 1.0);
+    let gas = Gas::new(&GasSupply { species, ..nitrogen_supply() }, 293.0, 1.0);
     let (mass, length, area, pressure) = (0.4, 0.3, 0.02, 2000.0);
     let linear = 2.0 * core::f64::consts::PI * (mass * length / (gamma * pressure * area)).sqrt();
     let mut judged = Vec::new();
@@ -209,7 +214,8 @@ pub fn gas_spring(_: &Rig) -> Outcome {
         };
         let mut run = PistonRun::new(piston, 0.0, state, adaptive(1e-10));
         advance(&mut run, ratio * linear, &Phase::default())?;
-        // Back at rest after one period: what speed is left tells by how much it was missed.
+        // After one period the piston is at rest: the remaining speed over the acceleration is the
+        // error of the period.
         let force = pressure * area * (libm::pow(1.0 + amplitude, -gamma) - 1.0);
         let period = ratio * linear - run.state().speed / (force / mass);
         let quantity = format!("period over linear period at amplitude {amplitude}");

@@ -1,61 +1,62 @@
-//! One judged quantity of a case.
+//! One quantity of a case, compared with its reference.
 
-/// One judged quantity.
+/// One quantity and its verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What was measured, with its unit where it has one.
+    /// Name of the quantity, with its unit if it has one.
     pub quantity: String,
-    /// What billow gives.
+    /// Computed value.
     pub value: f64,
-    /// What it should be; none for a bound from one side.
+    /// Expected value, or floor; `None` for a ceiling.
     pub reference: Option<f64>,
-    /// |value/reference − 1|; by how much a one-sided bound is used: the value itself below a
-    /// ceiling, the share missing to a floor.
+    /// |value/reference − 1|. For a ceiling, the value itself; for a floor, the relative amount by
+    /// which the value is below it.
     pub error: f64,
-    /// Largest error allowed.
+    /// Largest allowed error.
     pub band: f64,
-    /// Observed order of convergence, where one was looked at.
+    /// Observed order of convergence, if it was determined.
     pub order: Option<f64>,
-    /// In band, with the order asked for.
+    /// Whether the error is in band and the order is high enough.
     pub pass: bool,
-    /// Why not; also what else a reader should know of the value.
+    /// Reason for a failure, and further information for the reader.
     pub note: String,
 }
 
 impl Row {
-    /// A value that should be `reference`, to this relative band.
+    /// A value compared with a reference, within a relative band.
     pub fn new(quantity: &str, value: f64, reference: f64, band: f64) -> Self {
         let error = (value / reference - 1.0).abs();
         Self::judged(quantity, value, Some(reference), error, band)
     }
 
-    /// A size that should be nought, at most `ceiling`.
+    /// A value that should be zero and may be at most `ceiling`.
     pub fn at_most(quantity: &str, value: f64, ceiling: f64) -> Self {
         Self::judged(quantity, value, None, value, ceiling)
     }
 
-    /// A value that should be `floor` or more.
+    /// A value that must be `floor` or more.
     pub fn at_least(quantity: &str, value: f64, floor: f64) -> Self {
         let error = if value >= floor { 0.0 } else { (1.0 - value / floor).abs() };
         Self { reference: Some(floor), ..Self::judged(quantity, value, None, error, 0.0) }
     }
 
-    /// A value that should lie between two numbers: to half their difference about their middle.
+    /// A value that must lie between two numbers. The reference is their mean, the band half their
+    /// difference over the mean.
     pub fn within(quantity: &str, value: f64, from: f64, to: f64) -> Self {
         let middle = 0.5 * (from + to);
         let half = 0.5 * (to - from) / middle;
-        Self::new(quantity, value, middle, half).with_note(&format!("asked for {from} to {to}"))
+        Self::new(quantity, value, middle, half).with_note(&format!("allowed: {from} to {to}"))
     }
 
     fn judged(quantity: &str, value: f64, reference: Option<f64>, error: f64, band: f64) -> Self {
         let quantity = quantity.to_owned();
-        // No NaN passes.
+        // NaN does not pass.
         let pass = error <= band && value.is_finite();
         let note = if pass { String::new() } else { "out of band".to_owned() };
         Self { quantity, value, reference, error, band, order: None, pass, note }
     }
 
-    /// What stands for a case that came to no end.
+    /// The row of a case that failed to run.
     pub fn failed(reason: &str) -> Self {
         Self {
             quantity: "run".to_owned(),
@@ -69,25 +70,25 @@ impl Row {
         }
     }
 
-    /// With an observed order that is told and not judged.
+    /// With an observed order, for information.
     #[must_use]
     pub fn with_order(mut self, order: f64) -> Self {
         self.order = Some(order);
         self
     }
 
-    /// With an observed order that must be `least` or more.
+    /// With an observed order that must be `least` or more to pass.
     #[must_use]
     pub fn with_least_order(mut self, order: f64, least: f64) -> Self {
         let enough = order >= least;
         if !enough {
             self.pass = false;
-            self.note = format!("order {order:.3}, asked for {least}");
+            self.note = format!("order {order:.3}, at least {least} required");
         }
         self.with_order(order)
     }
 
-    /// With one more word to its reader.
+    /// With one more note.
     #[must_use]
     pub fn with_note(mut self, note: &str) -> Self {
         if !self.note.is_empty() {
@@ -97,7 +98,7 @@ impl Row {
         self
     }
 
-    /// With the errors of three steps or meshes, signed.
+    /// With the signed errors of three steps or meshes as a note.
     #[must_use]
     pub fn with_errors(self, errors: [f64; 3]) -> Self {
         let [a, b, c] = errors;
@@ -105,23 +106,24 @@ impl Row {
     }
 }
 
-/// The larger of two errors; no number is the largest of all (`max` would let it pass).
+/// The larger of two errors. NaN counts as the largest, unlike in `f64::max`.
 pub fn worse(a: f64, b: f64) -> f64 {
     if b <= a || a.is_nan() { a } else { b }
 }
 
-/// Order of convergence seen in the errors of two steps (or meshes), the finer half the coarser.
+/// Order of convergence from the errors of two steps (or meshes), the finer half the coarser:
+/// log2 |coarse/fine|.
 pub fn order(coarse: f64, fine: f64) -> f64 {
     libm::log2((coarse / fine).abs())
 }
 
-/// The order three values of halved steps (or meshes) show among themselves, without knowing what
-/// they tend to.
-pub fn own_order([coarse, middle, fine]: [f64; 3]) -> f64 {
+/// Order of convergence from three values of halved steps (or meshes), without a reference value.
+pub fn self_convergence_order([coarse, middle, fine]: [f64; 3]) -> f64 {
     order(coarse - middle, middle - fine)
 }
 
-/// The value at step nought of two values of halved steps (or meshes), for second order.
+/// Richardson's extrapolation to step zero from two values of halved steps (or meshes), for second
+/// order.
 pub fn richardson(coarse: f64, fine: f64) -> f64 {
     (4.0 * fine - coarse) / 3.0
 }

@@ -1,47 +1,49 @@
-//! A sphere of film that breathes on its gas.
+//! Radial oscillation of a sphere of film filled with gas.
 //!
 //! ```text
 //! m λ̈ R² = (p 4π R³ λ² − dW/dλ)         p = p0 (λ0/λ)^(3γ),  W = 4π R² t E/(1−ν) ((λ²−1)/2)²
 //! ```
 
+use billow_solver::geometry::shapes::icosphere;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::{Explicit, PressureLoad};
 use billow_solver::models::film::Relaxation;
+use billow_solver::scene::Film;
 use billow_solver::scene::GasSupply;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 
-use super::oscillation::{frequency, turns};
+use super::oscillation::{extrema, frequency};
 use super::reference::{number, rows};
-use super::rig::{film, nitrogen, scene};
 use super::row::{order, richardson};
-use super::shapes_dynamic::icosphere;
 use super::{Outcome, Rig, Row};
 
-/// Temperature of the gas, K: that of the film, so that its mass follows from its pressure.
+/// Temperature of the gas, K. Chosen: that of the film, so that its mass follows from its pressure.
 const TEMPERATURE: f64 = 293.0;
-/// Share of the stable step of the sphere let go: its period's error in the step has the other sign
-/// than that in the mesh, and would hide it.
+/// CFL number of the released sphere. Chosen: small, because the step error of the period has the
+/// opposite sign of the mesh error and would hide it.
 const CFL: f64 = 0.1;
 
 fn sphere(level: u32) -> Shell {
     icosphere(level, number("breathing_sphere/radius"))
 }
 
-/// The sphere at rest under this overpressure, Pa.
-fn rest(rig: &Rig, level: u32, overpressure: f64) -> Result<Explicit, String> {
+/// The sphere in equilibrium under an overpressure, Pa.
+fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<Explicit, String> {
     let filling = Filling::Pressure(overpressure);
-    let mut film = rig.start(&FilmScene { filling, ..scene(sphere(level), film()) })?;
-    // What motion is left must be small beside a swing of 1e-5 of the radius.
+    let mut film =
+        rig.start(&FilmScene { filling, ..free_film(sphere(level), Film::PAPER_ELASTIC) })?;
+    // The remaining motion must be small against an amplitude of 1e-5 of the radius.
     let relaxation = Relaxation { max_kinetic_fraction: 1e-15, ..Relaxation::default() };
     relaxation
         .relax_at(&mut film, overpressure)
-        .map_err(|failure| format!("no rest: {:?}, {}", failure.kind, failure.place))?;
+        .map_err(|failure| format!("no equilibrium: {:?}, {}", failure.kind, failure.place))?;
     Ok(film)
 }
 
 /// Gas of this pressure (Pa) in this volume (m³).
 fn filled(pressure: f64, volume: f64) -> Filling {
-    let nitrogen = nitrogen();
+    let nitrogen = nitrogen_supply();
     let initial_mass = pressure * volume / (nitrogen.species.gas_constant * TEMPERATURE);
     Filling::Gas {
         supply: GasSupply { initial_mass, ..nitrogen },
@@ -50,20 +52,21 @@ fn filled(pressure: f64, volume: f64) -> Filling {
 }
 
 /// Frequency of the radial mode, Hz.
-fn breath(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
-    let rest = rest(rig, level, pressure)?;
+fn radial_frequency(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
+    let rest = equilibrium(rig, level, pressure)?;
     let mut shell = sphere(level);
     shell.positions = rest.state.positions.iter().collect();
-    // A swing of 1e-5 of the radius at about 5300 rad/s.
-    let swing = number("breathing_sphere/amplitude") * 5300.0;
-    let velocities = shell.positions.iter().map(|x| x * swing).collect();
+    // An amplitude of 1e-5 of the radius at about 5300 rad/s.
+    let rate = number("breathing_sphere/amplitude") * 5300.0;
+    let velocities = shell.positions.iter().map(|x| x * rate).collect();
     let filling = filled(pressure, rest.state.volume);
-    let mut film = rig.start(&FilmScene { velocities, filling, ..scene(shell, film()) })?;
+    let mut film =
+        rig.start(&FilmScene { velocities, filling, ..free_film(shell, Film::PAPER_ELASTIC) })?;
     let (interval, volume) = (film.stable_step(), rest.state.volume);
     frequency(&mut film, interval, 13, |film| film.state.volume - volume)
 }
 
-/// The radial mode about rest, at two pressures.
+/// The radial mode about equilibrium, at two pressures.
 pub fn breathing_sphere(rig: &Rig) -> Outcome {
     breathing(rig, [2, 3, 4])
 }
@@ -80,9 +83,9 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
     for row in rows("breathing_sphere") {
         let (pressure, expected) = (row[0], row[1]);
         let values = [
-            breath(rig, coarse, pressure)?,
-            breath(rig, middle, pressure)?,
-            breath(rig, fine, pressure)?,
+            radial_frequency(rig, coarse, pressure)?,
+            radial_frequency(rig, middle, pressure)?,
+            radial_frequency(rig, fine, pressure)?,
         ];
         let errors = values.map(|value| value / expected - 1.0);
         let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
@@ -98,38 +101,39 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
     Ok(judged)
 }
 
-/// Largest λ − 1 and period of a sphere let go unstretched, with gas that has this pressure (Pa)
-/// where it is at rest.
-fn let_go(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
-    let rest = rest(rig, level, pressure)?;
+/// Largest λ − 1 and period (s) of a sphere released unstretched. Its gas has this pressure (Pa) at
+/// equilibrium.
+fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
+    let rest = equilibrium(rig, level, pressure)?;
     let PressureLoad::Overpressure(_) = rest.parameters.pressure_load else {
-        unreachable!("relaxed so")
+        unreachable!("relaxed under an overpressure")
     };
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);
-    let species = nitrogen().species;
+    let species = nitrogen_supply().species;
     let gamma = species.cp / (species.cp - species.gas_constant);
     let denser = pressure * libm::pow(rest.state.volume / start, gamma);
     let filling = filled(denser, start);
-    let mut scene = FilmScene { filling, ..scene(empty, film()) };
+    let mut scene = FilmScene { filling, ..free_film(empty, Film::PAPER_ELASTIC) };
     scene.solver.cfl = CFL;
     let mut film = rig.start(&scene)?;
     let interval = film.stable_step();
-    let turns = turns(&mut film, interval, 2, |film| film.state.volume)?;
-    Ok([libm::cbrt(turns[0].value / start) - 1.0, turns[1].time])
+    let extrema = extrema(&mut film, interval, 2, |film| film.state.volume)?;
+    Ok([libm::cbrt(extrema[0].value / start) - 1.0, extrema[1].time])
 }
 
-/// A sphere let go unstretched: its turning points.
+/// A sphere released unstretched: its turning points.
 pub fn released_sphere(rig: &Rig) -> Outcome {
     let [pressure, lambda, period] = ["p0", "largest_lambda", "period"]
         .map(|key| number(&format!("breathing_sphere/released/{key}")));
     let [band, raw, least] =
         ["band", "raw_band", "order"].map(|key| number(&format!("breathing_sphere/{key}")));
-    let runs = [let_go(rig, 3, pressure)?, let_go(rig, 4, pressure)?, let_go(rig, 5, pressure)?];
+    let runs = [release(rig, 3, pressure)?, release(rig, 4, pressure)?, release(rig, 5, pressure)?];
     let mut judged = Vec::new();
-    for (at, name, expected) in [(0, "largest lambda - 1", lambda - 1.0), (1, "period, s", period)]
+    for (index, name, expected) in
+        [(0, "largest lambda - 1", lambda - 1.0), (1, "period, s", period)]
     {
-        let values = runs.map(|run| run[at]);
+        let values = runs.map(|run| run[index]);
         let errors = values.map(|value| value / expected - 1.0);
         let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
         judged.push(

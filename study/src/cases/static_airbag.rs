@@ -1,17 +1,18 @@
-//! The square airbag: two square sheets sewn at the edge and inflated.
+//! The square airbag: two square sheets joined at the edge and inflated.
 //!
-//! A quarter of the upper sheet between planes of symmetry; the seam stays in z = 0 and is free in
-//! it. There are several minima of energy near each other: the potential energy tells which is
+//! The mesh is a quarter of the upper sheet between planes of symmetry. The seam stays in z = 0 and is
+//! free in it. There are several close minima of energy: the potential energy shows which one is
 //! found, and lower is better.
 
+use billow_solver::geometry::shapes::{grid, nodes_where};
 use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::paper::free_film;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
-use super::shapes_static::{grid, nodes_where};
-use super::static_rest::{at_rest, film};
+use super::rig::held;
+use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
 
 /// Energy, height and volume on three meshes.
@@ -22,10 +23,10 @@ pub fn square_airbag(rig: &Rig) -> Outcome {
     let [energy_band, height_band, volume_band] = ["energy_band", "height_band", "volume_band"]
         .map(|key| number(&format!("square_airbag/{key}")));
     let side = 0.5 * diagonal / 2.0_f64.sqrt();
-    let film = Film { youngs_modulus, poisson_ratio, thickness, ..film() };
-    let (mut judged, mut whole) = (Vec::new(), f64::NAN);
+    let film = Film { youngs_modulus, poisson_ratio, thickness, ..Film::PAPER_ELASTIC };
+    let (mut judged, mut whole_volume) = (Vec::new(), f64::NAN);
     for row in rows("square_airbag") {
-        // The rows' first column counts cells.
+        // The first column is the number of cells.
         let cells = (1_u32..=1 << 12).find(|cells| f64::from(*cells) >= row[0]).unwrap_or(1);
         let shell = grid(cells, cells, side, side);
         let seam = nodes_where(&shell, |x| x.x >= side || x.y >= side);
@@ -35,36 +36,37 @@ pub fn square_airbag(rig: &Rig) -> Outcome {
             held(seam, "z"),
         ];
         let filling = Filling::Pressure(pressure);
-        let (state, word) = at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film) })?;
+        let (state, note) =
+            equilibrium(rig, &FilmScene { filling, supports, ..free_film(shell, film) })?;
         let name = |what: &str| format!("{what}, {cells} cells");
         let corner = state.positions.get(state.positions.len() - 1);
         let inward = 2.0_f64.sqrt() * side - corner.xy().norm();
         let stress = resultants(&state.model, &state.positions, 0).principal[0] / thickness * 1e-6;
         judged.push(
             Row::at_most(
-                &name("potential energy above the row's, J"),
+                &name("potential energy minus reference, J"),
                 state.potential_energy - row[1],
                 energy_band,
             )
             .with_note(&format!(
-                "{:.6} J; u_A {inward:.6} m, S1(M) {stress:.4} MPa; {word}",
+                "{:.6} J; u_A {inward:.6} m, S1(M) {stress:.4} MPa; {note}",
                 state.potential_energy
             )),
         );
         judged.push(
             Row::at_most(
-                &name("w_M off the row's, m"),
+                &name("w_M, difference to reference, m"),
                 (state.positions.z[0] - row[2]).abs(),
                 height_band,
             )
             .with_note(&format!("{:.6} m", state.positions.z[0])),
         );
-        whole = 8.0 * state.volume;
+        whole_volume = 8.0 * state.volume;
     }
-    let off = (whole - volume).abs();
+    let difference = (whole_volume - volume).abs();
     judged.push(
-        Row::at_most("volume off the target, finest mesh, m3", off, volume_band)
-            .with_note(&format!("{whole:.6} m3")),
+        Row::at_most("volume, difference to reference, finest mesh, m3", difference, volume_band)
+            .with_note(&format!("{whole_volume:.6} m3")),
     );
     Ok(judged)
 }

@@ -1,21 +1,21 @@
-//! The end state of the capsule as every run of its design ends: caps of the design's own N-gons, the
-//! bottom ring on its stowed N-gon.
+//! The end state of the capsule with the caps of its design, N-gons, and the bottom ring held on its
+//! stowed N-gon, as in every run.
 //!
-//! No outside reference is known. The numbers are billow's own, by the path every run's static
-//! references take ([`billow_solver::models::film::static_states`]); the band is wide enough for
-//! another minimum of wrinkled film near by, and narrow enough for a change of physics of a percent.
+//! No independent reference exists. The numbers are recorded results of billow, computed like the
+//! static references of every run ([`billow_solver::models::film::static_states`]). The band is wide
+//! enough for another minimum of wrinkled film, and narrow enough to detect a change of 1 %.
 
 use billow_solver::models::film::static_states;
+use billow_solver::scene::paper;
 
-use super::capsule_run::paper_capsule;
 use super::reference::{numbers, rows};
 use super::{Outcome, Rig, Row};
 
 /// Volume, rim height and strain energy on this mesh.
 fn on_mesh(rig: &Rig, subdivisions: u32) -> Outcome {
     let bands = numbers("end_state_polygon/bands");
-    let scene = paper_capsule(subdivisions, 0.3);
-    // The table tells pressures rising; falling ones settle soonest.
+    let scene = paper::capsule(subdivisions, 0.3);
+    // The table has rising pressures; falling ones converge faster.
     let mut rows = rows("end_state_polygon");
     rows.retain(|row| (row[0] - f64::from(subdivisions)).abs() < 0.5);
     rows.sort_by(|a, b| b[1].total_cmp(&a[1]));
@@ -29,9 +29,9 @@ fn on_mesh(rig: &Rig, subdivisions: u32) -> Outcome {
             ("rim height, m", state.z_rim),
             ("strain energy, J", state.strain_energy),
         ];
-        for (at, (name, value)) in values.into_iter().enumerate() {
+        for (index, (name, value)) in values.into_iter().enumerate() {
             let name = format!("{name}, at {} Pa, n {subdivisions}", row[1]);
-            judged.push(Row::new(&name, value, row[2 + at], bands[at]).with_note(&format!(
+            judged.push(Row::new(&name, value, row[2 + index], bands[index]).with_note(&format!(
                 "{} Newton steps, residual {:.1e}",
                 state.iterations, state.residual
             )));

@@ -6,26 +6,27 @@
 //! cone      N_hoop = p r/cos φ,  N_meridional = p r/(2 cos φ)
 //! ```
 //!
-//! Stretches are those of mean radii against the same mesh unloaded. The cylinder's end is a rigid
-//! plane pushed by `p π (R λ_hoop)²`, the cone's a rigid disc pushed by `p π r²`; the cone's forces are
-//! true ones (per width as it is) over its middle third, each at its own radius.
+//! A stretch is the mean radius over that of the unloaded mesh. A rigid plane under the force
+//! `p π (R λ_hoop)²` ends the cylinder, a rigid disc under `p π r²` the cone. Forces of the cone are true
+//! ones (per deformed width) in its middle third, each compared at its own radius.
 
 use core::f64::consts::PI;
 
+use billow_solver::geometry::shapes::{icosphere, revolved, ring_nodes};
 use billow_solver::mechanics::resultants::resultants;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
+use super::rig::held;
 use super::row::{order, worse};
-use super::shapes_dynamic::icosphere;
-use super::shapes_static::{revolved, ring};
-use super::static_rest::{at_rest, film, mean};
+use super::static_equilibrium::{equilibrium, mean};
 use super::{Outcome, Rig, Row};
 
-/// Radius of a sphere at rest.
+/// Stretch of a sphere.
 pub fn sphere(rig: &Rig) -> Outcome {
     let [radius, band, least] =
         ["radius", "band", "order"].map(|key| number(&format!("static_sphere/{key}")));
@@ -34,8 +35,9 @@ pub fn sphere(rig: &Rig) -> Outcome {
         let (pressure, expected) = (row[0], row[1]);
         let run = |level: u32| -> Result<f64, String> {
             let filling = Filling::Pressure(pressure);
-            let scene = FilmScene { filling, ..scene(icosphere(level, radius), film()) };
-            let (state, _) = at_rest(rig, &scene)?;
+            let scene =
+                FilmScene { filling, ..free_film(icosphere(level, radius), Film::PAPER_ELASTIC) };
+            let (state, _) = equilibrium(rig, &scene)?;
             let loaded: f64 = state.positions.iter().map(|x| x.norm()).sum();
             let unloaded: f64 = scene.shell.positions.iter().map(Vector3::norm).sum();
             Ok(loaded / unloaded - 1.0)
@@ -52,7 +54,7 @@ pub fn sphere(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// A plate on these nodes, pushed along z.
+/// A rigid plate on these nodes under a force along z.
 fn plate(nodes: Vec<u32>, force: f64) -> FilmSupport {
     let hold = Hold::Body(PlaneBody { normal: Vector3::z(), mass: 1.0, velocity: 0.0, force });
     FilmSupport { name: "plate".to_owned(), nodes, hold, motion: None }
@@ -63,16 +65,21 @@ pub fn cylinder(rig: &Rig) -> Outcome {
     let [radius, length, pressure, axial, hoop, band, least] =
         ["radius", "length", "overpressure", "axial", "hoop", "band", "order"]
             .map(|key| number(&format!("static_cylinder/{key}")));
-    let wide = radius * (1.0 + hoop);
+    let stretched = radius * (1.0 + hoop);
     let run = |along: u32| -> Result<[f64; 2], String> {
         let around = 8 * along;
         let shell =
             revolved(along, around, false, |k| [radius, length * f64::from(k) / f64::from(along)]);
-        let top = ring(along, around);
-        let supports =
-            vec![held(ring(0, around), "z"), plate(top.clone(), pressure * PI * wide * wide)];
+        let top = ring_nodes(along, around);
+        let supports = vec![
+            held(ring_nodes(0, around), "z"),
+            plate(top.clone(), pressure * PI * stretched * stretched),
+        ];
         let filling = Filling::Pressure(pressure);
-        let (state, _) = at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (state, _) = equilibrium(
+            rig,
+            &FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) },
+        )?;
         let all: Vec<u32> = (0..(along + 1) * around).collect();
         Ok([
             mean(&state, &all, |x| x.xy().norm()) / radius - 1.0,
@@ -80,17 +87,17 @@ pub fn cylinder(rig: &Rig) -> Outcome {
         ])
     };
     let values = [run(3)?, run(6)?, run(12)?];
-    let row = |at: usize, name: &str, expected: f64| {
-        let errors = values.map(|value| value[at] / expected - 1.0);
+    let row = |index: usize, name: &str, expected: f64| {
+        let errors = values.map(|value| value[index] / expected - 1.0);
         let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
-        Row::new(name, values[2][at], expected, band)
+        Row::new(name, values[2][index], expected, band)
             .with_least_order(seen, least)
             .with_errors(errors)
     };
     Ok(vec![row(0, "lambda_hoop - 1", hoop), row(1, "lambda_axial - 1", axial)])
 }
 
-/// Membrane forces of a cone away from its ends.
+/// Membrane forces of a cone far from its ends.
 pub fn cone(rig: &Rig) -> Outcome {
     let [bottom, top, height, pressure, band] =
         ["bottom_radius", "top_radius", "height", "overpressure", "band"]
@@ -100,28 +107,31 @@ pub fn cone(rig: &Rig) -> Outcome {
     let run = |along: u32| -> Result<[[f64; 2]; 2], String> {
         let around = 4 * along;
         let shell = revolved(along, around, false, |k| {
-            let at = f64::from(k) / f64::from(along);
-            [bottom + (top - bottom) * at, height * at]
+            let s = f64::from(k) / f64::from(along);
+            [bottom + (top - bottom) * s, height * s]
         });
         let supports = vec![
-            held(ring(0, around), "xyz"),
-            held(ring(along, around), "xy"),
-            plate(ring(along, around), pressure * PI * top * top),
+            held(ring_nodes(0, around), "xyz"),
+            held(ring_nodes(along, around), "xy"),
+            plate(ring_nodes(along, around), pressure * PI * top * top),
         ];
         let filling = Filling::Pressure(pressure);
-        let (state, _) = at_rest(rig, &FilmScene { filling, supports, ..scene(shell, film()) })?;
+        let (state, _) = equilibrium(
+            rig,
+            &FilmScene { filling, supports, ..free_film(shell, Film::PAPER_ELASTIC) },
+        )?;
         let (mut sum, mut worst, mut count) = ([0.0; 2], [0.0; 2], 0.0);
         for (element, triangle) in state.model.triangles.iter().enumerate() {
             let corners = triangle.map(|node| state.positions.get(node as usize));
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             if (middle.z / height - 0.5).abs() < 1.0 / 6.0 {
-                // The mean distance of the surface itself, not of the chord.
+                // The mean radius of the corners lies nearer to the surface than that of the chord.
                 let radius = corners.iter().map(|x| x.xy().norm()).sum::<f64>() / 3.0;
                 let hoop = pressure * radius / cos;
-                let own = resultants(&state.model, &state.positions, element).cauchy;
-                for (at, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
-                    sum[at] += own[at] / expected;
-                    worst[at] = worse(worst[at], (own[at] / expected - 1.0).abs());
+                let force = resultants(&state.model, &state.positions, element).cauchy;
+                for (index, expected) in [hoop, 0.5 * hoop].into_iter().enumerate() {
+                    sum[index] += force[index] / expected;
+                    worst[index] = worse(worst[index], (force[index] / expected - 1.0).abs());
                 }
                 count += 1.0;
             }
@@ -130,15 +140,15 @@ pub fn cone(rig: &Rig) -> Outcome {
     };
     let values = [run(12)?, run(24)?, run(48)?];
     let mut judged = Vec::new();
-    for (at, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
-        let errors = values.map(|[mean, _]| mean[at] - 1.0);
+    for (index, name) in ["N_hoop", "N_meridional"].into_iter().enumerate() {
+        let errors = values.map(|[mean, _]| mean[index] - 1.0);
         judged.push(
-            Row::new(&format!("{name}/(closed form), mean"), values[2][0][at], 1.0, band)
+            Row::new(&format!("{name}/(closed form), mean"), values[2][0][index], 1.0, band)
                 .with_order(order(errors[1], errors[2]))
                 .with_errors(errors),
         );
-        let farthest = values[2][1][at];
-        judged.push(Row::at_most(&format!("{name}, farthest element"), farthest, band));
+        let largest = values[2][1][index];
+        judged.push(Row::at_most(&format!("{name}, largest error of an element"), largest, band));
     }
     Ok(judged)
 }

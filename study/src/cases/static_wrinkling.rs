@@ -1,51 +1,54 @@
-//! Wrinkled film in its plane: a bent strip and a twisted annulus.
+//! Wrinkled film in its plane: a strip in bending and an annulus in torsion.
 //!
 //! ```text
 //! beam     k = E t h² κ/(2P):  2M/(P h) = k/3 for k ≤ 1, else 1 − 2/(3√k)
 //! ```
 //!
-//! Half the beam stands between a plane of symmetry and a rigid plane tilted by κ L, pushed by P
-//! along its normal; the film slides on both. P and M are what the first bears, M about the middle of
-//! the section. The annulus's inner edge is turned; its torque is what it bears, its wrinkle radius
-//! the outer edge of the last ring most of whose elements are wrinkled.
+//! Half the beam lies between a plane of symmetry and a rigid plane that is tilted by κ L and loaded by
+//! P along its normal. The film slides on both. P and M are the reactions of the plane of symmetry, M
+//! about the middle of the section. The inner edge of the annulus is rotated; the torque is its
+//! reaction. The wrinkle radius is the outer radius of the last ring in which most elements are
+//! wrinkled.
 
+use billow_solver::geometry::shapes::{grid, nodes_where, revolved, ring_nodes};
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::resultants;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::motion::{Motion, Profile, Rotation};
+use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
 use super::reference::{number, rows};
-use super::rig::{held, scene};
+use super::rig::held;
 use super::row::order;
-use super::shapes_static::{grid, nodes_where, revolved, ring};
-use super::static_rest::{at_rest, film};
+use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
 
 /// Height and half length of the beam, m.
 const BEAM: f64 = 0.2;
-/// Strain of its most stretched fibre: small, so that its shape stays straight.
+/// Strain of its most stretched fibre. Chosen: small, so that the geometry hardly changes.
 const STRAIN: f64 = 1e-4;
 
-/// k and 2M/(P h) of a beam bent and pulled so that k is about `asked`.
-fn bend(rig: &Rig, rows: u32, asked: f64) -> Result<[f64; 2], String> {
-    let film = film();
+/// k and 2M/(P h) of a beam whose curvature and force give about the requested k.
+fn bend(rig: &Rig, rows: u32, requested: f64) -> Result<[f64; 2], String> {
+    let film = Film::PAPER_ELASTIC;
     let stiffness = film.youngs_modulus * film.thickness;
     // The whole section is stretched while k ≤ 1: P = E t h ε_mean, ε_max = ε_mean + κ h/2.
-    let curvature = if asked > 1.0 {
-        STRAIN * asked.sqrt() / BEAM
+    let curvature = if requested > 1.0 {
+        STRAIN * requested.sqrt() / BEAM
     } else {
-        STRAIN / (BEAM * (0.5 / asked + 0.5))
+        STRAIN / (BEAM * (0.5 / requested + 0.5))
     };
-    let pull = 0.5 * stiffness * BEAM * BEAM * curvature / asked;
+    let pull = 0.5 * stiffness * BEAM * BEAM * curvature / requested;
     let turn = curvature * BEAM;
     let reference = grid(rows, rows, BEAM, BEAM);
     let mut shell = reference.clone();
     let (sin, cos) = libm::sincos(turn);
-    for place in &mut shell.positions {
-        // The end on its plane, all between spread evenly.
-        place.x -= place.x / BEAM * (place.y - 0.5 * BEAM) * sin / cos;
+    for position in &mut shell.positions {
+        // The end lies on its plane; the displacement between is linear.
+        position.x -= position.x / BEAM * (position.y - 0.5 * BEAM) * sin / cos;
     }
     let normal = Vector3::new(cos, sin, 0.0);
     let end = nodes_where(&reference, |x| x.x >= BEAM);
@@ -59,28 +62,28 @@ fn bend(rig: &Rig, rows: u32, asked: f64) -> Result<[f64; 2], String> {
         held(foot, "y"),
         held(all, "z"),
     ];
-    let (state, _) = at_rest(rig, &FilmScene { supports, ..scene(shell, film) })?;
+    let (state, _) = equilibrium(rig, &FilmScene { supports, ..free_film(shell, film) })?;
     let (mut force, mut moment) = (0.0, 0.0);
     for node in wall {
-        let own = state.forces.x[node as usize];
-        force += own;
-        moment += own * (reference.positions[node as usize].y - 0.5 * BEAM);
+        let reaction = state.forces.x[node as usize];
+        force += reaction;
+        moment += reaction * (reference.positions[node as usize].y - 0.5 * BEAM);
     }
-    // Stretched fibres lie where the wall is pulled inward.
     let found = 0.5 * stiffness * BEAM * BEAM * curvature / force;
     Ok([found, (2.0 * moment / (force * BEAM)).abs()])
 }
 
-/// The bent strip.
+/// The strip in bending.
 pub fn beam(rig: &Rig) -> Outcome {
     let band = number("beam/band");
     let mut judged = Vec::new();
     for row in rows("beam") {
-        let (asked, expected) = (row[0], row[1]);
-        let values = [bend(rig, 8, asked)?, bend(rig, 16, asked)?, bend(rig, 32, asked)?];
+        let (requested, expected) = (row[0], row[1]);
+        let values =
+            [bend(rig, 8, requested)?, bend(rig, 16, requested)?, bend(rig, 32, requested)?];
         let errors = values.map(|[_, value]| value / expected - 1.0);
         judged.push(
-            Row::new(&format!("2M/(P h) at k {asked}"), values[2][1], expected, band)
+            Row::new(&format!("2M/(P h) at k {requested}"), values[2][1], expected, band)
                 .with_order(order(errors[1], errors[2]))
                 .with_errors(errors)
                 .with_note(&format!("k {:.6}", values[2][0])),
@@ -89,17 +92,17 @@ pub fn beam(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
-/// Torque and wrinkle radius of an annulus turned by this angle, rad.
+/// Torque and wrinkle radius of an annulus in torsion by this angle, rad; and a note.
 fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String> {
     let [inner, outer, outward] = ["inner_radius", "outer_radius", "outward"]
         .map(|key| number(&format!("annulus_torsion/{key}")));
     let around = 6 * rings;
-    let at = |k: u32| inner + (outer - inner) * f64::from(k) / f64::from(rings);
-    let shell = revolved(rings, around, true, |k| [at(k), 0.0]);
+    let radius = |k: u32| inner + (outer - inner) * f64::from(k) / f64::from(rings);
+    let shell = revolved(rings, around, true, |k| [radius(k), 0.0]);
     let mut pulled = shell.clone();
-    for place in &mut pulled.positions {
-        let r = place.norm();
-        *place *= 1.0 + outward / r * (r - inner) / (outer - inner);
+    for position in &mut pulled.positions {
+        let r = position.norm();
+        *position *= 1.0 + outward / r * (r - inner) / (outer - inner);
     }
     let motion = Motion {
         from: 0.0,
@@ -109,22 +112,23 @@ fn twist(rig: &Rig, rings: u32, angle: f64) -> Result<([f64; 2], String), String
         rotation: Some(Rotation { axis: Vector3::z(), centre: Vector3::zeros(), angle }),
     };
     let all: Vec<u32> = (0..(rings + 1) * around).collect();
-    let hub = FilmSupport { motion: Some(motion), ..held(ring(0, around), "xyz") };
-    let supports = vec![hub, held(ring(rings, around), "xyz"), held(all, "z")];
-    let (state, word) = at_rest(rig, &FilmScene { supports, ..scene(pulled, film()) })?;
+    let hub = FilmSupport { motion: Some(motion), ..held(ring_nodes(0, around), "xyz") };
+    let supports = vec![hub, held(ring_nodes(rings, around), "xyz"), held(all, "z")];
+    let (state, note) =
+        equilibrium(rig, &FilmScene { supports, ..free_film(pulled, Film::PAPER_ELASTIC) })?;
     let cells = around as usize * 2;
     let last = (0..rings as usize).rev().find(|ring| {
-        let own = ring * cells..(ring + 1) * cells;
-        let wrinkled = own.filter(|element| {
+        let elements = ring * cells..(ring + 1) * cells;
+        let wrinkled = elements.filter(|element| {
             resultants(&state.model, &state.positions, *element).regime != Regime::Taut
         });
         2 * wrinkled.count() > cells
     });
-    let wrinkle = last.map_or(inner, |ring| at(u32::try_from(ring + 1).unwrap_or(rings)));
-    Ok(([state.reactions[0].moment.z.abs(), wrinkle], word))
+    let wrinkle = last.map_or(inner, |ring| radius(u32::try_from(ring + 1).unwrap_or(rings)));
+    Ok(([state.reactions[0].moment.z.abs(), wrinkle], note))
 }
 
-/// The twisted annulus at four angles.
+/// The annulus at four angles.
 pub fn annulus_torsion(rig: &Rig) -> Outcome {
     let band = number("annulus_torsion/band");
     let [inner, outer] =
@@ -133,7 +137,7 @@ pub fn annulus_torsion(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for row in rows("annulus_torsion") {
         let (angle, torque, radius) = (row[0], row[1], row[2]);
-        let (values, word) = twist(rig, finest, angle)?;
+        let (values, note) = twist(rig, finest, angle)?;
         let errors = [
             twist(rig, finest / 4, angle)?.0[0] / torque - 1.0,
             twist(rig, finest / 2, angle)?.0[0] / torque - 1.0,
@@ -143,12 +147,12 @@ pub fn annulus_torsion(rig: &Rig) -> Outcome {
             Row::new(&format!("torque at {angle} rad, N m"), values[0], torque, band)
                 .with_order(order(errors[1], errors[2]))
                 .with_errors(errors)
-                .with_note(&word),
+                .with_note(&note),
         );
         let element = (outer - inner) / f64::from(finest);
         judged.push(
             Row::at_most(
-                &format!("wrinkle radius off at {angle} rad, elements"),
+                &format!("error of the wrinkle radius at {angle} rad, elements"),
                 (values[1] - radius).abs() / element,
                 1.0,
             )

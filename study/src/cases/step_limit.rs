@@ -1,23 +1,23 @@
-//! The longest stable step: that measured, that of the assembled stiffness, and the element bound.
+//! The longest stable step: measured, from the assembled stiffness, and from the element bound.
 //!
 //! ```text
 //! Δt = 2/ω_max                ω_max²: largest eigenvalue of M⁻¹K, by power iteration
 //! ω_max ≤ max ω_e             Rayleigh quotient: what the explicit step relies on
 //! ```
 //!
-//! K is put together here from the gradients of the reference, not by the solver; the measured
-//! limit is found by bisection on whether a small motion grows.
+//! K is assembled here from the gradients of the reference, not by the solver. The measured limit is
+//! found by bisection: a small motion grows beyond it.
 
+use billow_solver::geometry::shapes::{pseudo_random, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::{Matrix2x3, Vector2, Vector3};
 
 use super::reference::number;
-use super::rig::{film, scene};
-use super::shapes_dynamic::{pattern, sheet};
 use super::{Outcome, Rig, Row};
 
 /// The in-plane strain-displacement gradients of an element's reference, corner by corner.
@@ -33,7 +33,7 @@ fn gradients([a, b, c]: [Vector2<f64>; 3]) -> Matrix2x3<f64> {
 fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
     let nu = film.poisson_ratio;
     let k = film.youngs_modulus / (1.0 - nu * nu);
-    let mut mode = pattern(shell.positions.len(), 1);
+    let mut mode = pseudo_random(shell.positions.len(), 1);
     let mut value = 0.0;
     for _ in 0..4000 {
         let mut force = vec![Vector3::<f64>::zeros(); mode.len()];
@@ -50,8 +50,8 @@ fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
             let t = 0.5 * k * (1.0 - nu) * xy;
             for corner in 0..3 {
                 let (gx, gy) = (g[(0, corner)], g[(1, corner)]);
-                let own = Vector3::new(gx * sx + gy * t, gy * sy + gx * t, 0.0);
-                force[triangle[corner] as usize] += own * model.volume[element];
+                let nodal = Vector3::new(gx * sx + gy * t, gy * sy + gx * t, 0.0);
+                force[triangle[corner] as usize] += nodal * model.volume[element];
             }
         }
         let next: Vec<Vector3<f64>> =
@@ -63,12 +63,12 @@ fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
     value.sqrt()
 }
 
-/// Whether a small motion in the plane grows at this share of the step 2/ω.
-fn grows(rig: &Rig, shell: &Shell, film: &Film, share: f64, omega: f64) -> Result<bool, String> {
+/// Whether a small motion in the plane grows with this fraction of the step 2/ω.
+fn grows(rig: &Rig, shell: &Shell, film: &Film, fraction: f64, omega: f64) -> Result<bool, String> {
     let kick = |kick: &Vector3<f64>| Vector3::new(kick.x, kick.y, 0.0) * 1e-6;
-    let velocities = pattern(shell.positions.len(), 4).iter().map(kick).collect();
-    let mut moving = rig.start(&FilmScene { velocities, ..scene(shell.clone(), *film) })?;
-    moving.parameters.cfl = share * moving.model.largest_frequency() / omega;
+    let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();
+    let mut moving = rig.start(&FilmScene { velocities, ..free_film(shell.clone(), *film) })?;
+    moving.parameters.cfl = fraction * moving.model.largest_frequency() / omega;
     let target = 3000.0 * moving.stable_step();
     if moving.advance(target, &Phase::default()).is_err() {
         return Ok(true);
@@ -77,9 +77,9 @@ fn grows(rig: &Rig, shell: &Shell, film: &Film, share: f64, omega: f64) -> Resul
     Ok(fastest > 1e-3)
 }
 
-/// The three limits of uneven sheets.
+/// The limits of three uneven sheets.
 pub fn step_limit(rig: &Rig) -> Outcome {
-    let film = Film { compression: 1.0, ..film() };
+    let film = Film { compression: 1.0, ..Film::PAPER_ELASTIC };
     let mut judged = Vec::new();
     for (columns, rows, width, height) in [(4, 3, 0.2, 0.15), (6, 2, 0.1, 0.15), (3, 5, 0.4, 0.05)]
     {
@@ -89,7 +89,7 @@ pub fn step_limit(rig: &Rig) -> Outcome {
         let (mut stable, mut unstable) = (0.9, 1.1);
         if grows(rig, &shell, &film, stable, omega)? || !grows(rig, &shell, &film, unstable, omega)?
         {
-            return Err("the limit is not within a tenth of 2/omega_max".to_owned());
+            return Err("the limit is not between 0.9 and 1.1 of 2/omega_max".to_owned());
         }
         while unstable - stable > 1e-3 {
             let middle = 0.5 * (stable + unstable);

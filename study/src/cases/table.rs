@@ -1,8 +1,8 @@
-//! The table of cases.
+//! The table of reference cases.
 
 use super::{
-    Case, Outcome, Rig, Tier, capsule_run, contact_capsule, contact_meetings, contact_relaxed,
-    contact_rubbing, contact_stack, contact_tube, damping, drum, forces, gas_piston, gas_vessel,
+    Case, Outcome, Rig, Tier, contact_capsule, contact_impacts, contact_relaxed, contact_stack,
+    contact_tube, damping, drum, energy_balance, forces, friction_adhesion, gas_piston, gas_vessel,
     invariants, piston_model, sphere_motion, static_airbag, static_discs, static_end_state,
     static_polygon, static_shells, static_wrinkling, step_limit,
 };
@@ -15,7 +15,7 @@ const fn long(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outc
     Case { name, compares, tier: Tier::Long, body }
 }
 
-/// Every case, in the order they are told.
+/// Every case, in the order of the output.
 pub const CASES: &[Case] = &[
     quick(
         "tank_filling",
@@ -39,7 +39,7 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "injected_piston",
-        "way of a plate driven by a constant inflow into vacuum, with the self-similar solution",
+        "displacement of a plate driven by a constant inflow into vacuum, with the self-similar solution",
         gas_piston::injected_piston,
     ),
     quick(
@@ -77,7 +77,7 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "breathing_sphere",
-        "frequency of a sphere on adiabatic gas about its rest, with its linear equation",
+        "frequency of a sphere on adiabatic gas about its equilibrium, with its linear equation",
         sphere_motion::breathing_sphere,
     ),
     long(
@@ -87,7 +87,7 @@ pub const CASES: &[Case] = &[
     ),
     long(
         "released_sphere",
-        "turning points of a sphere let go unstretched, with a quadrature",
+        "turning points of a sphere released unstretched, with a quadrature",
         sphere_motion::released_sphere,
     ),
     quick(
@@ -100,15 +100,19 @@ pub const CASES: &[Case] = &[
         "speed of free flight under mass damping, with exp(-c t)",
         damping::free_flight,
     ),
-    quick("patch", "film under a uniform strain, with no force inside", invariants::patch),
+    quick(
+        "patch",
+        "film under a uniform strain, with zero force on inner nodes",
+        invariants::patch,
+    ),
     quick(
         "rigid_rotation",
-        "film turned and spun as a rigid body, with no strain, force or power",
+        "film in rigid rotation, with zero strain, force and power",
         invariants::rigid_rotation,
     ),
     quick(
         "momentum",
-        "momentum and moment of free film and gas over 1e5 steps, with those of the start",
+        "linear and angular momentum of free film and gas over 1e5 steps, with those at the start",
         invariants::momenta,
     ),
     quick(
@@ -123,12 +127,12 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "dissipation",
-        "power, net force and moment of viscosity, with the power told and nought",
+        "power of viscosity, with the reported power; its net force and moment, with zero",
         forces::dissipation,
     ),
     quick(
         "step_limit",
-        "measured limit of the step and element bound, with 2/omega_max of the assembled stiffness",
+        "measured limit of the step and the element bound, with 2/omega_max of the assembled stiffness",
         step_limit::step_limit,
     ),
     quick(
@@ -138,17 +142,17 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "sphere_ledger",
-        "energy of a sphere that meets every term at once, with its works",
-        capsule_run::sphere_ledger,
+        "energy of a sphere with every term of the equations, with the work done",
+        energy_balance::sphere_ledger,
     ),
     quick(
         "capsule_ledger",
-        "energy of the paper's capsule deployed without contact, with its works",
-        capsule_run::capsule_ledger,
+        "energy of the paper's capsule deployed without contact, with the work done",
+        energy_balance::capsule_ledger,
     ),
     quick(
         "static_sphere",
-        "stretch of a sphere at rest, with the closed form",
+        "stretch of a sphere in equilibrium, with the closed form",
         static_shells::sphere,
     ),
     quick(
@@ -193,12 +197,12 @@ pub const CASES: &[Case] = &[
     ),
     long(
         "end_state_pattern",
-        "sizes of the same on the pattern's own mesh, whose elements lie aslant",
+        "sizes of the same on the mesh of the fold pattern, whose elements lie oblique to the meridians",
         static_end_state::pattern,
     ),
     quick(
         "end_state_polygon",
-        "end state of the capsule as its design ends, n 5, with billow's own numbers",
+        "end state of the capsule with the caps of its design, n 5, with recorded results of billow",
         static_polygon::coarse,
     ),
     quick("end_state_polygon_fine", "the same, n 8", static_polygon::fine),
@@ -215,37 +219,37 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "films_at_50_m_s",
-        "two films shot at each other, with the sides they came from",
-        contact_meetings::films_at_50_m_s,
+        "two films that collide at 50 m/s: no node on the wrong side",
+        contact_impacts::films_at_50_m_s,
     ),
     quick(
         "squeezed_bag",
-        "a closed bag squeezed to a tenth of its height: nothing passes",
-        contact_meetings::squeezed_bag,
+        "a closed bag squeezed to a tenth of its height: no passage",
+        contact_impacts::squeezed_bag,
     ),
     quick(
         "dropped_sheet",
-        "a crumpled sheet thrown on a floor: nothing passes",
-        contact_meetings::dropped_sheet,
+        "a crumpled sheet thrown on a floor: no passage",
+        contact_impacts::dropped_sheet,
     ),
     quick(
         "friction",
-        "speed a sliding film loses, with Coulomb's mu g t",
-        contact_rubbing::friction,
+        "speed loss of a sliding film, with Coulomb's mu g t",
+        friction_adhesion::friction,
     ),
     quick(
         "adhesion",
-        "film pulled by less and by more than the pull-off pressure: holds, parts",
-        contact_rubbing::adhesion,
+        "film pulled below and above the pull-off pressure: it adheres, it separates",
+        friction_adhesion::adhesion,
     ),
     quick(
         "capsule_every_step",
-        "the coarsest capsule deployed with contact, every step audited: nothing passes",
+        "the coarsest capsule deployed with contact, every step monitored: no passage",
         contact_capsule::capsule_every_step,
     ),
     quick(
         "capsule_deployed",
-        "the paper's capsule deployed with contact, with what is known of its motion",
+        "the paper's capsule deployed with contact, with the ranges of other codes",
         contact_capsule::capsule_deployed,
     ),
     long(
@@ -260,7 +264,7 @@ pub const CASES: &[Case] = &[
     ),
     long(
         "deployed_equals_inflated",
-        "the folded capsule deployed and relaxed, with the erected one inflated statically",
+        "the folded capsule deployed and relaxed, with the static equilibrium of the erected one",
         contact_relaxed::deployed_equals_inflated,
     ),
     long(

@@ -52,7 +52,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             (_, true) => Effort::Full,
             _ => Effort::Usual,
         },
-        path: instruction_set::selected()?,
+        instruction_set: instruction_set::selected()?,
     };
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let report = bench::run(&plan, &stop, &mut |next| {

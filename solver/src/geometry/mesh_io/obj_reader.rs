@@ -264,16 +264,24 @@ mod tests {
 
     proptest! {
         #[test]
-        /// A text is refused at one of its lines, or it is a surface of existing vertices.
-        fn random_text_is_refused_at_a_line_or_read(text in "\\PC{0,200}") {
+        fn random_text_gives_a_valid_surface_or_an_error_with_its_line(text in "\\PC{0,200}") {
             match read(&text, 3) {
-                Ok(surface) => prop_assert!(surface.names.len() <= surface.faces.len()),
-                Err(error) => prop_assert!((1..=text.lines().count()).contains(&error.line)),
+                Ok(surface) => {
+                    let finite = |x: &Vector3<f64>| x.iter().all(|component| component.is_finite());
+                    prop_assert!(surface.vertices.iter().all(finite));
+                    let count = if surface.vertices.is_empty() { 3 } else { surface.vertices.len() };
+                    let mut corners = surface.faces.iter().flat_map(|face| &face.corners);
+                    prop_assert!(corners.all(|corner| (*corner as usize) < count));
+                }
+                Err(error) => {
+                    prop_assert!((1..=text.lines().count() + 1).contains(&error.line), "{error}");
+                    prop_assert!(!error.problem.is_empty() && !error.allowed.is_empty());
+                }
             }
         }
 
         #[test]
-        fn faces_of_random_obj_text_refer_to_existing_vertices(
+        fn text_similar_to_obj_gives_a_valid_surface_or_an_error(
             text in "((v|f|g|o|#|vn|\\\\)[ \t]?(-?[0-9]{0,20}[/.e]?){0,5}[ \\\\\r]?\n?){0,20}"
         ) {
             if let Ok(surface) = read(&text, 3) {

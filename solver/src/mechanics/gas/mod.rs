@@ -182,19 +182,12 @@ impl Gas {
 mod tests {
     use super::*;
     use crate::scene::Species;
+    use crate::scene::paper::nitrogen_supply;
 
-    const NITROGEN: Species = Species { gas_constant: 296.803_052, cp: 1_038.810_68 };
+    const NITROGEN: Species = Species::NITROGEN;
 
     fn gas(heat_transfer: HeatTransfer, leak_area: f64) -> Gas {
-        let supply = GasSupply {
-            species: NITROGEN,
-            initial_mass: 0.0,
-            windows: Vec::new(),
-            ambient_pressure: 0.0,
-            heat_transfer,
-            leak_area,
-            discharge_coefficient: 0.6,
-        };
+        let supply = GasSupply { heat_transfer, leak_area, ..nitrogen_supply() };
         Gas::new(&supply, 293.0, 2.0)
     }
 

@@ -156,18 +156,11 @@ fn implicit_share(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{GasSupply, Species};
+    use crate::scene::GasSupply;
+    use crate::scene::paper::nitrogen_supply;
 
     fn gas(heat_transfer: HeatTransfer, leak_area: f64) -> Gas {
-        let supply = GasSupply {
-            species: Species { gas_constant: 296.803_052, cp: 1_038.810_68 },
-            initial_mass: 0.0,
-            windows: Vec::new(),
-            ambient_pressure: 0.0,
-            heat_transfer,
-            leak_area,
-            discharge_coefficient: 0.6,
-        };
+        let supply = GasSupply { heat_transfer, leak_area, ..nitrogen_supply() };
         Gas::new(&supply, 293.0, 2.0)
     }
 

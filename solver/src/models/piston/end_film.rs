@@ -158,15 +158,21 @@ fn log_mean(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Film;
     use proptest::prelude::*;
 
+    /// Young's modulus times thickness of the paper's film, N/m.
+    const STIFFNESS: f64 = Film::PAPER.youngs_modulus * Film::PAPER.thickness;
+
     fn film(bottom: f64, top: f64) -> EndFilm {
-        EndFilm::of_cone((bottom, top), 1.0, (3.45e9, 25.4e-6), 0.1, 0.07)
+        let film = Film::PAPER;
+        let modulus = (film.youngs_modulus, film.thickness);
+        EndFilm::of_cone((bottom, top), 1.0, modulus, film.viscosity, 0.07)
     }
 
     #[test]
     fn the_stiffness_of_a_cone_tends_to_that_of_a_cylinder() {
-        let cylinder = 2.0 * PI * 0.5 * 3.45e9 * 25.4e-6;
+        let cylinder = 2.0 * PI * 0.5 * STIFFNESS;
         assert!((film(0.5, 0.5).stiffness / cylinder - 1.0).abs() < 1e-15);
         for gap in [1e-15, 1e-12, 1e-9, 1e-6] {
             let stiffness = film(0.5, 0.5 * (1.0 - gap)).stiffness;
@@ -177,7 +183,7 @@ mod tests {
     #[test]
     fn the_stiffness_of_a_cone_is_that_of_its_strips_in_series() {
         // Energy of a unit axial force, by the midpoint rule over the height.
-        let (bottom, top, modulus) = (0.5, 0.2, 3.45e9 * 25.4e-6);
+        let (bottom, top, modulus) = (0.5, 0.2, STIFFNESS);
         let cos = 1.0 / (1.0 + 0.3 * 0.3_f64).sqrt();
         let n = 20_000;
         let compliance: f64 = (0..n)

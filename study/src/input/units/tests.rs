@@ -127,10 +127,19 @@ proptest! {
     }
 
     #[test]
-    fn random_text_never_panics(text in "\\PC{0,40}", number in "[-+0-9.eE]{0,12}") {
+    fn random_text_gives_a_finite_number_or_an_error(
+        text in "\\PC{0,40}",
+        number in "[-+0-9.eE]{0,12}",
+    ) {
         for dimension in Dimension::ALL {
-            let _ = parse(&text, dimension);
-            let _ = parse(&format!("{number} {text}"), dimension);
+            for text in [text.clone(), format!("{number} {text}")] {
+                match parse(&text, dimension) {
+                    Ok(value) => prop_assert!(value.is_finite(), "{text:?}: {value}"),
+                    Err(error) => {
+                        prop_assert!(!error.problem.is_empty() && !error.allowed.is_empty());
+                    }
+                }
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `billow validate`: rows, names, tiers, exit codes; the quick tier itself.
+//! `billow validate`: rows, names, tiers, exit codes.
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
@@ -9,7 +9,7 @@ use billow_study::cli::{Format, validate};
 use billow_study::platform::exit_code::Exit;
 use serde_json::Value;
 
-use crate::resume::signal;
+use crate::interruption::signal;
 
 const KEYS: [&str; 10] =
     ["case", "quantity", "value", "reference", "error", "order", "band", "pass", "seconds", "note"];
@@ -23,18 +23,18 @@ fn rows(output: &Output) -> Vec<Value> {
     serde_json::from_slice(&output.stdout).expect("a JSON array of rows")
 }
 
-fn said(output: &Output) -> String {
+fn stderr_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The whole quick tier is run by `make test`, all of it by `make test-all`.
+/// `make test` runs the whole quick tier, `make test-all` every case.
 #[test]
-fn rows_stand_in_the_tables_order_and_long_cases_are_skipped() {
+fn rows_are_in_table_order_and_quick_skips_long_cases() {
     let names = ["free_flight_damping", "released_sphere", "tank_filling", "injected_piston"];
     let flags: Vec<&str> = names.iter().flat_map(|name| ["--case", name]).collect();
     let output = billow(&[&flags[..], &["--quick", "--json", "--threads", "2"]].concat());
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{text}\n{}", said(&output));
+    assert_eq!(output.status.code(), Some(0), "{text}\n{}", stderr_of(&output));
     let rows = rows(&output);
     for row in &rows {
         let keys: Vec<&String> = row.as_object().expect("an object").keys().collect();
@@ -43,23 +43,23 @@ fn rows_stand_in_the_tables_order_and_long_cases_are_skipped() {
         assert!(row["pass"] == true && row["value"].is_number() && row["seconds"].is_number());
         assert!(row["error"].as_f64() <= row["band"].as_f64(), "{row}");
     }
-    let mut told: Vec<&str> = rows.iter().filter_map(|row| row["case"].as_str()).collect();
-    told.dedup();
-    assert_eq!(told, ["tank_filling", "injected_piston", "free_flight_damping"]);
+    let mut cases: Vec<&str> = rows.iter().filter_map(|row| row["case"].as_str()).collect();
+    cases.dedup();
+    assert_eq!(cases, ["tank_filling", "injected_piston", "free_flight_damping"]);
     let piston = rows.iter().find(|row| row["case"] == "injected_piston").expect("its row");
     assert_eq!((&piston["band"], &piston["reference"]), (&1e-6.into(), &1.139_523_301.into()));
     assert!(piston["order"].as_f64() >= Some(1.9), "{piston}");
-    let error = said(&output);
+    let error = stderr_of(&output);
     assert!(error.contains("skipped by --quick: released_sphere"), "{error}");
     assert!(CASES.iter().any(|case| case.name == "released_sphere" && case.tier == Tier::Long));
 }
 
 #[test]
-fn cases_are_asked_for_by_name() {
-    // In the table's order, and once, however they are asked for.
+fn cases_are_selected_by_name() {
+    // In table order, and once, in whatever order they are named.
     let flags = ["--case", "shear_panel", "--case", "patch", "--case", "patch", "--json", "-q"];
     let output = billow(&flags);
-    assert!(output.status.success(), "{}", said(&output));
+    assert!(output.status.success(), "{}", stderr_of(&output));
     assert!(output.stderr.is_empty());
     let rows = rows(&output);
     let names: Vec<&str> = rows.iter().filter_map(|row| row["case"].as_str()).collect();
@@ -72,7 +72,7 @@ fn cases_are_asked_for_by_name() {
     let table = billow(&["--case", "patch"]);
     let text = String::from_utf8_lossy(&table.stdout).into_owned();
     assert!(text.starts_with("case ") && text.contains("billow") && text.contains("yes"), "{text}");
-    assert!(said(&table).contains("1/1 patch: in tolerance"));
+    assert!(stderr_of(&table).contains("1/1 patch: in tolerance"));
     let csv = billow(&["--case", "patch", "--format", "csv", "-q"]);
     assert!(String::from_utf8_lossy(&csv.stdout).starts_with(&KEYS.join(",")));
 }
@@ -82,7 +82,7 @@ fn an_unknown_case_is_bad_input() {
     let output = billow(&["--case", "shear_pannel"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
-    let error = said(&output);
+    let error = stderr_of(&output);
     assert!(error.contains("--case = shear_pannel: unknown case"), "{error}");
     assert!(error.contains("did you mean shear_panel?"), "{error}");
     assert!(CASES.iter().all(|case| error.contains(case.name)), "{error}");
@@ -90,7 +90,7 @@ fn an_unknown_case_is_bad_input() {
 }
 
 #[test]
-fn the_list_runs_nothing() {
+fn list_runs_nothing() {
     let output = billow(&["--list", "--json"]);
     let rows = rows(&output);
     assert_eq!(rows.len(), CASES.len());
@@ -102,13 +102,13 @@ fn the_list_runs_nothing() {
 }
 
 #[test]
-fn a_case_out_of_band_is_told_and_ends_in_exit_code_1() {
+fn a_case_out_of_band_gives_exit_code_1() {
     let case = CASES.iter().find(|case| case.name == "shear_panel").expect("the case");
     let fault = Fault { term: Term::WrinkledModulus, factor: 1.01 };
     let judged =
-        [case.run(&Rig { mutation: Some(fault), ..Rig::default() }), case.run(&Rig::default())];
+        [case.run(&Rig { fault: Some(fault), ..Rig::default() }), case.run(&Rig::default())];
     let mut out = Vec::new();
-    validate::print(&judged, Format::Json, &mut out).expect("a Vec takes all");
+    validate::print(&judged, Format::Json, &mut out).expect("a Vec accepts all bytes");
     let rows: Vec<Value> = serde_json::from_slice(&out).expect("JSON");
     assert_eq!((&rows[0]["pass"], &rows[1]["pass"]), (&Value::Bool(false), &Value::Bool(true)));
     assert!(rows[0]["error"].as_f64() > Some(5e-3));
@@ -121,17 +121,17 @@ fn a_case_out_of_band_is_told_and_ends_in_exit_code_1() {
 #[test]
 fn rows_are_the_same_with_one_thread_and_two() {
     let few: Vec<&cases::Case> = CASES.iter().filter(|case| case.name.contains("piston")).collect();
-    let told = |threads: usize| {
+    let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let judged = cases::run_all(&pool, &few, &Rig::default(), &|_| ());
         judged.into_iter().map(|case| (case.name, case.rows)).collect::<Vec<_>>()
     };
-    assert_eq!(told(1), told(2));
+    assert_eq!(run(1), run(2));
 }
 
 #[test]
-fn a_signal_leaves_what_is_judged() {
-    // The second takes many times as long as the first.
+fn a_signal_keeps_the_finished_rows() {
+    // The second case takes many times as long as the first.
     let flags =
         ["validate", "--case", "patch", "--case", "deployed_equals_inflated_fine", "--json"];
     let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
@@ -139,13 +139,13 @@ fn a_signal_leaves_what_is_judged() {
     let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = child.expect("the binary runs");
     let mut stderr = BufReader::new(child.stderr.take().expect("piped"));
-    let mut told = String::new();
-    stderr.read_line(&mut told).expect("a line");
-    assert!(told.starts_with("billow: 1/2 patch: in tolerance"), "{told}");
+    let mut error = String::new();
+    stderr.read_line(&mut error).expect("a line");
+    assert!(error.starts_with("billow: 1/2 patch: in tolerance"), "{error}");
     signal(&child, "-INT");
-    stderr.read_to_string(&mut told).expect("its last words");
+    stderr.read_to_string(&mut error).expect("the remaining output");
     let output = child.wait_with_output().expect("a child");
-    assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("stopped by signal 2; 1 of 2 cases finished"), "{told}");
+    assert_eq!(output.status.code(), Some(130), "{error}");
+    assert!(error.contains("stopped by signal 2; 1 of 2 cases finished"), "{error}");
     assert!(rows(&output).iter().all(|row| row["case"] == "patch"));
 }

@@ -1,4 +1,4 @@
-//! The paper's capsule as a piston: against what finer models say of it, and its typed ends.
+//! The paper's capsule as a piston: bands from finer models, failures, invalid scenes.
 
 use std::time::Instant;
 
@@ -9,15 +9,16 @@ use billow_solver::output::measures::Verdict;
 use billow_solver::output::outcome::{FailureKind, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
-use billow_solver::scene::{HeatTransfer, Scene, Stepping, Support, SupportLocation};
+use billow_solver::scene::paper::{self, window};
+use billow_solver::scene::{
+    Film, HeatTransfer, Scene, Species, Stepping, Support, SupportLocation,
+};
 
 use crate::geometry::{paper_height, solved};
-use crate::rig::{PAPER_FILM, paper_scene, run, window};
+use crate::rig::{paper_scene, run};
 
 fn injected() -> Scene {
-    let mut scene = paper_scene();
-    scene.gas.windows = vec![window(0.0, 1.5, 0.005)];
-    scene
+    paper::capsule(5, 0.5)
 }
 
 fn burst() -> Scene {
@@ -27,28 +28,28 @@ fn burst() -> Scene {
     scene
 }
 
-/// The top cap and the lateral film by the closed form of a cone with ξ linear in height:
-/// ∫ξ² r dz over ∫ r dz. The developed film is the cone's own surface, a facet's ξ is linear in the
-/// developed plane rather than in height, so they agree to a few per cent only.
+/// Top cap and lateral film by the closed form of a cone with ξ linear in height: ∫ξ² r dz over
+/// ∫ r dz. A facet's ξ is linear in the developed plane rather than in height, so both agree to a few
+/// per cent only.
 #[test]
-fn moving_mass_is_that_of_the_cap_and_a_third_of_the_side() {
+fn the_moving_mass_matches_the_closed_form_of_the_cone() {
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
     let pattern = solved(&paper_scene().design);
     let (r2, r1) = (0.5, 0.365);
     let share = (r2 / 3.0 + (r1 - r2) / 4.0) / (0.5 * (r1 + r2));
     let expected =
-        PAPER_FILM.area_density() * (pattern.cap_area(3) + share * pattern.lateral_area());
+        Film::PAPER.area_density() * (pattern.cap_area(3) + share * pattern.lateral_area());
     let mass = run.piston().mass;
     println!("moving mass {mass}, cone {expected}");
     assert!((mass / expected - 1.0).abs() < 0.05, "{mass} {expected}");
 }
 
-/// Physics notes, section 6: full model, 5 g/s from 0: 0.5 m at 0.03-0.035 s, 0.9 m at 0.055 s,
-/// peak 21-22 m/s, 18-20 J. The rung's promise: times within 25 %. A lone mass cannot spend energy
-/// on twist, folds and film viscosity, so its speed and kinetic energy are upper bounds: at most
-/// 75 % and 60 % above the film's (measured 65-73 % and 42-58 %).
+/// The film model at 5 g/s: 0.5 m at 0.03 to 0.035 s, 0.9 m at 0.055 s, peaks of 21 to 22 m/s and 18
+/// to 20 J. The piston model gives times within 25 %. A lone mass has no twist, folds or film
+/// viscosity, so its speed and kinetic energy are upper bounds: at most 75 % and 60 % above those of
+/// the film.
 #[test]
-fn five_grams_a_second_within_the_rungs_bands() {
+fn deployment_at_5_g_per_s_is_within_the_bands_of_the_piston_model() {
     let start = Instant::now();
     let deployment = run(&injected());
     let wall = start.elapsed();
@@ -69,14 +70,15 @@ fn five_grams_a_second_within_the_rungs_bands() {
 }
 
 #[test]
-fn residual_gas_deploys_and_warms() {
+fn residual_gas_reaches_the_temperature_of_the_film() {
     let start = Instant::now();
     let deployment = run(&burst());
     println!("burst: {:?}, steps {}", start.elapsed(), deployment.steps);
     assert_eq!(deployment.stop, Stop::Done);
     let m = &deployment.measures;
     // 0.05 g at film temperature in V: p = m R T/V.
-    let pressure = 5e-5 * 296.803_052 * m.final_temperature.unwrap() / m.final_volume.unwrap();
+    let pressure = 5e-5 * Species::NITROGEN.gas_constant * m.final_temperature.unwrap()
+        / m.final_volume.unwrap();
     assert!((m.final_pressure.unwrap() / pressure - 1.0).abs() < 1e-12);
     // h A/(m cv) = 31 1/s: at film temperature long before the end.
     assert!((m.final_temperature.unwrap() - 293.0).abs() < 1.0, "{:?}", m.final_temperature);
@@ -122,12 +124,12 @@ fn the_lid_holds_until_release() {
 }
 
 #[test]
-fn on_the_ground_gravity_and_air_are_in_the_ledger() {
+fn the_ledger_includes_gravity_and_ambient_pressure() {
     let mut scene = injected();
     scene.gravity = -9.806_65;
     scene.gas.ambient_pressure = 1e5;
     // Air inside at the pressure outside.
-    scene.gas.initial_mass = 1e5 * 0.015_12 / (296.803_052 * 293.0);
+    scene.gas.initial_mass = 1e5 * 0.015_12 / (Species::NITROGEN.gas_constant * 293.0);
     scene.gas.windows = vec![window(0.0, 1.0, 0.5)];
     scene.gas.heat_transfer = HeatTransfer::Isothermal;
     scene.solver.end_time = 2.0;
@@ -140,7 +142,7 @@ fn on_the_ground_gravity_and_air_are_in_the_ledger() {
 }
 
 #[test]
-fn stops_are_typed() {
+fn failures_have_their_kind() {
     let kind = |scene: &Scene| match run(scene).stop {
         Stop::Failed(failure) => failure,
         other => panic!("{other:?}"),
@@ -150,7 +152,7 @@ fn stops_are_typed() {
     assert_eq!(kind(&few).kind, FailureKind::StepLimit);
     assert_eq!(run(&few).measures.verdict, None);
 
-    // Nothing inside and weight on top: it falls through its own stack.
+    // Without gas, gravity pulls the top through the stowed stack.
     let mut falls = paper_scene();
     falls.gravity = -9.806_65;
     let failure = kind(&falls);
@@ -181,7 +183,7 @@ fn an_observer_can_stop_a_run() {
 }
 
 #[test]
-fn what_a_piston_cannot_do_is_refused_by_key() {
+fn invalid_piston_scenes_name_their_key() {
     let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
         let mut scene = injected();
         change(&mut scene);
@@ -230,7 +232,7 @@ fn what_a_piston_cannot_do_is_refused_by_key() {
 }
 
 #[test]
-fn the_reference_stretches_a_little_with_pressure() {
+fn the_reference_height_rises_with_pressure() {
     use billow_solver::models::run::Model;
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
     let reference = run.reference().expect("a capsule has one");
@@ -242,7 +244,7 @@ fn the_reference_stretches_a_little_with_pressure() {
 
 /// Every feasible design of a folds grid has a stroke, and deploys on 5 g/s.
 #[test]
-fn every_feasible_design_of_a_grid_runs() {
+fn every_feasible_design_of_a_grid_deploys() {
     let mut feasible = 0;
     for panels in [4, 5, 6, 8, 12] {
         for storeys in [1, 2, 3, 4, 6] {

@@ -1,15 +1,16 @@
-//! Contact through `billow solve`: scenes that touch, plates, the lid, and what is refused.
+//! Contact in `billow solve`: film on film, plates, the lid, and invalid contact.
 
 use std::fmt::Write as _;
 
+use billow_solver::scene::Film;
 use billow_study::store::history_file;
 use serde_json::{Value, json};
 
-use crate::solving::{desk, done, number, solve};
+use crate::solve::{done, number, scene_folder, solve};
 use crate::support::stderr;
 
-/// The paper's capsule, coarse, for a short while.
-fn capsule(more: &Value) -> Value {
+/// The paper's capsule on a coarse mesh for 20 ms, with changed keys.
+fn capsule(changes: &Value) -> Value {
     let mut scene = json!({
         "design": {
             "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": 1,
@@ -19,7 +20,7 @@ fn capsule(more: &Value) -> Value {
         "gas": {"windows": [{"from": 0, "mass_flow_rate": "5 g/s"}]},
         "solver": {"end_time": "20 ms"},
     });
-    for (key, value) in more.as_object().expect("an object") {
+    for (key, value) in changes.as_object().expect("an object") {
         scene[key] = value.clone();
     }
     scene
@@ -44,8 +45,8 @@ fn sheet(height: f64) -> String {
 }
 
 #[test]
-fn a_folded_capsule_meets_itself_and_says_so() {
-    let folder = desk(&capsule(&json!({})), &[]);
+fn a_folded_capsule_reports_its_contact() {
+    let folder = scene_folder(&capsule(&json!({})), &[]);
     let summary = done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
     assert_eq!(summary["status"], "done");
     assert_eq!((number(&summary, "/passages"), number(&summary, "/intersections")), (0.0, 0.0));
@@ -72,18 +73,18 @@ fn a_folded_capsule_meets_itself_and_says_so() {
         assert!(stored.tracks.contains_key(name), "{name}");
     }
 
-    // Film that passes through film is counted nowhere, and told.
-    let free = ["scene.json", "--set", "contact.enabled=false"];
-    let output = solve(folder.path(), &free, "");
+    // Without contact, passages are not counted; a message says so.
+    let without_contact = ["scene.json", "--set", "contact.enabled=false"];
+    let output = solve(folder.path(), &without_contact, "");
     assert!(stderr(&output).contains("contact is off: film passes through film"));
     let summary: Value = serde_json::from_slice(&output.stdout).expect("a summary");
     assert!(summary["passages"].is_null() && summary["contact"].is_null());
 }
 
 #[test]
-fn a_packed_capsule_presses_on_its_lid_until_it_is_let_go() {
+fn a_packed_capsule_presses_on_its_lid_until_release() {
     let packed = json!({"release_time": "10 ms"});
-    let folder = desk(&capsule(&packed), &[]);
+    let folder = scene_folder(&capsule(&packed), &[]);
     done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
     let stored = history_file::read(&folder.path().join("a.h5")).expect("a history");
     let (time, force) = (stored.history.column("time"), stored.history.column("lid_force"));
@@ -91,13 +92,13 @@ fn a_packed_capsule_presses_on_its_lid_until_it_is_let_go() {
     let pressed: f64 = time.iter().zip(force).filter(|(t, _)| **t < 0.01).map(|(_, f)| *f).sum();
     assert!(pressed > 1.0);
     assert!(time.iter().zip(force).all(|(t, f)| *t < 0.01 || *f == 0.0));
-    // It stays under the lid, and rises when that is gone.
-    let packed = |limit: f64| time.iter().zip(height).all(|(t, z)| *t > limit || *z < 0.044);
-    assert!(packed(0.01) && !packed(0.02));
+    // The film stays under the lid until release and rises afterwards.
+    let below_lid = |limit: f64| time.iter().zip(height).all(|(t, z)| *t > limit || *z < 0.044);
+    assert!(below_lid(0.01) && !below_lid(0.02));
 }
 
 #[test]
-fn film_comes_to_rest_on_a_plate_with_its_weight() {
+fn the_force_on_a_plate_is_the_weight_of_the_film() {
     let plate = json!({"name": "floor", "point": [0, 0, 0], "normal": [0, 0, 2]});
     let scene = json!({
         "mesh": {"positions": "sheet.obj"},
@@ -107,12 +108,12 @@ fn film_comes_to_rest_on_a_plate_with_its_weight() {
         "solver": {"end_time": "0.3 s", "mass_damping": 100},
         "outputs": {"sample_interval": "10 ms"},
     });
-    // Let fall from 4 mm, and from almost nothing.
+    // Released at 4 mm, and just above the plate.
     for height in [0.004, 1e-6] {
-        let folder = desk(&scene, &[("sheet.obj", &sheet(height))]);
+        let folder = scene_folder(&scene, &[("sheet.obj", &sheet(height))]);
         let summary = done(folder.path(), &["scene.json", "-q"], "");
         // 0.2 m square.
-        let weight = 0.04 * 1400.0 * 25.4e-6 * 10.0;
+        let weight = 0.04 * Film::PAPER.area_density() * 10.0;
         let force = number(&summary, "/contact/plates/floor");
         assert!((force / weight - 1.0).abs() < 0.01, "{force} of {weight}");
         assert!(number(&summary, "/extents/z/0") > 0.0);
@@ -120,7 +121,7 @@ fn film_comes_to_rest_on_a_plate_with_its_weight() {
 }
 
 #[test]
-fn what_cannot_touch_is_refused_or_told() {
+fn invalid_contact_is_refused_or_reported() {
     let two = format!("{}{}", sheet(0.0), sheet(0.0).replace("f ", "#"));
     let twice = two.clone() + "f 10 11 14\nf 10 14 13\n";
     let mesh = json!({"mesh": {"positions": "sheet.obj"}, "solver": {"end_time": "1 ms"}});
@@ -128,10 +129,10 @@ fn what_cannot_touch_is_refused_or_told() {
     let with = |key: &str, value: Value| {
         let mut scene = mesh.clone();
         scene[key] = value;
-        let folder = desk(&scene, &files);
+        let folder = scene_folder(&scene, &files);
         solve(folder.path(), &["scene.json"], "")
     };
-    // Film on film has no side: by default it passes, and says so.
+    // Film that lies on film has no side: by default contact is off, with a note.
     let output = with("gravity", json!(0));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("film lies on film at the start"));
@@ -158,13 +159,15 @@ fn what_cannot_touch_is_refused_or_told() {
         (json!({"distance": "-1 mm"}), "contact.distance"),
         (json!({"distnce": "1 mm"}), "did you mean distance?"),
     ];
-    for (contact, said) in refused {
+    for (contact, message) in refused {
         let output = with("contact", contact);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(stderr(&output).contains(said), "{said}: {}", stderr(&output));
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
     }
-    let folder =
-        desk(&capsule(&json!({"gas": {"pressure": 10}, "contact": {"enabled": true}})), &[]);
+    let folder = scene_folder(
+        &capsule(&json!({"gas": {"pressure": 10}, "contact": {"enabled": true}})),
+        &[],
+    );
     let output = solve(folder.path(), &["scene.json", "--set", "solver.static=true"], "");
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("a state of rest is looked for without contact"));

@@ -1,4 +1,4 @@
-//! `billow run` and `billow table` as a user meets them.
+//! `billow run`, `billow table` and `billow plan`: output, exit codes, files.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -6,12 +6,12 @@ use std::io::{BufRead, BufReader};
 use billow_study::bench::machine;
 use serde_json::json;
 
-use crate::support::{Desk, ran, small_grid, stderr};
+use crate::support::{TestFolder, ran, small_grid, stderr};
 
 #[test]
-fn a_study_runs_and_says_what_came_of_it() {
-    let desk = Desk::new(&small_grid());
-    let output = desk.run(&["run", "grid.json"]);
+fn a_study_runs_and_reports_its_results() {
+    let folder = TestFolder::new(&small_grid());
+    let output = folder.run(&["run", "grid.json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let said = String::from_utf8(output.stdout.clone()).unwrap();
     assert!(said.starts_with("grid: 16 jobs run, 24 points\n"), "{said}");
@@ -21,9 +21,9 @@ fn a_study_runs_and_says_what_came_of_it() {
     let progress = stderr(&output);
     assert!(progress.contains("16 jobs, 0 finished, 16 to run"), "{progress}");
     assert!(progress.contains("16 of 16 jobs finished, 0 failed"), "{progress}");
-    assert!(!progress.contains('\u{1b}'), "no control characters off a terminal");
+    assert!(!progress.contains('\u{1b}'), "no control characters without a terminal");
 
-    let rows = desk.rows("results/grid");
+    let rows = folder.rows("results/grid");
     assert_eq!(rows.len(), 24);
     for row in &rows {
         let done = row["status"] == "done";
@@ -34,7 +34,7 @@ fn a_study_runs_and_says_what_came_of_it() {
                 assert!(row[column].as_f64().unwrap() > 0.0, "{column}: {row}");
             }
             assert!(["deployed", "partial", "stalled"].contains(&row["verdict"].as_str().unwrap()));
-            assert!(row["passages"].is_null(), "a piston has no film to pass");
+            assert!(row["passages"].is_null(), "a piston has no film");
             assert!(row["ledger_residual"].as_f64().unwrap() < 1e-3, "{row}");
         } else {
             assert!(!row["reason"].as_str().unwrap().is_empty());
@@ -47,14 +47,14 @@ fn a_study_runs_and_says_what_came_of_it() {
     assert_eq!(
         order[6],
         (json!(6), json!(2)),
-        "axes in the order of the file, the last one fastest"
+        "axes are in the order of the file, the last one varies fastest"
     );
 }
 
 #[test]
-fn a_quiet_run_says_nothing_on_stderr_and_json_is_json() {
-    let desk = Desk::new(&small_grid());
-    let output = desk.run(&["run", "grid.json", "-q", "--json", "--threads", "1"]);
+fn a_quiet_run_leaves_stderr_empty_and_prints_json() {
+    let folder = TestFolder::new(&small_grid());
+    let output = folder.run(&["run", "grid.json", "-q", "--json", "--threads", "1"]);
     assert_eq!(stderr(&output), "");
     let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(summary["ran"], 16);
@@ -62,16 +62,16 @@ fn a_quiet_run_says_nothing_on_stderr_and_json_is_json() {
 }
 
 #[test]
-fn failed_jobs_end_in_exit_code_1_and_stay_rows() {
+fn failed_jobs_give_exit_code_1_and_rows() {
     let mut study = small_grid();
     study["solver"]["step_limit"] = json!(3);
-    let desk = Desk::new(&study);
+    let folder = TestFolder::new(&study);
     for _ in 0..2 {
-        let output = desk.run(&["run", "grid.json", "-q"]);
+        let output = folder.run(&["run", "grid.json", "-q"]);
         assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
         assert!(stderr(&output).contains("16 jobs failed\n  next: billow table results/grid"));
     }
-    let rows = desk.rows("results/grid");
+    let rows = folder.rows("results/grid");
     let failed: Vec<_> = rows.iter().filter(|row| row["status"] == "step_limit").collect();
     assert_eq!(failed.len(), 16);
     assert!(
@@ -81,10 +81,10 @@ fn failed_jobs_end_in_exit_code_1_and_stay_rows() {
 }
 
 #[test]
-fn the_table_is_picked_sorted_and_filtered() {
-    let desk = Desk::new(&small_grid());
-    desk.run(&["run", "grid.json", "-q"]);
-    let csv = |more: &[&str]| desk.stdout(&[&["table", "--format", "csv"], more].concat());
+fn table_selects_sorts_and_filters() {
+    let folder = TestFolder::new(&small_grid());
+    folder.run(&["run", "grid.json", "-q"]);
+    let csv = |more: &[&str]| folder.stdout(&[&["table", "--format", "csv"], more].concat());
     let picked =
         csv(&["--columns", "N,M,status", "--where", "N == 6 and residual_gas_mass > '0.01 g'"]);
     assert_eq!(picked.lines().count(), 7, "{picked}");
@@ -96,20 +96,20 @@ fn the_table_is_picked_sorted_and_filtered() {
     let nulls_last = csv(&["--columns", "status", "--sort", "final_volume:desc"]);
     assert!(nulls_last.trim_end().ends_with("infeasible"));
 
-    for table in [desk.stdout(&["table"]), desk.stdout(&["table", "grid.json"])] {
+    for table in [folder.stdout(&["table"]), folder.stdout(&["table", "grid.json"])] {
         assert_eq!(table.lines().count(), 25);
         assert!(table.lines().all(|line| line.chars().count() <= 120), "{table}");
         let header = table.lines().next().unwrap();
         assert!(header.starts_with("job ") && header.contains("  status "), "{header}");
     }
-    let all = desk.stdout(&["table", "results/grid", "--columns", "all", "--format", "csv"]);
+    let all = folder.stdout(&["table", "results/grid", "--columns", "all", "--format", "csv"]);
     assert_eq!(all, csv(&[]));
 }
 
 #[test]
-fn wrong_columns_conditions_and_folders_are_refused_with_exit_code_2() {
-    let desk = Desk::new(&small_grid());
-    desk.run(&["run", "grid.json", "-q"]);
+fn invalid_columns_conditions_and_folders_give_exit_code_2() {
+    let folder = TestFolder::new(&small_grid());
+    folder.run(&["run", "grid.json", "-q"]);
     for (arguments, expected) in [
         (&["table", "--columns", "final_volum"][..], "did you mean final_volume?"),
         (&["table", "--sort", "N:up"], "unknown direction"),
@@ -120,7 +120,7 @@ fn wrong_columns_conditions_and_folders_are_refused_with_exit_code_2() {
         (&["run", "missing.json"], "missing.json"),
         (&["completions", "cobol"], "possible values"),
     ] {
-        let output = desk.run(arguments);
+        let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
         assert!(output.stdout.is_empty());
@@ -128,11 +128,11 @@ fn wrong_columns_conditions_and_folders_are_refused_with_exit_code_2() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
-    let desk = Desk::new(&small_grid());
-    desk.run(&["run", "grid.json", "-q"]);
+fn a_closed_output_pipe_is_no_error() {
+    let folder = TestFolder::new(&small_grid());
+    folder.run(&["run", "grid.json", "-q"]);
     let mut child =
-        desk.billow(&["table", "--columns", "all", "--format", "json"]).spawn().unwrap();
+        folder.billow(&["table", "--columns", "all", "--format", "json"]).spawn().unwrap();
     let mut line = String::new();
     BufReader::with_capacity(1, child.stdout.take().unwrap()).read_line(&mut line).unwrap();
     assert_eq!(line, "[\n");
@@ -142,100 +142,103 @@ fn a_reader_that_goes_away_is_no_error() {
 }
 
 #[test]
-fn every_shell_gets_its_completions() {
-    let desk = Desk::new(&small_grid());
+fn every_shell_has_completions() {
+    let folder = TestFolder::new(&small_grid());
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let script = desk.stdout(&["completions", shell]);
+        let script = folder.stdout(&["completions", shell]);
         assert!(script.contains("billow") && script.contains("completions"), "{shell}");
     }
 }
 
 #[test]
-fn a_folder_of_something_else_is_left_alone() {
-    let desk = Desk::new(&small_grid());
-    let folder = desk.path().join("papers");
-    std::fs::create_dir(&folder).unwrap();
-    std::fs::write(folder.join("thesis.txt"), "years of work").unwrap();
-    let output = desk.run(&["run", "grid.json", "--results", "papers"]);
+fn a_folder_with_other_files_is_refused() {
+    let folder = TestFolder::new(&small_grid());
+    let papers = folder.path().join("papers");
+    std::fs::create_dir(&papers).unwrap();
+    std::fs::write(papers.join("thesis.txt"), "years of work").unwrap();
+    let output = folder.run(&["run", "grid.json", "--results", "papers"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("not a folder of results"), "{}", stderr(&output));
-    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
-    // An empty one is taken.
-    std::fs::remove_file(folder.join("thesis.txt")).unwrap();
-    assert_eq!(desk.run(&["run", "grid.json", "--results", "papers", "-q"]).status.code(), Some(0));
+    assert_eq!(std::fs::read_dir(&papers).unwrap().count(), 1);
+    // An empty folder is accepted.
+    std::fs::remove_file(papers.join("thesis.txt")).unwrap();
+    assert_eq!(
+        folder.run(&["run", "grid.json", "--results", "papers", "-q"]).status.code(),
+        Some(0)
+    );
 }
 
 #[test]
 fn a_table_of_another_study_than_the_file_says_so() {
-    let desk = Desk::new(&small_grid());
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let same = desk.run(&["table", "grid.json"]);
+    let folder = TestFolder::new(&small_grid());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let same = folder.run(&["table", "grid.json"]);
     assert!(!stderr(&same).contains("has changed since"), "{}", stderr(&same));
-    let other = desk.run(&["table", "grid.json", "--set", "film.viscosity=0.05"]);
+    let other = folder.run(&["table", "grid.json", "--set", "film.viscosity=0.05"]);
     assert_eq!(other.status.code(), Some(0));
     assert!(stderr(&other).contains("has changed since"), "{}", stderr(&other));
 }
 
 #[test]
-fn where_no_table_is_written_the_journal_is_read() {
-    let desk = ran();
+fn table_reads_the_journal_if_no_table_exists() {
+    let folder = ran();
     let all = ["table", "--columns", "all", "--format", "csv", "-q"];
-    let table = desk.stdout(&all);
-    fs::remove_file(desk.results().join("summary.parquet")).unwrap();
-    assert_eq!(desk.stdout(&all), table);
-    assert!(desk.stdout(&["status"]).contains("broken    nothing; 1 note"));
-    desk.stdout(&["run", "grid.json", "-q"]);
-    assert!(desk.results().join("summary.parquet").is_file());
-    assert_eq!(desk.stdout(&all), table);
+    let table = folder.stdout(&all);
+    fs::remove_file(folder.results().join("summary.parquet")).unwrap();
+    assert_eq!(folder.stdout(&all), table);
+    assert!(folder.stdout(&["status"]).contains("broken    nothing; 1 note"));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(folder.results().join("summary.parquet").is_file());
+    assert_eq!(folder.stdout(&all), table);
 }
 
 #[test]
-fn a_plan_tells_what_is_there_and_forecasts_the_rest() {
-    let desk = Desk::new(&small_grid());
-    let before = stderr(&desk.run(&["plan", "grid.json"]));
+fn plan_reports_finished_jobs_and_forecasts_the_rest() {
+    let folder = TestFolder::new(&small_grid());
+    let before = stderr(&folder.run(&["plan", "grid.json"]));
     assert!(before.contains("forecast: 16 jobs without film"), "{before}");
     assert!(!before.contains("finished already"), "{before}");
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let after = stderr(&desk.run(&["plan", "grid.json"]));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let after = stderr(&folder.run(&["plan", "grid.json"]));
     assert!(after.contains("results/grid: 16 of 16 jobs finished already"), "{after}");
     assert!(!after.contains("forecast"), "{after}");
     let other = ["plan", "grid.json", "--set", "solver.end_time=0.5 s"];
-    let other = stderr(&desk.run(&other));
+    let other = stderr(&folder.run(&other));
     assert!(other.contains("forecast: 16 jobs") && !other.contains("finished already"), "{other}");
 }
 
 #[test]
-fn a_study_and_a_scene_are_told_apart() {
-    let desk = Desk::new(&small_grid());
-    let study = stderr(&desk.run(&["solve", "grid.json"]));
+fn a_study_and_a_scene_are_distinguished() {
+    let folder = TestFolder::new(&small_grid());
+    let study = stderr(&folder.run(&["solve", "grid.json"]));
     assert!(
         study.contains("grid: is of a study") && study.contains("next: billow run grid.json"),
         "{study}"
     );
-    fs::write(desk.path().join("scene.json"), r#"{"format": "billow-scene"}"#).unwrap();
-    let scene = desk.run(&["run", "scene.json"]);
+    fs::write(folder.path().join("scene.json"), r#"{"format": "billow-scene"}"#).unwrap();
+    let scene = folder.run(&["run", "scene.json"]);
     assert_eq!(scene.status.code(), Some(2));
     assert!(stderr(&scene).contains("next: billow solve scene.json"), "{}", stderr(&scene));
 }
 
 #[test]
-fn a_mesh_this_machine_cannot_hold_is_refused_before_anything_is_written() {
+fn a_mesh_larger_than_memory_is_refused_before_anything_is_written() {
     if machine::memory().is_none_or(|memory| memory as f64 > 264e9) {
         return;
     }
     let mut study = small_grid();
     study["solver"]["model"] = json!("film");
-    let desk = Desk::new(&study);
-    // 1000 is the most the key allows: 36 to 48 million elements of 5.5 kB.
+    let folder = TestFolder::new(&study);
+    // 1000 is the largest allowed value: 36 to 48 million elements of 5.5 kB.
     let flags = ["--set", "design.subdivisions=1000"];
-    let output = desk.run(&[&["run", "grid.json"], &flags[..]].concat());
+    let output = folder.run(&[&["run", "grid.json"], &flags[..]].concat());
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(
         said.contains("design.subdivisions: a mesh of 48 million elements needs at least 264 GB"),
         "{said}"
     );
-    assert!(!desk.results().exists());
-    let planned = desk.run(&[&["plan", "grid.json"], &flags[..]].concat());
+    assert!(!folder.results().exists());
+    let planned = folder.run(&[&["plan", "grid.json"], &flags[..]].concat());
     assert!(planned.status.success() && stderr(&planned).contains("a mesh of 48 million"));
 }

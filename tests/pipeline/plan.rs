@@ -27,7 +27,7 @@ fn id(json: &Json) -> JobId {
     generation.points[0].job.id.clone()
 }
 
-/// The paper's capsule, as short as a study can be.
+/// The shortest study of the paper's capsule.
 fn capsule() -> Json {
     json!({
         "design": {"N": 6, "M": 3, "bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
@@ -59,7 +59,7 @@ fn numbers(values: &[f64]) -> Vec<Value> {
 }
 
 #[test]
-fn spelling_does_not_change_a_job() {
+fn equal_values_give_the_same_job_id() {
     let expected = id(&capsule());
     for (pointer, value) in [
         ("/design/N", json!(6.0)),
@@ -94,7 +94,7 @@ fn spelling_does_not_change_a_job() {
         study.pointer_mut(parent).unwrap()[leaf] = value.clone();
         assert_eq!(id(&study), expected, "{pointer} = {value}");
     }
-    // And what is another job has another id.
+    // Other values give another id.
     for (pointer, value) in [
         ("/design/N", json!(5)),
         ("/design/height", json!("1001 mm")),
@@ -111,7 +111,7 @@ fn spelling_does_not_change_a_job() {
     }
 }
 
-/// Reverses every object: the same study in another order of keys. Written as text, since a map of
+/// The same study with the keys of every object in reverse order. It is text, because a map of
 /// `serde_json` sorts its keys.
 fn reversed(json: &Json) -> String {
     match json {
@@ -131,7 +131,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn ids_are_stable_under_rewriting(
+    fn job_ids_do_not_depend_on_spelling(
         panels in 5_u32..9,
         storeys in 3_u32..6,
         millimetres in 20_u32..60,
@@ -158,7 +158,7 @@ proptest! {
         let other = Study::from_text(&text, "f", "x", &[], Limits::default()).unwrap();
         prop_assert_eq!(&next_jobs(&other, &[]).unwrap().points[0].job.id, &expected);
 
-        // Defaults spelled out.
+        // With every default written out.
         let resolved = serde_json::to_value(other.resolved()).unwrap();
         prop_assert_eq!(&id(&resolved), &expected);
     }
@@ -218,7 +218,7 @@ fn ranges_give_the_values_a_list_would() {
 }
 
 #[test]
-fn zip_points_and_filter() {
+fn zip_points_and_filter_select_the_jobs() {
     let generation = plan(
         &with_grid(json!({
             "zip": [{"N": [5, 6, 8], "M": [3, 3, 4]}],
@@ -314,7 +314,7 @@ fn duplicates_are_merged_with_a_note() {
 }
 
 #[test]
-fn generations_are_a_pure_function_of_what_is_finished() {
+fn a_generation_depends_only_on_the_finished_rows() {
     let study = try_study(&with_grid(json!({"M": [1, 3, 4]})), &[]).unwrap();
     let all = next_jobs(&study, &[]).unwrap();
     assert_eq!(all.points.len(), 3);
@@ -326,14 +326,14 @@ fn generations_are_a_pure_function_of_what_is_finished() {
     assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));
     let mut other_order = finished[1..].to_vec();
     other_order.reverse();
-    // The first is infeasible: its row is written, but nothing waits for it.
+    // The first point is infeasible: it has a row but no job.
     assert_eq!(next_jobs(&study, &other_order), None);
     assert_eq!(next_jobs(&study, &finished), None);
 }
 
 #[test]
 fn ten_thousand_jobs_are_planned() {
-    // A hundred designs, and ten thousand: the second plan solves every fold there is.
+    // A hundred designs, and ten thousand: the second plan solves a fold for every job.
     for grid in [
         json!({
             "N": {"from": 4, "to": 13, "step": 1},
@@ -356,10 +356,10 @@ fn ten_thousand_jobs_are_planned() {
         let mut ids: Vec<_> = generation.points.iter().map(|point| &point.job.id).collect();
         ids.sort();
         ids.dedup();
-        assert_eq!(ids.len(), 10_000, "no two of them are one job");
+        assert_eq!(ids.len(), 10_000, "every id is unique");
     }
 
-    // Grids beyond any plan are refused before they are built.
+    // Grids that are too large are refused before they are expanded.
     for axis in [
         json!({"from": 0, "to": 1e9, "step": 1}),
         json!({"from": 0, "to": 9, "steps": 1_000_000_000}),

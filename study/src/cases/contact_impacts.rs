@@ -1,66 +1,67 @@
-//! Film that hits film, is squeezed, or falls: it stays on its side.
+//! Film that hits film, is squeezed, or falls on a floor: no passage.
 //!
 //! ```text
 //! passages at any step = 0     intersections = 0     Σ m v = Σ m v at the start
-//! what was below an element of the other film is below it at the end
+//! a node below an element of the other film is below it at the end
 //! ```
 
+use billow_solver::geometry::shapes::{icosphere, joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, moved, plate, together, watched};
+use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::number;
-use super::rig::{film, nitrogen, scene};
-use super::shapes_dynamic::{icosphere, sheet};
 use super::{Outcome, Rig, Row};
 
 /// Contact distance, m.
 const DISTANCE: f64 = 2e-3;
 
 fn viscous() -> Film {
-    Film { viscosity: 0.1, ..film() }
+    Film { viscosity: 0.1, ..Film::PAPER_ELASTIC }
 }
 
-/// A sheet, and a slanted one above it turned by a quarter: their film as one, and the nodes of the lower.
+/// A sheet and an inclined sheet above it, rotated by a quarter turn, as one shell; and the number of
+/// nodes of the lower one.
 fn two_films() -> (Shell, usize) {
     let low = sheet(5, 4, 0.5, 0.4);
     let turned = |x: Vector3<f64>| Vector3::new(0.45 - x.y, 0.02 + x.x * 0.9, 0.02 + 0.03 * x.x);
     let high = moved(sheet(5, 4, 0.5, 0.4), turned);
     let nodes = low.positions.len();
-    let mut whole = together(&[low, high.clone()]);
-    // Where it starts it is free of stress.
+    let mut whole = joined(&[low, high.clone()]);
+    // The upper sheet is free of stress where it starts.
     let flat = Shell::relaxed(high.positions, high.triangles).reference;
     let first = whole.reference.len() - flat.len();
     whole.reference[first..].copy_from_slice(&flat);
     (whole, nodes)
 }
 
-/// Nodes that lie on the wrong side of an element of the other film, seen along z.
-fn astray(film: &Explicit, split: usize) -> usize {
-    let places: Vec<Vector3<f64>> = film.state.positions.iter().collect();
+/// Number of nodes on the wrong side of an element of the other film, seen along z.
+fn misplaced_nodes(film: &Explicit, split: usize) -> usize {
+    let positions: Vec<Vector3<f64>> = film.state.positions.iter().collect();
     let wrong = |node: usize| {
         film.model.triangles.iter().any(|corners| {
             let below = node < split;
             if below == ((corners[0] as usize) < split) {
                 return false;
             }
-            let [a, b, c] = corners.map(|corner| places[corner as usize]);
-            let x = places[node];
+            let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+            let x = positions[node];
             let (p, q, r) = ((b - a).xy(), (c - a).xy(), (x - a).xy());
             let whole = p.perp(&q);
             let (s, t) = (r.perp(&q) / whole, p.perp(&r) / whole);
-            let over = x.z - (a.z + (b.z - a.z) * s + (c.z - a.z) * t);
-            s >= 0.0 && t >= 0.0 && s + t <= 1.0 && (over > 0.0) == below
+            let height = x.z - (a.z + (b.z - a.z) * s + (c.z - a.z) * t);
+            s >= 0.0 && t >= 0.0 && s + t <= 1.0 && (height > 0.0) == below
         })
     };
-    (0..places.len()).filter(|node| wrong(*node)).count()
+    (0..positions.len()).filter(|node| wrong(*node)).count()
 }
 
-/// Two films shot at each other, and one at one that floats.
+/// Two films that collide: both move, or one is at rest.
 pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
     let speed = number("films_at_50_m_s/speed");
     let mut judged = Vec::new();
@@ -72,8 +73,8 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
         let velocity = |node: usize| Vector3::z() * speeds[usize::from(node >= split)];
         let scene = FilmScene {
             velocities: (0..nodes).map(velocity).collect(),
-            contact: Some(watched(DISTANCE)),
-            ..scene(shell, viscous())
+            contact: Some(monitored_contact(DISTANCE)),
+            ..free_film(shell, viscous())
         };
         let mut film = rig.start(&scene)?;
         let momentum = |film: &Explicit| -> Vector3<f64> {
@@ -82,31 +83,35 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
         };
         let before = momentum(&film);
         let scale: f64 = (0..nodes).map(|n| film.model.mass[n] * velocity(n).norm()).sum();
-        let seen = follow(&mut film, 4e-3, 40, &Phase::default())?;
+        let record = run_recorded(&mut film, 4e-3, 40, &Phase::default())?;
         let mean = |from: usize, to: usize| {
             film.state.velocities.z[from..to].iter().sum::<f64>() / (to - from) as f64
         };
-        let apart = mean(split, nodes) - mean(0, split);
+        let separation_speed = mean(split, nodes) - mean(0, split);
         judged.push(Row::at_most(
             &format!("{run}nodes on the wrong side"),
-            astray(&film, split) as f64,
+            misplaced_nodes(&film, split) as f64,
             0.0,
         ));
-        judged.push(Row::at_least(&format!("{run}speed apart after the shock, m/s"), apart, 0.0));
+        judged.push(Row::at_least(
+            &format!("{run}separation speed after the collision, m/s"),
+            separation_speed,
+            0.0,
+        ));
         judged.push(Row::at_most(
             &format!("{run}change of momentum over sum of m v"),
             (momentum(&film) - before).norm() / scale,
             number("contact/momentum_band"),
         ));
-        judged.push(seen.returned(&film, run));
-        judged.extend(seen.rows(&film, run, number("contact/ledger_band")));
+        judged.push(record.unrecovered(&film, run));
+        judged.extend(record.rows(&film, run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
 
-/// A closed bag, slack and dented so that its walls fold, with a little gas, between plates that close
-/// to a tenth of its height. Film with compressive stiffness bursts out of that shape, half the size it
-/// would be free of stress in, at some hundred m/s: of it only that nothing passes is asked.
+/// A slack, dented bag with a little gas between plates that close to a tenth of its height, so that
+/// its walls fold. The dented shape is half the stress-free size: film with compressive stiffness
+/// springs out of it at some hundred m/s. For such film, only passages and intersections are judged.
 pub fn squeezed_bag(rig: &Rig) -> Outcome {
     let (radius, closed) = (0.2, 0.03);
     let share = number("squeezed_bag/height");
@@ -115,7 +120,7 @@ pub fn squeezed_bag(rig: &Rig) -> Outcome {
             libm::sin(25.0 * x.x + 1.0) * libm::cos(22.0 * x.y) + 0.5 * libm::sin(31.0 * x.z);
         Vector3::new(0.55 * x.x, 0.55 * x.y, 0.65 * x.z) * (1.0 + 0.08 * dent)
     };
-    // Its film is that of the sphere.
+    // The reference of the film is the sphere.
     let shell = moved(icosphere(2, radius), dented);
     let tall = shell.positions.iter().map(|x| x.z.abs()).fold(0.0, f64::max);
     let start = tall + 2.0 * DISTANCE;
@@ -129,32 +134,32 @@ pub fn squeezed_bag(rig: &Rig) -> Outcome {
     };
     let mut judged = Vec::new();
     for compression in [0.0, 0.1, 1.0] {
-        let supply = GasSupply { initial_mass: 2e-7, ..nitrogen() };
+        let supply = GasSupply { initial_mass: 2e-7, ..nitrogen_supply() };
         let plates = vec![half(1.0), half(-1.0)];
         let scene = FilmScene {
             filling: Filling::Gas { supply, initial_temperature: 293.0 },
-            contact: Some(FilmContact { plates, ..watched(DISTANCE) }),
-            ..scene(shell.clone(), Film { compression, ..viscous() })
+            contact: Some(FilmContact { plates, ..monitored_contact(DISTANCE) }),
+            ..free_film(shell.clone(), Film { compression, ..viscous() })
         };
         let mut film = rig.start(&scene)?;
         let whole = height(&film);
-        let seen = follow(&mut film, closed, 60, &Phase::default())?;
+        let record = run_recorded(&mut film, closed, 60, &Phase::default())?;
         let run = format!("c {compression}: ");
         if compression > 0.0 {
-            judged.extend(seen.counts(&film, &run));
+            judged.extend(record.counts(&film, &run));
             continue;
         }
-        let left = height(&film) / whole;
-        judged.push(Row::at_most(&format!("{run}height over that at the start"), left, share));
-        judged.extend(seen.rows(&film, &run, number("contact/ledger_band")));
+        let squeezed = height(&film) / whole;
+        judged.push(Row::at_most(&format!("{run}height over initial height"), squeezed, share));
+        judged.extend(record.rows(&film, &run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
 
-/// A crumpled sheet thrown at a floor and pressed on it by fifty times its weight, of film without and
-/// with compressive stiffness: the one lies down flat, the other folds.
+/// A crumpled sheet thrown on a floor and pressed on it by fifty times its weight. Film without
+/// compressive stiffness becomes flat, film with it folds.
 pub fn dropped_sheet(rig: &Rig) -> Outcome {
-    // A crumple that does not cut itself: shortened in its plane, high waves.
+    // Compressed in its plane, with high waves, so that it does not intersect itself.
     let wave = |x: Vector3<f64>| {
         let height = 0.03 * libm::sin(40.0 * x.x) + 0.015 * libm::cos(31.0 * x.y + 9.0 * x.x);
         Vector3::new(0.35 * x.x, 0.7 * x.y, height + 0.06)
@@ -163,21 +168,21 @@ pub fn dropped_sheet(rig: &Rig) -> Outcome {
     for (compression, key) in [(0.0, "ledger_band"), (1.0, "compressed_ledger_band")] {
         let crumple = moved(sheet(9, 9, 0.4, 0.4), wave);
         let shell = Shell::relaxed(crumple.positions, crumple.triangles);
-        let slower = |node: usize| Vector3::new(0.0, 0.0, -8.0 - 0.01 * node as f64);
+        let velocity = |node: usize| Vector3::new(0.0, 0.0, -8.0 - 0.01 * node as f64);
         let floor = plate(Vector3::zeros(), Vector3::z(), None);
         let scene = FilmScene {
-            velocities: (0..shell.positions.len()).map(slower).collect(),
+            velocities: (0..shell.positions.len()).map(velocity).collect(),
             gravity: Vector3::new(0.0, 0.0, -500.0),
-            contact: Some(FilmContact { plates: vec![floor], ..watched(DISTANCE) }),
-            ..scene(shell, Film { compression, ..viscous() })
+            contact: Some(FilmContact { plates: vec![floor], ..monitored_contact(DISTANCE) }),
+            ..free_film(shell, Film { compression, ..viscous() })
         };
         let mut film = rig.start(&scene)?;
-        let seen = follow(&mut film, 0.03, 60, &Phase::default())?;
+        let record = run_recorded(&mut film, 0.03, 60, &Phase::default())?;
         let lowest = film.state.positions.z.iter().copied().fold(f64::INFINITY, f64::min);
         let run = format!("c {compression}: ");
         judged.push(Row::at_least(&format!("{run}lowest node above the floor, m"), lowest, 0.0));
-        judged.push(seen.returned(&film, &run));
-        judged.extend(seen.rows(&film, &run, number(&format!("contact/{key}"))));
+        judged.push(record.unrecovered(&film, &run));
+        judged.extend(record.rows(&film, &run, number(&format!("contact/{key}"))));
     }
     Ok(judged)
 }

@@ -1,4 +1,4 @@
-//! Stopping a run, in order or not, costs nothing that was finished.
+//! Interrupted runs: killed, ended by a signal, resumed, started twice. Finished jobs are kept.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,9 +7,9 @@ use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
-use crate::support::{Desk, grid, histories, small_grid, stderr, without_costs};
+use crate::support::{TestFolder, grid, histories, small_grid, stderr, without_costs};
 
-/// Enough work for a run to be caught in the middle: fine samples, many jobs.
+/// A study that runs long enough to be interrupted: many jobs with fine samples.
 fn long_grid() -> serde_json::Value {
     let flows: Vec<f64> = (1..=30).map(|flow| 0.0002 * f64::from(flow)).collect();
     let mut study = grid(&serde_json::json!({
@@ -19,8 +19,8 @@ fn long_grid() -> serde_json::Value {
     study
 }
 
-fn finished(desk: &Desk) -> usize {
-    let Ok(folders) = fs::read_dir(desk.results().join("jobs")) else { return 0 };
+fn finished(folder: &TestFolder) -> usize {
+    let Ok(folders) = fs::read_dir(folder.results().join("jobs")) else { return 0 };
     let count = |folder: fs::DirEntry| {
         let files = fs::read_dir(folder.path()).unwrap();
         files
@@ -30,13 +30,13 @@ fn finished(desk: &Desk) -> usize {
     folders.map(|folder| count(folder.unwrap())).sum()
 }
 
-/// Waits until more jobs than that are finished, or the run is over.
-fn wait_for(desk: &Desk, child: &mut Child, jobs: usize) -> bool {
+/// Waits until this number of jobs is finished; false if the run ended first.
+fn wait_for(folder: &TestFolder, child: &mut Child, jobs: usize) -> bool {
     loop {
         if child.try_wait().unwrap().is_some() {
             return false;
         }
-        if finished(desk) >= jobs {
+        if finished(folder) >= jobs {
             return true;
         }
         sleep(Duration::from_millis(1));
@@ -44,53 +44,56 @@ fn wait_for(desk: &Desk, child: &mut Child, jobs: usize) -> bool {
 }
 
 pub(crate) fn signal(child: &Child, name: &str) {
-    // The shell's own: a bare system has no kill program.
+    // The shell's builtin: a minimal system has no kill program.
     let kill = format!("kill {name} {}", child.id());
     let sent = Command::new("sh").args(["-c", &kill]).status().unwrap();
     assert!(sent.success());
 }
 
 #[test]
-fn kill_9_at_any_moment_costs_nothing() {
-    let whole = Desk::new(&long_grid());
+fn a_killed_run_keeps_its_finished_jobs() {
+    let whole = TestFolder::new(&long_grid());
     whole.stdout(&["run", "grid.json", "-q"]);
 
-    let desk = Desk::new(&long_grid());
+    let folder = TestFolder::new(&long_grid());
     let mut killed = 0;
-    // Moments spread over the run, and by a few odd milliseconds over the writing of a job.
+    // The delays spread the kills over the run and over the writing of a job.
     for round in 0..8_u64 {
-        let mut child = desk.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
-        let until = finished(&desk) + 3;
-        if wait_for(&desk, &mut child, until) {
+        let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+        let until = finished(&folder) + 3;
+        if wait_for(&folder, &mut child, until) {
             sleep(Duration::from_micros(1300 * round));
             child.kill().unwrap();
             killed += 1;
         }
         child.wait().unwrap();
     }
-    assert!(killed >= 2, "only {killed} runs were caught in the middle");
-    let kept = finished(&desk);
-    let output = desk.run(&["run", "grid.json", "-q", "--json"]);
+    assert!(killed >= 2, "only {killed} runs were killed before their end");
+    let kept = finished(&folder);
+    let output = folder.run(&["run", "grid.json", "-q", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let ran = usize::try_from(summary["ran"].as_u64().unwrap()).unwrap();
-    // A job may have its file but not yet its record: at most what one kill can catch, two threads
-    // and a full channel.
+    // A killed job may have its file but not yet its journal record.
     assert!(60 - ran <= kept, "{kept} files were there and {ran} jobs were run");
-    assert!(ran < 60, "nothing was kept");
+    assert!(ran < 60, "no job was kept");
 
-    assert_eq!(without_costs(desk.rows("results/grid")), without_costs(whole.rows("results/grid")));
-    assert_eq!(histories(&desk.results()), histories(&whole.results()));
-    let left = files(&desk.results());
-    assert!(left.keys().all(|path| path.extension().is_none_or(|end| end != "tmp")), "{left:?}");
+    assert_eq!(
+        without_costs(folder.rows("results/grid")),
+        without_costs(whole.rows("results/grid"))
+    );
+    assert_eq!(histories(&folder.results()), histories(&whole.results()));
+    let remaining = files(&folder.results());
+    let temporary = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "tmp");
+    assert!(!remaining.keys().any(temporary), "{remaining:?}");
 }
 
 #[test]
-fn ctrl_c_and_terminate_keep_what_is_finished() {
+fn signals_keep_the_finished_jobs() {
     for (name, code) in [("-INT", 130), ("-TERM", 143)] {
-        let desk = Desk::new(&long_grid());
-        let mut child = desk.billow(&["run", "grid.json"]).spawn().unwrap();
-        assert!(wait_for(&desk, &mut child, 2), "too quick to stop");
+        let folder = TestFolder::new(&long_grid());
+        let mut child = folder.billow(&["run", "grid.json"]).spawn().unwrap();
+        assert!(wait_for(&folder, &mut child, 2), "the run ended before the signal");
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
@@ -99,19 +102,19 @@ fn ctrl_c_and_terminate_keep_what_is_finished() {
             said.contains("finished jobs are kept, the same command runs the remaining ones"),
             "{said}"
         );
-        let rows = desk.rows("results/grid");
+        let rows = folder.rows("results/grid");
         let count = |status: &str| rows.iter().filter(|row| row["status"] == status).count();
         assert_eq!(rows.len(), 120);
         assert!(count("done") >= 2 && count("pending") > 0);
         assert_eq!(count("done") + count("pending") + count("infeasible"), 120);
 
-        let summary = desk.stdout(&["run", "grid.json", "-q", "--json"]);
+        let summary = folder.stdout(&["run", "grid.json", "-q", "--json"]);
         let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
         assert_eq!(summary["ran"], count("pending"));
     }
 }
 
-/// Every file under a folder: bytes and time of last change.
+/// Every file under a folder: its bytes and time of last change.
 fn files(root: &Path) -> BTreeMap<PathBuf, (Vec<u8>, SystemTime)> {
     let mut found = BTreeMap::new();
     let mut folders = vec![root.to_owned()];
@@ -130,26 +133,26 @@ fn files(root: &Path) -> BTreeMap<PathBuf, (Vec<u8>, SystemTime)> {
 }
 
 #[test]
-fn a_second_run_does_nothing_and_says_so() {
-    let desk = Desk::new(&small_grid());
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let before = files(&desk.results());
-    let said = desk.stdout(&["run", "grid.json"]);
+fn a_finished_study_runs_nothing() {
+    let folder = TestFolder::new(&small_grid());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let before = files(&folder.results());
+    let said = folder.stdout(&["run", "grid.json"]);
     assert!(said.starts_with("grid: nothing to run, all 16 jobs are finished\n"), "{said}");
-    assert_eq!(files(&desk.results()), before);
-    let said = desk.stdout(&["run", "results/grid/study.json"]);
-    assert!(said.starts_with("grid: nothing to run"), "the stored study is the study: {said}");
+    assert_eq!(files(&folder.results()), before);
+    let said = folder.stdout(&["run", "results/grid/study.json"]);
+    assert!(said.starts_with("grid: nothing to run"), "the stored study is the same study: {said}");
 }
 
 #[test]
-fn two_runs_at_once_never_mix() {
-    let desk = Desk::new(&long_grid());
-    let mut first = desk.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
-    assert!(wait_for(&desk, &mut first, 1), "too quick to meet");
-    let second = desk.run(&["run", "grid.json", "-q"]);
+fn a_second_run_of_a_running_study_is_refused() {
+    let folder = TestFolder::new(&long_grid());
+    let mut first = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+    assert!(wait_for(&folder, &mut first, 1), "the first run ended before the second");
+    let second = folder.run(&["run", "grid.json", "-q"]);
     assert_eq!(second.status.code(), Some(2));
     assert!(stderr(&second).contains("another billow command is running this study"));
     let first = first.wait_with_output().unwrap();
     assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
-    assert!(desk.rows("results/grid").iter().all(|row| row["status"] != "pending"));
+    assert!(folder.rows("results/grid").iter().all(|row| row["status"] != "pending"));
 }

@@ -1,5 +1,6 @@
-//! `billow solve`: the scenes that ship, the same bits, checkpoints, histories.
+//! `billow solve`: shipped scenes, equal bits, checkpoints, histories.
 
+use billow_solver::platform::simd::InstructionSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -11,7 +12,7 @@ use billow_study::store::history_file;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use crate::resume::signal;
+use crate::interruption::signal;
 use crate::support::stderr;
 
 fn scenes() -> PathBuf {
@@ -24,7 +25,7 @@ pub(crate) fn solve(folder: &Path, arguments: &[&str], simd: &str) -> Output {
     command.output().unwrap()
 }
 
-/// The summary of a scene that is to be done, without its wall time.
+/// The summary of a run that must succeed, without its wall time.
 pub(crate) fn done(folder: &Path, arguments: &[&str], simd: &str) -> Value {
     let output = solve(folder, arguments, simd);
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
@@ -37,8 +38,8 @@ fn without_wall(output: &Output) -> Value {
     summary
 }
 
-/// A folder with a scene file in it.
-pub(crate) fn desk(scene: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
+/// A folder with a scene file and further files.
+pub(crate) fn scene_folder(scene: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
     for (name, text) in files {
@@ -51,11 +52,11 @@ pub(crate) fn number(summary: &Value, pointer: &str) -> f64 {
     summary.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer}"))
 }
 
-/// A unit cube of quads, its lid in a group of its own.
+/// A unit cube of quads, its lid in a separate group.
 pub(crate) const CUBE: &str = "o box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                     v 9 9 9\nf 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\ng lid\nf 5 6 7 8\n";
 
-/// A cube that runs a few steps.
+/// A scene of a cube for a few steps.
 pub(crate) fn cube(mesh: &Value, gas: &Value) -> Value {
     json!({
         "mesh": mesh, "gas": gas, "solver": {"end_time": "20 ms", "cfl": 0.1},
@@ -109,7 +110,7 @@ fn every_scene_that_ships_is_sound_by_the_schema_and_listed() {
 }
 
 #[test]
-fn a_sphere_at_rest_stretches_as_the_closed_form() {
+fn the_stretch_of_a_sphere_matches_the_closed_form() {
     let summary = done(&scenes(), &["sphere.json", "-q"], "");
     let mesh = fs::read_to_string(scenes().join("sphere.obj")).unwrap();
     let mesh = obj_reader::read(&mesh, 0).unwrap();
@@ -125,14 +126,14 @@ fn a_sphere_at_rest_stretches_as_the_closed_form() {
     assert_eq!(summary["resultants"]["top"]["regime"], "taut");
     let force = |name: &str| number(&summary, &format!("/resultants/top/{name}"));
     assert!((force("T1") / 250.5 - 1.0).abs() < 5e-3, "{}", force("T1"));
-    // Nominal and second Piola-Kirchhoff forces differ from the true one by a stretch each.
+    // Nominal and second Piola-Kirchhoff forces differ from the true force by one stretch each.
     assert!((force("P1") / force("T1") - 1.0 - stretch).abs() < 1e-4);
     assert!((force("N1") / force("T1") - 1.0).abs() < 1e-4);
     assert!((number(&summary, "/extents/z/1") - number(&summary, "/nodes/top/2")).abs() < 1e-9);
 }
 
 #[test]
-fn the_square_airbag_has_its_known_energy() {
+fn the_square_airbag_has_its_reference_energy() {
     let summary = done(&scenes(), &["airbag.json", "-q"], "");
     assert!((number(&summary, "/energies/potential") + 77.596_580).abs() < 0.02);
     assert!((number(&summary, "/nodes/middle/2") - 0.216_952).abs() < 0.0012);
@@ -142,7 +143,7 @@ fn the_square_airbag_has_its_known_energy() {
 }
 
 #[test]
-fn a_hub_turned_in_time_and_at_rest_bears_the_same_torque() {
+fn dynamic_and_static_torque_of_a_hub_agree() {
     let moved = done(&scenes(), &["twist.json", "-q"], "");
     let rest = done(&scenes(), &["twist.json", "-q", "--set", "solver.static=true"], "");
     let torque = |summary: &Value| number(summary, "/reactions/hub/moment/2");
@@ -154,7 +155,7 @@ fn a_hub_turned_in_time_and_at_rest_bears_the_same_torque() {
 }
 
 #[test]
-fn the_papers_capsule_keeps_its_energy() {
+fn the_papers_capsule_balances_its_energy() {
     let summary = done(&scenes(), &["capsule.json", "-q"], "");
     assert!(number(&summary, "/ledger/residual") <= 5e-3, "{}", summary["ledger"]);
     assert!(number(&summary, "/volume") > 0.55);
@@ -166,32 +167,29 @@ fn the_papers_capsule_keeps_its_energy() {
 
 /// The same bits on every instruction set, and wherever the run was paused.
 fn same_bits(scene: &Value, pauses: &[&str]) {
-    let folder = desk(scene, &[]);
+    let folder = scene_folder(scene, &[]);
     let run = |out: &str, more: &[&str], simd: &str| {
         let arguments = [&["scene.json", "-q", "--out", out][..], more].concat();
         let summary = done(folder.path(), &arguments, simd);
         (summary, fs::read(folder.path().join(out)).unwrap())
     };
     let whole = run("whole.h5", &["--threads", "2"], "");
-    for path in billow_solver::platform::simd::InstructionSet::ALL
-        .into_iter()
-        .filter(|path| path.available())
-    {
-        let (summary, file) = run("path.h5", &[], path.name());
-        assert_eq!(summary, whole.0, "{}", path.name());
-        assert!(file == whole.1, "{}: the files differ", path.name());
+    for set in InstructionSet::ALL.into_iter().filter(|set| set.available()) {
+        let (summary, file) = run("set.h5", &[], set.name());
+        assert_eq!(summary, whole.0, "{}", set.name());
+        assert!(file == whole.1, "{}: the files differ", set.name());
     }
     let checkpoint = ["--checkpoint", "state.json"];
-    let mut go_on: Vec<&str> = Vec::new();
+    let mut resume: Vec<&str> = Vec::new();
     for steps in pauses {
         let pause =
-            [&["scene.json", "-q", "--stop-after", steps], &checkpoint[..], &go_on].concat();
+            [&["scene.json", "-q", "--stop-after", steps], &checkpoint[..], &resume].concat();
         let output = solve(folder.path(), &pause, "");
         assert!(output.status.success(), "{}", stderr(&output));
         assert_eq!(without_wall(&output)["status"], "paused");
-        go_on = vec!["--resume", "state.json"];
+        resume = vec!["--resume", "state.json"];
     }
-    let rest = [&checkpoint[..], &["--every", "700"], &go_on].concat();
+    let rest = [&checkpoint[..], &["--every", "700"], &resume].concat();
     let (summary, file) = run("resumed.h5", &rest, "");
     assert_eq!(summary, whole.0);
     assert!(file == whole.1, "the files differ");
@@ -199,24 +197,24 @@ fn same_bits(scene: &Value, pauses: &[&str]) {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 6, failure_persistence: None, ..Default::default() })]
-    /// Stopped after any steps, stored and gone on from, any number of times.
+    /// Stopped after any number of steps, stored and resumed, any number of times.
     #[test]
-    fn a_run_goes_on_bit_for_bit_from_any_step(
+    fn a_resumed_run_has_the_same_bits_from_any_step(
         pauses in prop::collection::vec(1..400_u64, 1..4),
         every in 1..300_u64,
     ) {
-        let folder = desk(&capsule(), &[]);
+        let folder = scene_folder(&capsule(), &[]);
         let whole = done(folder.path(), &["scene.json", "-q", "--out", "whole.h5"], "");
         let [every, state] = [&every.to_string()[..], "state.json"];
-        let mut go_on: Vec<&str> = Vec::new();
+        let mut resume: Vec<&str> = Vec::new();
         for steps in &pauses {
             let steps = steps.to_string();
             let pause = ["scene.json", "-q", "--checkpoint", state, "--stop-after", &steps];
-            done(folder.path(), &[&pause[..], &go_on].concat(), "");
-            go_on = vec!["--resume", state];
+            done(folder.path(), &[&pause[..], &resume].concat(), "");
+            resume = vec!["--resume", state];
         }
         let rest = ["scene.json", "-q", "--checkpoint", state, "--every", every, "--out", "rest.h5"];
-        prop_assert_eq!(done(folder.path(), &[&rest[..], &go_on].concat(), ""), whole);
+        prop_assert_eq!(done(folder.path(), &[&rest[..], &resume].concat(), ""), whole);
         let [whole, rest] =
             ["whole.h5", "rest.h5"].map(|name| fs::read(folder.path().join(name)).unwrap());
         prop_assert!(whole == rest, "{pauses:?}");
@@ -224,22 +222,22 @@ proptest! {
 }
 
 #[test]
-fn the_same_bits_on_every_path_and_resumed_from_any_step() {
+fn bits_are_the_same_on_every_instruction_set_and_after_a_resume() {
     same_bits(&capsule(), &["1", "100", "1", "333"]);
 }
 
 #[test]
 #[ignore = "long: 0.3 s of the paper's capsule at n 5, seven times"]
-fn the_papers_capsule_has_the_same_bits_however_it_is_run() {
+fn the_papers_capsule_has_the_same_bits_on_every_machine_setting() {
     let scene = fs::read_to_string(scenes().join("capsule.json")).unwrap();
     same_bits(&serde_json::from_str(&scene).unwrap(), &["1", "12345", "9999"]);
 }
 
 #[test]
-fn a_signal_stores_the_run_and_says_how_to_go_on() {
+fn a_signal_stores_a_checkpoint_and_says_how_to_resume() {
     let mut scene = capsule();
     scene["solver"]["end_time"] = json!("100 s");
-    let folder = desk(&scene, &[]);
+    let folder = scene_folder(&scene, &[]);
     let state = folder.path().join("state.json");
     let mut command = Command::new(env!("CARGO_BIN_EXE_billow"));
     command.args(["solve", "scene.json", "-q", "--checkpoint", "state.json", "--every", "2000"]);
@@ -259,32 +257,33 @@ fn a_signal_stores_the_run_and_says_how_to_go_on() {
 }
 
 #[test]
-fn an_erected_capsule_moves_its_ring_to_where_it_is_held_stowed() {
+fn an_erected_capsule_moves_its_ring_to_the_stowed_polygon() {
     let mut scene = capsule();
     scene["design"]["shape"] = json!("erected");
     scene["gas"] = json!({"pressure": "300 Pa"});
     scene["release_time"] = json!(0);
     scene["solver"]["cfl"] = json!(0.1);
-    let moved = done(desk(&scene, &[]).path(), &["scene.json", "-q"], "");
+    let moved = done(scene_folder(&scene, &[]).path(), &["scene.json", "-q"], "");
     scene["solver"] = json!({"static": true});
-    let rest = done(desk(&scene, &[]).path(), &["scene.json", "-q"], "");
+    let rest = done(scene_folder(&scene, &[]).path(), &["scene.json", "-q"], "");
     for summary in [&moved, &rest] {
-        // The corner of the stowed N-gon, not the ring's own radius.
+        // The corner of the stowed N-gon, not the radius of the ring.
         let corner = number(summary, "/nodes/side/0");
         assert!((corner - 0.523_171).abs() < 1e-5, "{corner}");
     }
 }
 
 #[test]
-fn histories_hold_what_was_followed() {
-    let folder = desk(&capsule(), &[]);
+fn histories_contain_the_tracked_columns() {
+    let folder = scene_folder(&capsule(), &[]);
     done(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
     let stored = history_file::read(&folder.path().join("a.h5")).unwrap();
     assert_eq!((stored.status.name(), stored.history.len()), ("done", 41));
     assert_eq!(stored.history.column("z_rim").len(), 41);
 
     let gas = json!({"initial_pressure": "0.1 Pa"});
-    let folder = desk(&cube(&json!({"positions": "cube.obj"}), &gas), &[("cube.obj", CUBE)]);
+    let folder =
+        scene_folder(&cube(&json!({"positions": "cube.obj"}), &gas), &[("cube.obj", CUBE)]);
     done(folder.path(), &["scene.json", "-q", "--out", "a.h5", "--shape", "end.obj"], "");
     let stored = history_file::read(&folder.path().join("a.h5")).unwrap();
     assert_eq!(stored.history.column("volume").len(), 3);
@@ -296,7 +295,7 @@ fn histories_hold_what_was_followed() {
 }
 
 #[test]
-fn a_rigid_plane_is_a_body_of_its_own() {
+fn a_rigid_plane_moves_as_a_body() {
     let mut scene = cube(&json!({"positions": "cube.obj"}), &json!({"pressure": "1 Pa"}));
     scene["supports"] = json!([
         {"on": "plane", "point": [0, 0, 1], "normal": [0, 0, 2],
@@ -305,7 +304,8 @@ fn a_rigid_plane_is_a_body_of_its_own() {
     ]);
     scene["solver"] = json!({"end_time": "1 ms"});
     scene["outputs"] = json!({"nodes": {"lid": 4}, "sample_interval": "0.5 ms"});
-    let summary = done(desk(&scene, &[("cube.obj", CUBE)]).path(), &["scene.json", "-q"], "");
+    let summary =
+        done(scene_folder(&scene, &[("cube.obj", CUBE)]).path(), &["scene.json", "-q"], "");
     assert!((number(&summary, "/nodes/lid/2") - 1.001).abs() < 1e-4);
     assert!(
         summary["reactions"]["plane"].is_object() && summary["reactions"]["plane_2"].is_object()
@@ -313,7 +313,7 @@ fn a_rigid_plane_is_a_body_of_its_own() {
 }
 
 #[test]
-fn a_start_spins_and_flies() {
+fn initial_velocities_add_up() {
     let mut scene = cube(&json!({"positions": "cube.obj"}), &json!({"pressure": 0}));
     scene["start"] = json!({
         "velocity": [0, 0, "3 m/s"], "velocities": "cube.obj",
@@ -322,20 +322,21 @@ fn a_start_spins_and_flies() {
     scene["gravity"] = json!(["1 m/s2", 0, -10]);
     scene["solver"] = json!({"end_time": "20 us"});
     scene["outputs"] = json!({"nodes": [1], "sample_interval": "5 us"});
-    let summary = done(desk(&scene, &[("cube.obj", CUBE)]).path(), &["scene.json", "-q"], "");
-    let place: Vec<f64> =
+    let summary =
+        done(scene_folder(&scene, &[("cube.obj", CUBE)]).path(), &["scene.json", "-q"], "");
+    let position: Vec<f64> =
         summary["nodes"]["1"].as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect();
-    // Vertex 1 starts at (1, 0, 0): spin (0, 10, 0), its own (1, 0, 0), the rest (0, 0, 3).
-    for (place, expected) in place.iter().zip([1.0 + 2e-5, 2e-4, 6e-5]) {
-        assert!((place - expected).abs() < 5e-6, "{place} {expected}");
+    // Vertex 1 starts at (1, 0, 0): velocity (0, 10, 0) by spin, (1, 0, 0) by file, (0, 0, 3) for all.
+    for (x, expected) in position.iter().zip([1.0 + 2e-5, 2e-4, 6e-5]) {
+        assert!((x - expected).abs() < 5e-6, "{x} {expected}");
     }
 }
 
 #[test]
-fn a_run_that_stops_short_says_why_and_keeps_its_history() {
+fn a_failed_run_reports_the_reason_and_keeps_its_history() {
     let mut scene = capsule();
     scene["solver"]["step_limit"] = json!(50);
-    let folder = desk(&scene, &[]);
+    let folder = scene_folder(&scene, &[]);
     let output = solve(folder.path(), &["scene.json", "-q", "--out", "a.h5"], "");
     assert_eq!(output.status.code(), Some(1));
     let summary = without_wall(&output);

@@ -1,16 +1,16 @@
-//! What is stored is read: `status`, `why`, `show`.
+//! `status`, `why` and `show` read what is stored.
 
 use std::fs;
 
 use billow_study::platform::files::{Disk, Files};
 use serde_json::{Value, json};
 
-use crate::support::{Desk, failed, file_of, grid, ids, json_of, ran, small_grid, stderr};
+use crate::support::{TestFolder, failed, file_of, grid, ids, json_of, ran, small_grid, stderr};
 
 #[test]
-fn status_counts_what_the_table_holds() {
-    let desk = ran();
-    let status = json_of(&desk, &["status"]);
+fn status_counts_agree_with_the_table() {
+    let folder = ran();
+    let status = json_of(&folder, &["status"]);
     for (key, expected) in [
         ("points", 24),
         ("jobs", 16),
@@ -23,64 +23,66 @@ fn status_counts_what_the_table_holds() {
         assert_eq!(status[key], expected, "{key}: {status}");
     }
     assert_eq!(status["running"], false);
-    let rows = desk.rows("results/grid");
+    let rows = folder.rows("results/grid");
     let wall: f64 = rows.iter().filter_map(|row| row["wall_seconds"].as_f64()).sum();
     assert!((status["wall_seconds"].as_f64().unwrap() - wall).abs() < 1e-9);
-    assert!(desk.stdout(&["status", "grid.json"]).starts_with("grid: finished\n"));
+    assert!(folder.stdout(&["status", "grid.json"]).starts_with("grid: finished\n"));
 
     // An invalidated job is pending again; the remaining time is the mean time of the jobs that ran.
-    let journal = desk.results().join("journal/000001.jsonl");
+    let journal = folder.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
-    let id = &ids(&desk, "done")[0];
+    let id = &ids(&folder, "done")[0];
     let line = format!("{{\"kind\":\"invalidated\",\"job\":\"{id}\"}}\n");
     fs::write(&journal, format!("{text}{line}")).unwrap();
-    let status = json_of(&desk, &["status", "--threads", "1"]);
+    let status = json_of(&folder, &["status", "--threads", "1"]);
     assert_eq!(
         (&status["done"], &status["pending"], &status["invalidated"]),
         (&json!(15), &json!(1), &json!(1))
     );
     assert_eq!(status["remaining_seconds"], status["mean_wall_seconds"]);
-    let said = desk.stdout(&["status"]);
+    let said = folder.stdout(&["status"]);
     assert!(said.contains("15 done, 0 failed, 1 pending (1 invalidated)"), "{said}");
     assert!(said.contains("remaining about "), "{said}");
 }
 
 #[test]
-fn status_works_while_another_process_holds_the_lock_and_leaves_it_alone() {
-    let desk = ran();
-    let lock = Disk.try_lock(&desk.results().join("lock")).unwrap().unwrap();
-    assert_eq!(json_of(&desk, &["status"])["running"], true);
-    assert!(desk.stdout(&["status"]).starts_with("grid: running: another process holds its lock"));
-    let refused = desk.run(&["rerun", &ids(&desk, "done")[0], "-q"]);
+fn status_works_under_the_lock_of_another_process() {
+    let folder = ran();
+    let lock = Disk.try_lock(&folder.results().join("lock")).unwrap().unwrap();
+    assert_eq!(json_of(&folder, &["status"])["running"], true);
+    assert!(
+        folder.stdout(&["status"]).starts_with("grid: running: another process holds its lock")
+    );
+    let refused = folder.run(&["rerun", &ids(&folder, "done")[0], "-q"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("another billow command is running"), "{}", stderr(&refused));
     drop(lock);
-    // Looking on does not keep a run from starting.
-    let mut watch = desk.billow(&["status"]).spawn().unwrap();
-    desk.stdout(&["run", "grid.json", "-q"]);
-    assert!(watch.wait().unwrap().success());
+    // A running `status` does not prevent a run.
+    let mut observer = folder.billow(&["status"]).spawn().unwrap();
+    folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(observer.wait().unwrap().success());
 }
 
 #[test]
-fn status_says_in_one_line_what_is_broken_and_counts_around_it() {
-    let desk = ran();
-    fs::remove_file(file_of(&desk, &ids(&desk, "done")[3])).unwrap();
-    let journal = desk.results().join("journal/000001.jsonl");
+fn status_reports_damage_in_one_line_and_counts_the_rest() {
+    let folder = ran();
+    fs::remove_file(file_of(&folder, &ids(&folder, "done")[3])).unwrap();
+    let journal = folder.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
     fs::write(&journal, format!("{text}hello\n")).unwrap();
-    let status = json_of(&desk, &["status"]);
+    let status = json_of(&folder, &["status"]);
     assert_eq!((&status["done"], &status["broken"]), (&json!(16), &json!(2)));
-    let said = desk.stdout(&["status"]);
+    let said = folder.stdout(&["status"]);
     assert!(said.contains("line 18: not a journal record"), "{said}");
     assert!(said.contains("and 1 more; next: billow doctor results/grid"), "{said}");
 }
 
 #[test]
-fn why_gives_the_numbers_behind_a_verdict() {
-    let desk = ran();
-    for row in desk.rows("results/grid").iter().filter(|row| row["status"] == "done") {
+fn why_explains_a_verdict_with_its_numbers() {
+    let folder = ran();
+    for row in folder.rows("results/grid").iter().filter(|row| row["status"] == "done") {
         let id = row["job"].as_str().unwrap();
-        let why = json_of(&desk, &["why", &id[..7]]);
+        let why = json_of(&folder, &["why", &id[..7]]);
         for column in ["job", "status", "verdict", "near_threshold", "ledger_residual", "passages"]
         {
             assert_eq!(why[column], row[column], "{column}");
@@ -92,19 +94,19 @@ fn why_gives_the_numbers_behind_a_verdict() {
         );
         let (value, least) = (check["value"].as_f64().unwrap(), check["least"].as_f64().unwrap());
         assert_eq!(check["margin"], json!(value / least - 1.0));
-        let said = desk.stdout(&["why", id]);
+        let said = folder.stdout(&["why", id]);
         assert!(said.contains("done, deployed") && said.contains("height_ratio"), "{said}");
         assert!(said.contains("≤ 0.01") && said.contains("counted by this model"), "{said}");
         assert!(said.contains(&format!("next      billow show {}", &id[..8])), "{said}");
     }
-    // A stall: the gas is not enough to fill it.
+    // A stall: the gas is not enough for the volume.
     let mut study = grid(&json!({"N": [6], "M": [3], "alpha1_over_phi": [1]}));
     study["gas"] = json!({"mass_flow_rate": "0.01 g/s"});
-    let desk = Desk::new(&study);
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let id = ids(&desk, "done").remove(0);
-    let row = desk.rows("results/grid").remove(0);
-    let said = desk.stdout(&["why", &id]);
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let id = ids(&folder, "done").remove(0);
+    let row = folder.rows("results/grid").remove(0);
+    let said = folder.stdout(&["why", &id]);
     let verdict = row["verdict"].as_str().unwrap();
     assert_ne!(verdict, "deployed", "{row}");
     assert!(
@@ -115,27 +117,27 @@ fn why_gives_the_numbers_behind_a_verdict() {
 
 #[test]
 fn why_tells_failures_and_infeasible_points_with_time_place_and_nearest() {
-    let desk = failed();
-    let failed = ids(&desk, "step_limit").remove(0);
-    let said = desk.stdout(&["why", &failed]);
+    let folder = failed();
+    let failed = ids(&folder, "step_limit").remove(0);
+    let said = folder.stdout(&["why", &failed]);
     assert!(said.contains("step_limit: the run used all steps"), "{said}");
     assert!(said.contains("\n  time ") && said.contains("\n  location "), "{said}");
     assert!(said.contains("raise solver.step_limit"), "{said}");
-    let infeasible = ids(&desk, "infeasible").remove(0);
-    let said = desk.stdout(&["why", &infeasible, "results/grid"]);
+    let infeasible = ids(&folder, "infeasible").remove(0);
+    let said = folder.stdout(&["why", &infeasible, "results/grid"]);
     assert!(
         said.contains("no fold pattern exists for this design") && said.contains("nearest"),
         "{said}"
     );
-    let rows = desk.rows("results/grid");
+    let rows = folder.rows("results/grid");
     let row = rows.iter().find(|row| row["job"] == infeasible.as_str()).unwrap();
-    assert_eq!(json_of(&desk, &["why", &infeasible])["nearest"], row["nearest"]);
+    assert_eq!(json_of(&folder, &["why", &infeasible])["nearest"], row["nearest"]);
 }
 
 #[test]
-fn ids_are_any_unique_prefix_and_others_are_refused_with_the_nearest() {
-    let desk = ran();
-    let mut all = ids(&desk, "done");
+fn job_ids_may_be_unique_prefixes() {
+    let folder = ran();
+    let mut all = ids(&folder, "done");
     all.sort();
     for (arguments, expected) in [
         (["why", "zzz"], "no job has this id"),
@@ -143,11 +145,11 @@ fn ids_are_any_unique_prefix_and_others_are_refused_with_the_nearest() {
         (["rerun", "fffffffffffffffffffffffffffffffff0"], "neither a study file"),
         (["why", &format!("{}0000000", &all[0][..8])], &all[0][..8]),
     ] {
-        let output = desk.run(&arguments);
+        let output = folder.run(&arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
     }
-    let known: Vec<String> = desk
+    let known: Vec<String> = folder
         .rows("results/grid")
         .iter()
         .map(|row| row["job"].as_str().unwrap().to_owned())
@@ -158,44 +160,49 @@ fn ids_are_any_unique_prefix_and_others_are_refused_with_the_nearest() {
         .max_by_key(|(_, count)| *count)
         .unwrap();
     assert!(count > 1, "24 ids share 16 first digits");
-    let output = desk.run(&["why", &first]);
+    let output = folder.run(&["why", &first]);
     assert!(stderr(&output).contains(&format!("{count} job ids begin so")), "{}", stderr(&output));
 }
 
 #[test]
-fn show_prints_the_row_the_scene_and_the_history_that_are_stored() {
-    let desk = ran();
-    let row = desk.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
+fn show_prints_the_stored_row_scene_and_history() {
+    let folder = ran();
+    let row = folder.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
     let id = row["job"].as_str().unwrap();
-    let shown = json_of(&desk, &["show", id]);
+    let shown = json_of(&folder, &["show", id]);
     let shown = shown.as_array().unwrap();
     let of = |group: &str, name: &str| {
-        shown.iter().find(|own| own["group"] == group && own["name"] == name)
+        shown.iter().find(|row| row["group"] == group && row["name"] == name)
     };
     for (column, value) in row.as_object().unwrap() {
         let groups =
             ["job", "parameters", "outcome", "measures", "audit", "pattern", "cost", "provenance"];
         let found = groups.iter().find_map(|group| of(group, column));
-        assert_eq!(found.map_or(&Value::Null, |own| &own["value"]), value, "{column}");
+        assert_eq!(found.map_or(&Value::Null, |row| &row["value"]), value, "{column}");
     }
     assert_eq!(of("parameters", "mass_flow_rate").unwrap()["unit"], "kg/s");
     assert_eq!(of("measures", "peak_vz").unwrap()["unit"], "m/s");
     assert!(of("scene", "film.youngs_modulus").unwrap()["value"].as_f64().unwrap() > 1e9);
 
-    let scene: Value = serde_json::from_str(&desk.stdout(&["show", id, "--scene"])).unwrap();
+    let scene: Value = serde_json::from_str(&folder.stdout(&["show", id, "--scene"])).unwrap();
     assert_eq!(scene["design"]["N"], row["N"]);
-    let stored = billow_study::store::history_file::read(&file_of(&desk, id)).unwrap();
+    let stored = billow_study::store::history_file::read(&file_of(&folder, id)).unwrap();
     assert_eq!(scene, serde_json::from_str::<Value>(&stored.scene).unwrap());
 
     let samples = stored.history.len();
-    let every = json_of(&desk, &["show", id, "--history"]);
+    let every = json_of(&folder, &["show", id, "--history"]);
     assert_eq!(every.as_array().unwrap().len(), samples);
-    for (at, row) in every.as_array().unwrap().iter().enumerate() {
+    for (index, row) in every.as_array().unwrap().iter().enumerate() {
         for (column, values) in stored.history.iter() {
-            assert_eq!(row[column.name].as_f64(), Some(values[at]), "{} at {at}", column.name);
+            assert_eq!(
+                row[column.name].as_f64(),
+                Some(values[index]),
+                "{} at {index}",
+                column.name
+            );
         }
     }
-    let thin = desk.stdout(&[
+    let thin = folder.stdout(&[
         "show",
         id,
         "--history",
@@ -221,18 +228,18 @@ fn show_prints_the_row_the_scene_and_the_history_that_are_stored() {
     for (arguments, expected) in [
         (&["show", id, "--history", "--columns", "presure"][..], "did you mean pressure?"),
         (&["show", id, "--history", "--every", "0"], "must be positive"),
-        (&["show", &ids(&desk, "infeasible")[0], "--history"], "the point is infeasible"),
+        (&["show", &ids(&folder, "infeasible")[0], "--history"], "the point is infeasible"),
     ] {
-        let output = desk.run(arguments);
+        let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
     }
 }
 
 #[test]
-fn a_folder_without_results_is_one_clear_error_for_every_command() {
-    let desk = Desk::new(&small_grid());
-    fs::create_dir(desk.path().join("empty")).unwrap();
+fn a_folder_without_results_is_one_error_for_every_command() {
+    let folder = TestFolder::new(&small_grid());
+    fs::create_dir(folder.path().join("empty")).unwrap();
     for command in [
         &["status", "empty"][..],
         &["why", "ab", "empty"],
@@ -244,26 +251,26 @@ fn a_folder_without_results_is_one_clear_error_for_every_command() {
         &["status", "nowhere"],
         &["status"],
     ] {
-        let output = desk.run(command);
+        let output = folder.run(command);
         assert_eq!(output.status.code(), Some(2), "{command:?}: {}", stderr(&output));
         assert!(stderr(&output).contains("next: "), "{command:?}: {}", stderr(&output));
         assert!(output.stdout.is_empty());
     }
     assert_eq!(
-        fs::read_dir(desk.path().join("empty")).unwrap().count(),
+        fs::read_dir(folder.path().join("empty")).unwrap().count(),
         0,
-        "nothing is left there"
+        "no file is written there"
     );
 }
 
 #[test]
-fn a_run_that_ends_on_its_way_is_told_from_one_that_stands() {
+fn why_reports_a_run_that_ends_in_motion() {
     let axes = json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]});
     let mut study = grid(&axes);
     study["solver"]["end_time"] = json!("20 ms");
-    let desk = Desk::new(&study);
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let said = desk.stdout(&["why", &ids(&desk, "done")[0]]);
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let said = folder.stdout(&["why", &ids(&folder, "done")[0]]);
     for words in
         ["done, stalled", "motion    in the last tenth", "next      a longer solver.end_time"]
     {
@@ -272,10 +279,10 @@ fn a_run_that_ends_on_its_way_is_told_from_one_that_stands() {
 }
 
 #[test]
-fn results_in_place_of_a_job_are_told() {
-    let desk = ran();
+fn a_results_folder_instead_of_a_job_id_is_refused() {
+    let folder = ran();
     for command in ["why", "show", "frames"] {
-        let output = desk.run(&[command, "results/grid"]);
+        let output = folder.run(&[command, "results/grid"]);
         assert_eq!(output.status.code(), Some(2), "{command}");
         let said = stderr(&output);
         assert!(said.contains("is a results folder or study file, not a job"), "{command}: {said}");

@@ -1,12 +1,12 @@
-//! `billow chart` on a study that ran: every kind, as SVG and PNG.
+//! `billow chart` on a finished study: every kind, as SVG and PNG.
 
 use std::fs;
 
 use serde_json::json;
 
-use crate::support::{Desk, grid, stderr};
+use crate::support::{TestFolder, grid, stderr};
 
-/// N × flow × strategy on the piston: points no pattern meets, runs that end before they deploy.
+/// N × ratio × flow × end time with the piston: infeasible points, and runs that end before deployment.
 fn study() -> serde_json::Value {
     let mut study = grid(&json!({
         "N": [5, 6],
@@ -18,7 +18,7 @@ fn study() -> serde_json::Value {
     study
 }
 
-/// Checks an SVG and gives its texts.
+/// The texts of an SVG, which must be well formed.
 fn texts(svg: &[u8]) -> Vec<String> {
     let svg = std::str::from_utf8(svg).unwrap();
     let parsed = resvg::usvg::roxmltree::Document::parse(svg).unwrap();
@@ -36,8 +36,8 @@ fn size(png: &[u8]) -> [u32; 2] {
 
 #[test]
 fn every_kind_is_drawn_as_svg_and_png() {
-    let desk = Desk::new(&study());
-    desk.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::new(&study());
+    folder.stdout(&["run", "grid.json", "-q"]);
     let feasible = "alpha1_over_phi == 9";
     for (arguments, name, expected) in [
         (
@@ -61,34 +61,34 @@ fn every_kind_is_drawn_as_svg_and_png() {
             &["mass_flow_rate (g/s)", "peak_vz (m/s)", "N", "infeasible (8)"],
         ),
     ] {
-        let printed = desk.stdout(&[&["chart"], arguments].concat());
+        let printed = folder.stdout(&[&["chart"], arguments].concat());
         let paths: Vec<&str> = printed.lines().collect();
-        let folder = "results/grid/charts";
-        assert_eq!(paths, [format!("{folder}/{name}.svg"), format!("{folder}/{name}.png")]);
-        let shown = texts(&fs::read(desk.path().join(paths[0])).unwrap());
+        let charts = "results/grid/charts";
+        assert_eq!(paths, [format!("{charts}/{name}.svg"), format!("{charts}/{name}.png")]);
+        let shown = texts(&fs::read(folder.path().join(paths[0])).unwrap());
         for text in expected {
             let there = |shown: &String| shown == text || shown.replace("solver.", "") == **text;
             assert!(shown.iter().any(there), "{name}: {text}: {shown:?}");
         }
-        let png = fs::read(desk.path().join(paths[1])).unwrap();
+        let png = fs::read(folder.path().join(paths[1])).unwrap();
         let [width, height] = size(&png);
         assert!(width == 1920 && height > 600, "{width} {height}");
-        assert!(png.len() > 20_000, "{name}: {} bytes are a blank page", png.len());
+        assert!(png.len() > 20_000, "{name}: {} bytes is a blank page", png.len());
     }
 }
 
 #[test]
-fn without_a_kind_a_set_is_drawn_and_again_with_the_same_bytes() {
+fn the_default_set_is_drawn_with_reproducible_bytes() {
     let mut study = study();
     study["grid"].as_object_mut().unwrap().remove("solver.end_time");
-    let desk = Desk::new(&study);
-    desk.stdout(&["run", "grid.json", "-q"]);
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
     let read = || -> Vec<(String, Vec<u8>)> {
-        let printed = desk.stdout(&["chart", "grid.json", "--json"]);
+        let printed = folder.stdout(&["chart", "grid.json", "--json"]);
         let rows: serde_json::Value = serde_json::from_str(&printed).unwrap();
         let files = rows.as_array().unwrap().iter();
         let names = files.map(|row| row["file"].as_str().unwrap().to_owned());
-        names.map(|name| (name.clone(), fs::read(desk.path().join(name)).unwrap())).collect()
+        names.map(|name| (name.clone(), fs::read(folder.path().join(name)).unwrap())).collect()
     };
     let drawn = read();
     let names: Vec<&str> = drawn.iter().map(|(name, _)| name.as_str()).collect();
@@ -106,15 +106,15 @@ fn without_a_kind_a_set_is_drawn_and_again_with_the_same_bytes() {
     }
     assert!(names.iter().any(|name| name.contains("-map-mass_flow_rate-")), "{names:?}");
     assert!(drawn == read());
-    // A folder of results with pictures in it is still one to run in.
-    desk.stdout(&["run", "grid.json", "-q"]);
+    // Charts in a results folder do not prevent another run.
+    folder.stdout(&["run", "grid.json", "-q"]);
 }
 
 #[test]
-fn jobs_are_chosen_by_the_beginnings_of_their_ids_and_files_by_their_ending() {
-    let desk = Desk::new(&study());
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let rows = desk.rows("results/grid");
+fn jobs_are_selected_by_id_prefix_and_formats_by_file_extension() {
+    let folder = TestFolder::new(&study());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
     let done: Vec<&str> = rows
         .iter()
         .filter(|row| row["status"] == "done")
@@ -122,19 +122,19 @@ fn jobs_are_chosen_by_the_beginnings_of_their_ids_and_files_by_their_ending() {
         .collect();
     let ids = done[..2].join(",");
     let arguments = ["chart", "--history", "vz", "--jobs", &ids, "--out"];
-    let printed = desk.stdout(&[&arguments[..], &["two.SVG"]].concat());
+    let printed = folder.stdout(&[&arguments[..], &["two.SVG"]].concat());
     assert_eq!(printed, "two.SVG\n");
-    let shown = texts(&fs::read(desk.path().join("two.SVG")).unwrap());
+    let shown = texts(&fs::read(folder.path().join("two.SVG")).unwrap());
     assert!(shown.iter().any(|text| text.contains("2 points")), "{shown:?}");
-    desk.stdout(&[&arguments[..], &["two.png"]].concat());
-    size(&fs::read(desk.path().join("two.png")).unwrap());
-    assert!(!desk.results().join("charts").exists());
+    folder.stdout(&[&arguments[..], &["two.png"]].concat());
+    size(&fs::read(folder.path().join("two.png")).unwrap());
+    assert!(!folder.results().join("charts").exists());
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused_with_exit_code_2_and_leaves_nothing() {
-    let desk = Desk::new(&study());
-    desk.stdout(&["run", "grid.json", "-q"]);
+fn invalid_charts_give_exit_code_2_and_no_file() {
+    let folder = TestFolder::new(&study());
+    folder.stdout(&["run", "grid.json", "-q"]);
     for (arguments, expected) in [
         (&["--history", "z_rims"][..], "did you mean z_rim?"),
         (&["--measure", "peak_v", "--over", "N"], "did you mean peak_vz?"),
@@ -154,23 +154,23 @@ fn what_cannot_be_drawn_is_refused_with_exit_code_2_and_leaves_nothing() {
         (&["--out", "vz.png"], "one file for several charts"),
         (&["nowhere"], "nowhere"),
     ] {
-        let output = desk.run(&[&["chart"], arguments].concat());
+        let output = folder.run(&[&["chart"], arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
         assert!(output.stdout.is_empty());
     }
-    assert!(!desk.results().join("charts").exists());
+    assert!(!folder.results().join("charts").exists());
 }
 
 #[test]
 fn a_lost_history_is_told_and_nothing_is_drawn() {
-    let desk = Desk::new(&study());
-    desk.stdout(&["run", "grid.json", "-q"]);
-    let row = desk.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
+    let folder = TestFolder::new(&study());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let row = folder.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
     let job = row["job"].as_str().unwrap();
-    fs::remove_file(desk.results().join(format!("jobs/{}/{job}.h5", &job[..2]))).unwrap();
-    let output = desk.run(&["chart", "--history", "vz"]);
+    fs::remove_file(folder.results().join(format!("jobs/{}/{job}.h5", &job[..2]))).unwrap();
+    let output = folder.run(&["chart", "--history", "vz"]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains(job), "{}", stderr(&output));
-    assert!(!desk.results().join("charts").exists());
+    assert!(!folder.results().join("charts").exists());
 }

@@ -1,74 +1,76 @@
-//! Film that rubs on film, and film that sticks to it.
+//! Friction and adhesion between film and film.
 //!
 //! ```text
-//! friction:  speed lost = μ g t  while it slides         adhesion:  parts where pulled by more than the
-//!                                                                   pull-off pressure
+//! friction:  speed loss = μ g t while it slides
+//! adhesion:  the sheets separate above the pull-off pressure
 //! ```
 
+use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
+use billow_solver::scene::paper::free_film;
 use billow_solver::scene::timeline::Phase;
 use nalgebra::Vector3;
 
-use super::contact_rig::{follow, moved, together, watched};
+use super::contact_rig::{monitored_contact, run_recorded};
 use super::reference::number;
-use super::rig::{film, held, scene};
+use super::rig::held;
 use super::row::worse;
-use super::shapes_dynamic::sheet;
 use super::{Outcome, Rig, Row};
 
-/// Contact distance, and where the upper sheet starts, m.
+/// Contact distance, and initial height of the upper sheet, m.
 const DISTANCE: f64 = 1e-3;
 
-/// A sheet that is held and one a contact distance above it; and where the nodes of the upper begin.
-fn on_top(low: Shell, high: Shell) -> (FilmScene, usize) {
+/// A held sheet and a free one above it; and the first node of the upper one.
+fn two_sheets(low: Shell, high: Shell) -> (FilmScene, usize) {
     let nodes = low.positions.len();
     let count = u32::try_from(nodes).expect("under 2^32 nodes");
     let scene = FilmScene {
         supports: vec![held((0..count).collect(), "xyz")],
-        ..scene(together(&[low, high]), Film { viscosity: 0.1, ..film() })
+        ..free_film(joined(&[low, high]), Film { viscosity: 0.1, ..Film::PAPER_ELASTIC })
     };
     (scene, nodes)
 }
 
-/// A sheet that slides on another under its weight.
+/// A sheet that slides on another one under its weight.
 pub fn friction(rig: &Rig) -> Outcome {
     let (mu, band) = (number("friction/coefficient"), number("friction/band"));
     let (gravity, speed, time) = (9.81, 0.5, 0.06);
     let low = moved(sheet(8, 4, 1.0, 0.4), |x| x - Vector3::new(0.2, 0.05, 0.0));
     let high = moved(sheet(3, 2, 0.2, 0.15), |x| x + Vector3::new(0.0, 0.05, DISTANCE));
-    let (scene, split) = on_top(low, high);
+    let (scene, split) = two_sheets(low, high);
     let nodes = scene.shell.positions.len();
     let scene = FilmScene {
         velocities: (0..nodes)
             .map(|n| Vector3::x() * if n < split { 0.0 } else { speed })
             .collect(),
         gravity: Vector3::new(0.0, 0.0, -gravity),
-        contact: Some(FilmContact { friction: mu, ..watched(DISTANCE) }),
+        contact: Some(FilmContact { friction: mu, ..monitored_contact(DISTANCE) }),
         ..scene
     };
     let mut film = rig.start(&scene)?;
-    let seen = follow(&mut film, time, 20, &Phase::default())?;
+    let record = run_recorded(&mut film, time, 20, &Phase::default())?;
     let sum = |of: &dyn Fn(usize) -> f64| -> f64 { (split..nodes).map(of).sum() };
     let mass = sum(&|node| film.model.mass[node]);
     let momentum = sum(&|node| film.model.mass[node] * film.state.velocities.x[node]);
     let lost = speed - momentum / mass;
-    let taken = film.ledger().contact_dissipation;
+    let dissipated = film.ledger().contact_dissipation;
     let mut judged = vec![
-        Row::new("speed lost, m/s", lost, mu * gravity * time, band),
-        Row::at_least("energy friction took, J", taken, 0.0),
+        Row::new("speed loss, m/s", lost, mu * gravity * time, band),
+        Row::at_least("energy dissipated by friction, J", dissipated, 0.0),
     ];
-    judged.extend(seen.rows(&film, "", number("contact/ledger_band")));
+    judged.extend(record.rows(&film, "", number("contact/ledger_band")));
     Ok(judged)
 }
 
-/// Height of the upper sheet after it was pulled by this pressure (Pa): lowest and highest node, m.
+/// Heights of the lowest and the highest node of the upper sheet, m, after a pull (Pa) against this
+/// pull-off pressure (Pa).
 fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     let low = sheet(16, 16, 0.4, 0.4);
     let high = moved(sheet(4, 4, 0.2, 0.2), |x| x + Vector3::new(0.104, 0.109, DISTANCE));
-    let (scene, split) = on_top(low, high);
-    // Weight upwards: so much an area.
+    let (scene, split) = two_sheets(low, high);
+    // The pull is an upward weight per area.
     let density = scene.film.density * scene.film.thickness;
     let mut scene = FilmScene {
         gravity: Vector3::new(0.0, 0.0, pull / density),
@@ -81,13 +83,13 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     };
     scene.solver.mass_damping = 200.0;
     let mut film = rig.start(&scene)?;
-    follow(&mut film, 0.05, 10, &Phase::default())?;
+    run_recorded(&mut film, 0.05, 10, &Phase::default())?;
     let heights = &film.state.positions.z[split..];
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     Ok([lowest, heights.iter().copied().fold(0.0, worse)])
 }
 
-/// Sheets that stick, pulled by less and by more than they bear.
+/// Adhesive sheets, pulled below and above the pull-off pressure.
 pub fn adhesion(rig: &Rig) -> Outcome {
     let [pressure, below, above, parted] =
         ["pressure", "below", "above", "parted"].map(|key| number(&format!("adhesion/{key}")));

@@ -1,6 +1,7 @@
-//! Broken study files: one clear error each, exit code 2, nothing on stdout, nothing written; and no
-//! text at all, however mangled, makes planning panic.
+//! Invalid study files: one error each, exit code 2, empty stdout, no file written. A mangled text
+//! either plans or gives an error with its file, problem and allowed values.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
@@ -23,9 +24,9 @@ fn changed(pointer: &str, value: Json) -> Vec<u8> {
 
 #[test]
 #[expect(clippy::too_many_lines, reason = "a table of cases")]
-fn every_broken_file_gives_one_clear_error() {
+fn every_invalid_file_gives_one_error() {
     let long = |text: &str| text.repeat(200_000);
-    // Content of the file; what the error says: key, value, problem, what is allowed.
+    // Content of the file; parts of the error: key, value, problem, allowed values.
     let cases: Vec<(Vec<u8>, &[&str])> = vec![
         (b"".to_vec(), &["is empty", "allowed: JSON"]),
         (b"\xEF\xBB\xBF{}".to_vec(), &["byte order mark", "plain UTF-8"]),
@@ -176,8 +177,7 @@ fn every_broken_file_gives_one_clear_error() {
         for fragment in *fragments {
             assert!(stderr.contains(fragment), "{fragment:?} is not in\n{stderr}");
         }
-        let left: Vec<_> = fs::read_dir(folder.path()).unwrap().collect();
-        assert_eq!(left.len(), 1, "nothing is written");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "no file is written");
     }
 }
 
@@ -260,20 +260,21 @@ const SNIPPETS: &[&str] = &[
 fn mangle_bytes(text: &str, random: &mut Random) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..=random.below(3) {
-        let at = random.below(bytes.len());
-        let end = (at + random.below(12)).min(bytes.len());
+        let start = random.below(bytes.len());
+        let end = (start + random.below(12)).min(bytes.len());
         match random.below(6) {
-            0 => bytes[at] = u8::try_from(random.below(256)).unwrap(),
-            1 => drop(bytes.drain(at..end)),
+            0 => bytes[start] = u8::try_from(random.below(256)).unwrap(),
+            1 => drop(bytes.drain(start..end)),
             2 => {
-                let copy = bytes[at..end].to_vec();
-                let place = random.below(bytes.len());
-                bytes.splice(place..place, copy);
+                let copy = bytes[start..end].to_vec();
+                let target = random.below(bytes.len());
+                bytes.splice(target..target, copy);
             }
-            3 => drop(bytes.splice(at..at, random.pick(SNIPPETS).bytes())),
-            4 => drop(bytes.splice(at..end, random.pick(SNIPPETS).bytes())),
+            3 => drop(bytes.splice(start..start, random.pick(SNIPPETS).bytes())),
+            4 => drop(bytes.splice(start..end, random.pick(SNIPPETS).bytes())),
             _ => {
-                if let Some(digit) = bytes.iter_mut().skip(at).find(|byte| byte.is_ascii_digit()) {
+                if let Some(digit) = bytes.iter_mut().skip(start).find(|byte| byte.is_ascii_digit())
+                {
                     *digit = b'0' + u8::try_from(random.below(10)).unwrap();
                 }
             }
@@ -333,14 +334,14 @@ fn mangle_tree(json: &mut Json, random: &mut Random) {
             }
         }
         Json::Array(items) if !items.is_empty() && random.below(4) > 0 => {
-            let at = random.below(items.len());
-            mangle_tree(&mut items[at], random);
+            let index = random.below(items.len());
+            mangle_tree(&mut items[index], random);
         }
         other => *other = random.pick(&values).clone(),
     }
 }
 
-/// A shipped study with short axes, so that a plan of it costs little.
+/// A shipped study with short axes, so that it plans quickly.
 fn shortened(path: &std::path::Path) -> Json {
     let mut study: Json = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     let mut keep = 2;
@@ -355,7 +356,7 @@ fn shortened(path: &std::path::Path) -> Json {
 }
 
 #[test]
-fn a_hundred_thousand_mangled_studies_never_panic() {
+fn a_hundred_thousand_mangled_studies_plan_or_name_their_error() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies");
     let studies: Vec<Json> = ["first.json", "designs.json", "strategies.json", "folds.json"]
         .iter()
@@ -380,16 +381,20 @@ fn a_hundred_thousand_mangled_studies_never_panic() {
         });
         match study {
             Ok(study) => {
-                assert!(!next_jobs(&study, &[]).unwrap().points.is_empty());
+                // At most the allowed number of points, and no job twice.
+                let points = next_jobs(&study, &[]).unwrap().points;
+                let ids: BTreeSet<_> = points.iter().map(|point| &point.job.id).collect();
+                assert!((1..=24).contains(&points.len()) && ids.len() == points.len());
                 planned += 1;
             }
             Err(error) => {
                 assert!(!error.problem.is_empty() && !error.allowed.is_empty(), "{error:?}");
+                assert!(error.to_string().starts_with("fuzz.json"), "{error}");
                 refused += 1;
             }
         }
     }
     println!("{planned} planned, {refused} refused");
-    // Both sides of the door are tried.
+    // Both outcomes are frequent.
     assert!(planned > 5_000 && refused > 5_000, "{planned} planned, {refused} refused");
 }

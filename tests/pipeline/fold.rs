@@ -1,4 +1,4 @@
-//! `billow fold`: numbers, answers for infeasible designs, files.
+//! `billow fold`: numbers, infeasible designs, files.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -42,11 +42,7 @@ fn prints_the_papers_capsule_in_si() {
     assert!((number("ring_ratio") - 0.900_411).abs() < 5e-7);
     assert!((answer["lengths"]["AE"].as_f64().expect("AE") - 0.829_579).abs() < 5e-7);
     assert!(number("closure_defect") < 1e-12);
-    assert_eq!(
-        answer["top_radius"],
-        serde_json::json!(0.365),
-        "what is given is kept to the digit"
-    );
+    assert_eq!(answer["top_radius"], serde_json::json!(0.365), "a given value keeps its digits");
     for key in [
         "alpha2",
         "beta1",
@@ -72,7 +68,7 @@ fn units_and_numbers_are_the_same() {
 }
 
 #[test]
-fn infeasible_is_an_answer() {
+fn an_infeasible_design_is_an_answer() {
     let mut flags = PAPER;
     flags[3] = "1";
     let answer = json(&flags);
@@ -80,7 +76,7 @@ fn infeasible_is_an_answer() {
     assert!(answer["reason"].as_str().expect("a reason").contains("no phi closes"));
     assert_eq!(answer["nearest"]["M"], 2);
     assert!(answer["phi"].is_null());
-    assert_eq!(answer["height"], 1.0, "what was asked stands");
+    assert_eq!(answer["height"], 1.0, "the given value is kept");
     // Without --json too, and nothing is written.
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
@@ -106,7 +102,7 @@ fn bad_designs_are_refused_in_one_line() {
     for (changed, flag, allowed) in cases {
         let mut flags: Vec<&str> = PAPER.to_vec();
         match flags.iter().position(|f| f == &changed[0]) {
-            Some(at) => flags[at + 1] = changed[1],
+            Some(index) => flags[index + 1] = changed[1],
             None => flags.extend(changed),
         }
         let output = fold(&flags);
@@ -118,7 +114,7 @@ fn bad_designs_are_refused_in_one_line() {
 }
 
 #[test]
-fn a_stack_too_high_is_an_answer_and_by_default_never_asked_for() {
+fn a_stowed_height_too_large_is_an_answer_and_never_the_default() {
     let small = [
         "--panels",
         "6",
@@ -148,7 +144,7 @@ fn a_stack_too_high_is_an_answer_and_by_default_never_asked_for() {
 }
 
 #[test]
-fn shapes_beyond_any_memory_are_refused() {
+fn meshes_larger_than_memory_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("shapes");
     let flags = ["--subdivisions", "1000", "--out", out.to_str().expect("a path")];
@@ -159,7 +155,7 @@ fn shapes_beyond_any_memory_are_refused() {
 }
 
 #[test]
-fn writes_the_pattern_and_its_shapes() {
+fn pattern_and_shapes_are_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("new/folder");
     let flags = ["--out", out.to_str().expect("a path"), "--glue-flaps", "15 mm"];
@@ -173,7 +169,7 @@ fn writes_the_pattern_and_its_shapes() {
         assert!(read(name).lines().any(|line| line.starts_with("f ")), "{name}");
     }
     let names = std::fs::read_dir(&out).expect("the folder").count();
-    assert_eq!(names, 6, "no temporary file is left");
+    assert_eq!(names, 6, "no temporary file remains");
 
     let flags = ["--out", out.to_str().expect("a path"), "--glue-flaps", "1 m"];
     let output = fold(&[&PAPER[..], &flags].concat());

@@ -1,0 +1,371 @@
+//! Simple shells for reference cases and tests: sheets, discs, spheres, tubes, cones.
+//!
+//! Every shape has one arithmetic and one numbering of nodes and elements: reference cases and the
+//! guard of the physics version depend on its bits.
+
+use core::f64::consts::{PI, TAU};
+use std::collections::BTreeMap;
+
+use nalgebra::{Vector2, Vector3};
+
+use super::shell::Shell;
+
+/// A flat sheet in z = 0 of `width` × `height` m with uneven cells: inner nodes lie off the regular
+/// grid by up to 8 % of a cell, diagonals alternate. Its reference is its own plane.
+pub fn sheet(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
+    let node = |i: u32, j: u32| j * (columns + 1) + i;
+    let mut positions = Vec::new();
+    for j in 0..=rows {
+        for i in 0..=columns {
+            let inside = i > 0 && j > 0 && i < columns && j < rows;
+            let off = if inside { 0.04 * f64::from((i * 7 + j * 5) % 5) - 0.08 } else { 0.0 };
+            let x = (f64::from(i) + off) / f64::from(columns) * width;
+            let y = (f64::from(j) - 0.7 * off) / f64::from(rows) * height;
+            positions.push(Vector3::new(x, y, 0.0));
+        }
+    }
+    let mut triangles = Vec::new();
+    for j in 0..rows {
+        for i in 0..columns {
+            let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+            if (i + j) % 2 == 0 {
+                triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+    }
+    in_plane(positions, triangles)
+}
+
+/// A flat sheet in z = 0 from the origin, `columns` × `rows` equal cells, every diagonal from the
+/// lower left to the upper right. Its reference is its own plane.
+pub fn grid(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
+    let node = |i: u32, j: u32| j * (columns + 1) + i;
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for j in 0..=rows {
+        for i in 0..=columns {
+            let x = f64::from(i) / f64::from(columns) * width;
+            let y = f64::from(j) / f64::from(rows) * height;
+            positions.push(Vector3::new(x, y, 0.0));
+            if i < columns && j < rows {
+                let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    in_plane(positions, triangles)
+}
+
+/// A strip along x, one cell wide: every element is the same but for a half turn.
+pub fn strip(columns: u32, length: f64, width: f64) -> Shell {
+    grid(columns, 1, length, width)
+}
+
+/// A flat disc of concentric rings with 6k nodes on ring k, equal radial steps. The disc of twice
+/// the rings cuts every element into four, so results on both have one smooth error.
+pub fn disc(rings: u32, radius: f64) -> Shell {
+    let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
+    let node = |ring: u32, k: u32| if ring == 0 { 0 } else { first(ring) + k % (6 * ring) };
+    let mut positions = vec![Vector3::zeros()];
+    for ring in 1..=rings {
+        let r = radius * f64::from(ring) / f64::from(rings);
+        for k in 0..6 * ring {
+            let angle = TAU * f64::from(k) / f64::from(6 * ring);
+            let (sin, cos) = libm::sincos(angle);
+            positions.push(Vector3::new(r * cos, r * sin, 0.0));
+        }
+    }
+    let mut triangles = Vec::new();
+    for ring in 1..=rings {
+        for sector in 0..6 {
+            for k in 0..ring {
+                let (inner, outer) = (sector * (ring - 1) + k, sector * ring + k);
+                triangles.push([node(ring, outer), node(ring, outer + 1), node(ring - 1, inner)]);
+                if k + 1 < ring {
+                    triangles.push([
+                        node(ring - 1, inner),
+                        node(ring, outer + 1),
+                        node(ring - 1, inner + 1),
+                    ]);
+                }
+            }
+        }
+    }
+    in_plane(positions, triangles)
+}
+
+/// Nodes on the rim of a [`disc`] of this many rings.
+pub fn disc_rim(rings: u32) -> Vec<u32> {
+    (1 + 3 * rings * (rings - 1)..=3 * rings * (rings + 1)).collect()
+}
+
+/// A flat disc whose elements lie along its radii: `rings` equal steps outward, `around` nodes on
+/// each ring. Ring 0 of the numbering is the rim; the last node is the centre.
+///
+/// # Panics
+/// With 2^32 nodes or more.
+pub fn radial_disc(rings: u32, around: u32, radius: f64) -> Shell {
+    let shell = revolved(rings - 1, around, false, |k| {
+        [radius * f64::from(rings - k) / f64::from(rings), 0.0]
+    });
+    let Shell { mut positions, mut triangles, .. } = shell;
+    let centre = u32::try_from(positions.len()).expect("fewer than 2^32 nodes");
+    positions.push(Vector3::zeros());
+    let last = ring_nodes(rings - 1, around);
+    for i in 0..around as usize {
+        triangles.push([last[i], last[(i + 1) % around as usize], centre]);
+    }
+    Shell::relaxed(positions, triangles)
+}
+
+/// A sphere: an icosahedron whose faces are cut into four `level` times, wound outward.
+///
+/// # Panics
+/// With 2^32 nodes or more.
+pub fn icosphere(level: u32, radius: f64) -> Shell {
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut nodes: Vec<Vector3<f64>> = Vec::new();
+    for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+        nodes.push(Vector3::new(0.0, a, b));
+        nodes.push(Vector3::new(a, b, 0.0));
+        nodes.push(Vector3::new(b, 0.0, a));
+    }
+    let mut triangles = Vec::new();
+    for a in 0..12_u32 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                let [p, q, r] = [a, b, c].map(|node| nodes[node as usize]);
+                // Edges of the icosahedron of these nodes have length 2.
+                let edges = [(p - q).norm(), (q - r).norm(), (r - p).norm()];
+                if edges.iter().all(|edge| (edge - 2.0).abs() < 1e-9) {
+                    let outward = p.dot(&q.cross(&r)) > 0.0;
+                    triangles.push(if outward { [a, b, c] } else { [a, c, b] });
+                }
+            }
+        }
+    }
+    for node in &mut nodes {
+        *node = node.normalize() * radius;
+    }
+    for _ in 0..level {
+        let mut midpoints = BTreeMap::new();
+        let mut finer = Vec::new();
+        for [a, b, c] in triangles {
+            let mut midpoint = |p: u32, q: u32| {
+                *midpoints.entry((p.min(q), p.max(q))).or_insert_with(|| {
+                    let sum = nodes[p as usize] + nodes[q as usize];
+                    nodes.push(sum.normalize() * radius);
+                    u32::try_from(nodes.len() - 1).expect("fewer than 2^32 nodes")
+                })
+            };
+            let (ab, bc, ca) = (midpoint(a, b), midpoint(b, c), midpoint(c, a));
+            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    Shell::relaxed(nodes, triangles)
+}
+
+/// A surface of revolution about z: `rings` + 1 rings of `around` nodes, two elements a cell, ring k
+/// at the radius and height `profile(k)` (m). Outward is away from the axis where heights rise.
+///
+/// All diagonals lean alike, so that every node of a ring bears the same; `crossed` alternates them,
+/// so that the mesh has no sense of rotation.
+pub fn revolved(
+    rings: u32,
+    around: u32,
+    crossed: bool,
+    profile: impl Fn(u32) -> [f64; 2],
+) -> Shell {
+    let mut positions = Vec::new();
+    for ring in 0..=rings {
+        let [radius, height] = profile(ring);
+        for i in 0..around {
+            let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(around));
+            positions.push(Vector3::new(radius * cos, radius * sin, height));
+        }
+    }
+    let node = |ring: u32, i: u32| ring * around + i % around;
+    let mut triangles = Vec::new();
+    for ring in 0..rings {
+        for i in 0..around {
+            let [a, b] = [node(ring, i), node(ring, i + 1)];
+            let [c, d] = [node(ring + 1, i + 1), node(ring + 1, i)];
+            if !crossed || (ring + i) % 2 == 0 {
+                triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+    }
+    Shell::relaxed(positions, triangles)
+}
+
+/// Nodes of one ring of [`revolved`].
+pub fn ring_nodes(ring: u32, around: u32) -> Vec<u32> {
+    (ring * around..(ring + 1) * around).collect()
+}
+
+/// An open tube about z from z = 0: `around` cells round, `along` up, wound outward.
+pub fn tube(around: u32, along: u32, radius: f64, length: f64) -> Shell {
+    revolved(along, around, false, |ring| [radius, length * f64::from(ring) / f64::from(along)])
+}
+
+/// A frustum of film closed by two flat circular caps.
+#[derive(Debug, Clone)]
+pub struct CappedFrustum {
+    /// The film.
+    pub shell: Shell,
+    /// Nodes of the bottom and the top rim.
+    pub rims: [Vec<u32>; 2],
+    /// Nodes at the centre of the bottom and the top cap.
+    pub poles: [u32; 2],
+}
+
+/// A frustum of these radii (m, bottom and top) and this height (m), closed by flat caps, bottom rim
+/// at z = 0. It has `fine` steps from a cap's centre to its rim and twice as many along the side,
+/// the smaller the nearer to a rim.
+///
+/// # Panics
+/// With 2^32 nodes or more.
+pub fn capped_frustum(fine: u32, [bottom, top]: [f64; 2], height: f64) -> CappedFrustum {
+    let around = 6 * fine;
+    let side = 2 * fine;
+    // A cosine makes the steps at both rims small.
+    let fraction = |k: u32, of: u32| 0.5 - 0.5 * libm::cos(PI * f64::from(k) / f64::from(of));
+    // A quarter of a sine makes them small at the cap's rim alone.
+    let outward = |k: u32| libm::sin(0.25 * TAU * f64::from(k) / f64::from(fine));
+    let rings = 2 * (fine - 1) + side;
+    let shell = revolved(rings, around, false, |k| {
+        if k < fine {
+            [bottom * outward(k + 1), 0.0]
+        } else if k <= fine - 1 + side {
+            let s = fraction(k + 1 - fine, side);
+            [bottom + (top - bottom) * s, height * s]
+        } else {
+            [top * outward(rings + 1 - k), height]
+        }
+    });
+    let Shell { mut positions, mut triangles, .. } = shell;
+    let next = u32::try_from(positions.len()).expect("fewer than 2^32 nodes");
+    let poles = [next, next + 1];
+    positions.extend([Vector3::zeros(), Vector3::new(0.0, 0.0, height)]);
+    let (first, last) = (ring_nodes(0, around), ring_nodes(rings, around));
+    for i in 0..around as usize {
+        let j = (i + 1) % around as usize;
+        triangles.push([poles[0], first[j], first[i]]);
+        triangles.push([poles[1], last[i], last[j]]);
+    }
+    let rims = [ring_nodes(fine - 1, around), ring_nodes(fine - 1 + side, around)];
+    CappedFrustum { shell: Shell::relaxed(positions, triangles), rims, poles }
+}
+
+/// Two square plates of film of this area (m²), the upper one at this height (m); the walls between
+/// them close the volume and are no film. Nodes 0 to 3 are the lower plate, 4 to 7 the upper one.
+pub fn gas_column(area: f64, height: f64) -> Shell {
+    let half = 0.5 * area.sqrt();
+    let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+    let plate = |z: f64| corners.map(|(x, y)| Vector3::new(x, y, z));
+    let positions = [plate(0.0), plate(height)].concat();
+    let mut shell = Shell::relaxed(positions, vec![[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]]);
+    for side in 0..4_u32 {
+        let next = (side + 1) % 4;
+        shell.closure.extend([[side, next, next + 4], [side, next + 4, side + 4]]);
+    }
+    shell
+}
+
+/// Several pieces of film as one shell, without closing faces.
+///
+/// # Panics
+/// With 2^32 nodes or more.
+pub fn joined(pieces: &[Shell]) -> Shell {
+    let mut whole = Shell::default();
+    for piece in pieces {
+        let first = u32::try_from(whole.positions.len()).expect("fewer than 2^32 nodes");
+        whole.positions.extend(&piece.positions);
+        whole.triangles.extend(piece.triangles.iter().map(|t| t.map(|node| node + first)));
+        whole.reference.extend(&piece.reference);
+    }
+    whole
+}
+
+/// A shell whose nodes are moved; its reference stays.
+pub fn moved(mut shell: Shell, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Shell {
+    shell.positions.iter_mut().for_each(|position| *position = map(*position));
+    shell
+}
+
+/// Nodes whose position has a property.
+pub fn nodes_where(shell: &Shell, has: impl Fn(&Vector3<f64>) -> bool) -> Vec<u32> {
+    (0_u32..).zip(&shell.positions).filter(|(_, x)| has(x)).map(|(node, _)| node).collect()
+}
+
+/// Pseudo-random vectors with components in [−1, 1), the same on every machine: a 64-bit linear
+/// congruential generator with the constants of D. E. Knuth's MMIX.
+pub fn pseudo_random(count: usize, seed: u64) -> Vec<Vector3<f64>> {
+    let mut state = seed;
+    let mut next = move || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    (0..count).map(|_| Vector3::new(next(), next(), next())).collect()
+}
+
+/// Film in the plane z = 0 that is its own reference.
+fn in_plane(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
+    let flat = |node: u32| -> Vector2<f64> { positions[node as usize].xy() };
+    let reference = triangles.iter().map(|t: &[u32; 3]| t.map(flat)).collect();
+    Shell { positions, triangles, reference, closure: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn relative_error(value: f64, expected: f64) -> f64 {
+        (value / expected - 1.0).abs()
+    }
+
+    #[test]
+    fn flat_shapes_have_their_area() {
+        for (shell, area) in [
+            (sheet(5, 4, 0.3, 0.2), 0.06),
+            (grid(3, 7, 0.3, 0.2), 0.06),
+            (strip(9, 0.5, 0.1), 0.05),
+        ] {
+            assert!(relative_error(shell.reference_area(), area) < 1e-14);
+        }
+        for shell in [disc(16, 0.5), radial_disc(16, 96, 0.5)] {
+            assert!(relative_error(shell.reference_area(), PI * 0.25) < 2e-3);
+        }
+        let rim = disc_rim(7);
+        let shell = disc(7, 0.5);
+        assert_eq!((rim.len(), *rim.last().unwrap() as usize), (42, shell.positions.len() - 1));
+        assert!(rim.iter().all(|n| (shell.positions[*n as usize].norm() - 0.5).abs() < 1e-15));
+    }
+
+    #[test]
+    fn closed_shapes_have_their_volume() {
+        let volume = |shell: &Shell| shell.volume(|node| shell.positions[node as usize]);
+        assert!(relative_error(volume(&icosphere(4, 0.5)), PI / 6.0) < 5e-3);
+        assert_eq!(icosphere(0, 1.0).triangles.len(), 20);
+        let cone = capped_frustum(16, [0.5, 0.365], 1.0);
+        let frustum = PI / 3.0 * (0.25 + 0.5 * 0.365 + 0.365 * 0.365);
+        assert!(relative_error(volume(&cone.shell), frustum) < 1e-2);
+        assert!(relative_error(volume(&gas_column(0.5, 0.6)), 0.3) < 1e-14);
+    }
+
+    #[test]
+    fn pseudo_random_components_fill_their_range() {
+        let vectors = pseudo_random(1000, 3);
+        let components = || vectors.iter().flat_map(|v| v.iter().copied());
+        assert!(components().all(|c| (-1.0..1.0).contains(&c)));
+        assert!(components().any(|c| c > 0.99) && components().any(|c| c < -0.99));
+        assert_eq!(vectors, pseudo_random(1000, 3));
+        assert_ne!(vectors, pseudo_random(1000, 4));
+    }
+}

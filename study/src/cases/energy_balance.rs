@@ -1,0 +1,95 @@
+//! Energy balances: the paper's capsule without contact, and a sphere with every term of the
+//! equations.
+//!
+//! ```text
+//! residual = |Δ(kinetic + strain) + viscous + damping − external works| / (peak kinetic + Σ|external works|)
+//! ```
+
+use billow_solver::geometry::shapes::icosphere;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::models::film::FilmRun;
+use billow_solver::models::run::{self, Unobserved};
+use billow_solver::output::ledger::{GasBalance, gas_residuals, residuals};
+use billow_solver::output::measures::Reference;
+use billow_solver::output::outcome::Stop;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::inflow::Inflow;
+use billow_solver::scene::paper::{self, free_film, nitrogen_supply};
+use billow_solver::scene::timeline::{Phase, Timeline};
+use billow_solver::scene::{Film, GasSupply, HeatTransfer};
+use nalgebra::Vector3;
+
+use super::reference::number;
+use super::rig::advance;
+use super::row::worse;
+use super::{Outcome, Rig, Row};
+
+/// The paper's capsule, deployed without contact for 0.3 s.
+pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
+    let scene = paper::capsule(5, 0.3);
+    // No row here uses static states.
+    let unused = Reference::new(vec![[1.0, 1.0, 1.0]]);
+    let mut run = FilmRun::from_scene(rig.instruction_set, &scene, DEFAULT_CFL, None, Some(unused))
+        .map_err(|e| e.to_string())?;
+    run.film = rig.faulty(run.film);
+    let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
+    if deployment.stop != Stop::Done {
+        return Err(format!("stopped: {:?}", deployment.stop));
+    }
+    let audit = &deployment.audit;
+    let viscous = format!("viscous work over gas work {:.3}", audit.viscous_fraction);
+    Ok(vec![
+        Row::at_most("film energy residual", audit.ledger_residual, number("ledger/band"))
+            .with_note(&viscous),
+        Row::at_most("gas energy residual", audit.gas_residual, number("ledger/gas_band")),
+    ])
+}
+
+/// A viscous sphere that is thrown upward in air, filled, leaks, exchanges heat and has mass damping:
+/// every term at once.
+pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
+    let ambient = 1000.0;
+    let shell = icosphere(2, 0.5);
+    let species = nitrogen_supply().species;
+    let volume = shell.volume(|node| shell.positions[node as usize]);
+    let supply = GasSupply {
+        initial_mass: 2.0 * ambient * volume / (species.gas_constant * 350.0),
+        ambient_pressure: ambient,
+        heat_transfer: HeatTransfer::Coefficient(50.0),
+        leak_area: 2e-2,
+        ..nitrogen_supply()
+    };
+    let velocities =
+        shell.positions.iter().map(|x| Vector3::new(0.0, 0.0, 3.0) + x * 4.0).collect();
+    let mut scene = FilmScene {
+        velocities,
+        filling: Filling::Gas { supply, initial_temperature: 350.0 },
+        gravity: Vector3::new(0.0, 0.0, -9.806_65),
+        ..free_film(shell, Film { viscosity: 0.1, compression: 0.01, ..Film::PAPER_ELASTIC })
+    };
+    scene.solver.mass_damping = 5.0;
+    scene.solver.cfl = 0.2;
+    let mut film = rig.start(&scene)?;
+    let inflow = Inflow { mass_flow_rate: 1.0, temperature_flow: 400.0 };
+    let phase = Phase { packed: false, inflow };
+    let (mut ledgers, mut balances) = (vec![film.ledger()], vec![film.gas_balance()]);
+    for sample in 1..=40 {
+        let time = f64::from(sample) * 1e-3;
+        advance(&mut film, time, &phase)?;
+        ledgers.push(film.ledger());
+        balances.push(GasBalance { mass_in: inflow.mass_flow_rate * time, ..film.gas_balance() });
+    }
+    let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
+    Ok(vec![
+        Row::at_most(
+            "film energy residual",
+            largest(residuals(&ledgers)),
+            number("ledger/sphere_band"),
+        ),
+        Row::at_most(
+            "gas energy residual",
+            largest(gas_residuals(&balances)),
+            number("ledger/gas_band"),
+        ),
+    ])
+}

@@ -1,0 +1,256 @@
+//! `doctor` finds damage in a results folder; `rerun` repeats jobs and compares their bits.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use crate::support::{
+    TestFolder, failed, file_of, grid, histories, ids, json_of, ran, stderr, without_costs,
+};
+
+#[test]
+fn doctor_reports_a_sound_folder_and_changes_nothing() {
+    let folder = ran();
+    let before = histories(&folder.results());
+    let said = folder.stdout(&["doctor"]);
+    assert_eq!(
+        said,
+        "results/grid: sound: 16 jobs recorded, 16 histories looked at, 0 things found\n"
+    );
+    assert_eq!(json_of(&folder, &["doctor"]), json!([]));
+    assert_eq!(histories(&folder.results()), before);
+    assert!(folder.stdout(&["doctor", "grid.json"]).contains("sound"));
+}
+
+/// Damages the folder, or one of its jobs.
+type Damage = fn(&TestFolder, &str);
+
+/// Kinds of damage: name, function, whether `doctor` fails, part of its message.
+const DAMAGES: [(&str, Damage, bool, &str); 12] = [
+    (
+        "missing history",
+        |folder, id| fs::remove_file(file_of(folder, id)).unwrap(),
+        true,
+        ": missing",
+    ),
+    (
+        "cut history",
+        |folder, id| {
+            let bytes = fs::read(file_of(folder, id)).unwrap();
+            fs::write(file_of(folder, id), &bytes[..bytes.len() / 2]).unwrap();
+        },
+        true,
+        "not the file that was written (no HDF5 file",
+    ),
+    (
+        "another history",
+        |folder, id| {
+            let other = ids(folder, "done").into_iter().find(|other| other != id).unwrap();
+            fs::copy(file_of(folder, &other), file_of(folder, id)).unwrap();
+        },
+        true,
+        "(a whole history, but another one)",
+    ),
+    (
+        "missing table",
+        |folder, _| fs::remove_file(folder.results().join("summary.parquet")).unwrap(),
+        false,
+        "no table yet",
+    ),
+    (
+        "foreign table",
+        |folder, _| fs::write(folder.results().join("summary.parquet"), "x").unwrap(),
+        true,
+        "no Parquet file",
+    ),
+    (
+        "table behind",
+        |folder, _| {
+            let other = TestFolder::new(&grid(
+                &json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]}),
+            ));
+            other.stdout(&["run", "grid.json", "-q"]);
+            fs::copy(
+                other.results().join("summary.parquet"),
+                folder.results().join("summary.parquet"),
+            )
+            .unwrap();
+        },
+        true,
+        "out of step with the journal in 24 rows",
+    ),
+    (
+        "torn last line",
+        |folder, _| {
+            let path = folder.results().join("journal/000001.jsonl");
+            let bytes = fs::read(&path).unwrap();
+            fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
+        },
+        true,
+        "line 17 is torn",
+    ),
+    (
+        "leftover",
+        |folder, _| {
+            fs::write(folder.results().join("jobs/.x.tmp"), "")
+                .and_then(|()| fs::write(folder.results().join(".table.1-1.tmp"), ""))
+                .unwrap();
+        },
+        false,
+        "a file left half written",
+    ),
+    (
+        "foreign file",
+        |folder, _| fs::write(folder.results().join("notes.txt"), "").unwrap(),
+        false,
+        "not a file of billow",
+    ),
+    (
+        "orphan",
+        |folder, id| {
+            let orphan = folder.results().join(format!(
+                "jobs/{}/{}{}.h5",
+                &id[..2],
+                &id[..2],
+                "0".repeat(30)
+            ));
+            fs::copy(file_of(folder, id), orphan).unwrap();
+        },
+        false,
+        "a history no record names",
+    ),
+    (
+        "study.json gone",
+        |folder, _| fs::remove_file(folder.results().join("study.json")).unwrap(),
+        true,
+        "nothing says which study this is",
+    ),
+    (
+        "study.json cut",
+        |folder, _| {
+            let path = folder.results().join("study.json");
+            let bytes = fs::read(&path).unwrap();
+            fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+        },
+        true,
+        "not a study.json of billow",
+    ),
+];
+
+/// `doctor` reports each damage with the next step, and the next run repairs what it can.
+#[test]
+fn doctor_finds_every_damage_and_run_repairs_it() {
+    let whole = ran();
+    let rows = without_costs(whole.rows("results/grid"));
+    for (name, damage, broken, expected) in DAMAGES {
+        let folder = ran();
+        let id = ids(&folder, "done").remove(2);
+        damage(&folder, &id);
+        let output = folder.run(&["doctor"]);
+        let said = String::from_utf8(output.stdout.clone()).unwrap();
+        assert!(said.contains(expected), "{name}: {said}");
+        let line = said.lines().find(|line| line.contains(expected)).unwrap();
+        assert!(line.contains("; next: "), "{name}: {line}");
+        assert_eq!(output.status.code(), Some(i32::from(broken)), "{name}: {said}");
+        if name == "study.json cut" {
+            // The folder may belong to another study and is not overwritten.
+            let refused = folder.run(&["run", "grid.json", "-q"]);
+            assert_eq!(refused.status.code(), Some(2));
+            continue;
+        }
+        folder.stdout(&["run", "grid.json", "-q"]);
+        let repaired = folder.run(&["doctor"]);
+        assert_eq!(
+            repaired.status.code(),
+            Some(0),
+            "{name}: {}",
+            String::from_utf8_lossy(&repaired.stdout)
+        );
+        assert_eq!(without_costs(folder.rows("results/grid")), rows, "{name}");
+    }
+}
+
+#[test]
+fn files_of_a_newer_version_are_refused() {
+    let folder = ran();
+    let journal = folder.results().join("journal/000001.jsonl");
+    let study = folder.results().join("study.json");
+    for (path, from, to, expected) in [
+        (&journal, "\"version\":2", "\"version\":9", "journal of version 9"),
+        (&study, "\"version\": 1", "\"version\": 9", "version 9, this program reads up to 1"),
+    ] {
+        let sound = fs::read_to_string(path).unwrap();
+        fs::write(path, sound.replacen(from, to, 1)).unwrap();
+        let output = folder.run(&["doctor"]);
+        assert_eq!(output.status.code(), Some(1));
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains(expected), "{said}");
+        for command in [&["show", "00"][..], &["compare", "--by", "N", "--base", "5"]] {
+            let refused = folder.run(command);
+            assert_eq!(refused.status.code(), Some(2));
+            assert!(stderr(&refused).contains(expected), "{}", stderr(&refused));
+        }
+        fs::write(path, sound).unwrap();
+    }
+    assert_eq!(folder.run(&["doctor"]).status.code(), Some(0));
+}
+
+#[test]
+fn rerun_reproduces_the_bits_and_reports_it() {
+    let folder = ran();
+    let before = histories(&folder.results());
+    let table = without_costs(folder.rows("results/grid"));
+    let done = ids(&folder, "done");
+    let listed = folder.stdout(&["rerun", &done[0][..9], &done[1], "--dry-run", "--format", "csv"]);
+    assert_eq!(listed.lines().count(), 3, "{listed}");
+    assert_eq!(histories(&folder.results()), before);
+    let said = folder.stdout(&["rerun", &done[0][..9], &done[1], "results/grid", "-q"]);
+    assert!(said.starts_with("grid: 2 jobs run, 24 points\n"), "{said}");
+    assert!(said.contains("bits     2 jobs the same as before\n"), "{said}");
+    let summary = json_of(&folder, &["rerun", "--where", "N == 6 and M == 3", "grid.json", "-q"]);
+    assert_eq!((&summary["ran"], &summary["same_bits"]), (&json!(6), &json!(6)));
+    assert_eq!(summary["other_bits"], json!([]));
+    assert_eq!(histories(&folder.results()), before);
+    assert_eq!(without_costs(folder.rows("results/grid")), table);
+    assert!(folder.stdout(&["run", "grid.json", "-q"]).contains("nothing to run"));
+    assert_eq!(folder.run(&["doctor"]).status.code(), Some(0));
+
+    let infeasible = &ids(&folder, "infeasible")[0];
+    for (arguments, expected) in [
+        (&["rerun"][..], "no job is named"),
+        (&["rerun", infeasible], "it has no job to run"),
+        (&["rerun", &done[0], "--where", "N == 6"], "both by id and by --where"),
+    ] {
+        let output = folder.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn different_bits_are_an_error() {
+    let folder = ran();
+    let id = &ids(&folder, "done")[0];
+    let journal = folder.results().join("journal/000001.jsonl");
+    let row =
+        folder.rows("results/grid").into_iter().find(|row| row["job"] == id.as_str()).unwrap();
+    let text = fs::read_to_string(&journal).unwrap();
+    let hash = row["content_hash"].as_str().unwrap();
+    fs::write(&journal, text.replace(hash, &"0".repeat(64))).unwrap();
+    let output = folder.run(&["rerun", id, "-q"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains(&format!("1 job gave other bits than before: {}", &id[..8])), "{said}");
+}
+
+#[test]
+fn rerun_selects_failed_jobs_by_condition() {
+    let folder = failed();
+    let output = folder.run(&["rerun", "--where", "status == 'step_limit'", "-q", "--json"]);
+    assert_eq!(output.status.code(), Some(1), "they fail again: {}", stderr(&output));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&summary["ran"], &summary["same_bits"]), (&json!(16), &json!(16)));
+    let none = folder.run(&["rerun", "--where", "status == 'done'"]);
+    assert_eq!(none.status.code(), Some(0));
+    assert!(stderr(&none).contains("0 jobs would run"), "{}", stderr(&none));
+}
