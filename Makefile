@@ -3,7 +3,8 @@
 # make test-all the quick tier, the long ones, every reference case, and the Python readers
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make bench    what billow costs on this machine, a few minutes
-# make check    formatting, lints, docs
+# make layers   which folder imports which: none from above, no circle
+# make check    formatting, lints, layers of the folders, avoided words, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
 
 SHELL := /bin/bash
@@ -17,7 +18,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study test test-all test-long contact-matrix readers build bench check deps reader-deps fresh-check
+.PHONY: study test test-all test-long contact-matrix readers build bench layers check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -54,9 +55,14 @@ build: deps
 bench: build
 	$(BILLOW) bench
 
+# Which room imports which, and that none imports from above.
+layers: deps
+	$(CARGO) test $(FLAGS) --test repository layers -- --nocapture
+
 check: deps
 	$(CARGO) fmt --check
 	$(CARGO) clippy $(FLAGS) --all-targets -- -D warnings
+	$(CARGO) test $(FLAGS) --test repository
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc $(FLAGS) --no-deps
 	if command -v cargo-deny > /dev/null; then cargo deny check; fi
 

@@ -1,0 +1,286 @@
+//! Folders show the flow: a room imports only from rooms below it, and no files import each other in a loop.
+//!
+//! `make layers` prints what each room imports. Tests inside a file (`mod tests`) and files of tests are left
+//! out. A file may name items of the `mod.rs` above it, which is its name space.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use crate::sources::{code, files, text};
+
+/// Rooms of both crates, from the ground up.
+const ROOMS: [(&str, &[&str]); 2] = [
+    (
+        "solver",
+        &[
+            "platform",
+            "geometry",
+            "scene",
+            "mechanics",
+            "collision",
+            "output",
+            "integrators",
+            "statics",
+            "models",
+        ],
+    ),
+    (
+        "study",
+        &[
+            "platform", "input", "job", "study", "store", "run", "scene", "analysis", "render",
+            "chart", "cases", "bench", "cli",
+        ],
+    ),
+];
+
+/// Modules by path (`collision::contact::ccd`), and the paths each one names.
+type Modules = BTreeMap<Vec<String>, BTreeSet<Vec<String>>>;
+
+/// The module a file is, from its path below `src`.
+fn module(path: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        path.with_extension("").iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    if names.last().is_some_and(|name| name == "mod") {
+        names.pop();
+    }
+    names
+}
+
+fn is_test(path: &Path) -> bool {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    name == "tests" || name.ends_with("_tests") || name == "fixture"
+}
+
+/// The code of a file without its tests.
+fn without_tests(source: &str) -> String {
+    let code = code(source);
+    let start = code.find("#[cfg(test)]").filter(|at| {
+        let rest = code[*at..].split_once(']').map_or("", |(_, rest)| rest);
+        let rest = rest.trim_start();
+        rest.starts_with("mod tests")
+            || rest.starts_with("pub(super) mod tests")
+            || rest.starts_with("#[")
+    });
+    start.map_or(code.clone(), |at| code[..at].to_owned())
+}
+
+/// Every path a file names that begins with `crate`, `super` or `self`, groups written out.
+fn named_paths(code: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    let mut rest = code;
+    while let Some(start) =
+        ["crate::", "super::", "self::"].iter().filter_map(|word| rest.find(word)).min()
+    {
+        let before = rest[..start].chars().next_back();
+        rest = &rest[start..];
+        if before.is_some_and(|symbol| symbol.is_alphanumeric() || symbol == '_' || symbol == ':') {
+            rest = &rest[5..];
+            continue;
+        }
+        let used = expand(rest, &[], &mut found);
+        rest = &rest[used.max(5)..];
+    }
+    found
+}
+
+/// Adds the paths of one use tree; the bytes it takes.
+fn expand(text: &str, prefix: &[String], found: &mut Vec<Vec<String>>) -> usize {
+    let mut path = prefix.to_vec();
+    let mut index = 0;
+    loop {
+        let rest = &text[index..];
+        let word = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        if word > 0 {
+            path.push(rest[..word].to_owned());
+            index += word;
+        } else if rest.starts_with('{') {
+            index += 1;
+            loop {
+                let gap =
+                    text[index..].len() - text[index..].trim_start_matches([' ', '\n', ',']).len();
+                index += gap;
+                if index >= text.len() || text[index..].starts_with('}') {
+                    return index + 1;
+                }
+                let used = expand(&text[index..], &path, found);
+                // `as name` of a renamed import.
+                let item = &text[index + used..];
+                let end = item.find([',', '}']).unwrap_or(item.len());
+                index += used + end;
+                if used + end == 0 {
+                    return index + 1;
+                }
+            }
+        }
+        if text[index..].starts_with("::") {
+            index += 2;
+        } else {
+            break;
+        }
+    }
+    found.push(path);
+    index
+}
+
+/// A named path as a path from the crate's root.
+fn from_root(path: &[String], module: &[String], is_folder: bool) -> Vec<String> {
+    let mut base: Vec<String> = module.to_vec();
+    if !is_folder && path[0] == "self" {
+        return module.to_vec();
+    }
+    let mut rest = path;
+    if rest[0] == "crate" {
+        return rest[1..].to_vec();
+    }
+    while let Some(first) = rest.first() {
+        match first.as_str() {
+            "super" => {
+                base.pop();
+            }
+            "self" => {}
+            _ => break,
+        }
+        rest = &rest[1..];
+    }
+    base.extend(rest.iter().cloned());
+    base
+}
+
+fn read(sources: &[(Vec<String>, bool, String)]) -> Modules {
+    let known: BTreeSet<&Vec<String>> = sources.iter().map(|(module, _, _)| module).collect();
+    let mut modules = Modules::new();
+    for (module, is_folder, source) in sources {
+        let imports = modules.entry(module.clone()).or_default();
+        for path in named_paths(&without_tests(source)) {
+            let mut target = from_root(&path, module, *is_folder);
+            while !target.is_empty() && !known.contains(&target) {
+                target.pop();
+            }
+            if target != *module && !target.is_empty() {
+                imports.insert(target);
+            }
+        }
+    }
+    modules
+}
+
+fn crate_modules(name: &str) -> Modules {
+    let folder = format!("{name}/src");
+    let sources: Vec<_> = files(&folder, ".rs")
+        .into_iter()
+        .filter(|path| !is_test(path))
+        .map(|path| {
+            let below = path.strip_prefix(&folder).expect("below src");
+            let is_folder = path.file_name().is_some_and(|name| name == "mod.rs");
+            (module(below), is_folder, text(&path))
+        })
+        .collect();
+    read(&sources)
+}
+
+/// Imports that run from a room to one above it, or out of any room.
+fn upward(modules: &Modules, rooms: &[&str]) -> Vec<String> {
+    let floor = |room: &str| rooms.iter().position(|known| *known == room);
+    let mut found = Vec::new();
+    for (module, imports) in
+        modules.iter().filter(|(module, _)| module[0] != "lib" && module[0] != "main")
+    {
+        let Some(own) = floor(&module[0]) else {
+            found.push(format!("{} is in no room", module.join("::")));
+            continue;
+        };
+        for import in imports {
+            if floor(&import[0]).is_none_or(|other| other > own) {
+                found.push(format!("{} imports {}", module.join("::"), import.join("::")));
+            }
+        }
+    }
+    found
+}
+
+/// A loop of imports between files, if there is one. The folder a file lies in is no import.
+fn circle(modules: &Modules) -> Option<Vec<String>> {
+    fn visit<'a>(
+        module: &'a Vec<String>,
+        modules: &'a Modules,
+        state: &mut BTreeMap<&'a Vec<String>, bool>,
+        way: &mut Vec<&'a Vec<String>>,
+    ) -> Option<Vec<String>> {
+        match state.get(module) {
+            Some(true) => return None,
+            Some(false) => {
+                let start = way.iter().position(|known| *known == module).unwrap_or(0);
+                return Some(way[start..].iter().map(|module| module.join("::")).collect());
+            }
+            None => {}
+        }
+        state.insert(module, false);
+        way.push(module);
+        for import in modules.get(module).into_iter().flatten() {
+            let name_space = module.starts_with(import);
+            if !name_space && let Some(found) = visit(import, modules, state, way) {
+                return Some(found);
+            }
+        }
+        way.pop();
+        state.insert(module, true);
+        None
+    }
+    let mut state = BTreeMap::new();
+    modules.keys().find_map(|module| visit(module, modules, &mut state, &mut Vec::new()))
+}
+
+#[test]
+fn layers_rooms_import_only_from_rooms_below() {
+    for (name, rooms) in ROOMS {
+        let modules = crate_modules(name);
+        assert!(modules.values().map(BTreeSet::len).sum::<usize>() > 100, "imports are read");
+        for room in rooms {
+            let below: BTreeSet<&str> = modules
+                .iter()
+                .filter(|(module, _)| module[0] == *room)
+                .flat_map(|(_, imports)| imports.iter().map(|import| import[0].as_str()))
+                .filter(|other| other != room)
+                .collect();
+            println!("{name:>7} {room:<12} imports {below:?}");
+        }
+        assert_eq!(upward(&modules, rooms), Vec::<String>::new(), "{name}");
+    }
+}
+
+#[test]
+fn layers_no_files_import_each_other_in_a_loop() {
+    for (name, _) in ROOMS {
+        assert_eq!(circle(&crate_modules(name)), None, "{name}");
+    }
+}
+
+#[test]
+fn layers_upward_imports_and_loops_are_found() {
+    let file = |module: &str, source: &str| {
+        let names = module.split("::").map(str::to_owned).collect();
+        (names, module.ends_with("mod"), source.to_owned())
+    };
+    let sound = [
+        file("low::a", "use super::b::B; // crate::high::c"),
+        file(
+            "low::b",
+            "fn text() { \"crate::high::c\"; }\n#[cfg(test)]\nmod tests { use crate::high::c::C; }",
+        ),
+        file("high::c", "use crate::{low::{a::A, b}, high::d};"),
+        file("high::d", ""),
+    ];
+    let modules = read(&sound);
+    assert_eq!(upward(&modules, &["low", "high"]), Vec::<String>::new());
+    assert_eq!(circle(&modules), None);
+    let path = |module: &str| module.split("::").map(str::to_owned).collect::<Vec<_>>();
+    let of_c: Vec<_> = modules[&path("high::c")].iter().cloned().collect();
+    assert_eq!(of_c, [path("high::d"), path("low::a"), path("low::b")]);
+
+    let mut looped = sound.clone();
+    looped[1].2 = "use super::a::A;".to_owned();
+    assert_eq!(circle(&read(&looped)), Some(vec!["low::a".to_owned(), "low::b".to_owned()]));
+    let mut upside = sound;
+    upside[0].2 = "use crate::{low::b, high::{d::D}};".to_owned();
+    assert_eq!(upward(&read(&upside), &["low", "high"]), ["low::a imports high::d"]);
+}
