@@ -8,7 +8,7 @@ for package in "$@"; do
 done
 [ ${#missing[@]} -gt 0 ] || exit 0
 if ! command -v apt-get > /dev/null; then
-  echo "billow needs the libraries of these Debian packages, or your system's own: ${missing[*]}" >&2
+  echo "billow needs the libraries of these Debian packages, or those of your system: ${missing[*]}" >&2
   exit 1
 fi
 if [ "$(id -u)" -ne 0 ]; then

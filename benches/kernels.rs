@@ -1,4 +1,4 @@
-//! The film's own work of a step, on every instruction set and as plain loops: `cargo bench`.
+//! The step of the film alone, on every instruction set and as plain loops: `cargo bench`.
 //!
 //! The paper's capsule at n 5, 8 and 16, stowed and set in motion; an element a step is the unit.
 

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::support::{TestFolder, histories, json_of, stderr};
 
 /// The job that the old version called `drifted`.
-const DRIFTED: &str = "9ffb7487";
+const ENERGY_DRIFT: &str = "9ffb7487";
 /// A job of film that is done.
 const DONE: &str = "6ca78bc2";
 
@@ -81,10 +81,10 @@ fn old_rows_have_the_current_names() {
             assert!(!row.contains_key(old) && row.contains_key(current), "{old}");
         }
     }
-    let why = json_of(&folder, &["why", DRIFTED, "old"]);
+    let why = json_of(&folder, &["why", ENERGY_DRIFT, "old"]);
     assert_eq!(why["status"], "energy_drift");
     assert!(why["stop_location"].as_str().unwrap().starts_with("energy ledger"), "{why}");
-    let shown = folder.stdout(&["show", DRIFTED, "old"]);
+    let shown = folder.stdout(&["show", ENERGY_DRIFT, "old"]);
     assert!(shown.contains("energy_drift") && shown.contains("near_threshold_margin"), "{shown}");
 }
 

@@ -165,7 +165,7 @@ fn the_papers_capsule_balances_its_energy() {
     );
 }
 
-/// The same bits on every instruction set, and wherever the run was paused.
+/// The same bits on every instruction set, and after a pause at any step.
 fn same_bits(scene: &Value, pauses: &[&str]) {
     let folder = scene_folder(scene, &[]);
     let run = |out: &str, more: &[&str], simd: &str| {

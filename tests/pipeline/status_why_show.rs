@@ -116,7 +116,7 @@ fn why_explains_a_verdict_with_its_numbers() {
 }
 
 #[test]
-fn why_tells_failures_and_infeasible_points_with_time_place_and_nearest() {
+fn why_reports_failures_and_infeasible_points_with_time_place_and_nearest() {
     let folder = failed();
     let failed = ids(&folder, "step_limit").remove(0);
     let said = folder.stdout(&["why", &failed]);

@@ -185,12 +185,12 @@ fn upward(modules: &Modules, rooms: &[&str]) -> Vec<String> {
     for (module, imports) in
         modules.iter().filter(|(module, _)| module[0] != "lib" && module[0] != "main")
     {
-        let Some(own) = floor(&module[0]) else {
+        let Some(floor_here) = floor(&module[0]) else {
             found.push(format!("{} is in no room", module.join("::")));
             continue;
         };
         for import in imports {
-            if floor(&import[0]).is_none_or(|other| other > own) {
+            if floor(&import[0]).is_none_or(|other| other > floor_here) {
                 found.push(format!("{} imports {}", module.join("::"), import.join("::")));
             }
         }
@@ -204,25 +204,25 @@ fn circle(modules: &Modules) -> Option<Vec<String>> {
         module: &'a Vec<String>,
         modules: &'a Modules,
         state: &mut BTreeMap<&'a Vec<String>, bool>,
-        way: &mut Vec<&'a Vec<String>>,
+        visited: &mut Vec<&'a Vec<String>>,
     ) -> Option<Vec<String>> {
         match state.get(module) {
             Some(true) => return None,
             Some(false) => {
-                let start = way.iter().position(|known| *known == module).unwrap_or(0);
-                return Some(way[start..].iter().map(|module| module.join("::")).collect());
+                let start = visited.iter().position(|known| *known == module).unwrap_or(0);
+                return Some(visited[start..].iter().map(|module| module.join("::")).collect());
             }
             None => {}
         }
         state.insert(module, false);
-        way.push(module);
+        visited.push(module);
         for import in modules.get(module).into_iter().flatten() {
             let name_space = module.starts_with(import);
-            if !name_space && let Some(found) = visit(import, modules, state, way) {
+            if !name_space && let Some(found) = visit(import, modules, state, visited) {
                 return Some(found);
             }
         }
-        way.pop();
+        visited.pop();
         state.insert(module, true);
         None
     }

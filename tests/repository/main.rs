@@ -1,6 +1,6 @@
 //! The repository itself: its folders, its words, what its shipped studies are.
 
-#![allow(clippy::disallowed_methods, reason = "reads the repository's own files")]
+#![allow(clippy::disallowed_methods, reason = "reads the files of the repository")]
 
 mod job_ids;
 mod layers;

@@ -15,6 +15,8 @@ struct Avoided {
 fn words(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (line, text) in (1..).zip(text.lines()) {
+        // Code in a document is quoted, as a text in code is.
+        let text = text.replace(['`', '\''], "\"");
         let separated = text.split(|c: char| !(c.is_alphanumeric() || c == '-' || c == '"'));
         for word in separated.filter(|word| !word.is_empty()) {
             found.push((line, word.to_lowercase()));
@@ -51,7 +53,7 @@ fn findings(avoided: &Avoided, text: &[(usize, String)]) -> Vec<usize> {
         text.get(at..at + phrase.len()).is_some_and(|here| {
             here.iter().zip(phrase).all(|((_, word), wanted)| {
                 // A quoted word of a context must be quoted in the text.
-                if wanted.contains('"') { word == wanted } else { bare(word) == wanted }
+                bare(word) == bare(wanted) && (!wanted.contains('"') || word.contains('"'))
             })
         })
     };

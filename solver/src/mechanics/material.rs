@@ -160,7 +160,7 @@ impl Material {
     /// ```
     ///
     /// E e1 n1⊗n1 = E e1 (1 + (e − mean(e) 1)/r)/2 with r = (e1 − e2)/2. Wrinkled film has e1 > e2, so
-    /// the division is valid wherever its result is selected.
+    /// the division is valid where its result is selected.
     #[inline(always)]
     pub fn response<L: Wide>(&self, strain: MohrCircle<L>) -> StressResponse<L> {
         let MohrCircle { sum, diameter, .. } = strain;

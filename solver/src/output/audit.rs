@@ -65,9 +65,9 @@ mod tests {
     fn first_drift_is_the_first_sample_above_the_bound() {
         let within = [sample(0.0, 0.0, 0.0, 0.0), sample(0.1, 3.0, 1.0, 4.0)];
         assert_eq!(first_drift(&History::of(&within)), None);
-        let drifted =
+        let drifting =
             [within[0], within[1], sample(0.2, 3.1, 1.0, 4.0), sample(0.3, 9.0, 1.0, 4.0)];
-        assert_eq!(first_drift(&History::of(&drifted)), Some(0.2));
+        assert_eq!(first_drift(&History::of(&drifting)), Some(0.2));
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! the equilibrium then follows the pressure down to p. Film that starts full, near its shape, begins at
 //! a tenth of that pressure. At intermediate pressures film has a compression fraction `c_k` in proportion
 //! to the pressure, so that its shape hardly depends on it and each pressure needs few steps; the last
-//! step has the film's own fraction. Wrinkled film has many energy minima near each other. Descending
+//! step has the fraction of the film. Wrinkled film has many energy minima near each other. Descending
 //! pressures reach the minimum that continues the taut film, with its symmetry; a start at the final
 //! pressure ends with dents.
 

@@ -52,7 +52,7 @@ fn about(command: &Command) -> String {
     cell(&about)
 }
 
-/// One command: purpose, usage, then a table each of arguments, own options and global options.
+/// One command: purpose, usage, then a table each of arguments, options of the command and global options.
 fn section(page: &mut String, command: &Command) {
     let usage = command.clone().render_usage().to_string();
     let usage = usage.trim_start_matches("Usage: ");

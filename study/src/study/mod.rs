@@ -165,7 +165,7 @@ impl Study {
         json
     }
 
-    /// What a reader of the plan must know: keys given by an old name, and inflow that never happens.
+    /// What a reader of the plan must know: keys given by an old name, and inflow windows that are ignored.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.renamed.iter().cloned().chain(self.late_windows()).collect()
     }

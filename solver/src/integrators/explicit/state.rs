@@ -100,7 +100,7 @@ impl StepInterval {
         let length = (target - start) / count;
         // Written so that NaN is refused too.
         let advances = start + length > start;
-        // A count beyond u64 saturates: no run takes so many steps.
+        // A count beyond u64 saturates: no run takes that number of steps.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
         let count = count as u64;
         advances.then_some(Self { start, target, length, count, index: 0, quiescent })

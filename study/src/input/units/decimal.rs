@@ -31,7 +31,7 @@ fn float(whole: i128, exponent: i32) -> Option<f64> {
     format!("{whole}e{exponent}").parse().ok()
 }
 
-/// `number` × `scale`, rounded once wherever the scale is decimal.
+/// `number` × `scale`, rounded once if the scale is decimal.
 pub(super) fn scaled(number: &str, scale: &Scale) -> Option<f64> {
     if scale.factor == 1 && scale.divisor == 1 {
         // For a power of ten, only the exponent of the text changes.

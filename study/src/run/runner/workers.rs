@@ -66,7 +66,7 @@ pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
 }
 
 /// Runs all jobs on a pool, batch by batch in their order, until all are done or `ending` returns
-/// `true`. The dropped sender tells the receiver that no message follows.
+/// `true`. The dropped sender signals to the receiver that no message follows.
 pub fn work(
     pool: &ThreadPool,
     executor: &dyn Executor,

@@ -17,7 +17,7 @@ pub const VERSION: u64 = 3;
 /// [`Line::kind`] of a job to run again. The line of an ended job has no kind.
 const INVALIDATED: &str = "invalidated";
 /// The same in version 2.
-const WITHDRAWN: &str = "withdrawn";
+const OLD_INVALIDATED: &str = "withdrawn";
 
 /// One line after the header.
 pub enum Entry {
@@ -117,7 +117,7 @@ pub fn parse(line: &[u8]) -> Result<Entry, String> {
         .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))?;
     match line.kind.as_deref() {
         None => {}
-        Some(INVALIDATED | WITHDRAWN) => return Ok(Entry::Invalidated(job)),
+        Some(INVALIDATED | OLD_INVALIDATED) => return Ok(Entry::Invalidated(job)),
         Some(other) => return Err(format!("not a journal record: unknown kind {other:?}")),
     }
     let cells = parse_cells(&line.cells)?;

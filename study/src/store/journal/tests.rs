@@ -163,9 +163,9 @@ fn version_2_is_read_with_its_old_names() {
     );
     std::fs::write(folder.path().join("000001.jsonl"), text).unwrap();
     let journal = read_back(folder.path());
-    let drifted = &journal.records[&record(5, 0.0).job].cells;
-    assert_eq!(drifted.status().name(), "energy_drift");
-    assert_eq!(drifted.text(ColumnId::StopLocation), "gas");
+    let drifting = &journal.records[&record(5, 0.0).job].cells;
+    assert_eq!(drifting.status().name(), "energy_drift");
+    assert_eq!(drifting.text(ColumnId::StopLocation), "gas");
     let invalidated = &journal.invalidated[&record(6, 0.0).job].cells;
     assert_eq!(*invalidated.get(ColumnId::NearThreshold), Value::Bool(true));
 }
