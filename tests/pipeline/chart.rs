@@ -163,7 +163,7 @@ fn invalid_charts_give_exit_code_2_and_no_file() {
 }
 
 #[test]
-fn a_lost_history_is_told_and_nothing_is_drawn() {
+fn a_lost_history_is_reported_and_nothing_is_drawn() {
     let folder = TestFolder::new(&study());
     folder.stdout(&["run", "grid.json", "-q"]);
     let row = folder.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();

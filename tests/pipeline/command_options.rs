@@ -32,7 +32,7 @@ fn a_command_has_only_the_global_options_that_apply_to_it() {
 }
 
 #[test]
-fn help_shows_own_options_before_global_ones_and_lists_the_exit_codes() {
+fn help_shows_options_of_the_command_before_global_ones_and_lists_the_exit_codes() {
     let (help, _, code) = billow(&["table", "--help"]);
     assert_eq!(code, Some(0));
     let positions = ["--columns", "Global options", "--results", "--format", "--quiet"]

@@ -145,7 +145,7 @@ fn invalid_contact_is_refused_or_reported() {
         ),
         (
             json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}),
-            "\"plate\" through (0, 0, 0) touches film at the start",
+            "\"plate\" through (0, 0, 0): touches film at the start",
         ),
         (json!({"enabled": true}), "film touches film at the start"),
         (json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 0]}]}), "plates[0].normal"),
