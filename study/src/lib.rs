@@ -8,6 +8,24 @@
 //!
 //! **Reading order.** [`input::study_file`] (the JSON), [`study`] (its meaning), [`study::plan`] (the
 //! jobs), [`run::runner`] (running them), [`store::history_file`] and [`store::table`] (what is stored).
+//!
+//! **Folders.** Each uses only those below it:
+//!
+//! | folder | holds |
+//! |---|---|
+//! | [`cli`] | the command line |
+//! | [`bench`](mod@bench) | speed of billow on this machine |
+//! | [`cases`] | the reference cases of `billow validate` |
+//! | [`chart`] | charts of stored results |
+//! | [`render`] | pictures: SVG and PNG |
+//! | [`analysis`] | comparisons, statistics, the answer of a study |
+//! | [`scene`] | one scene without a study: its file, its run, its summary |
+//! | [`run`] | runs jobs in parallel |
+//! | [`store`] | what a study stores on disk |
+//! | [`study`] | a study: axes, points, jobs |
+//! | [`job`] | one job: its id, its row |
+//! | [`input`] | keys, units, expressions, the JSON of a file |
+//! | [`platform`] | files, signals, errors |
 
 pub mod analysis;
 pub mod bench;

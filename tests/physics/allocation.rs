@@ -30,6 +30,7 @@ struct Counting;
     unsafe_code,
     reason = "an allocator is an unsafe trait; this one counts and forwards every call"
 )]
+// SAFETY: every call goes to `System` with the same arguments; the count does not touch the memory.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
@@ -39,6 +40,8 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: `pointer` comes from `alloc` above, so from `System`, with the same layout; the caller
+        // keeps the contract of `realloc`.
         unsafe { System.realloc(pointer, layout, size) }
     }
 

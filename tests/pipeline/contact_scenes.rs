@@ -135,26 +135,26 @@ fn invalid_contact_is_refused_or_reported() {
     // Film that lies on film has no side: by default contact is off, with a note.
     let output = with("gravity", json!(0));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("film lies on film at the start"));
+    assert!(stderr(&output).contains("film touches film at the start"));
     let summary: Value = serde_json::from_slice(&output.stdout).expect("a summary");
-    assert!(summary["notes"][0].as_str().is_some_and(|note| note.contains("lies on film")));
+    assert!(summary["notes"][0].as_str().is_some_and(|note| note.contains("touches film")));
     let refused = [
         (
             json!({"plates": [{"point": [0, 0, "2 mm"], "normal": [0, 0, 1]}]}),
-            "film lies up to 0.002000 m behind it",
+            "has film up to 0.002000 m behind it",
         ),
         (
             json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}),
-            "film lies on it at the start",
+            "\"plate\" through (0, 0, 0): touches film at the start",
         ),
-        (json!({"enabled": true}), "film lies on film at the start"),
+        (json!({"enabled": true}), "film touches film at the start"),
         (json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 0]}]}), "plates[0].normal"),
         (json!({"plates": [{"point": [0, 0, 0]}]}), "plates[0].normal: missing"),
         (json!({"plates": [{"name": "lid", "point": [0, 0, 0], "normal": [0, 0, 1]}]}), "not lid"),
         (
             json!({"plates": [{"point": [0, 0, 0], "normal": [0, 0, 1],
                 "move": {"rotation": {"axis": [0, 0, 1], "angle": 1}}}]}),
-            "a plate does not turn",
+            "a plate cannot rotate",
         ),
         (json!({"distance": "-1 mm"}), "contact.distance"),
         (json!({"distnce": "1 mm"}), "did you mean distance?"),
@@ -170,5 +170,5 @@ fn invalid_contact_is_refused_or_reported() {
     );
     let output = solve(folder.path(), &["scene.json", "--set", "solver.static=true"], "");
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("a state of rest is looked for without contact"));
+    assert!(stderr(&output).contains("static equilibrium is solved without contact"));
 }

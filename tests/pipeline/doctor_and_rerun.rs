@@ -15,11 +15,11 @@ fn doctor_reports_a_sound_folder_and_changes_nothing() {
     let said = folder.stdout(&["doctor"]);
     assert_eq!(
         said,
-        "results/grid: sound: 16 jobs recorded, 16 histories looked at, 0 things found\n"
+        "results/grid: no faults: 16 jobs recorded, 16 histories checked, 0 findings\n"
     );
     assert_eq!(json_of(&folder, &["doctor"]), json!([]));
     assert_eq!(histories(&folder.results()), before);
-    assert!(folder.stdout(&["doctor", "grid.json"]).contains("sound"));
+    assert!(folder.stdout(&["doctor", "grid.json"]).contains("no faults"));
 }
 
 /// Damages the folder, or one of its jobs.
@@ -40,7 +40,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
             fs::write(file_of(folder, id), &bytes[..bytes.len() / 2]).unwrap();
         },
         true,
-        "not the file that was written (no HDF5 file",
+        "not the file that was written (not an HDF5 file",
     ),
     (
         "another history",
@@ -49,7 +49,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
             fs::copy(file_of(folder, &other), file_of(folder, id)).unwrap();
         },
         true,
-        "(a whole history, but another one)",
+        "(a valid history, but another one)",
     ),
     (
         "missing table",
@@ -61,7 +61,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
         "foreign table",
         |folder, _| fs::write(folder.results().join("summary.parquet"), "x").unwrap(),
         true,
-        "no Parquet file",
+        "not a Parquet file",
     ),
     (
         "table behind",
@@ -77,7 +77,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
             .unwrap();
         },
         true,
-        "out of step with the journal in 24 rows",
+        "differs from the journal in 24 rows",
     ),
     (
         "torn last line",
@@ -97,7 +97,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
                 .unwrap();
         },
         false,
-        "a file left half written",
+        "an incomplete temporary file",
     ),
     (
         "foreign file",
@@ -117,7 +117,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
             fs::copy(file_of(folder, id), orphan).unwrap();
         },
         false,
-        "a history no record names",
+        "a history without a record",
     ),
     (
         "study.json gone",
@@ -176,8 +176,13 @@ fn files_of_a_newer_version_are_refused() {
     let journal = folder.results().join("journal/000001.jsonl");
     let study = folder.results().join("study.json");
     for (path, from, to, expected) in [
-        (&journal, "\"version\":2", "\"version\":9", "journal of version 9"),
-        (&study, "\"version\": 1", "\"version\": 9", "version 9, this program reads up to 1"),
+        (
+            &journal,
+            "\"version\":3",
+            "\"version\":4",
+            "journal of version 4, this program reads up to 3",
+        ),
+        (&study, "\"version\": 1", "\"version\": 2", "version 2, this program reads up to 1"),
     ] {
         let sound = fs::read_to_string(path).unwrap();
         fs::write(path, sound.replacen(from, to, 1)).unwrap();
@@ -240,7 +245,10 @@ fn different_bits_are_an_error() {
     let output = folder.run(&["rerun", id, "-q"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
-    assert!(said.contains(&format!("1 job gave other bits than before: {}", &id[..8])), "{said}");
+    assert!(
+        said.contains(&format!("1 job gave different bits than before: {}", &id[..8])),
+        "{said}"
+    );
 }
 
 #[test]

@@ -84,9 +84,9 @@ fn models_mix_in_a_grid_and_only_the_piston_has_a_fixed_step() {
     mixed["design"]["N"] = json!(5);
     mixed["gas"] = json!({"mass_flow_rate": "5 g/s"});
     let folder = TestFolder::new(&mixed);
-    let output = folder.run(&["run", "grid.json"]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    assert!(stderr(&output).contains("model piston: it gives times and upper bounds"));
+    let run = folder.run(&["run", "grid.json"]);
+    assert!(run.status.success(), "{}", stderr(&run));
+    assert!(stderr(&run).contains("model piston: it gives times and upper bounds"));
     let rows = folder.rows("results/grid");
     assert_eq!((&rows[0]["model"], &rows[1]["model"]), (&json!("piston"), &json!("film")));
     assert!(rows[0]["passages"].is_null() && rows[0]["smallest_gap"].is_null());

@@ -4,6 +4,7 @@
 
 mod bench;
 mod chart;
+mod command_options;
 mod compare_and_answer;
 mod contact_scenes;
 mod determinism;
@@ -15,13 +16,11 @@ mod frames;
 mod instruction_sets;
 mod interruption;
 mod invalid_studies;
+mod keys;
 mod monitor_detects_faults;
 mod old_results;
 mod physics_version;
 mod plan;
-mod reference;
-mod reference_columns;
-mod reference_commands;
 mod results_folder;
 mod run_and_table;
 mod scene_files;

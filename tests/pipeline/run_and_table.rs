@@ -212,7 +212,8 @@ fn a_study_and_a_scene_are_distinguished() {
     let folder = TestFolder::new(&small_grid());
     let study = stderr(&folder.run(&["solve", "grid.json"]));
     assert!(
-        study.contains("grid: is of a study") && study.contains("next: billow run grid.json"),
+        study.contains("grid: belongs to a study, not to a scene")
+            && study.contains("next: billow run grid.json"),
         "{study}"
     );
     fs::write(folder.path().join("scene.json"), r#"{"format": "billow-scene"}"#).unwrap();

@@ -104,10 +104,9 @@ fn meshes_of_other_programs_are_read() {
     near(volume(&json!({"positions": "cube.obj", "reference": inline}), &[cube_file]), 1.0);
 }
 
-#[test]
-fn every_error_names_its_key_once() {
-    let inward: String = CUBE
-        .lines()
+/// The cube with the opposite winding of every face.
+fn inward_cube() -> String {
+    CUBE.lines()
         .map(|line| match line.strip_prefix("f ") {
             Some(rest) => {
                 let mut corners: Vec<&str> = rest.split_whitespace().collect();
@@ -116,7 +115,12 @@ fn every_error_names_its_key_once() {
             }
             None => format!("{line}\n"),
         })
-        .collect();
+        .collect()
+}
+
+#[test]
+fn every_error_names_its_key_once() {
+    let inward = inward_cube();
     let nan = CUBE.replace("v 1 0 0", "v nan 0 0");
     let wild = CUBE.to_owned() + "f 1 2 99\n";
     let twisted = CUBE.replace("f 5 6 7 8", "f 8 7 6 5");
@@ -220,8 +224,8 @@ fn invalid_flags_are_refused() {
         (&["scene.json", "--every", "5"], "", "--checkpoint"),
         (&["scene.json", "--threads", "0"], "", "--threads"),
         (&["gone.json"], "", "scenes/sphere.json"),
-        (&["scene.json", "--out", "none/a.h5"], "", "next: name a file in a folder"),
-        (&["scene.json", "--checkpoint", "."], "", "next: name a file in a folder"),
+        (&["scene.json", "--out", "none/a.h5"], "", "next: name a file in an existing folder"),
+        (&["scene.json", "--checkpoint", "."], "", "next: name a file in an existing folder"),
     ] {
         let output = solve(folder.path(), arguments, simd);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

@@ -121,13 +121,13 @@ fn the_stretch_of_a_sphere_matches_the_closed_form() {
     let unloaded = mesh.faces.iter().map(six).sum::<f64>() / 6.0;
     assert_eq!(summary["status"], "done");
     // p = (t/R) E/(1 − ν) (λ² − 1)/λ at 1 kPa, and T = p R λ/2.
-    let stretch = libm::cbrt(number(&summary, "/volume") / unloaded) - 1.0;
-    assert!((stretch / 1.999_027_048e-3 - 1.0).abs() < 5e-3, "{stretch}");
+    let strain = libm::cbrt(number(&summary, "/volume") / unloaded) - 1.0;
+    assert!((strain / 1.999_027_048e-3 - 1.0).abs() < 5e-3, "{strain}");
     assert_eq!(summary["resultants"]["top"]["regime"], "taut");
     let force = |name: &str| number(&summary, &format!("/resultants/top/{name}"));
     assert!((force("T1") / 250.5 - 1.0).abs() < 5e-3, "{}", force("T1"));
     // Nominal and second Piola-Kirchhoff forces differ from the true force by one stretch each.
-    assert!((force("P1") / force("T1") - 1.0 - stretch).abs() < 1e-4);
+    assert!((force("P1") / force("T1") - 1.0 - strain).abs() < 1e-4);
     assert!((force("N1") / force("T1") - 1.0).abs() < 1e-4);
     assert!((number(&summary, "/extents/z/1") - number(&summary, "/nodes/top/2")).abs() < 1e-9);
 }

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::process::Command;
 
+use crate::reference::is_update;
 use crate::sources::{files, root, text};
 
 const LIST: &str = "tests/reference/job_ids.json";
@@ -39,7 +40,7 @@ fn planned() -> Ids {
 #[test]
 fn job_ids_of_shipped_studies_are_those_of_the_list() {
     let planned = planned();
-    if std::env::var_os("BILLOW_UPDATE_REFERENCE").is_some() {
+    if is_update() {
         let text = serde_json::to_string_pretty(&planned).expect("JSON") + "\n";
         std::fs::write(root().join(LIST), text).expect("the list is written");
         return;

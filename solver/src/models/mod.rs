@@ -1,6 +1,6 @@
 //! Models, from cheap to complete, behind one interface: `Scene` → `Deployment`.
 //!
-//! [`solve`] runs the model that a scene names. Each model is one entry of a table ([`ModelEntry`]);
+//! [`solve`] runs the model that a scene names. Each model is one entry of a table (`ModelEntry`);
 //! a model without an entry does not compile.
 //!
 //! The film model compares a run with static equilibria of the same mesh ([`reference()`]). It does not

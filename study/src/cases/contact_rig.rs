@@ -88,10 +88,10 @@ pub fn intersection_count(film: &Explicit) -> usize {
 
 /// Work into contact that is neither stored in contact nor accounted for by impulses, J.
 pub fn unrecovered_contact_energy(film: &Explicit) -> f64 {
-    let meeting = &film.state.contact_state;
-    let pairs: f64 = meeting.contacts.iter().map(|contact| contact.energy).sum();
-    let plates: f64 = meeting.plates.iter().map(|plate| plate.energy).sum();
-    (film.ledger().contact - pairs - plates + meeting.collision_dissipation).abs()
+    let contact_state = &film.state.contact_state;
+    let pairs: f64 = contact_state.contacts.iter().map(|contact| contact.energy).sum();
+    let plates: f64 = contact_state.plates.iter().map(|plate| plate.energy).sum();
+    (film.ledger().contact - pairs - plates + contact_state.collision_dissipation).abs()
 }
 
 impl RunRecord {

@@ -32,12 +32,12 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(trust) = &answer.trust {
         writeln!(out, "  trust    {}", audit(trust))?;
     }
-    if answer.stretch > MAX_PLAUSIBLE_STRAIN {
+    if answer.largest_strain > MAX_PLAUSIBLE_STRAIN {
         writeln!(
             out,
-            "  stretch  film_stress is up to {} % of Young's modulus; the linear film model holds for \
+            "  strain   film_stress is up to {} % of Young's modulus; the linear film model holds for \
              a few per cent: is a unit missing?",
-            brief_number(100.0 * answer.stretch)
+            brief_number(100.0 * answer.largest_strain)
         )?;
     }
     if !answer.effects.is_empty() {
@@ -218,7 +218,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
-        "trust": answer.trust.map(|trust| trust_json(&trust, answer.stretch)),
+        "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),
         "medians": answer.effects.iter().map(effect_json).collect::<Vec<_>>(),
     })
 }
@@ -239,7 +239,7 @@ fn extreme_json(
     Some(keys)
 }
 
-fn trust_json(trust: &Trust, stretch: f64) -> serde_json::Value {
+fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
     json!({
         "jobs": trust.jobs,
         "ledger_residual": trust.ledger_residual,
@@ -247,7 +247,7 @@ fn trust_json(trust: &Trust, stretch: f64) -> serde_json::Value {
         "passages": trust.passages,
         "intersections": trust.intersections,
         "counted": trust.counted,
-        "film_stress_over_modulus": stretch,
+        "film_stress_over_modulus": largest_strain,
     })
 }
 

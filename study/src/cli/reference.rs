@@ -10,7 +10,7 @@ use crate::platform::exit_code::EXIT_CODES;
 
 /// First lines of a generated page.
 const GENERATED: &str = "Generated from the program. To update: `BILLOW_UPDATE_REFERENCE=1 cargo test --release -p \
-     billow-study --test pipeline reference_commands`.";
+     billow-study --test repository reference`.";
 
 /// docs/reference/commands.md: every command with its usage, arguments and options.
 pub fn commands() -> String {

@@ -132,19 +132,19 @@ impl EndFilm {
 
     /// Elastic energy, J.
     pub fn strain_energy(&self, z: f64) -> f64 {
-        let stretch = self.stretch(z);
-        0.5 * self.stiffness * stretch * stretch
+        let elongation = self.elongation(z);
+        0.5 * self.stiffness * elongation * elongation
     }
 
     /// Largest principal stress at height z (m) and overpressure (Pa), Pa.
     pub fn stress(&self, z: f64, overpressure: f64) -> f64 {
-        let meridional = self.meridional_stress * self.stiffness * self.stretch(z);
+        let meridional = self.meridional_stress * self.stiffness * self.elongation(z);
         let hoop = if z >= self.free_length { self.hoop_stress * overpressure } else { 0.0 };
         meridional.max(hoop).max(0.0)
     }
 
-    /// Stretch z − H, m; 0 below H.
-    fn stretch(&self, z: f64) -> f64 {
+    /// Elongation z − H, m; 0 below H.
+    fn elongation(&self, z: f64) -> f64 {
         (z - self.free_length).max(0.0)
     }
 }

@@ -10,7 +10,7 @@ const MAX_NODES: usize = 1 << 31;
 
 /// Nodes at the four corners of kites, eight kites a block.
 ///
-/// Invariant: every index in `blocks` is below `nodes`, and `nodes` is at most [`MAX_NODES`]. The
+/// Invariant: every index in `blocks` is below `nodes`, and `nodes` is at most `MAX_NODES`. The
 /// kernels therefore do not check indices again.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Corners {

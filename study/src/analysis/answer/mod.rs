@@ -33,7 +33,7 @@ pub struct Answer {
     pub trust: Option<Trust>,
     /// Largest film stress of a done job over Young's modulus: the strain for which the linear material
     /// model is used.
-    pub stretch: f64,
+    pub largest_strain: f64,
     /// Effects of the parameters with two to six values.
     pub effects: Vec<Effect>,
 }
@@ -91,7 +91,7 @@ impl Answer {
         let table = stored.table();
         let mut answer = Self::of_jobs(&table);
         answer.question.clone_from(&stored.study.question);
-        answer.stretch = stretch(stored);
+        answer.largest_strain = largest_strain(stored);
         answer.effects = effects(&stored.table_of_all_points(), &|parameter| {
             stored.study.zipped_with(parameter)
         });
@@ -147,7 +147,7 @@ fn extreme(table: &Table, measure: ColumnId, better: fn(f64, f64) -> bool) -> Op
 }
 
 /// Largest film stress over Young's modulus of the done jobs.
-fn stretch(stored: &Stored<'_>) -> f64 {
+fn largest_strain(stored: &Stored<'_>) -> f64 {
     let strain = |point: &Point| {
         let cells = stored.cells(point);
         let modulus = point.job.scene.film.youngs_modulus;

@@ -3,7 +3,7 @@
 //! Everything else follows from this table: the row of a job, the summary table and its Parquet
 //! metadata, the groups of `billow show`, the better side in `billow compare`, and
 //! docs/reference/columns.md. To add a measure, add one entry here and update the reference page
-//! (`BILLOW_UPDATE_REFERENCE=1` with the pipeline test `reference_columns`). The entry takes its value
+//! (`BILLOW_UPDATE_REFERENCE=1` with the repository test `reference`). The entry takes its value
 //! from a [`JobEnd`]: from the history, the tracks, or a field of
 //! [`billow_solver::output::measures::Measures`], which the solver computes.
 //!

@@ -9,8 +9,8 @@ use super::*;
 fn shape(time: f64, tall: f32) -> Frame {
     let ground = [[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]];
     let ring = |z: f32| ground.map(|[x, y]: [f32; 2]| [x, y, z]);
-    let places = [ring(0.0), ring(0.5 * tall), ring(tall)].concat();
-    Frame { time, positions: places, regimes: REGIMES.map(|(regime, ..)| regime).repeat(6) }
+    let positions = [ring(0.0), ring(0.5 * tall), ring(tall)].concat();
+    Frame { time, positions, regimes: REGIMES.map(|(regime, ..)| regime).repeat(6) }
 }
 
 /// The elements of the box, and their storeys: two storeys and a top cap.

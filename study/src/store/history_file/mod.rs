@@ -26,14 +26,16 @@ use hdf5::{File, Location};
 
 use crate::platform::error::{Error, Result};
 
-mod hash;
+mod content_hash;
 mod raw;
 mod read;
+mod sha256;
 mod vtkhdf;
 mod write;
 
-pub use hash::{bytes_hash, content_hash, hash_of};
+pub use content_hash::{content_hash, hash_of};
 pub use read::{StoredHistory, read};
+pub use sha256::bytes_hash;
 pub use vtkhdf::StoredFrames;
 pub use write::{encode, encode_scene};
 

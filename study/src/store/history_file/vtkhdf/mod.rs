@@ -24,7 +24,7 @@ use hdf5::file::LinkCreationOrder;
 use hdf5::types::FixedAscii;
 use hdf5::{Dataset, Extents, File, Group, H5Type};
 
-use super::hash::Contents;
+use super::sha256::Contents;
 use super::{DEFLATE_LEVEL, HDF5_LOCK, damaged, number_attribute};
 use crate::platform::error::Result;
 

@@ -1,10 +1,10 @@
-//! Hashes: of the values that a run stored, and of the bytes of a file.
+//! Content hash: of the values that a run stored.
 
 use billow_solver::output::frames::Frames;
 use billow_solver::output::history::{History, Track};
 use billow_solver::output::outcome::Deployment;
-use sha2::{Digest, Sha256};
 
+use super::sha256::Contents;
 use super::vtkhdf;
 use crate::job::row::hashed_column_name;
 
@@ -17,7 +17,7 @@ pub fn content_hash(deployment: &Deployment) -> String {
 
 /// The same hash of a history, its tracks and its frames.
 pub fn hash_of(history: &History, tracks: &[Track], frames: Option<&Frames>) -> String {
-    let mut contents = Contents(Sha256::new());
+    let mut contents = Contents::new();
     let columns = history.iter().map(|(column, values)| (column.name, values));
     let tracks = tracks.iter().map(|track| (track.name.as_str(), track.values.as_slice()));
     for (name, values) in columns.chain(tracks) {
@@ -27,38 +27,5 @@ pub fn hash_of(history: &History, tracks: &[Track], frames: Option<&Frames>) -> 
     if let Some(frames) = frames {
         vtkhdf::hash(frames, &mut contents);
     }
-    hexadecimal(&contents.0.finalize())
-}
-
-/// The input of a content hash: one array after the other.
-pub(super) struct Contents(Sha256);
-
-impl Contents {
-    /// Adds an array: its name, its length, its values in little-endian bytes.
-    pub(super) fn add<const N: usize>(
-        &mut self,
-        name: &str,
-        length: usize,
-        values: impl Iterator<Item = [u8; N]>,
-    ) {
-        self.0.update((name.len() as u64).to_le_bytes());
-        self.0.update(name.as_bytes());
-        self.0.update((length as u64).to_le_bytes());
-        for value in values {
-            self.0.update(value);
-        }
-    }
-}
-
-/// SHA-256 of bytes, in lower-case hexadecimal digits.
-pub fn bytes_hash(bytes: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(bytes))
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    use std::fmt::Write;
-    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    contents.hash()
 }
