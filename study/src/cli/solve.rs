@@ -83,8 +83,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         return Ok(());
     }
     let stop = &summary["stop"];
-    let location = stop.get("location").or(stop.get("place"));
-    let location = location.and_then(serde_json::Value::as_str).unwrap_or_default();
+    let location = stop["location"].as_str().unwrap_or_default();
     let time = stop["time"].as_f64().map_or_else(String::new, |time| format!(" at {time} s"));
     Err(Error::JobsFailed(format!("{}: {}{time}: {location}", args.scene.display(), solved.status)))
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `status` | `done`; `paused`; `no_equilibrium` or the name of a [`FailureKind`]: no result |
 //! | `notes` | choices of the program that a reader must know; left out where there are none |
-//! | `stop` | kind, time (s) and place of the failure, where there is no result |
+//! | `stop` | kind, time (s) and location of the failure, where there is no result |
 //! | `volume` | enclosed volume, m³; fans over the free edges close open film |
 //! | `pressure`, `overpressure` | inside, and inside less ambient, Pa; for a fixed pressure, both are the overpressure |
 //! | `temperature`, `gas_mass` | of the gas, K and kg; film temperature where there is no gas |
@@ -50,7 +50,7 @@ pub fn summary(scene: &SceneFile, solved: &Solved) -> Json {
             let stop = json!({
                 "kind": Status::NoEquilibrium.name(),
                 "time": null,
-                "place": format!("node {}: {failure}", node_name(scene, failure.node)),
+                "location": format!("node {}: {failure}", node_name(scene, failure.node)),
             });
             let elements = scene.film.shell.triangles.len();
             json!({"stop": stop, "steps": failure.iterations, "elements": elements})
@@ -171,7 +171,7 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
     merge(&mut summary, more);
     if let Stop::Failed(failure) = &deployment.stop {
         summary["stop"] =
-            json!({"kind": failure.kind.name(), "time": failure.time, "place": failure.place});
+            json!({"kind": failure.kind.name(), "time": failure.time, "location": failure.place});
     }
     summary
 }
@@ -215,8 +215,8 @@ fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
     });
     let mesh = CollisionMesh::new(solution.model.nodes(), &solution.model.triangles);
     if scene.film.shell.is_closed() && solution.volume <= 0.0 {
-        let place = format!("the film is turned inside out: V {:.6} m3", solution.volume);
-        summary["stop"] = json!({"kind": "inverted_volume", "time": null, "place": place});
+        let location = format!("the film is turned inside out: V {:.6} m3", solution.volume);
+        summary["stop"] = json!({"kind": "inverted_volume", "time": null, "location": location});
     }
     let more = json!({
         "volume": solution.volume,
