@@ -79,7 +79,7 @@ TABLE_TYPES = {
     "job": "string",
     "status": "string",
     "verdict": "string",
-    "close": "bool",
+    "near_threshold": "bool",
     "final_volume": "double",
     "final_pressure": "double",
     "ledger_residual": "double",
@@ -105,10 +105,15 @@ def same(a, b):
     return a == b
 
 
+# A renamed column enters the content hash under its first name.
+FIRST_NAMES = {"broad_phase_rebuilds": "contact_searches", "collision_impulses": "contact_impulses"}
+
+
 def content_hash(arrays):
-    """The hash of history_file.rs: names, lengths, values."""
+    """The hash of history_file: first names, lengths, values."""
     digest = hashlib.sha256()
     for name, values in arrays:
+        name = FIRST_NAMES.get(name, name)
         digest.update(struct.pack("<Q", len(name)) + name.encode())
         digest.update(struct.pack("<Q", values.size) + values.astype(values.dtype.newbyteorder("<")).tobytes())
     return digest.hexdigest()
