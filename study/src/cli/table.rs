@@ -8,21 +8,22 @@ use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, filtered, find};
 use crate::input::value::{Value, short_number};
+use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
 /// Columns shown after the parameters by default, in this order, as far as they fit.
-const MAIN_COLUMNS: [&str; 10] = [
-    "status",
-    "verdict",
-    "t_90_z_rim",
-    "peak_vz",
-    "final_pressure",
-    "t_deployed",
-    "peak_kinetic_energy",
-    "volume_ratio",
-    "height_ratio",
-    "overshoot",
+const MAIN_COLUMNS: [ColumnId; 10] = [
+    ColumnId::Status,
+    ColumnId::Verdict,
+    ColumnId::T90ZRim,
+    ColumnId::PeakVz,
+    ColumnId::FinalPressure,
+    ColumnId::TDeployed,
+    ColumnId::PeakKineticEnergy,
+    ColumnId::VolumeRatio,
+    ColumnId::HeightRatio,
+    ColumnId::Overshoot,
 ];
 /// Most characters in a line of the default table.
 const MAX_LINE_WIDTH: usize = 120;
@@ -142,7 +143,7 @@ fn main_columns(table: &Table) -> Vec<&Column> {
     let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
     columns.extend(table.parameters());
     let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
-    for column in MAIN_COLUMNS.iter().filter_map(|name| table.column(name)) {
+    for column in MAIN_COLUMNS.iter().filter_map(|column| table.column(column.name())) {
         let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
         // The status is always shown.
         if column.name == "status" || (has_values && width + self::width(column) <= MAX_LINE_WIDTH)
