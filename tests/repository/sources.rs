@@ -17,7 +17,9 @@ pub fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
         for entry in fs::read_dir(&folder).expect("a folder of the repository") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                if !path.ends_with("target") {
+                // Neither what was built nor the Python environment of the readers.
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                if name != "target" && !name.starts_with('.') {
                     folders.push(path);
                 }
             } else if path.to_string_lossy().ends_with(ending) {
