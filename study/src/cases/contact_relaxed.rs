@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Caps are N-gons, the bottom ring is held on its stowed N-gon. Volume, height of the top rim and
-//! strain energy are compared. The reference is the static state, so no number is stored.
+//! strain energy are compared. The reference is the static state, not a stored value.
 
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};

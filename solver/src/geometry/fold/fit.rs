@@ -125,7 +125,7 @@ pub(super) fn check(design: &FoldDesign) -> Result<(), FoldError> {
 }
 
 /// Maximum number of panels, storeys and subdivisions. Chosen: above any capsule, and small enough that
-/// no number of nodes or elements overflows.
+/// counts of nodes and elements do not overflow.
 const MAX_COUNT: u32 = 1000;
 
 /// Minimum number of panels. Chosen: the pattern is tested from four panels on.
