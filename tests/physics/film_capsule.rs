@@ -52,11 +52,11 @@ fn report(name: &str, deployment: &Deployment, wall: f64) {
         rim.iter().copied().fold(0.0, f64::max) / (time[1] - time[0])
     );
     println!(
-        "  ledger residual {:e}, gas residual {:e}, viscous fraction {:.3}, gas work {:.2} J, \
+        "  ledger residual {:e}, gas residual {:e}, numerical fraction {:.3}, gas work {:.2} J, \
          {} steps, {:.1} ns per element and step",
         deployment.audit.ledger_residual,
         deployment.audit.gas_residual,
-        deployment.audit.viscous_fraction,
+        deployment.audit.numerical_fraction,
         last("gas_work"),
         deployment.steps,
         wall * 1e9 / (deployment.steps as f64 * deployment.elements as f64),
@@ -143,7 +143,7 @@ fn the_ledger_residual_falls_with_the_step() {
         .to_vec();
     assert!(residuals[1] < residuals[0] && residuals[2] < residuals[1], "{residuals:?}");
     let mut thin = paper::capsule(5, 0.3);
-    thin.film.viscosity = 0.05;
+    thin.film.numerical_damping = 0.05;
     let deployment = timed("n 5, zeta 0.05", &thin, DEFAULT_CFL);
     assert!(deployment.audit.ledger_residual <= 5e-3, "{:?}", deployment.audit);
 }
@@ -162,8 +162,14 @@ fn every_ledger_entry_takes_part_in_the_balance() {
     let deployment = timed("n 2, every entry", &scene, DEFAULT_CFL);
     assert_eq!(deployment.stop, Stop::Done);
     let history = &deployment.history;
-    let moved =
-        ["gas_work", "ambient_work", "gravity_work", "viscous_work", "heat", "enthalpy_out"];
+    let moved = [
+        "gas_work",
+        "ambient_work",
+        "gravity_work",
+        "numerical_dissipation",
+        "heat",
+        "enthalpy_out",
+    ];
     for name in moved {
         assert!(history.column(name).last().unwrap().abs() > 1e-2, "{name}");
     }

@@ -5,7 +5,7 @@ use billow_solver::geometry::mesh::Shape;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
 use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::mechanics::forces::membrane::{NodeForces, ViscousHistory, assemble_membrane};
+use billow_solver::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_membrane};
 use billow_solver::mechanics::gas::{Gas, GasState};
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
@@ -36,7 +36,7 @@ pub fn model(shell: &Shell, film: &Film) -> FilmModel {
 /// Film forces on nodes at these positions, without motion.
 pub fn film_forces(model: &FilmModel, positions: &Field) -> NodeForces {
     let mut nodes = NodeForces::new(model);
-    let history = &mut ViscousHistory::at_rest(model);
+    let history = &mut ElementHistory::at_rest(model, positions);
     let _ = assemble_membrane(InstructionSet::detect(), model, positions, 0.0, history, &mut nodes);
     nodes
 }
@@ -48,8 +48,8 @@ pub fn mapped(shell: &Shell, mut map: impl FnMut(Vector3<f64>) -> Vector3<f64>) 
 
 /// Film without velocity at the shell's positions.
 pub fn at_rest(shell: &Shell, film: &Film, pressure: PressureLoad, gas: GasState) -> Explicit {
-    let (nodes, viscosity) = (shell.positions.len(), film.viscosity);
-    let parameters = Parameters { viscosity, ..Parameters::free(pressure, nodes) };
+    let (nodes, numerical_damping) = (shell.positions.len(), film.numerical_damping);
+    let parameters = Parameters { numerical_damping, ..Parameters::free(pressure, nodes) };
     let positions = Field::of(&shell.positions);
     Explicit::new(model(shell, film), parameters, positions, Field::zeros(nodes), gas)
 }

@@ -210,7 +210,7 @@ fn invalid_piston_scenes_name_their_key() {
     refused(&|s| s.film.youngs_modulus = f64::NAN, "film.youngs_modulus");
     refused(&|s| s.film.poisson_ratio = 0.6, "film.poisson_ratio");
     refused(&|s| s.film.compression = 1.5, "film.compression");
-    refused(&|s| s.film.viscosity = -0.1, "film.viscosity");
+    refused(&|s| s.film.numerical_damping = -0.1, "film.numerical_damping");
     refused(&|s| s.gas.species.cp = 200.0, "gas.species.cp");
     refused(&|s| s.gas.initial_mass = -1.0, "gas.initial_mass");
     refused(&|s| s.gas.windows[0].to = -1.0, "gas.windows[0].to");

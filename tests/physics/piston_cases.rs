@@ -58,7 +58,7 @@ fn fixed_steps_converge_with_order_five() {
 fn end_film() -> EndFilm {
     let film = Film::PAPER;
     let modulus = (film.youngs_modulus, film.thickness);
-    EndFilm::of_cone((BOTTOM_RADIUS, TOP_RADIUS), HEIGHT, modulus, film.viscosity, 0.07)
+    EndFilm::of_cone((BOTTOM_RADIUS, TOP_RADIUS), HEIGHT, modulus, film.numerical_damping, 0.07)
 }
 
 /// A driven mass that bounces on its end film.

@@ -33,7 +33,7 @@ fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
         at_rest(&piece, &Film::PAPER, PressureLoad::Overpressure(0.0), GasState::default());
     let parameters = Parameters {
         supports: Supports::new(&supports, &film.state.positions),
-        viscosity: film.parameters.viscosity,
+        numerical_damping: film.parameters.numerical_damping,
         mass_damping: 5.0,
         cfl,
         ..Parameters::free(PressureLoad::Overpressure(0.0), piece.positions.len())

@@ -148,7 +148,7 @@ fn damped_motion_and_newton_find_the_same_equilibrium() {
     let parameters = Parameters {
         supports: capsule.supports.clone(),
         cfl: 0.9,
-        viscosity: scene.film.viscosity,
+        numerical_damping: scene.film.numerical_damping,
         ..Parameters::free(PressureLoad::Overpressure(100.0), nodes)
     };
     let mut film = Explicit::new(

@@ -20,8 +20,12 @@ const PANEL: Detector = ("shear_panel", "P12");
 /// For each term: the detector of an error of 1 %, and that of the wrong sign.
 const DETECTORS: [(Term, Detector, Detector); 22] = [
     (Term::Elastic, TAUT_FORCE, TAUT_FORCE),
-    (Term::Viscous, ("strip_damping", "log decrement"), ("dissipation", "dissipated power")),
-    (Term::ViscousWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
+    (
+        Term::NumericalStress,
+        ("strip_damping", "log decrement"),
+        ("dissipation", "dissipated power"),
+    ),
+    (Term::NumericalWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
     (Term::PressureForce, FILM_LEDGER, SPHERE_STOPS),
     (Term::Volume, FILM_LEDGER, SPHERE_STOPS),
     (Term::Gravity, ("force_energy", "weight"), FILM_LEDGER),

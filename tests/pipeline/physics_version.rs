@@ -56,7 +56,8 @@ fn end_state(film: &Explicit) -> String {
         works.gas,
         works.ambient,
         works.support,
-        works.viscous,
+        works.material_loss,
+        works.numerical,
         works.damping,
     ];
     let contact_work = film.parameters.contact.as_ref().map(|_| works.contact);
@@ -118,7 +119,7 @@ fn sphere() -> String {
 
 /// A viscous sheet with some compressive stiffness and random velocities swings from two corners.
 fn falling_sheet() -> String {
-    let film = Film { viscosity: 0.1, compression: 0.3, ..Film::PAPER_ELASTIC };
+    let film = Film { numerical_damping: 0.1, compression: 0.3, ..Film::PAPER_ELASTIC };
     let scene = FilmScene {
         velocities: pseudo_random(30, 1),
         supports: vec![held(vec![0, 5], "xyz")],

@@ -174,7 +174,7 @@ fn a_table_of_another_study_than_the_file_says_so() {
     folder.stdout(&["run", "grid.json", "-q"]);
     let same = folder.run(&["table", "grid.json"]);
     assert!(!stderr(&same).contains("has changed since"), "{}", stderr(&same));
-    let other = folder.run(&["table", "grid.json", "--set", "film.viscosity=0.05"]);
+    let other = folder.run(&["table", "grid.json", "--set", "film.numerical_damping=0.05"]);
     assert_eq!(other.status.code(), Some(0));
     assert!(stderr(&other).contains("has changed since"), "{}", stderr(&other));
 }

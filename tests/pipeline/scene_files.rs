@@ -234,7 +234,7 @@ fn invalid_flags_are_refused() {
     // A checkpoint belongs to one scene.
     let pause = ["scene.json", "-q", "--stop-after", "9", "--checkpoint", "state"];
     done(folder.path(), &pause, "");
-    let other = ["scene.json", "-q", "--resume", "state", "--set", "film.viscosity=0.05"];
+    let other = ["scene.json", "-q", "--resume", "state", "--set", "film.numerical_damping=0.05"];
     let output = solve(folder.path(), &other, "");
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("of another scene"), "{}", stderr(&output));

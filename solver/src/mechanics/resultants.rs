@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::scene::Film;
 
-    const FILM: Film = Film { viscosity: 0.0, ..Film::PAPER };
+    const FILM: Film = Film { numerical_damping: 0.0, ..Film::PAPER };
 
     /// An element with this in-plane deformation gradient, rotated in space.
     fn element(gradient: Matrix2<f64>) -> (FilmModel, Field) {

@@ -1,10 +1,15 @@
 //! The audit: how far a result can be trusted. Energy, gas, film through film.
 
 use crate::output::history::History;
+use crate::output::measures::first_rebound;
 
 /// Upper bound of the energy ledger residual, a fraction of the energy moved. A run with a larger one at
 /// any sample fails as `energy_drift`. Chosen.
 pub const MAX_LEDGER_RESIDUAL: f64 = 1e-2;
+
+/// Numerical dissipation over the work of the gas above which a run is marked `numerically_damped`.
+/// Chosen: kinetic energies are then wrong by about as much.
+pub const MAX_NUMERICAL_FRACTION: f64 = 0.05;
 
 /// The audit of one run.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,9 +18,12 @@ pub struct Audit {
     pub ledger_residual: f64,
     /// Largest residual of the gas balance at any sample, a fraction: the larger one of mass and energy.
     pub gas_residual: f64,
-    /// Energy dissipated by the film's viscosity over the work of the gas, at the end; 0 where the gas did
-    /// no positive work.
-    pub viscous_fraction: f64,
+    /// Energy lost in the film's material over the work of the gas, at the end; 0 where the gas did no
+    /// positive work.
+    pub material_loss_fraction: f64,
+    /// Numerical dissipation over the work of the gas, both until the first peak of `z_rim`, or until the
+    /// end where there is none; 0 where the gas did no positive work.
+    pub numerical_fraction: f64,
     /// Passages of film through film counted over the whole run; `None` if the model does not count them.
     pub passages: Option<u64>,
     /// Largest number of intersections of the mesh at any sample; `None` if the model does not count them.
@@ -24,18 +32,32 @@ pub struct Audit {
 }
 
 impl Audit {
+    /// Whether numerical dissipation took more than [`MAX_NUMERICAL_FRACTION`] of the work of the gas, or
+    /// gave as much.
+    pub fn numerically_damped(&self) -> bool {
+        // Written so that NaN is marked too.
+        let small = self.numerical_fraction.abs() <= MAX_NUMERICAL_FRACTION;
+        !small
+    }
+
     /// The audit of a history; `counts_passages`: whether the model counts passages and intersections.
     pub fn of(history: &History, counts_passages: bool) -> Self {
         let largest = |name: &str| history.column(name).iter().copied().fold(0.0, f64::max);
-        let last = |name: &str| history.column(name).last().copied().unwrap_or(0.0);
-        let gas_work = last("gas_work");
+        let of_gas_work = |name: &str, index: Option<usize>| {
+            let at = |name: &str| index.map_or(0.0, |index| history.column(name)[index]);
+            let gas_work = at("gas_work");
+            if gas_work > 0.0 { at(name) / gas_work } else { 0.0 }
+        };
+        let end = history.len().checked_sub(1);
+        let (first_peak, _) = first_rebound(history.column("z_rim"));
         // Histories store counts as f64; all are whole numbers below 2^53.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
         let count = |name: &str| counts_passages.then(|| largest(name) as u64);
         Self {
             ledger_residual: largest("ledger_residual"),
             gas_residual: largest("gas_residual"),
-            viscous_fraction: if gas_work > 0.0 { last("viscous_work") / gas_work } else { 0.0 },
+            material_loss_fraction: of_gas_work("material_loss", end),
+            numerical_fraction: of_gas_work("numerical_dissipation", first_peak.or(end)),
             passages: count("passages"),
             intersections: count("intersections"),
         }
@@ -56,8 +78,8 @@ mod tests {
     use crate::output::history::Sample;
     use crate::output::ledger::Ledger;
 
-    fn sample(time: f64, kinetic: f64, viscous_work: f64, gas_work: f64) -> Sample {
-        let ledger = Ledger { kinetic, gas_work, viscous_work, ..Ledger::default() };
+    fn sample(time: f64, kinetic: f64, material_loss: f64, gas_work: f64) -> Sample {
+        let ledger = Ledger { kinetic, gas_work, material_loss, ..Ledger::default() };
         Sample { time, ledger, ..Sample::default() }
     }
 
@@ -76,7 +98,7 @@ mod tests {
             [sample(0.0, 0.0, 0.0, 0.0), sample(0.1, 3.1, 1.0, 4.0), sample(0.2, 2.0, 2.0, 4.0)];
         let audit = Audit::of(&History::of(&series), false);
         assert!((audit.ledger_residual - 0.1 / 7.1).abs() < 1e-15);
-        assert_eq!(audit.viscous_fraction, 0.5);
+        assert_eq!(audit.material_loss_fraction, 0.5);
         assert_eq!((audit.passages, audit.intersections), (None, None));
         assert_eq!(Audit::of(&History::of(&series), true).passages, Some(0));
     }

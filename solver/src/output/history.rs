@@ -57,7 +57,8 @@ impl Sample {
             self.ledger.ambient_work,
             self.ledger.gravity_work,
             self.ledger.support_work,
-            self.ledger.viscous_work,
+            self.ledger.material_loss,
+            self.ledger.numerical_dissipation,
             self.ledger.contact_dissipation,
             self.ledger.damping_work,
             self.gas.heat,
@@ -128,13 +129,14 @@ columns! {
     "gas_mass" ["kg"] "gas inside",
     "lid_force" ["N"] "force of the film on the packing lid",
     "kinetic_energy" ["J"] "kinetic energy of the film",
-    "strain_energy" ["J"] "elastic energy of the film",
+    "strain_energy" ["J"] "energy stored in the film: elastic, and of creep",
     "contact_energy" ["J"] "elastic energy of contact: minus the work of contact forces since time 0",
     "gas_work" ["J"] "work of the gas on the film since time 0",
     "ambient_work" ["J"] "work of the ambient pressure on the film since time 0",
     "gravity_work" ["J"] "work of gravity on the film since time 0",
     "support_work" ["J"] "work of moving supports and plates on the film since time 0",
-    "viscous_work" ["J"] "energy dissipated by film viscosity since time 0",
+    "material_loss" ["J"] "energy lost in the film's material since time 0",
+    "numerical_dissipation" ["J"] "energy taken by numerical damping and time step since time 0",
     "friction_work" ["J"] "energy dissipated by friction and by collision impulses since time 0",
     "damping_work" ["J"] "energy dissipated by mass damping since time 0",
     "heat" ["J"] "heat from the film to the gas since time 0",
@@ -148,8 +150,11 @@ columns! {
 
 /// Names of history columns and tracks that changed: old name, new name. Readers accept the old name in
 /// files written by earlier versions.
-pub const RENAMED_COLUMNS: &[(&str, &str)] =
-    &[("contact_searches", "broad_phase_rebuilds"), ("contact_impulses", "collision_impulses")];
+pub const RENAMED_COLUMNS: &[(&str, &str)] = &[
+    ("contact_searches", "broad_phase_rebuilds"),
+    ("contact_impulses", "collision_impulses"),
+    ("viscous_work", "numerical_dissipation"),
+];
 
 impl Default for History {
     fn default() -> Self {

@@ -1,7 +1,7 @@
 //! The energy ledger of the film and the balance of the gas: does the energy of a run add up?
 //!
 //! ```text
-//! film:   Δ(kinetic + strain + contact) + viscous + contact dissipation + damping
+//! film:   Δ(kinetic + strain + contact) + material loss + numerical + contact dissipation + damping
 //!             = gas + ambient + gravity + support
 //! gas:    Δm = mass in − mass out
 //!         ΔU = enthalpy in − enthalpy out − gas work + heat
@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 pub struct Ledger {
     /// Kinetic energy of nodes and rigid planes now.
     pub kinetic: f64,
-    /// Elastic energy of the film now.
+    /// Energy stored in the film now: elastic energy and that of creep.
     pub strain: f64,
     /// Elastic energy of contact of film with film and with plates: minus the work of the contact
     /// forces since time 0.
@@ -45,8 +45,11 @@ pub struct Ledger {
     /// Work of moving supports, of the constant forces on rigid planes and of moving plates (the lid
     /// is one) on the film since time 0. Supports that do not move do no work.
     pub support_work: f64,
-    /// Energy dissipated by the film's viscosity since time 0.
-    pub viscous_work: f64,
+    /// Energy lost in the film's material since time 0.
+    pub material_loss: f64,
+    /// Energy that numerical damping and the time step took from the film since time 0; negative where
+    /// they gave energy.
+    pub numerical_dissipation: f64,
     /// Energy dissipated by contact since time 0: by friction and by the impulses that resolve
     /// collisions. History files and tables call this column `friction_work`.
     pub contact_dissipation: f64,
@@ -65,7 +68,10 @@ impl Ledger {
     /// disappeared.
     pub fn defect(&self, start: &Self) -> f64 {
         let external = self.gas_work + self.ambient_work + self.gravity_work + self.support_work;
-        let dissipated = self.viscous_work + self.contact_dissipation + self.damping_work;
+        let dissipated = self.material_loss
+            + self.numerical_dissipation
+            + self.contact_dissipation
+            + self.damping_work;
         (self.stored() - start.stored()) + dissipated - external
     }
 
@@ -174,8 +180,8 @@ fn relative(defects: &[f64], moved: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn at(kinetic: f64, gas_work: f64, viscous_work: f64) -> Ledger {
-        Ledger { kinetic, gas_work, viscous_work, ..Ledger::default() }
+    fn at(kinetic: f64, gas_work: f64, material_loss: f64) -> Ledger {
+        Ledger { kinetic, gas_work, material_loss, ..Ledger::default() }
     }
 
     #[test]
@@ -197,7 +203,7 @@ mod tests {
 
     #[test]
     fn every_entry_enters_the_ledger() {
-        let entries: [fn(&mut Ledger); 10] = [
+        let entries: [fn(&mut Ledger); 11] = [
             |l| l.kinetic = 1.0,
             |l| l.strain = 1.0,
             |l| l.contact = 1.0,
@@ -205,7 +211,8 @@ mod tests {
             |l| l.ambient_work = 1.0,
             |l| l.gravity_work = 1.0,
             |l| l.support_work = 1.0,
-            |l| l.viscous_work = 1.0,
+            |l| l.material_loss = 1.0,
+            |l| l.numerical_dissipation = 1.0,
             |l| l.contact_dissipation = 1.0,
             |l| l.damping_work = 1.0,
         ];

@@ -17,10 +17,12 @@ pub struct Fault {
 pub enum Term {
     /// Elastic force of the film.
     Elastic,
-    /// Viscous force of the film.
-    Viscous,
-    /// Viscous work in the energy ledger.
-    ViscousWork,
+    /// Numerical stress of the film.
+    NumericalStress,
+    /// Numerical dissipation in the energy ledger.
+    NumericalWork,
+    /// Creep rate of the film.
+    Creep,
     /// ∂V/∂x: force of the pressure on the film.
     PressureForce,
     /// Enclosed volume.
@@ -63,10 +65,11 @@ pub enum Term {
 
 impl Term {
     /// Every term.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Elastic,
-        Self::Viscous,
-        Self::ViscousWork,
+        Self::NumericalStress,
+        Self::NumericalWork,
+        Self::Creep,
         Self::PressureForce,
         Self::Volume,
         Self::Gravity,

@@ -113,7 +113,7 @@ pub fn solve_from(
 ) -> Result<StaticSolution, StaticError> {
     let Filling::Pressure(overpressure) = scene.filling else { return Err(StaticError::Gas) };
     scene.shell.check()?;
-    let model = FilmModel::of_shell(&scene.film, &scene.shell)?;
+    let model = FilmModel::of_shell(&scene.film.elastic(), &scene.shell)?;
     let start = Field::of(&scene.shell.positions);
     let supports = Supports::new(&scene.supports, &start);
     let loaded = Loaded {

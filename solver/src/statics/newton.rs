@@ -20,7 +20,7 @@ use super::tangent::{self, Stiffness};
 use super::unknowns::Unknowns;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::forces::membrane::{NodeForces, ViscousHistory, assemble_membrane};
+use crate::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_membrane};
 use crate::mechanics::forces::pressure::add_closure;
 use crate::mechanics::resultants::thickness;
 use crate::mechanics::supports::Supports;
@@ -161,7 +161,7 @@ struct NewtonSearch<'a> {
     positions: Field,
     /// Scratch: trial positions, viscous history, node forces.
     trial: Field,
-    viscous_history: Vec<[ViscousHistory; 2]>,
+    element_history: Vec<[ElementHistory; 2]>,
     nodes: NodeForces,
     /// Forces on the nodes, and along the unknowns, at the last trial positions.
     forces: Field,
@@ -177,7 +177,7 @@ impl<'a> NewtonSearch<'a> {
             unknowns,
             trial: positions.clone(),
             positions,
-            viscous_history: ViscousHistory::at_rest(model),
+            element_history: ElementHistory::zero(model),
             nodes: NodeForces::new(model),
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
@@ -197,7 +197,7 @@ impl<'a> NewtonSearch<'a> {
             model,
             &self.trial,
             0.0,
-            &mut self.viscous_history,
+            &mut self.element_history,
             &mut self.nodes,
         );
         let _ = add_closure(model, &self.trial, &mut self.nodes);

@@ -22,7 +22,7 @@ use super::{Outcome, Rig, Row};
 const DISTANCE: f64 = 2e-3;
 
 fn viscous() -> Film {
-    Film { viscosity: 0.1, ..Film::PAPER_ELASTIC }
+    Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC }
 }
 
 /// A sheet and an inclined sheet above it, rotated by a quarter turn, as one shell; and the number of

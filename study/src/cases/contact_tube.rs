@@ -60,7 +60,7 @@ fn slice(radius: f64, gap: f64) -> FilmScene {
             plates: vec![half(1.0), half(-1.0)],
             ..monitored_contact(DISTANCE)
         }),
-        ..free_film(shell, Film { viscosity: 0.1, ..Film::PAPER_ELASTIC })
+        ..free_film(shell, Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC })
     };
     scene.solver.mass_damping = 300.0;
     scene

@@ -1,7 +1,7 @@
 //! Dissipation: viscosity and mass damping remove the energy they report.
 //!
 //! ```text
-//! viscosity:     log decrement of a mode 2π ζ ω/ω_e
+//! numerical_damping:     log decrement of a mode 2π ζ ω/ω_e
 //! mass damping:  v = v0 exp(−c t) in free flight
 //! ```
 
@@ -25,7 +25,7 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     let shell = strip(columns, length, 0.05);
     let all = (0..2 * (columns + 1)).collect();
     let ends = vec![0, columns, columns + 1, 2 * columns + 1];
-    let film = Film { compression: 1.0, viscosity: 0.1, ..Film::PAPER_ELASTIC };
+    let film = Film { compression: 1.0, numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
     let wave = |x: &Vector3<f64>| Vector3::x() * (1e-4 * libm::sin(PI * x.x / length));
     let mut scene = FilmScene {
         velocities: shell.positions.iter().map(wave).collect(),
@@ -42,7 +42,7 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     // Eight half periods.
     let omega = 4.0 * TAU / (extrema[8].time - extrema[0].time);
     let decrement = libm::log(extrema[0].value / extrema[8].value) / 4.0;
-    let expected = TAU * scene.film.viscosity * omega / film.model.frequency[0];
+    let expected = TAU * scene.film.numerical_damping * omega / film.model.frequency[0];
     let ledger = film.ledger();
     let kinetic: f64 = scene
         .velocities
@@ -54,7 +54,7 @@ pub fn strip_decrement(rig: &Rig) -> Outcome {
     let band = number("damping/band");
     Ok(vec![
         Row::new("log decrement of a strip's mode", decrement, expected, band),
-        Row::new("dissipated energy, J", ledger.viscous_work, lost, band),
+        Row::new("dissipated energy, J", ledger.numerical_dissipation, lost, band),
     ])
 }
 

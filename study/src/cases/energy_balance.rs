@@ -37,10 +37,13 @@ pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
         return Err(format!("stopped: {:?}", deployment.stop));
     }
     let audit = &deployment.audit;
-    let viscous = format!("viscous work over gas work {:.3}", audit.viscous_fraction);
+    let numerical = format!(
+        "numerical dissipation over gas work {:.3}, material loss {:.3}",
+        audit.numerical_fraction, audit.material_loss_fraction
+    );
     Ok(vec![
         Row::at_most("film energy residual", audit.ledger_residual, number("ledger/band"))
-            .with_note(&viscous),
+            .with_note(&numerical),
         Row::at_most("gas energy residual", audit.gas_residual, number("ledger/gas_band")),
     ])
 }
@@ -65,7 +68,10 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
         velocities,
         filling: Filling::Gas { supply, initial_temperature: 350.0 },
         gravity: Vector3::new(0.0, 0.0, -9.806_65),
-        ..free_film(shell, Film { viscosity: 0.1, compression: 0.01, ..Film::PAPER_ELASTIC })
+        ..free_film(
+            shell,
+            Film { numerical_damping: 0.1, compression: 0.01, ..Film::PAPER_ELASTIC },
+        )
     };
     scene.solver.mass_damping = 5.0;
     scene.solver.cfl = 0.2;

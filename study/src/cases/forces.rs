@@ -10,7 +10,7 @@ use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::explicit::Explicit;
-use billow_solver::mechanics::forces::membrane::{strain, strain_energy, viscous_forces};
+use billow_solver::mechanics::forces::membrane::{numerical_forces, strain, strain_energy};
 use billow_solver::mechanics::forces::pressure;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::scene::Film;
@@ -165,7 +165,8 @@ pub fn path_energy(rig: &Rig) -> Outcome {
 pub fn dissipation(rig: &Rig) -> Outcome {
     let shell = icosphere(2, 0.5);
     let count = shell.positions.len();
-    let [elastic, viscous] = [0.0, 0.1].map(|viscosity| Film { viscosity, ..Film::PAPER_ELASTIC });
+    let [elastic, viscous] =
+        [0.0, 0.1].map(|numerical_damping| Film { numerical_damping, ..Film::PAPER_ELASTIC });
     let [mut least, mut balance, mut force, mut moment] = [f64::INFINITY, 0.0, 0.0, 0.0];
     for seed in 0..5 {
         let positions: Vec<Vector3<f64>> = shell
@@ -188,7 +189,7 @@ pub fn dissipation(rig: &Rig) -> Outcome {
         };
         let film = film_at(rig, &shell, viscous, positions.clone(), velocities.clone())?;
         let reported =
-            viscous_forces(&film.model, &film.state.positions, &film.state.viscous_history);
+            numerical_forces(&film.model, &film.state.positions, &film.state.element_history);
         let power: f64 = reported.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let dissipated: f64 = viscous_part.iter().zip(&velocities).map(|(f, v)| -f.dot(v)).sum();
         let size: f64 = viscous_part.iter().map(Vector3::norm).sum();

@@ -28,7 +28,7 @@ fn two_sheets(low: Shell, high: Shell) -> (FilmScene, usize) {
     let count = u32::try_from(nodes).expect("under 2^32 nodes");
     let scene = FilmScene {
         supports: vec![held((0..count).collect(), "xyz")],
-        ..free_film(joined(&[low, high]), Film { viscosity: 0.1, ..Film::PAPER_ELASTIC })
+        ..free_film(joined(&[low, high]), Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC })
     };
     (scene, nodes)
 }

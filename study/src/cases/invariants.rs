@@ -11,7 +11,7 @@ use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
 use billow_solver::integrators::explicit::Explicit;
 use billow_solver::mechanics::forces::membrane::{
-    NodeForces, assemble_membrane, strain, viscous_forces,
+    NodeForces, assemble_membrane, numerical_forces, strain,
 };
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
@@ -60,21 +60,21 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     for x in &mut shell.positions {
         *x = turn * *x + Vector3::new(3.0, -1.0, 2.0);
     }
-    let film = Film { compression: 1.0, viscosity: 0.1, ..Film::PAPER_ELASTIC };
+    let film = Film { compression: 1.0, numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
     let scale = film.youngs_modulus * film.thickness * 0.1;
     let film =
         rig.start(&FilmScene { velocities: velocities.clone(), ..free_film(shell, film) })?;
     let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
-    let viscous = viscous_forces(&film.model, &film.state.positions, &film.state.viscous_history);
+    let viscous = numerical_forces(&film.model, &film.state.positions, &film.state.element_history);
     let power: f64 = viscous.iter().zip(&velocities).map(|(f, v)| f.dot(v)).sum();
     // A large rotation in a single step.
-    let mut history = film.state.viscous_history.clone();
+    let mut history = film.state.element_history.clone();
     let mut out = NodeForces::new(&film.model);
     let spun = film.state.positions.iter().map(|x| turn * x).collect::<Vec<_>>();
     let (spun, instruction_set) = (Field::of(&spun), film.parameters.instruction_set);
     let stepped =
         assemble_membrane(instruction_set, &film.model, &spun, 1e-5, &mut history, &mut out);
-    let after = viscous_forces(&film.model, &spun, &history);
+    let after = numerical_forces(&film.model, &spun, &history);
     let after = after.iter().map(|force| force.norm()).fold(0.0, worse);
     let band = number("patch/band");
     Ok(vec![
@@ -82,7 +82,7 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
         Row::at_most("viscous force after a rotation in one step, over E t h", after / scale, band),
         Row::at_most(
             "viscous work of this rotation over E t h^2",
-            stepped.viscous_work.abs() / (scale * 0.1),
+            stepped.numerical_dissipation.abs() / (scale * 0.1),
             band,
         ),
         Row::at_most("strain energy over E t h^2", film.strain_energy() / (scale * 0.1), band),
@@ -115,7 +115,7 @@ pub fn momenta(rig: &Rig) -> Outcome {
         supply: GasSupply { initial_mass: 5e-3, ..nitrogen_supply() },
         initial_temperature: 293.0,
     };
-    let film = Film { viscosity: 0.1, ..Film::PAPER_ELASTIC };
+    let film = Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
     let mut film = rig.start(&FilmScene { velocities, filling, ..free_film(shell, film) })?;
     let before = momentum(&film);
     let target = 1e5 * film.stable_step();

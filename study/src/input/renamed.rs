@@ -8,6 +8,7 @@ use crate::platform::error::InputError;
 /// Old path and new path of every renamed key: `*` stands for any name, `[]` for any item. Only the
 /// last part differs.
 pub const RENAMED_KEYS: &[(&str, &str)] = &[
+    ("film.viscosity", "film.numerical_damping"),
     ("outputs.thresholds.close_margin", "outputs.thresholds.near_threshold_margin"),
     ("strategies.*.inflow[].rate", "strategies.*.inflow[].mass_flow_rate"),
     ("gas.windows[].rate", "gas.windows[].mass_flow_rate"),

@@ -57,8 +57,10 @@ fn scene(number: u32) -> Scene {
             density: 1390.0,
             thickness: 25e-6,
             compression: 0.01,
-            viscosity: 0.0,
+            numerical_damping: 0.0,
             temperature: 293.15,
+            loss_factor: 0.0,
+            loss_frequency: 100.0,
         },
         gas: GasSupply {
             species: Species { gas_constant: 296.8, cp: 1039.0 },

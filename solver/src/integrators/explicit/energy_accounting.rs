@@ -10,13 +10,13 @@
 use nalgebra::Vector3;
 
 use super::{Explicit, PressureLoad};
-use crate::mechanics::forces::membrane::strain_energy;
+use crate::mechanics::forces::membrane::stored_energy;
 use crate::output::ledger::{GasBalance, Ledger};
 
 impl Explicit {
-    /// Elastic energy of the film, J.
+    /// Energy stored in the film, J: elastic energy and that of creep.
     pub fn strain_energy(&self) -> f64 {
-        strain_energy(&self.model, &self.state.positions)
+        stored_energy(&self.model, &self.state.element_history)
     }
 
     /// The energy ledger of the film.
@@ -33,7 +33,8 @@ impl Explicit {
                 .gravity
                 .dot(&(self.first_moment() - Vector3::from(self.state.start_moment))),
             support_work: works.support,
-            viscous_work: works.viscous,
+            material_loss: works.material_loss,
+            numerical_dissipation: works.numerical,
             damping_work: works.damping,
             contact: -works.contact,
             contact_dissipation: contact_state.friction_dissipation

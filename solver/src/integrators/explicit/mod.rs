@@ -1,7 +1,7 @@
 //! Central differences for film and its gas.
 //!
 //! ```text
-//! f = f_film(xⁿ, xⁿ⁻¹) + f_contact + (p − p_ambient) ∂V/∂x + m g      at time n
+//! f = f_film + f_contact + (p − p_ambient) ∂V/∂x + m g      at time n
 //! v⁺ = v⁻ + h a,  h = (Δt⁻ + Δt)/2                        half-step velocities
 //! x ← x + Δt v⁺;  the gas steps from V to V'              time n + 1
 //!
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Each work is the trapezoid rule of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx; the
-//! work of viscosity agrees with that up to third order in Δt ([`crate::mechanics::forces::damping`]).
+//! work of numerical damping agrees with that up to third order in Δt ([`crate::mechanics::forces::damping`]).
 //! With equal steps these works and the kinetic energy above add up exactly. So a ledger residual has
 //! one of two causes: a force that is not the derivative of its energy, or a step too long for a
 //! change of stiffness. The gas does the work ½ (pⁿ + pⁿ⁺¹) ΔV, and the ledger of the film takes the
@@ -29,7 +29,7 @@ use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
 use crate::mechanics::forces::membrane::{
-    MembraneSums, NodeForces, ViscousHistory, assemble_membrane, viscous_forces,
+    ElementHistory, MembraneSums, NodeForces, assemble_membrane, numerical_forces,
 };
 use crate::mechanics::forces::pressure::{add_closure, gas_frequency_squared};
 use crate::mechanics::gas::GasState;
@@ -54,7 +54,7 @@ pub use parameters::{DEFAULT_CFL, Parameters, PressureLoad};
 pub use quiescence::Quiescence;
 pub use state::{State, StepInterval, Works};
 
-/// Upper bound of step × largest film frequency for a step that leaves viscosity unchanged. Such steps
+/// Upper bound of step × largest film frequency for a step that leaves creep and damping unchanged. Such steps
 /// lie between targets that differ by rounding. Chosen: far below any step of a run (about 1).
 const MAX_TINY_STEP: f64 = 1e-6;
 
@@ -90,8 +90,7 @@ impl Explicit {
         let state = State::start(positions, velocities, Vec::new(), planes, gas);
         let mut film = Self::with(model, parameters, state);
         film.bind_to_planes();
-        film.state.viscous_history =
-            ViscousHistory::in_motion(&film.model, &film.state.positions, &film.state.velocities);
+        film.state.element_history = ElementHistory::at_rest(&film.model, &film.state.positions);
         film.initialise_contact();
         let sums = film.assemble_forces(0.0, 0.0, &mut Untimed);
         film.state.volume = sums.six_volumes / 6.0;
@@ -216,7 +215,7 @@ impl Explicit {
             }
             PressureLoad::Overpressure(_) => 0.0,
         };
-        let factor = stable_share(self.parameters.viscosity) * 2.0;
+        let factor = stable_share(self.parameters.numerical_damping) * 2.0;
         let max_step = cfl * factor / (film * film + gas).sqrt();
         match self.parameters.contact.as_ref().filter(|_| contact_active) {
             // Contact bounds stability only: the CFL number already keeps the step well below it.
@@ -253,7 +252,7 @@ impl Explicit {
         let max_speed_squared =
             drift_nodes(instruction_set, &state.velocities, drift, &mut state.positions);
         self.add_plate_work(end);
-        // In a tiny step the rounding of a strain would count as a strain rate.
+        // In a tiny step the rounding of a stress would count as a stress rate.
         let tiny = length * self.model.largest_frequency() < MAX_TINY_STEP;
         let sums = self.assemble_forces(end, if tiny { 0.0 } else { length }, stopwatch);
         stopwatch.begins(Stage::Gas);
@@ -264,8 +263,10 @@ impl Explicit {
         if !subsonic || !volume.is_finite() {
             return Err(self.unstable());
         }
-        self.state.works.viscous +=
-            sums.viscous_work * self.parameters.fault_factor(Term::ViscousWork);
+        let works = &mut self.state.works;
+        works.numerical +=
+            sums.numerical_dissipation * self.parameters.fault_factor(Term::NumericalWork);
+        works.material_loss += sums.material_loss;
         self.state.film_stress = self.state.film_stress.max(sums.largest_stress);
         if matches!(self.parameters.pressure_load, PressureLoad::Gas(_)) && volume <= 0.0 {
             return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
@@ -338,7 +339,7 @@ impl Explicit {
     }
 
     /// Computes all forces at the positions now. `time` (s) is the time of these positions, `step` (s) the
-    /// time since the last call; 0 leaves the viscous stress unchanged.
+    /// time since the last call; 0 leaves creep and numerical stress unchanged.
     fn assemble_forces(
         &mut self,
         time: f64,
@@ -347,13 +348,13 @@ impl Explicit {
     ) -> MembraneSums {
         stopwatch.begins(Stage::Membrane);
         let (model, instruction_set) = (&self.model, self.parameters.instruction_set);
-        let State { positions, viscous_history, .. } = &mut self.state;
+        let State { positions, element_history, .. } = &mut self.state;
         let mut sums = assemble_membrane(
             instruction_set,
             model,
             positions,
             step,
-            viscous_history,
+            element_history,
             &mut self.forces,
         );
         sums.six_volumes += add_closure(model, positions, &mut self.forces);
@@ -367,12 +368,14 @@ impl Explicit {
 
     /// Applies a deliberate fault to the forces: tests only.
     fn inject_fault(&mut self, sums: &mut MembraneSums) {
-        let [elastic, viscous, area] = [Term::Elastic, Term::Viscous, Term::PressureForce]
-            .map(|term| self.parameters.fault_factor(term));
-        let drags = viscous_forces(&self.model, &self.state.positions, &self.state.viscous_history);
-        for (node, drag) in drags.iter().enumerate() {
-            let elastic_force = self.forces.film(node) - drag;
-            self.forces.set_film(node, elastic_force * elastic + drag * viscous);
+        let [elastic, numerical, area] =
+            [Term::Elastic, Term::NumericalStress, Term::PressureForce]
+                .map(|term| self.parameters.fault_factor(term));
+        let damping =
+            numerical_forces(&self.model, &self.state.positions, &self.state.element_history);
+        for (node, damping) in damping.iter().enumerate() {
+            let elastic_force = self.forces.film(node) - damping;
+            self.forces.set_film(node, elastic_force * elastic + damping * numerical);
             self.forces.scale_area(node, area);
         }
         sums.six_volumes *= self.parameters.fault_factor(Term::Volume);

@@ -31,8 +31,8 @@ pub struct Parameters {
     pub supports: Supports,
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
-    /// Damping ratio ζ of the film's viscosity; the stable step depends on it.
-    pub viscosity: f64,
+    /// Numerical damping ratio ζ; the stable step depends on it.
+    pub numerical_damping: f64,
     /// Mass damping c, 1/s. A capsule's scene sets 0; a film scene and [`crate::statics::Relaxation`]
     /// may set more.
     pub mass_damping: f64,
@@ -51,14 +51,14 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Film without supports, gravity, viscosity, mass damping or contact, at the default CFL number,
+    /// Film without supports, gravity, numerical damping, mass damping or contact, at the default CFL number,
     /// on the widest instruction set of this machine.
     pub fn free(pressure_load: PressureLoad, nodes: usize) -> Self {
         Self {
             pressure_load,
             supports: Supports::none(nodes),
             gravity: Vector3::zeros(),
-            viscosity: 0.0,
+            numerical_damping: 0.0,
             mass_damping: 0.0,
             cfl: DEFAULT_CFL,
             step_limit: u64::MAX,

@@ -158,7 +158,7 @@ mod tests {
         );
         let parameters = Parameters {
             contact: Some(contact_model),
-            viscosity: 0.1,
+            numerical_damping: 0.1,
             ..Parameters::free(PressureLoad::Overpressure(0.0), 6)
         };
         let still = Field::zeros(6);

@@ -11,10 +11,10 @@ use super::update::{KickParameters, drift_nodes, kick_nodes};
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::{ElementBlock, FilmModel};
 use crate::mechanics::forces::membrane::{
-    MembraneSums, NORMAL_TO_GRADIENT, NodeForces, ViscousHistory, assemble_membrane,
+    ElementHistory, MembraneSums, NORMAL_TO_GRADIENT, NodeForces, assemble_membrane,
 };
 use crate::mechanics::supports::FreeComponents;
-use crate::platform::simd::{InstructionSet, NodeSum, WIDTH};
+use crate::platform::simd::{InstructionSet, Lanes, NodeSum, WIDTH};
 
 /// Film in motion, without gas, moving supports, or contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,8 +25,8 @@ pub struct FilmMotion {
     pub velocities: Field,
     /// Forces on the nodes. A step does not change the contact forces.
     pub forces: NodeForces,
-    /// Strain and viscous stress of the elements after the last step.
-    pub histories: Vec<[ViscousHistory; 2]>,
+    /// Strains and stresses of the elements after the last step.
+    pub histories: Vec<[ElementHistory; 2]>,
     next: Field,
 }
 
@@ -39,7 +39,7 @@ impl FilmMotion {
         velocities: Field,
     ) -> Self {
         let mut forces = NodeForces::new(model);
-        let mut histories = ViscousHistory::in_motion(model, &positions, &velocities);
+        let mut histories = ElementHistory::at_rest(model, &positions);
         let _ =
             assemble_membrane(instruction_set, model, &positions, 0.0, &mut histories, &mut forces);
         Self { positions, velocities, forces, histories, next: Field::zeros(model.nodes()) }
@@ -148,7 +148,7 @@ fn contract(stress: Vector, strain: Vector) -> f64 {
 struct Constants {
     inverse_shape: Vector,
     minus_volume: f64,
-    minus_viscosity: f64,
+    damping_time: f64,
 }
 
 impl Constants {
@@ -156,56 +156,116 @@ impl Constants {
         Self {
             inverse_shape: block.inverse_shape.each_ref().map(|lanes| lanes.0[lane]),
             minus_volume: block.minus_volume.0[lane],
-            minus_viscosity: block.minus_viscosity.0[lane],
+            damping_time: block.damping_time.0[lane],
+        }
+    }
+}
+
+/// A lane of an [`ElementHistory`].
+#[derive(Clone, Copy)]
+struct Stored {
+    strain: Vector,
+    stress: Vector,
+    numerical_stress: Vector,
+    creep: Vector,
+}
+
+impl Stored {
+    fn load(history: &ElementHistory, lane: usize) -> Self {
+        let of = |stored: &[Lanes; 3]| stored.each_ref().map(|lanes| lanes.0[lane]);
+        Self {
+            strain: of(&history.strain),
+            stress: of(&history.stress),
+            numerical_stress: of(&history.numerical_stress),
+            creep: of(&history.creep),
+        }
+    }
+
+    fn store(&self, history: &mut ElementHistory, lane: usize) {
+        for component in 0..3 {
+            history.strain[component].0[lane] = self.strain[component];
+            history.stress[component].0[lane] = self.stress[component];
+            history.numerical_stress[component].0[lane] = self.numerical_stress[component];
+            history.creep[component].0[lane] = self.creep[component];
         }
     }
 }
 
 /// Result of one element.
 struct ElementResponse {
-    /// Strain (Exx + Eyy, Exx − Eyy, 2 Exy).
-    strain: Vector,
-    /// −A t `s_v`, J.
-    viscous: Vector,
+    /// What the element stores.
+    stored: Stored,
     /// Force densities −r of the edges, N/m.
     minus_force_density: Vector,
-    /// Minus twice the viscous work of the step, J.
-    minus_twice_work: f64,
+    /// Minus twice the numerical dissipation of the step, J.
+    minus_twice_numerical: f64,
+    /// Minus twice the material loss of the step, J.
+    minus_twice_loss: f64,
     /// Larger principal stress, Pa.
     largest_stress: f64,
 }
 
-/// Response of an element with metric (p·p/2, p·q, q·q/2), strain and −A t `s_v` before the step.
+/// Multiplies the components of a strain by the two factors of an isotropic tensor.
+fn isotropic(a: Vector, [mean, deviator]: [f64; 2]) -> Vector {
+    [a[0] * mean, a[1] * deviator, a[2] * deviator]
+}
+
+/// Response of an element with metric (p·p/2, p·q, q·q/2) after a step.
 fn element_response(
     model: &FilmModel,
-    Constants { inverse_shape: [a, b, d], minus_volume, minus_viscosity }: &Constants,
+    Constants { inverse_shape: [a, b, d], minus_volume, damping_time }: &Constants,
     [m1, m2, m3]: Vector,
-    inverse_step: f64,
-    [last_strain, last_viscous]: [Vector; 2],
+    step: f64,
+    last: &Stored,
 ) -> ElementResponse {
-    let nu = model.material.poisson_ratio;
+    let creep = &model.creep;
+    let loses = creep.ratio > 0.0;
     let (b_m1, d_m2) = (b * m1, d * m2);
     let b_m1_d_m2 = b_m1 + d_m2;
     // Exx + ½ and Eyy + ½.
     let (xx, yy) = ((a * a) * m1, b * b_m1_d_m2 + (d * d) * m3);
-    let strain = [xx + yy - 1.0, xx - yy, a * (b_m1 + b_m1_d_m2)];
-    let change = minus(strain, last_strain);
-    let mean_factor = minus_viscosity * (inverse_step * (0.5 * (1.0 + nu)));
-    let shear_factor = minus_viscosity * (inverse_step * (0.5 * (1.0 - nu)));
-    let viscous = [mean_factor * change[0], shear_factor * change[1], shear_factor * change[2]];
-    let minus_twice_work = contract(plus(viscous, last_viscous), change);
-
-    // −A t (s + s_v), then its components and Gᵀ of them.
+    let mut strain = [xx + yy - 1.0, xx - yy, a * (b_m1 + b_m1_d_m2)];
+    let (mut creep_strain, mut creep_step) = (last.creep, [0.0; 3]);
+    let last_driving = minus(last.stress, isotropic(creep_strain, creep.stiffness));
+    if loses {
+        creep_step = times(isotropic(last_driving, creep.compliance), creep.share(step));
+        creep_strain = plus(creep_strain, creep_step);
+        strain = plus(strain, times(minus(strain, creep_strain), creep.ratio));
+    }
     let [mean, shear_modulus, largest_stress] = stress_response(model, strain);
-    let shear_modulus = shear_modulus * minus_volume;
-    let mean = mean * minus_volume + viscous[0];
-    let half_difference = shear_modulus * strain[1] + viscous[1];
+    let stress = [mean, shear_modulus * strain[1], shear_modulus * strain[2]];
+
+    let (strain_step, stress_step) = (minus(strain, last.strain), minus(stress, last.stress));
+    let twice_missed = contract(stress, last.strain) - contract(last.stress, strain);
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let work = larger(contract(stress_step, strain_step), f64::MIN_POSITIVE);
+    let share = (twice_missed * 0.5) / work;
+    let share = -larger(-larger(share, -0.5), -0.5);
+    let numerical = times(stress_step, share + damping_time * (1.0 / step));
+    let displacement =
+        if loses { plus(strain_step, times(creep_step, creep.ratio)) } else { strain_step };
+    let twice_work = contract(plus(numerical, last.numerical_stress), displacement) - twice_missed;
+    let minus_twice_loss = if loses {
+        let driving = minus(stress, isotropic(creep_strain, creep.stiffness));
+        minus_volume * contract(plus(driving, last_driving), creep_step)
+    } else {
+        0.0
+    };
+
+    // −A t (s + d), then its components and Gᵀ of them.
+    let [mean, half_difference, xy] = times(plus(stress, numerical), *minus_volume);
     let (xx, yy) = (mean + half_difference, mean - half_difference);
-    let xy = shear_modulus * strain[2] + viscous[2];
     let a_xy = a * xy;
     let b_yy_a_xy = b * yy + a_xy;
     let minus_force_density = [(a * a) * xx + b * (b_yy_a_xy + a_xy), d * b_yy_a_xy, (d * d) * yy];
-    ElementResponse { strain, viscous, minus_force_density, minus_twice_work, largest_stress }
+    let stored = Stored { strain, stress, numerical_stress: numerical, creep: creep_strain };
+    ElementResponse {
+        stored,
+        minus_force_density,
+        minus_twice_numerical: minus_volume * twice_work,
+        minus_twice_loss,
+        largest_stress,
+    }
 }
 
 /// [`assemble_membrane`], kite by kite.
@@ -213,11 +273,11 @@ fn assemble_kites(
     model: &FilmModel,
     positions: &Field,
     step: f64,
-    histories: &mut [[ViscousHistory; 2]],
+    histories: &mut [[ElementHistory; 2]],
     out: &mut NodeForces,
 ) -> MembraneSums {
-    let (mut six_volumes, mut work, mut largest_stress) = ([0.0; WIDTH], [0.0; WIDTH], 0.0_f64);
-    let inverse_step = 1.0 / step;
+    let (mut six_volumes, mut largest_stress) = ([0.0; WIDTH], 0.0_f64);
+    let (mut numerical, mut loss) = ([0.0; WIDTH], [0.0; WIDTH]);
     out.sums.fill(NodeSum::default());
     for (index, kite) in model.kites.iter().enumerate() {
         let (block, lane) = (index / WIDTH, index % WIDTH);
@@ -230,25 +290,22 @@ fn assemble_kites(
         let d_metric = dot(d, d) * 0.5;
         let metrics =
             [[dot(p, p) * 0.5, dot(p, d), d_metric], [d_metric, dot(d, q), dot(q, q) * 0.5]];
-        let (mut force_densities, mut works) = ([[0.0; 3]; 2], [0.0; 2]);
-        for half in 0..2 {
+        let [first, second] = [0, 1].map(|half| {
             let constants = Constants::of(&model.constants[block][half], lane);
-            let ViscousHistory { strain, minus_weighted_stress } = &mut histories[block][half];
-            let last = [&*strain, &*minus_weighted_stress]
-                .map(|stored| stored.each_ref().map(|lanes| lanes.0[lane]));
-            let response = element_response(model, &constants, metrics[half], inverse_step, last);
-            for component in 0..3 {
-                strain[component].0[lane] = response.strain[component];
-                minus_weighted_stress[component].0[lane] = response.viscous[component];
-            }
-            force_densities[half] = response.minus_force_density;
-            works[half] = response.minus_twice_work;
+            let history = &mut histories[block][half];
+            let last = Stored::load(history, lane);
+            let response = element_response(model, &constants, metrics[half], step, &last);
+            response.stored.store(history, lane);
+            response
+        });
+        for response in [&first, &second] {
             let stress = response.largest_stress;
             largest_stress = if largest_stress > stress { largest_stress } else { stress };
         }
-        work[lane] += works[0] + works[1];
+        numerical[lane] += first.minus_twice_numerical + second.minus_twice_numerical;
+        loss[lane] += first.minus_twice_loss + second.minus_twice_loss;
 
-        let [r, r2] = force_densities;
+        let (r, r2) = (first.minus_force_density, second.minus_force_density);
         let force_a = plus(times(p, r[0]), times(d, r[1]));
         let force_t = plus(plus(times(p, r[1]), times(d, r[2] + r2[0])), times(q, r2[1]));
         let force_b = plus(times(d, r2[1]), times(q, r2[2]));
@@ -269,8 +326,12 @@ fn assemble_kites(
     }
     // The order of `Lanes::sum`.
     let sum = |[a, b, c, d, e, f, g, h]: [f64; WIDTH]| ((a + e) + (c + g)) + ((b + f) + (d + h));
-    let viscous_work = -0.5 * sum(work);
-    MembraneSums { six_volumes: sum(six_volumes), viscous_work, largest_stress }
+    MembraneSums {
+        six_volumes: sum(six_volumes),
+        numerical_dissipation: -0.5 * sum(numerical) / (1.0 + model.creep.ratio),
+        material_loss: -0.5 * sum(loss) * model.creep.ratio / (1.0 + model.creep.ratio),
+        largest_stress,
+    }
 }
 
 #[cfg(test)]

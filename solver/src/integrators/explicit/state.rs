@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Quiescence;
 use crate::collision::contact::ContactState;
 use crate::geometry::field::Field;
-use crate::mechanics::forces::membrane::ViscousHistory;
+use crate::mechanics::forces::membrane::ElementHistory;
 use crate::mechanics::gas::GasState;
 use crate::output::ledger::GasBalance;
 
@@ -20,9 +20,9 @@ pub struct State {
     pub positions: Field,
     /// Velocities of the nodes half a step ago, m/s; before the first step those of the start.
     pub velocities: Field,
-    /// Strain and viscous stress of every element at the end of the last step, in the layout of the
-    /// element loop.
-    pub viscous_history: Vec<[ViscousHistory; 2]>,
+    /// Strains and stresses of every element at the end of the last step, in the layout of the element
+    /// loop.
+    pub element_history: Vec<[ElementHistory; 2]>,
     /// Velocities of the rigid planes along their normals half a step ago, m/s.
     pub planes: Vec<f64>,
     /// Length of the last step, s; 0 before the first.
@@ -51,8 +51,7 @@ pub struct State {
     pub step_interval: Option<StepInterval>,
 }
 
-/// Works since time 0, J. Positive: energy given to the film; for `viscous` and `damping`: energy
-/// dissipated.
+/// Works since time 0, J. Positive: energy given to the film; for the last three: energy dissipated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Works {
@@ -64,8 +63,10 @@ pub struct Works {
     pub support: f64,
     /// Work of contact forces on the film. Minus this is the stored contact energy.
     pub contact: f64,
-    /// Energy dissipated by viscosity.
-    pub viscous: f64,
+    /// Energy lost in the material.
+    pub material_loss: f64,
+    /// Energy taken by numerical damping and by the time step; negative where they gave energy.
+    pub numerical: f64,
     /// Energy dissipated by mass damping.
     pub damping: f64,
 }
@@ -122,7 +123,7 @@ impl State {
     pub(super) fn start(
         positions: Field,
         velocities: Field,
-        viscous_history: Vec<[ViscousHistory; 2]>,
+        element_history: Vec<[ElementHistory; 2]>,
         planes: Vec<f64>,
         gas: GasState,
     ) -> Self {
@@ -130,7 +131,7 @@ impl State {
             time: 0.0,
             positions,
             velocities,
-            viscous_history,
+            element_history,
             planes,
             last_step: 0.0,
             volume: 0.0,

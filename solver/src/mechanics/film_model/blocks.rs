@@ -23,8 +23,8 @@ pub struct ElementBlock {
     pub inverse_shape: [Lanes; 3],
     /// −A t, m³: factor from a stress to a force density.
     pub minus_volume: Lanes,
-    /// `−A t E/(1−ν²) 2ζ/ω_e`, J s: factor from a strain rate to −A t `S_v`.
-    pub minus_viscosity: Lanes,
+    /// `2ζ/ω_e`, s: factor from a stress rate to the numerical damping stress.
+    pub damping_time: Lanes,
 }
 
 impl ElementBlock {
@@ -65,7 +65,6 @@ impl ElementBlock {
         self.inverse_shape[2].0[lane] = length / determinant;
         let volume = model.volume[element];
         self.minus_volume.0[lane] = -volume;
-        let stiffness = volume * model.material.plane_modulus();
-        self.minus_viscosity.0[lane] = -stiffness * model.viscous_time[element];
+        self.damping_time.0[lane] = model.damping_time[element];
     }
 }

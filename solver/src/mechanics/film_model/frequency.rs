@@ -88,7 +88,7 @@ mod tests {
         let height = 0.75_f64.sqrt();
         // X = (0, 0), (1, 0), (1/2, h): Dm = [[1, 1/2], [0, h]].
         let inverse = [1.0, -0.5 / height, 0.0, 1.0 / height];
-        let film = Film { viscosity: 0.0, ..Film::PAPER };
+        let film = Film { numerical_damping: 0.0, ..Film::PAPER };
         let material = Material::new(&film);
         let omega = largest_frequency(&material, film.density, inverse);
         let speed = (material.plane_modulus() / film.density).sqrt();

@@ -14,6 +14,7 @@ use nalgebra::Vector2;
 
 use crate::geometry::shell::Shell;
 use crate::mechanics::material::Material;
+use crate::mechanics::material_loss::Creep;
 use crate::platform::fault_injection::{Fault, Term};
 use crate::platform::simd::{Column, Corners};
 use crate::scene::Film;
@@ -60,7 +61,7 @@ pub enum FilmError {
 /// energy      Π = Σ_e A_e t W(E_e)                        E = (FᵀF − 1)/2
 /// W_full      = E/(2(1−ν²)) (e1² + e2² + 2ν e1 e2)        e1 ≥ e2 principal values of E
 /// W           = W_relaxed + c (W_full − W_relaxed)        W_relaxed: see [`Material`]
-/// stress      S = ∂W/∂E        [f1, f2] = −A t F (S + S_v) Dm⁻ᵀ,  f0 = −(f1 + f2)
+/// stress      S = ∂W/∂E        [f1, f2] = −A t F (S + D) Dm⁻ᵀ,  f0 = −(f1 + f2)
 /// ```
 ///
 /// Sizes: `N_e` elements, `N_n` nodes, `N_k` kites (pairs of elements that share an edge), `N_b` blocks
@@ -69,6 +70,8 @@ pub enum FilmError {
 pub struct FilmModel {
     /// Material.
     pub material: Material,
+    /// Creep of the material: its loss.
+    pub creep: Creep,
     /// ρ, kg/m³.
     pub density: f64,
     /// t, m.
@@ -92,7 +95,7 @@ pub struct FilmModel {
     /// Largest entry of `frequency`, rad/s; kept because every step reads it.
     largest_frequency: f64,
     /// `2ζ/ω_e` of each element, s; `N_e`.
-    pub viscous_time: Vec<f64>,
+    pub damping_time: Vec<f64>,
     /// m of each node, kg; `N_n`. Zero for a node of closing faces only.
     pub mass: Vec<f64>,
     /// 1/m of each node, 1/kg; `N_n`. Zero for a node without mass, so that no force moves it.
@@ -130,8 +133,10 @@ impl FilmModel {
         closure: &[[u32; 3]],
     ) -> Result<Self, FilmError> {
         let material = Material::new(film);
+        let creep = Creep::new(film, &material);
         let mut model = Self {
             material,
+            creep,
             density: film.density,
             thickness: film.thickness,
             triangles: triangles.to_vec(),
@@ -143,7 +148,7 @@ impl FilmModel {
             volume: Vec::with_capacity(triangles.len()),
             frequency: Vec::with_capacity(triangles.len()),
             largest_frequency: 0.0,
-            viscous_time: Vec::with_capacity(triangles.len()),
+            damping_time: Vec::with_capacity(triangles.len()),
             mass: vec![0.0; nodes],
             inverse_mass: Column::default(),
         };
@@ -163,11 +168,12 @@ impl FilmModel {
                 column.push(entry);
             }
             let volume = 0.5 * determinant * film.thickness;
-            let frequency = largest_frequency(&material, film.density, inverse);
+            let frequency =
+                largest_frequency(&material, film.density, inverse) * creep.frequency_factor();
             model.volume.push(volume);
             model.frequency.push(frequency);
             model.largest_frequency = model.largest_frequency.max(frequency);
-            model.viscous_time.push(2.0 * film.viscosity / frequency);
+            model.damping_time.push(2.0 * film.numerical_damping / frequency);
             for node in triangle {
                 model.mass[*node as usize] += film.density * volume / 3.0;
             }
@@ -188,13 +194,11 @@ impl FilmModel {
         Ok(model)
     }
 
-    /// Injects a fault into the constants, for tests only. Frequencies and viscous times stay correct.
+    /// Injects a fault into the constants, for tests only. Frequencies and damping times stay correct.
     pub fn inject_fault(&mut self, fault: Fault) {
         self.material.inject_fault(fault);
-        if fault.term == Term::PlaneModulus {
-            for block in self.constants.iter_mut().flatten() {
-                block.minus_viscosity.0.iter_mut().for_each(|entry| *entry *= fault.factor);
-            }
+        if fault.term == Term::Creep {
+            self.creep.time /= fault.factor;
         }
         if fault.term == Term::Mass {
             self.mass.iter_mut().for_each(|mass| *mass *= fault.factor);

@@ -1,7 +1,7 @@
 use super::*;
 
 fn material(compression: f64) -> Material {
-    Material::new(&Film { compression, viscosity: 0.0, ..Film::PAPER })
+    Material::new(&Film { compression, numerical_damping: 0.0, ..Film::PAPER })
 }
 
 /// The strain with these principal values, the first at `angle` (rad) to x.

@@ -105,7 +105,7 @@ pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     let model = FilmModel::of_shell(&film.film, &film.shell).map_err(|error| {
         SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
     })?;
-    let factor = damping::stable_share(scene.film.viscosity);
+    let factor = damping::stable_share(scene.film.numerical_damping);
     let step = film.solver.cfl * factor * 2.0 / model.largest_frequency();
     let interval = scene.outputs.sample_interval;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts above 0")]
@@ -197,7 +197,7 @@ impl FilmRun {
         let fits = [&state.positions, &state.velocities].iter().all(|field| {
             [&field.x, &field.y, &field.z].iter().all(|column| column.len() == model.nodes())
         });
-        let fits = fits && state.viscous_history.len() == model.constants.len();
+        let fits = fits && state.element_history.len() == model.constants.len();
         if !fits || state.planes.len() != bodies {
             let problem = "the stored state belongs to another film".to_owned();
             return Err(SceneError::Invalid { key: "mesh".to_owned(), problem });

@@ -191,11 +191,12 @@ fn states_while(
 }
 
 /// A scene in which everything that does not affect static equilibria has its default: gas, contact, lid,
-/// gravity, imperfection, outputs, end time, and the film's compression fraction and viscosity.
+/// gravity, imperfection, outputs, end time, and the film's compression fraction, loss and
+/// numerical damping.
 pub fn reference_scene(scene: &Scene) -> Scene {
     Scene {
         design: scene.design.clone(),
-        film: Film { compression: 0.0, viscosity: 0.0, ..scene.film },
+        film: Film { compression: 0.0, ..scene.film.elastic() },
         gas: GasSupply {
             initial_mass: 0.0,
             windows: Vec::new(),

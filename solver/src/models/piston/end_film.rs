@@ -11,9 +11,13 @@
 //! gives a strip the membrane force F/(2π r cosφh), and the energies of all strips add up to F²/(2k).
 //! The hoop stress is the membrane stress of a cone under pressure. Where the damper would push
 //! (c ż < −k (z − H)) the force is 0 and the film's strain energy is dissipated. So the end force never
-//! pushes, and viscosity never adds energy.
+//! pushes, and damping never adds energy.
 
 use std::f64::consts::PI;
+
+/// Damping ratio of the end film on the piston's effective mass. Chosen: a piston has one motion, and the
+/// energy that leaves it when the film snaps taut goes into waves of the film, which it does not have.
+pub const END_DAMPING_RATIO: f64 = 0.1;
 
 /// Constants of the end film.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -167,7 +171,7 @@ mod tests {
     fn film(bottom: f64, top: f64) -> EndFilm {
         let film = Film::PAPER;
         let modulus = (film.youngs_modulus, film.thickness);
-        EndFilm::of_cone((bottom, top), 1.0, modulus, film.viscosity, 0.07)
+        EndFilm::of_cone((bottom, top), 1.0, modulus, END_DAMPING_RATIO, 0.07)
     }
 
     #[test]
@@ -212,7 +216,7 @@ mod tests {
         }
 
         #[test]
-        fn the_end_film_never_pushes_and_viscosity_never_adds_energy(
+        fn the_end_film_never_pushes_and_damping_never_adds_energy(
             z in 0.9..1.1_f64,
             speed in -50.0..50.0_f64,
         ) {

@@ -1,5 +1,6 @@
 //! Builds the piston of a scene.
 
+use super::end_film::END_DAMPING_RATIO;
 use super::{EndFilm, MovingMass, Piston, PistonRun, PistonState, Stroke, VolumeLaw};
 use crate::geometry::fold::FoldPattern;
 use crate::integrators::dormand_prince::Control;
@@ -51,7 +52,7 @@ pub(super) fn build(scene: &Scene, pattern: &FoldPattern) -> Result<PistonRun, S
         (pattern.bottom_radius, pattern.top_radius),
         pattern.height,
         (film.youngs_modulus, film.thickness),
-        film.viscosity,
+        END_DAMPING_RATIO,
         mass.effective,
     );
     let gas = Gas::new(&scene.gas, film.temperature, mass.area);

@@ -66,7 +66,7 @@ impl System<COMPONENTS> for Motion<'_> {
     type Branch = EndState;
 
     // Error scales: lengths, speeds, masses, energies of the gas, works on the film. All works share one
-    // scale, so a small work, as that of viscosity at its start, needs no small step.
+    // scale, so a small work, as that of the damper at its start, needs no small step.
     const GROUPS: [usize; COMPONENTS] = [0, 1, 2, 3, 2, 3, 3, 3, 4, 4, 4, 4, 4];
 
     fn rates(&self, branch: EndState, state: &[f64; COMPONENTS]) -> [f64; COMPONENTS] {
@@ -188,7 +188,8 @@ impl PistonRun {
             gas_work: state[GAS_WORK],
             ambient_work: state[AMBIENT_WORK],
             gravity_work: state[GRAVITY_WORK],
-            viscous_work: state[VISCOUS_WORK],
+            material_loss: state[VISCOUS_WORK],
+            numerical_dissipation: 0.0,
             // No contact; bottom ring and lid hold film that does not move, so they do no work.
             contact: 0.0,
             contact_dissipation: 0.0,

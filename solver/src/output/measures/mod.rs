@@ -7,11 +7,13 @@ use crate::output::history::History;
 use crate::scene::timeline::Timeline;
 
 mod hold;
+mod rebound;
 mod reference;
 mod ringing;
 mod verdict;
 
 use hold::first_hold;
+pub use rebound::first_rebound;
 pub use reference::{REFERENCE_PRESSURES, Reference};
 use verdict::LastTenth;
 
@@ -66,6 +68,10 @@ pub struct Measures {
     pub t_peak_vz: Option<f64>,
     /// Largest kinetic energy, J.
     pub peak_kinetic_energy: Option<f64>,
+    /// `z_rim` at its first peak, m.
+    pub first_peak_z_rim: Option<f64>,
+    /// `z_rim` at the first minimum after its first peak, m.
+    pub first_minimum_z_rim: Option<f64>,
     /// Largest `z_rim` divided by `H_ref`, minus 1.
     pub overshoot: Option<f64>,
     /// Root mean square of vz over 0.2 s after `t_deployed`, m/s.
@@ -114,6 +120,8 @@ pub fn measure(
     let last = |name: &str| column(name).last().copied();
     let Some(final_pressure) = last("pressure") else { return Measures::default() };
     let peak_vz = peak(vz);
+    let z_rim = column("z_rim");
+    let (first_peak, first_minimum) = first_rebound(z_rim);
     let peak_kinetic = peak(kinetic);
     let overpressure = final_pressure - timeline.ambient_pressure;
     let judged =
@@ -122,6 +130,8 @@ pub fn measure(
         peak_vz: peak_vz.map(|(_, value)| value),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),
         peak_kinetic_energy: peak_kinetic.map(|(_, value)| value),
+        first_peak_z_rim: first_peak.map(|index| z_rim[index]),
+        first_minimum_z_rim: first_minimum.map(|index| z_rim[index]),
         t_settled: peak_kinetic.and_then(|(index, value)| settled(time, kinetic, index, value)),
         final_z_rim: last("z_rim"),
         final_volume: last("volume"),

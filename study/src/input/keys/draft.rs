@@ -124,8 +124,10 @@ fn empty_scene() -> Scene {
             density: f64::NAN,
             thickness: f64::NAN,
             compression: f64::NAN,
-            viscosity: f64::NAN,
+            numerical_damping: f64::NAN,
             temperature: f64::NAN,
+            loss_factor: f64::NAN,
+            loss_frequency: f64::NAN,
         },
         gas: GasSupply {
             species: Species { gas_constant: f64::NAN, cp: f64::NAN },

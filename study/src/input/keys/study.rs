@@ -5,6 +5,7 @@
 
 use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
 use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::scene::paper::{LOSS_FACTOR, LOSS_FREQUENCY, NUMERICAL_DAMPING};
 
 use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};
 use super::key::Default::{Absent, Integer, Number, Required, Word};
@@ -119,9 +120,15 @@ pub static KEYS: &[Key] = &[
     key("film.compression", from(Dimension::Number, 0.0, 1.0), Number(0.0), "0",
         "Compression fraction c: 0 is the tension field, 1 the full membrane stiffness.")
         .to(|draft, value| draft.scene.film.compression = number(value)),
-    key("film.viscosity", from(Dimension::Number, 0.0, 1.0), Number(0.1), "0.1",
-        "Viscous damping ratio.")
-        .to(|draft, value| draft.scene.film.viscosity = number(value)),
+    key("film.loss_factor", from(Dimension::Number, 0.0, 0.5), Number(LOSS_FACTOR), "0.01",
+        "Largest loss factor (tan delta) of the film's material. The default is assumed; polyimide: 0.003 to 0.03.")
+        .to(|draft, value| draft.scene.film.loss_factor = number(value)),
+    key("film.loss_frequency", from(Dimension::Frequency, 0.1, 10_000.0), Number(LOSS_FREQUENCY),
+        "\"100 Hz\"", "Frequency of the largest loss factor; the loss falls above and below it.")
+        .to(|draft, value| draft.scene.film.loss_frequency = number(value)),
+    key("film.numerical_damping", from(Dimension::Number, 0.0, 1.0), Number(NUMERICAL_DAMPING),
+        "1e-4", "Numerical damping ratio of an element's highest mode while it carries tension; no film property.")
+        .to(|draft, value| draft.scene.film.numerical_damping = number(value)),
     key("film.temperature", KELVIN, Number(293.0), "\"293 K\"", "Film temperature, constant.")
         .to(|draft, value| draft.scene.film.temperature = number(value)),
 

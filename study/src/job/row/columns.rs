@@ -171,6 +171,12 @@ columns! {
     PeakKineticEnergy "peak_kinetic_energy" Number ["J"] Measures Smaller
         "largest kinetic energy of the film"
         end => end.measure(|measures| measures.peak_kinetic_energy);
+    FirstPeakZRim "first_peak_z_rim" Number ["m"] Measures Neither
+        "z_rim at its first peak"
+        end => end.measure(|measures| measures.first_peak_z_rim);
+    FirstMinimumZRim "first_minimum_z_rim" Number ["m"] Measures Neither
+        "z_rim at the first minimum after its first peak"
+        end => end.measure(|measures| measures.first_minimum_z_rim);
     Overshoot "overshoot" Number ["1"] Measures Smaller
         "largest z_rim over the static height, minus 1"
         end => end.measure(|measures| measures.overshoot);
@@ -222,9 +228,15 @@ columns! {
     GasResidual "gas_residual" Number ["1"] Audit Neither
         "largest gas balance residual"
         end => end.audit(|audit| audit.gas_residual);
-    ViscousFraction "viscous_fraction" Number ["1"] Audit Neither
-        "energy dissipated by film viscosity over the work of the gas"
-        end => end.audit(|audit| audit.viscous_fraction);
+    MaterialLossFraction "material_loss_fraction" Number ["1"] Audit Neither
+        "energy lost in the film's material over the work of the gas"
+        end => end.audit(|audit| audit.material_loss_fraction);
+    NumericalFraction "numerical_fraction" Number ["1"] Audit Neither
+        "numerical dissipation over the work of the gas until the first peak of z_rim"
+        end => end.audit(|audit| audit.numerical_fraction);
+    NumericallyDamped "numerically_damped" Bool [""] Audit Neither
+        "whether numerical_fraction is above 0.05: kinetic energies and rebounds are damped by the numerics"
+        end => end.audit(billow_solver::output::audit::Audit::numerically_damped);
     ReferenceVolume "reference_volume" Number ["m3"] Outcome Neither
         "static volume at the final pressure"
         end => end.measure(|measures| measures.reference_volume);

@@ -3,10 +3,11 @@
 pub use billow_solver::output::history::RENAMED_COLUMNS;
 
 /// Columns of the summary table that were renamed: old name, current name.
-pub const RENAMED_TABLE_COLUMNS: [(&str, &str); 3] = [
+pub const RENAMED_TABLE_COLUMNS: [(&str, &str); 4] = [
     ("close", "near_threshold"),
     ("close_margin", "near_threshold_margin"),
     ("stop_place", "stop_location"),
+    ("viscous_fraction", "numerical_fraction"),
 ];
 
 /// The current name of a column of the table or of a history, and a note for the user when `name`

@@ -4,9 +4,11 @@
 //! element, edges p = x1 − x0 and q = x2 − x0:
 //!   metric              m = (p·p/2, p·q, q·q/2)
 //!   Green strain        E = G m − (1/2, 1/2, 0)
-//!   viscous stress      S_v = 2ζ/ω_e C:(E − E⁻)/Δt
-//!   viscous work        ½ A t (S_v + S_v⁻):(E − E⁻)
-//!   force densities     r = A t Gᵀ (S + S_v)                      N/m, force over edge length
+//!   creep strain        P = P⁻ + (1 − exp(−Δt/τ)) (C⁻¹:S⁻ − P⁻)
+//!   elastic strain      Ê = E + g (E − P)
+//!   stress              S = S(Ê)
+//!   numerical stress    D = (κ + 2ζ/(ω_e Δt)) (S − S⁻)
+//!   force densities     r = A t Gᵀ (S + D)                        N/m, force over edge length
 //!   nodal forces        f1 = −(r1 p + r2 q)    f2 = −(r2 p + r3 q)    f0 = −(f1 + f2)
 //!
 //! strain and stress as three components, E:S = e·s:
@@ -17,16 +19,18 @@
 //!   f_s = −(f_a + f_t + f_b)
 //! ```
 //!
-//! G is that of [`ElementBlock`], S of [`crate::mechanics::material`], `S_v` of
-//! [`crate::mechanics::forces::damping`]. These are the forces of [`super`], without F. A superscript ⁻
-//! marks the previous step, stored in [`ViscousHistory`].
+//! G is that of [`ElementBlock`], S(Ê) of [`crate::mechanics::material`], P of
+//! [`crate::mechanics::material_loss`], D and its work of [`crate::mechanics::forces::damping`]. These
+//! are the forces of [`super`], without F. A superscript ⁻ marks the previous step, stored in
+//! [`ElementHistory`].
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
-use super::ViscousHistory;
+use super::ElementHistory;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::{ElementBlock, FilmModel};
 use crate::mechanics::material::{Material, MohrCircle, StressResponse};
+use crate::mechanics::material_loss::Creep;
 use crate::platform::simd::{Columns, Lanes, NodeSum, Vectors, Wide, dispatch_wide};
 
 /// Sums over all elements, lane by lane.
@@ -34,8 +38,10 @@ use crate::platform::simd::{Columns, Lanes, NodeSum, Vectors, Wide, dispatch_wid
 pub(super) struct LaneSums {
     /// Six times the enclosed volume, m³.
     pub six_volumes: Lanes,
-    /// Minus twice the viscous work of the step, J.
-    pub minus_twice_work: Lanes,
+    /// Minus twice the numerical dissipation of the step, times 1 + g, J.
+    pub minus_twice_numerical: Lanes,
+    /// Minus twice the material loss of the step, times (1 + g)/g, J.
+    pub minus_twice_loss: Lanes,
     /// Largest principal stress, Pa.
     pub largest_stress: Lanes,
 }
@@ -88,94 +94,149 @@ fn edges<L: Wide>([s, a, t, b]: [Vectors<L>; 4]) -> [Vectors<L>; 3] {
     [a - s, t - s, b - s]
 }
 
+#[inline(always)]
+fn subtract<L: Wide>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn add<L: Wide>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn scale<L: Wide>(a: [L; 3], factor: L) -> [L; 3] {
+    [a[0] * factor, a[1] * factor, a[2] * factor]
+}
+
+/// Multiplies the components of a strain by the two factors of an isotropic tensor: C or C⁻¹.
+#[inline(always)]
+fn isotropic<L: Wide>(a: [L; 3], [mean, deviator]: [f64; 2]) -> [L; 3] {
+    [a[0] * mean, a[1] * deviator, a[2] * deviator]
+}
+
+/// Writes three components to a stored tensor.
+#[inline(always)]
+fn store<L: Wide>(a: [L; 3], stored: &mut [Lanes; 3]) {
+    *stored = [a[0].lanes(), a[1].lanes(), a[2].lanes()];
+}
+
 /// Result of eight elements.
 struct ElementResponse<L> {
     /// −r, N/m.
     minus_force_density: [L; 3],
-    /// Minus twice the viscous work of the step, J.
-    minus_twice_work: L,
+    /// Minus twice the numerical dissipation of the step, J.
+    minus_twice_numerical: L,
+    /// Minus twice the material loss of the step, J.
+    minus_twice_loss: L,
     /// Larger principal stress, Pa.
     largest_stress: L,
 }
 
-/// Duration of the step that led to the current positions.
+/// The step that led to the current positions.
 #[derive(Clone, Copy)]
-enum TimeStep<L> {
-    /// 1/Δt, 1/s.
-    Inverse(L),
-    /// Zero: nothing moved, and `S_v` is the stored one.
-    Zero,
+struct TimeStep {
+    /// 1/Δt, 1/s; 0 in a step of no time, in which nothing moved and P and D are the stored ones.
+    inverse: f64,
+    /// 1 − exp(−Δt/τ).
+    creep_share: f64,
 }
 
-/// Response of eight elements at their metric. Replaces the stored strain and viscous stress by the
-/// current ones.
+/// Response of eight elements at their metric. Replaces the stored values by the current ones.
+///
+/// `LOSS`: whether the film creeps; `MOVED`: whether the step has a length.
 #[inline(always)]
-fn element_response<L: Wide>(
-    material: &Material,
+fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
+    (material, creep): (&Material, &Creep),
     block: &ElementBlock,
     metric: Metric<L>,
-    step: TimeStep<L>,
-    history: &mut ViscousHistory,
+    step: TimeStep,
+    history: &mut ElementHistory,
 ) -> ElementResponse<L> {
+    let zero = L::splat(0.0);
+    let total_strain = metric.strain(block);
+    let last_stress = load_all::<L, 3>(&history.stress);
+    let mut strain = total_strain;
+    let (mut creep_step, mut minus_twice_loss) = ([zero; 3], zero);
+    let (mut last_driving, mut weighted_creep) = ([zero; 3], [zero; 3]);
+    if LOSS {
+        let mut creep_strain = load_all::<L, 3>(&history.creep);
+        if MOVED {
+            last_driving = subtract(last_stress, isotropic(creep_strain, creep.stiffness));
+            creep_step =
+                scale(isotropic(last_driving, creep.compliance), L::splat(step.creep_share));
+            creep_strain = add(creep_strain, creep_step);
+            store(creep_strain, &mut history.creep);
+            weighted_creep = isotropic(creep_strain, creep.stiffness);
+        }
+        let overstrain = scale(subtract(strain, creep_strain), L::splat(creep.ratio));
+        strain = add(strain, overstrain);
+    }
     // The square root in `MohrCircle` has a long latency: independent work follows it.
-    let strain = metric.strain(block);
     let circle = MohrCircle::of_difference(strain[0], strain[1], strain[2]);
     let last_strain = load_all::<L, 3>(&history.strain);
-    let last_viscous = load_all::<L, 3>(&history.minus_weighted_stress);
-    history.strain = [strain[0].lanes(), strain[1].lanes(), strain[2].lanes()];
-    // `viscous` is −A t s_v.
-    let (viscous, minus_twice_work) = match step {
-        TimeStep::Inverse(inverse) => {
-            let change = [
-                strain[0] - last_strain[0],
-                strain[1] - last_strain[1],
-                strain[2] - last_strain[2],
-            ];
-            let nu = material.poisson_ratio;
-            let viscosity = load::<L>(&block.minus_viscosity);
-            let mean_factor = viscosity * (inverse * (0.5 * (1.0 + nu)));
-            let shear_factor = viscosity * (inverse * (0.5 * (1.0 - nu)));
-            let viscous =
-                [mean_factor * change[0], shear_factor * change[1], shear_factor * change[2]];
-            let sum = [
-                viscous[0] + last_viscous[0],
-                viscous[1] + last_viscous[1],
-                viscous[2] + last_viscous[2],
-            ];
-            (viscous, contract(sum, change))
-        }
-        TimeStep::Zero => (last_viscous, L::splat(0.0)),
-    };
-    history.minus_weighted_stress = [viscous[0].lanes(), viscous[1].lanes(), viscous[2].lanes()];
-
-    // −A t (s + s_v), then its components.
+    let last_numerical = load_all::<L, 3>(&history.numerical_stress);
+    store(strain, &mut history.strain);
     let StressResponse { mean, shear_modulus, largest } = material.response(circle);
+    let stress = [mean, shear_modulus * circle.difference, shear_modulus * circle.shear];
+    store(stress, &mut history.stress);
+
     let minus_volume = load::<L>(&block.minus_volume);
-    let shear_modulus = shear_modulus * minus_volume;
-    let mean = mean * minus_volume + viscous[0];
-    let half_difference = shear_modulus * circle.difference + viscous[1];
+    let (mut numerical, mut minus_twice_numerical) = (last_numerical, zero);
+    if MOVED {
+        let (strain_step, stress_step) =
+            (subtract(strain, last_strain), subtract(stress, last_stress));
+        // Twice the energy that a step of mean stress (S + S⁻)/2 misses, and the work ΔS:ΔÊ.
+        let twice_missed = contract(stress, last_strain) - contract(last_stress, strain);
+        let work = contract(stress_step, strain_step).max(L::splat(f64::MIN_POSITIVE));
+        let half = L::splat(0.5);
+        let share = (twice_missed * half).over(work);
+        let share = -((-share.max(-half)).max(-half));
+        let damping = load::<L>(&block.damping_time) * step.inverse;
+        numerical = scale(stress_step, share + damping);
+        store(numerical, &mut history.numerical_stress);
+        let displacement = if LOSS {
+            add(strain_step, scale(creep_step, L::splat(creep.ratio)))
+        } else {
+            strain_step
+        };
+        let twice_work = contract(add(numerical, last_numerical), displacement) - twice_missed;
+        minus_twice_numerical = minus_volume * twice_work;
+        if LOSS {
+            let driving = subtract(stress, weighted_creep);
+            minus_twice_loss = minus_volume * contract(add(driving, last_driving), creep_step);
+        }
+    }
+
+    // −A t (s + d), then its components.
+    let [mean, half_difference, xy] = scale(add(stress, numerical), minus_volume);
     let (xx, yy) = (mean + half_difference, mean - half_difference);
-    let xy = shear_modulus * circle.shear + viscous[2];
     // Gᵀ: r1 = a² Sxx + b (b Syy + 2 a Sxy)    r2 = d (b Syy + a Sxy)    r3 = d² Syy.
     let [a, b, d] = load_all::<L, 3>(&block.inverse_shape);
     let a_xy = a * xy;
     let b_yy_a_xy = b * yy + a_xy;
     let minus_force_density = [(a * a) * xx + b * (b_yy_a_xy + a_xy), d * b_yy_a_xy, (d * d) * yy];
-    ElementResponse { minus_force_density, minus_twice_work, largest_stress: largest }
+    ElementResponse {
+        minus_force_density,
+        minus_twice_numerical,
+        minus_twice_loss,
+        largest_stress: largest,
+    }
 }
 
 #[inline(always)]
-fn element_kernel<L: Wide>(
+fn element_kernel<L: Wide, const LOSS: bool, const MOVED: bool>(
     model: &FilmModel,
     positions: &Field,
-    step: TimeStep<L>,
-    histories: &mut [[ViscousHistory; 2]],
+    step: TimeStep,
+    histories: &mut [[ElementHistory; 2]],
     sums: &mut [NodeSum],
 ) -> LaneSums {
-    let material = model.material;
+    let (material, creep) = (model.material, model.creep);
+    let law = (&material, &creep);
     let half = L::splat(0.5);
-    let (mut six_volumes, mut work, mut largest_stress) =
-        (L::splat(0.0), L::splat(0.0), L::splat(0.0));
+    let (mut six_volumes, mut largest_stress) = (L::splat(0.0), L::splat(0.0));
+    let (mut numerical, mut loss) = (L::splat(0.0), L::splat(0.0));
     let corners = &model.corners;
     let mut cleared = 0;
     if corners.blocks() == 0 {
@@ -195,13 +256,15 @@ fn element_kernel<L: Wide>(
 
         let d_metric = d.dot(d) * half;
         let metric = Metric([p.dot(p) * half, p.dot(d), d_metric]);
-        let first = element_response(&material, first_block, metric, step, first_history);
+        let first =
+            element_response::<L, LOSS, MOVED>(law, first_block, metric, step, first_history);
         let metric = Metric([d_metric, d.dot(q), q.dot(q) * half]);
-        let second = element_response(&material, second_block, metric, step, second_history);
+        let second =
+            element_response::<L, LOSS, MOVED>(law, second_block, metric, step, second_history);
 
-        let minus_twice_work = first.minus_twice_work + second.minus_twice_work;
         largest_stress = largest_stress.max(first.largest_stress).max(second.largest_stress);
-        work = work + minus_twice_work;
+        numerical = numerical + (first.minus_twice_numerical + second.minus_twice_numerical);
+        loss = loss + (first.minus_twice_loss + second.minus_twice_loss);
         six_volumes = six_volumes + six_volume;
         let (r, r2) = (first.minus_force_density, second.minus_force_density);
         let force_a = p.scale(r[0]) + d.scale(r[1]);
@@ -213,7 +276,8 @@ fn element_kernel<L: Wide>(
     }
     LaneSums {
         six_volumes: six_volumes.lanes(),
-        minus_twice_work: work.lanes(),
+        minus_twice_numerical: numerical.lanes(),
+        minus_twice_loss: loss.lanes(),
         largest_stress: largest_stress.lanes(),
     }
 }
@@ -224,14 +288,19 @@ fn step_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
     step: f64,
-    histories: &mut [[ViscousHistory; 2]],
+    histories: &mut [[ElementHistory; 2]],
     sums: &mut [NodeSum],
 ) -> LaneSums {
-    if step > 0.0 {
-        let step = TimeStep::Inverse(L::splat(1.0 / step));
-        element_kernel::<L>(model, positions, step, histories, sums)
-    } else {
-        element_kernel::<L>(model, positions, TimeStep::Zero, histories, sums)
+    let moved = step > 0.0;
+    let inverse = if moved { 1.0 / step } else { 0.0 };
+    let step = TimeStep { inverse, creep_share: model.creep.share(step) };
+    match (model.creep.ratio > 0.0, moved) {
+        (false, false) => {
+            element_kernel::<L, false, false>(model, positions, step, histories, sums)
+        }
+        (false, true) => element_kernel::<L, false, true>(model, positions, step, histories, sums),
+        (true, false) => element_kernel::<L, true, false>(model, positions, step, histories, sums),
+        (true, true) => element_kernel::<L, true, true>(model, positions, step, histories, sums),
     }
 }
 
@@ -241,7 +310,7 @@ dispatch_wide! {
         model: &FilmModel,
         positions: &Field,
         step: f64,
-        histories: &mut [[ViscousHistory; 2]],
+        histories: &mut [[ElementHistory; 2]],
         sums: &mut [NodeSum],
     ) -> LaneSums
 }

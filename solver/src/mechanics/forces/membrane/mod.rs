@@ -1,26 +1,28 @@
-//! Membrane forces of the film, elastic and viscous, and ∂V/∂x.
+//! Membrane forces of the film, and ∂V/∂x.
 //!
 //! ```text
 //! F = [x1 − x0, x2 − x0] Dm⁻¹     E = (FᵀF − 1)/2     energy = A t W(E)
-//! [f1, f2] = −A t F (S + S_v) Dm⁻ᵀ                    f0 = −(f1 + f2)
+//! [f1, f2] = −A t F (S + D) Dm⁻ᵀ                      f0 = −(f1 + f2)
 //! ∂V/∂x_i = Σ_e (x1 − x0) × (x2 − x0)/6               over the elements e at node i
 //! ```
 //!
-//! Constant-strain triangles, total Lagrangian: S of [`crate::mechanics::material`], `S_v` of
-//! [`super::damping`]. The loop over the elements (`elements`) uses the metric of their edges instead
-//! of F.
+//! Constant-strain triangles, total Lagrangian: S of [`crate::mechanics::material`], with the creep of
+//! [`crate::mechanics::material_loss`]; D, the numerical stress, of [`super::damping`]. The loop over
+//! the elements (`elements`) uses the metric of their edges instead of F.
 
 use nalgebra::Vector3;
 
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::material::PlaneTensor;
+use crate::mechanics::material_loss::Creep;
 use crate::platform::simd::{InstructionSet, NodeSum};
 
+mod element_history;
 mod elements;
-mod viscous_history;
+mod strain;
 
-pub use viscous_history::{ViscousHistory, viscous_forces};
+pub use element_history::{ElementHistory, numerical_forces, stored_energy};
+pub use strain::{deformation_gradient, strain, strain_energy};
 
 use elements::{LaneSums, sum_elements};
 
@@ -29,17 +31,20 @@ use elements::{LaneSums, sum_elements};
 pub struct MembraneSums {
     /// Six times the volume enclosed by the film and the closing faces, m³.
     pub six_volumes: f64,
-    /// Energy dissipated by viscosity in the step, J: by the mean of the stress before and after it.
-    pub viscous_work: f64,
+    /// Numerical dissipation of the step, J: what numerical damping and the time step took from the film.
+    pub numerical_dissipation: f64,
+    /// Material loss of the step, J.
+    pub material_loss: f64,
     /// Largest principal second Piola-Kirchhoff stress, Pa, without its viscous part.
     pub largest_stress: f64,
 }
 
 impl LaneSums {
-    fn sums(self) -> MembraneSums {
+    fn sums(self, creep: &Creep) -> MembraneSums {
         MembraneSums {
             six_volumes: self.six_volumes.sum(),
-            viscous_work: -0.5 * self.minus_twice_work.sum(),
+            numerical_dissipation: -0.5 * self.minus_twice_numerical.sum() / (1.0 + creep.ratio),
+            material_loss: -0.5 * self.minus_twice_loss.sum() * creep.ratio / (1.0 + creep.ratio),
             largest_stress: self.largest_stress.largest(),
         }
     }
@@ -48,40 +53,18 @@ impl LaneSums {
 /// Computes the membrane forces and ∂V/∂x of all nodes at these positions (m), into `out`.
 ///
 /// `step` is the time since the previous call, s. Where it is 0 (no previous call, or nothing moved),
-/// `S_v` is the stored one. Replaces `histories` by strain and viscous stress at these positions.
+/// creep strain and numerical stress are the stored ones. Replaces `histories` by those of these
+/// positions.
 pub fn assemble_membrane(
     instruction_set: InstructionSet,
     model: &FilmModel,
     positions: &Field,
     step: f64,
-    histories: &mut [[ViscousHistory; 2]],
+    histories: &mut [[ElementHistory; 2]],
     out: &mut NodeForces,
 ) -> MembraneSums {
-    sum_elements(instruction_set, model, positions, step, histories, &mut out.sums).sums()
-}
-
-/// Columns of F of an element.
-fn deformation_gradient(model: &FilmModel, field: &Field, element: usize) -> [Vector3<f64>; 2] {
-    let [x0, x1, x2] = model.triangles[element].map(|node| field.get(node as usize));
-    let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
-    let (p, q) = (x1 - x0, x2 - x0);
-    [p * a + q * c, p * b + q * d]
-}
-
-/// Green strain of an element at these positions (m).
-pub fn strain(model: &FilmModel, positions: &Field, element: usize) -> PlaneTensor {
-    let [f, g] = deformation_gradient(model, positions, element);
-    PlaneTensor { xx: (f.dot(&f) - 1.0) * 0.5, yy: (g.dot(&g) - 1.0) * 0.5, xy: f.dot(&g) * 0.5 }
-}
-
-/// Strain energy Σ A t W of the film at these positions (m), J.
-pub fn strain_energy(model: &FilmModel, positions: &Field) -> f64 {
-    (0..model.elements())
-        .map(|element| {
-            let strain = strain(model, positions, element);
-            model.volume[element] * model.material.energy_density(strain)
-        })
-        .sum()
+    sum_elements(instruction_set, model, positions, step, histories, &mut out.sums)
+        .sums(&model.creep)
 }
 
 /// Factor from the sum of the normals (x1 − x0) × (x2 − x0) at a node to ∂V/∂x; V = Σ x0·(x1 × x2)/6.
@@ -103,7 +86,7 @@ impl NodeForces {
         Self { sums, contact: Field::zeros(model.nodes()) }
     }
 
-    /// Membrane force on a node, elastic and viscous, N.
+    /// Membrane force on a node, N.
     #[inline]
     pub fn film(&self, node: usize) -> Vector3<f64> {
         let [x, y, z, _] = self.sums[node].film;
