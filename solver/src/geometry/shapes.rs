@@ -41,6 +41,23 @@ pub fn sheet(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
 /// A flat sheet in z = 0 from the origin, `columns` × `rows` equal cells, every diagonal from the
 /// lower left to the upper right. Its reference is its own plane.
 pub fn grid(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
+    cells(columns, rows, width, height, |_, _| true)
+}
+
+/// [`grid`] with diagonals that alternate, so that the mesh prefers none of its two directions.
+pub fn crossed_grid(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
+    cells(columns, rows, width, height, |i, j| (i + j) % 2 == 0)
+}
+
+/// A flat sheet of equal cells; `rises(column, row)`: whether the diagonal of a cell starts at its
+/// lower left.
+fn cells(
+    columns: u32,
+    rows: u32,
+    width: f64,
+    height: f64,
+    rises: impl Fn(u32, u32) -> bool,
+) -> Shell {
     let node = |i: u32, j: u32| j * (columns + 1) + i;
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
@@ -51,7 +68,11 @@ pub fn grid(columns: u32, rows: u32, width: f64, height: f64) -> Shell {
             positions.push(Vector3::new(x, y, 0.0));
             if i < columns && j < rows {
                 let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
-                triangles.extend([[a, b, c], [a, c, d]]);
+                if rises(i, j) {
+                    triangles.extend([[a, b, c], [a, c, d]]);
+                } else {
+                    triangles.extend([[a, b, d], [b, c, d]]);
+                }
             }
         }
     }
@@ -335,6 +356,7 @@ mod tests {
         for (shell, area) in [
             (sheet(5, 4, 0.3, 0.2), 0.06),
             (grid(3, 7, 0.3, 0.2), 0.06),
+            (crossed_grid(3, 7, 0.3, 0.2), 0.06),
             (strip(9, 0.5, 0.1), 0.05),
         ] {
             assert!(relative_error(shell.reference_area(), area) < 1e-14);

@@ -3,8 +3,8 @@
 use super::{
     Case, Outcome, Rig, Tier, contact_capsule, contact_impacts, contact_relaxed, contact_stack,
     contact_tube, damping, drum, energy_balance, forces, friction_adhesion, gas_piston, gas_vessel,
-    invariants, piston_model, sphere_motion, static_airbag, static_discs, static_end_state,
-    static_polygon, static_shells, static_wrinkling, step_limit,
+    invariants, moving_fold, piston_model, sphere_motion, static_airbag, static_discs,
+    static_end_state, static_polygon, static_shells, static_wrinkling, step_limit,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -100,6 +100,12 @@ pub const CASES: &[Case] = &[
         "speed of free flight under mass damping, with exp(-c t)",
         damping::free_flight,
     ),
+    quick(
+        "moving_fold",
+        "energy of a folded strip that unrolls, median of five starts, with the inextensible string's",
+        moving_fold::moving_fold,
+    ),
+    long("moving_fold_fine", "moving_fold on a finer mesh", moving_fold::moving_fold_fine),
     quick(
         "patch",
         "film under a uniform strain, with zero force on inner nodes",

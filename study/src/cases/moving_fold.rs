@@ -1,0 +1,207 @@
+//! A strip folded once: arm A is held at its end, arm B flies along it and unrolls.
+//!
+//! ```text
+//! v = v0 √(L/l),  l = L − x/2           the fold moves at v/2; nothing is lost
+//! energy kept = E/E0                    coherent share = ½ μ l v²/E0
+//! ```
+//!
+//! Symbols: L length of an arm, l length of arm B that still moves, x and v displacement and speed of
+//! the free end along the strip, μ mass per length, E kinetic energy, E0 that of the start. The law is
+//! that of an inextensible string: both quantities are 1. E0 is less than ½ μ L v0², because the film
+//! next to the fold starts more slowly; the law needs only E0.
+//!
+//! x is the mean over the nodes of the free end. v is its mean while l/L falls by twice
+//! [`HALF_WINDOW`], because the end rattles. The coherent share takes both arms as straight and arm B as
+//! rigid. Where film behind the fold wrinkles, arm A is shorter and arm B has less mass than that, so the
+//! notes give the kinetic energy of arm B as one body beside it.
+
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::output::ledger::{Ledger, residuals};
+use billow_solver::scene::timeline::Phase;
+
+use super::folded_strip::{Strip, size};
+use super::reference::{number, numbers};
+use super::rig::advance;
+use super::row::worse;
+use super::{Outcome, Rig, Row};
+
+/// Time between two samples, s. Chosen: the end moves by less than 4 mm in it.
+const SAMPLE_INTERVAL: f64 = 1e-4;
+/// Half the change of l/L over which the speed of the end is a mean. Chosen: one element or more passes
+/// the fold meanwhile, and by the law the share from this mean is less than 0.3 % below that from the
+/// speed in the middle.
+const HALF_WINDOW: f64 = 0.05;
+/// Most samples. Chosen: 60 ms, three times as long as the law needs for the whole arm.
+const MAX_SAMPLES: u32 = 600;
+/// Seeds of the perturbed starts.
+const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
+
+/// One sample of a strip that unrolls.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    time: f64,
+    /// l/L.
+    length: f64,
+    ledger: Ledger,
+    /// [`Strip::body_energy`], J.
+    body: f64,
+}
+
+/// A strip that unrolls.
+#[derive(Debug, Clone)]
+struct Unrolling {
+    samples: Vec<Sample>,
+    /// ½ μ L³/E0, s².
+    scale: f64,
+}
+
+impl Unrolling {
+    /// Runs a strip until l/L is half a window below `last`, or to the last sample.
+    fn run(rig: &Rig, strip: Strip, seed: u64, last: f64) -> Result<Self, String> {
+        let arm = size("arm");
+        let scene = strip.scene(seed);
+        let mut film = rig.start(&scene)?;
+        let end = strip.nodes(strip.columns() - 1);
+        let position = |film: &Explicit| {
+            let sum: f64 = end.iter().map(|node| film.state.positions.x[*node as usize]).sum();
+            sum / end.len() as f64
+        };
+        let start = position(&film);
+        let sample = |film: &Explicit| Sample {
+            time: film.state.time,
+            length: 1.0 - 0.5 * (position(film) - start) / arm,
+            ledger: film.ledger(),
+            body: strip.body_energy(film),
+        };
+        let mut samples = vec![sample(&film)];
+        for number in 1..=MAX_SAMPLES {
+            advance(&mut film, SAMPLE_INTERVAL * f64::from(number), &Phase::default())?;
+            let now = sample(&film);
+            samples.push(now);
+            if now.length < last - HALF_WINDOW {
+                break;
+            }
+        }
+        let mass = scene.film.area_density() * Strip::width() * arm;
+        Ok(Self { scale: 0.5 * mass * arm * arm / samples[0].ledger.kinetic, samples })
+    }
+
+    /// A value when l/L first falls to `length`, linear between samples; NaN if it does not.
+    fn when(&self, length: f64, value: impl Fn(&Sample) -> f64) -> f64 {
+        let pair = self.samples.windows(2).find(|pair| pair[1].length <= length);
+        pair.map_or(f64::NAN, |pair| {
+            let fraction = (length - pair[0].length) / (pair[1].length - pair[0].length);
+            let [from, to] = [value(&pair[0]), value(&pair[1])];
+            from + fraction * (to - from)
+        })
+    }
+
+    /// E/E0 when l/L falls to `length`.
+    fn energy_kept(&self, length: f64) -> f64 {
+        self.when(length, |sample| sample.ledger.kinetic) / self.samples[0].ledger.kinetic
+    }
+
+    /// The coherent share when l/L falls to `length`.
+    fn coherent_share(&self, length: f64) -> f64 {
+        let [from, to] = [HALF_WINDOW, -HALF_WINDOW]
+            .map(|offset| self.when(length + offset, |sample| sample.time));
+        // v/L = 2 Δ(l/L)/Δt.
+        let speed = 4.0 * HALF_WINDOW / (to - from);
+        self.scale * length * speed * speed
+    }
+
+    /// Kinetic energy of arm B as one body over E0 when l/L falls to `length`.
+    fn body_share(&self, length: f64) -> f64 {
+        self.when(length, |sample| sample.body) / self.samples[0].ledger.kinetic
+    }
+
+    /// Largest residual of the energy ledger.
+    fn residual(&self) -> f64 {
+        let ledgers: Vec<Ledger> = self.samples.iter().map(|sample| sample.ledger).collect();
+        residuals(&ledgers).into_iter().fold(0.0, worse)
+    }
+}
+
+/// Smallest, middle and largest of an odd number of values; NaN if one is NaN.
+fn spread(values: impl Iterator<Item = f64>) -> [f64; 3] {
+    let mut sorted: Vec<f64> = values.collect();
+    if sorted.iter().any(|value| value.is_nan()) {
+        return [f64::NAN; 3];
+    }
+    sorted.sort_by(f64::total_cmp);
+    [sorted[0], sorted[sorted.len() / 2], sorted[sorted.len() - 1]]
+}
+
+/// Medians over the perturbed starts on one mesh, the coherent share with this floor.
+fn judged(rig: &Rig, cells: u32, floor: Option<f64>) -> Outcome {
+    let lengths = numbers("moving_fold/lengths");
+    let last = lengths.iter().copied().fold(1.0, f64::min);
+    let runs: Result<Vec<Unrolling>, String> =
+        SEEDS.iter().map(|seed| Unrolling::run(rig, Strip { cells }, *seed, last)).collect();
+    let runs = runs?;
+    let mut rows = Vec::new();
+    for length in lengths {
+        let of = |value: fn(&Unrolling, f64) -> f64| spread(runs.iter().map(|r| value(r, length)));
+        let [least, kept, most] = of(Unrolling::energy_kept);
+        let quantity = |name: &str| format!("L/{cells}, l/L {length}: {name}");
+        let energy =
+            Row::at_least(&quantity("energy kept"), kept, number("moving_fold/energy_kept"))
+                .with_note(&format!("{least:.3} to {most:.3}"));
+        let [least, coherent, most] = of(Unrolling::coherent_share);
+        let [_, body, _] = of(Unrolling::body_share);
+        let note = format!("{least:.3} to {most:.3}; arm B as one body {body:.3}");
+        if let Some(floor) = floor {
+            let share = Row::at_least(&quantity("coherent share"), coherent, floor);
+            rows.extend([energy, share.with_note(&note)]);
+        } else {
+            rows.push(energy.with_note(&format!("coherent share {coherent:.3}, {note}")));
+        }
+    }
+    let residual = runs.iter().map(Unrolling::residual).fold(0.0, worse);
+    let band = number("moving_fold/ledger_band");
+    rows.push(Row::at_most(&format!("L/{cells}: film energy residual"), residual, band));
+    Ok(rows)
+}
+
+/// Elements of L/10, without a floor of the coherent share, and of L/20.
+pub fn moving_fold(rig: &Rig) -> Outcome {
+    let coarse = judged(rig, 10, None)?;
+    Ok([coarse, judged(rig, 20, Some(number("moving_fold/coherent_share")))?].concat())
+}
+
+/// Elements of L/40.
+pub fn moving_fold_fine(rig: &Rig) -> Outcome {
+    judged(rig, 40, Some(number("moving_fold/coherent_share_fine")))
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_law_has_a_share_of_one() {
+        // l/L = (1 − 3 v0 t/(4 L))^(2/3).
+        let rate = 0.75 * size("speed") / size("arm");
+        let crossing = size("arm") / size("speed");
+        let ledger = Ledger { kinetic: 2.0, ..Ledger::default() };
+        let sample = |k: u32| {
+            let time = SAMPLE_INTERVAL * f64::from(k);
+            Sample { time, length: libm::pow(1.0 - rate * time, 2.0 / 3.0), ledger, body: 1.0 }
+        };
+        let samples = (0..190).map(sample).collect();
+        let strip = Unrolling { samples, scale: crossing * crossing };
+        for length in [0.75, 0.5, 0.3] {
+            let share = strip.coherent_share(length);
+            assert!((share - 1.0).abs() < 3e-3, "{share}");
+            assert_eq!((strip.energy_kept(length), strip.body_share(length)), (1.0, 0.5));
+        }
+        assert!(strip.energy_kept(0.01).is_nan() && strip.coherent_share(0.06).is_nan());
+    }
+
+    #[test]
+    fn a_spread_needs_every_value() {
+        assert_eq!(spread([3.0, 1.0, 2.0].into_iter()), [1.0, 2.0, 3.0]);
+        assert!(spread([3.0, f64::NAN, 2.0].into_iter()).iter().all(|value| value.is_nan()));
+    }
+}
