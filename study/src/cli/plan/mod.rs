@@ -6,6 +6,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 mod forecast;
+mod lengths;
 
 use forecast::forecast;
 
@@ -55,6 +56,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("units: {}", units(&study));
         }
         eprintln!("{}: {}", study.name, summary(&generation));
+        if let Some(text) = lengths::in_use(&generation.points) {
+            eprintln!("{text}");
+        }
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print(&study);
     }

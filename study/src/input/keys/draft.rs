@@ -157,6 +157,7 @@ fn empty_scene() -> Scene {
             },
         },
         seed: 0,
+        imperfection_amplitude: None,
     }
 }
 
