@@ -56,17 +56,14 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("units: {}", units(&study));
         }
         eprintln!("{}: {}", study.name, summary(&generation));
-        if let Some(text) = lengths::in_use(&generation.points) {
-            eprintln!("{text}");
-        }
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print(&study);
     }
     Ok(())
 }
 
-/// Prints how many jobs are finished, if the results folder belongs to this study, and the estimated
-/// cost of the others.
+/// Prints how many jobs are finished, if the results folder belongs to this study, the lengths in use,
+/// and the estimated cost of the other jobs.
 fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generation) -> Result<()> {
     let root = results_folder(&args.results, study);
     let results = Results::new(&Disk, &root);
@@ -82,6 +79,9 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Err(error) = memory::check(&args.study.display().to_string(), study) {
         eprintln!("{error}");
         return Ok(());
+    }
+    if let Some(text) = lengths::in_use(&generation.points) {
+        eprintln!("{text}");
     }
     let references = results.references().into_iter().map(|(id, _)| id).collect();
     if let Some(text) = forecast(&missing, references) {
