@@ -12,6 +12,7 @@
 mod allocation;
 mod conservation;
 mod contact_bits;
+mod equal_meshes;
 mod explicit_bits;
 mod explicit_cases;
 mod exports;

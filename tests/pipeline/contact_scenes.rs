@@ -44,6 +44,22 @@ fn sheet(height: f64) -> String {
     text
 }
 
+/// Smallest stowed gap of the paper's capsule at 16 subdivisions, m.
+const REFERENCE_GAP: f64 = 0.791_899_699e-3;
+
+#[test]
+fn a_capsule_has_the_default_or_the_given_amplitude_of_its_imperfection() {
+    let amplitude = |changes: &Value| {
+        let scene = capsule(changes);
+        let folder = scene_folder(&scene, &[]);
+        let short = ["scene.json", "-q", "--set", "solver.end_time=\"1 ms\""];
+        number(&done(folder.path(), &short, ""), "/imperfection_amplitude")
+    };
+    assert!((amplitude(&json!({"seed": 1})) - 0.2 * REFERENCE_GAP).abs() < 1e-9);
+    let given = json!({"seed": 1, "imperfection_amplitude": "0.1 mm"});
+    assert!((amplitude(&given) - 1e-4).abs() < 1e-15);
+}
+
 #[test]
 fn a_folded_capsule_reports_its_contact() {
     let folder = scene_folder(&capsule(&json!({})), &[]);
@@ -51,7 +67,8 @@ fn a_folded_capsule_reports_its_contact() {
     assert_eq!(summary["status"], "done");
     assert_eq!((number(&summary, "/passages"), number(&summary, "/intersections")), (0.0, 0.0));
     let contact = |key: &str| number(&summary, &format!("/contact/{key}"));
-    assert!(contact("distance") > 1e-4 && contact("smallest_gap") > 0.0);
+    assert!((contact("distance") - 0.4 * REFERENCE_GAP).abs() < 1e-9);
+    assert!(summary["imperfection_amplitude"].is_null() && contact("smallest_gap") > 0.0);
     assert!(contact("broad_phase_rebuilds") >= 1.0 && contact("pairs") > 0.0);
     assert!(contact("interlayer_pressure") > 0.0 && contact("contact_area_fraction") > 0.01);
     let peak = number(&summary, "/measures/peak_kinetic_energy");

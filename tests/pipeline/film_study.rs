@@ -22,10 +22,25 @@ fn study() -> Value {
 }
 
 #[test]
+fn the_amplitude_of_the_imperfection_belongs_to_a_job_only_with_a_seed() {
+    for (seed, summary) in [(0, "1 job, 1 point merged"), (1, "2 jobs")] {
+        let mut amplitudes = study();
+        amplitudes["seed"] = json!(seed);
+        amplitudes["grid"] = json!({"N": [6], "imperfection_amplitude": ["0.1 mm", "0.2 mm"]});
+        amplitudes["gas"]["mass_flow_rate"] = json!("5 g/s");
+        let planned = stderr(&TestFolder::new(&amplitudes).run(&["plan", "grid.json"]));
+        assert!(planned.contains(summary), "{planned}");
+        let range = "imperfection amplitude 0.1 to 0.2 mm";
+        assert_eq!(planned.contains(range), seed == 1, "{planned}");
+    }
+}
+
+#[test]
 fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
     let folder = TestFolder::new(&study());
     let planned = stderr(&folder.run(&["plan", "grid.json"]));
     assert!(planned.contains("forecast: 4 jobs of film, "), "{planned}");
+    assert!(planned.contains("contact distance "), "{planned}");
     let output = folder.run(&["run", "grid.json", "--threads", "1", "--results", "one"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(!stderr(&output).contains("piston"), "{}", stderr(&output));

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Distance below which film repels film, m; `None` for the default of the model, 0.4 times the
-    /// smallest stowed gap.
+    /// Distance below which film repels film, m; `None` for the default of the design
+    /// ([`crate::models::film::reference_gap`]).
     pub distance: Option<f64>,
     /// Coulomb friction coefficient.
     pub friction: f64,

@@ -55,7 +55,8 @@ pub enum Filling {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmContact {
     /// Contact distance, m; `None` for 0.4 times the smallest initial gap
-    /// ([`crate::collision::contact::ContactModel::of_film`]).
+    /// ([`crate::collision::contact::default_distance`]). A capsule has a default of its design
+    /// ([`crate::models::film::capsule::resolved_contact`]).
     pub distance: Option<f64>,
     /// Coulomb friction coefficient.
     pub friction: f64,

@@ -123,6 +123,7 @@ pub fn empty_capsule(subdivisions: u32, end_time: f64) -> Scene {
         },
         outputs: Outputs { sample_interval: 5e-4, frames: 0, thresholds: Thresholds::default() },
         seed: 0,
+        imperfection_amplitude: None,
     }
 }
 

@@ -24,6 +24,9 @@ impl Scene {
         let any = |value: f64| value.is_finite();
         number("gravity", self.gravity, any, "a finite number, m/s²")?;
         not_negative("release_time", self.release_time, "s")?;
+        if let Some(amplitude) = self.imperfection_amplitude {
+            positive("imperfection_amplitude", amplitude, "m")?;
+        }
         self.validate_solver()?;
         self.validate_outputs()
     }

@@ -36,11 +36,10 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), 
     let stowed = Shape::Stowed(scene.design.stowed_height);
     let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)
         .map_err(|error| error.to_string())?;
-    let mut film = FilmScene {
-        filling: Filling::Pressure(pressure),
-        contact: Some(FilmContact::default()),
-        ..film
-    };
+    let contact = capsule::resolved_contact(FilmContact::default(), &scene.design)
+        .map_err(|error| error.to_string())?;
+    let mut film =
+        FilmScene { filling: Filling::Pressure(pressure), contact: Some(contact), ..film };
     film.solver.mass_damping = DAMPING;
     let mut film = rig.start(&film)?;
     let share = number("deployed_equals_inflated/kinetic_share");

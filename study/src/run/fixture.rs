@@ -83,6 +83,7 @@ fn scene(number: u32) -> Scene {
         },
         outputs: Outputs { sample_interval: 0.001, frames: 0, thresholds: Thresholds::default() },
         seed: u64::from(number),
+        imperfection_amplitude: None,
     }
 }
 

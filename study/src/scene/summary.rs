@@ -15,6 +15,7 @@
 //! | `ledger` | every entry since the start, J, and its largest `residual`; `gas_residual` |
 //! | `passages`, `intersections` | film through film: number over the run; largest number at a sample (static: at the end); null where contact is off |
 //! | `contact` | contact `distance` and `smallest_gap` (at most the distance), m; largest `interlayer_pressure`, Pa, and `contact_area_fraction`; `broad_phase_rebuilds`; largest number of `pairs`; `collision_impulses`; `unrecovered_contact_energy`, J; force on each of `plates` at the end, N |
+//! | `imperfection_amplitude` | of a stowed capsule at the start, m; null without one |
 //! | `measures` | largest `peak_vz` of the top ring (m/s) with its time, `peak_kinetic_energy` (J) |
 //! | `energies` | kinetic, strain and (static) potential, J |
 //! | `film_stress` | largest principal second Piola-Kirchhoff stress over the run or in static equilibrium, Pa |
@@ -159,6 +160,7 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
         "passages": deployment.audit.passages,
         "intersections": deployment.audit.intersections,
         "contact": contact(run, deployment),
+        "imperfection_amplitude": scene.imperfection_amplitude,
         "measures": {
             "peak_vz": deployment.measures.peak_vz,
             "t_peak_vz": deployment.measures.t_peak_vz,

@@ -47,6 +47,10 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
         // Equal physics gives an equal job, whatever number of shapes is asked for.
         scene.outputs.frames = 0;
     }
+    if scene.seed == 0 {
+        // Without an imperfection its amplitude is not physics.
+        scene.imperfection_amplitude = None;
+    }
     Ok(scene)
 }
 

@@ -45,6 +45,6 @@ pub mod separating_planes;
 pub mod state;
 
 pub use force_law::Contact;
-pub use model::{Adhesion, ContactModel, DISTANCE_PER_GAP};
+pub use model::{Adhesion, ContactModel, DISTANCE_PER_GAP, default_distance};
 pub use pair::{Pair, PairKind};
 pub use state::{ContactState, PlateState};

@@ -71,8 +71,7 @@ const MAX_DISTANCE_PER_EDGE: f64 = 0.02;
 impl ContactModel {
     /// Contact of a film at `positions` (m), without plates, friction and adhesion.
     ///
-    /// `distance` (m) is the contact distance. The default is 0.4 of the smallest gap of a node and
-    /// an element, but at most 0.02 of the mean edge length.
+    /// `distance` (m) is the contact distance; `None` for the [`default_distance`] of these positions.
     pub fn of_film(
         film: &FilmModel,
         positions: &Field,
@@ -80,25 +79,12 @@ impl ContactModel {
         instruction_set: InstructionSet,
     ) -> Self {
         let mesh = CollisionMesh::new(film.nodes(), &film.triangles);
-        let edges = &mesh.topology.edges;
-        let length =
-            |[a, b]: &[u32; 2]| (positions.get(*a as usize) - positions.get(*b as usize)).norm();
-        let edge_length = edges.iter().map(length).sum::<f64>() / edges.len() as f64;
-        let max_distance = MAX_DISTANCE_PER_EDGE * edge_length;
+        let edge_length = mean_edge_length(&mesh, positions);
+        let distance = distance.unwrap_or_else(|| default_distance(&mesh, positions));
         let frequency = film.largest_frequency();
-        let mut model = Self::new(mesh, max_distance, frequency, edge_length, instruction_set);
+        let mut model = Self::new(mesh, distance, frequency, edge_length, instruction_set);
         let area: f64 = film.volume.iter().sum::<f64>() / film.thickness;
         model.area_density = film.mass.iter().sum::<f64>() / area;
-        let distance = distance.unwrap_or_else(|| {
-            let mut smallest_gap = f64::INFINITY;
-            model.pairs_within(positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
-                if pair.kind == PairKind::NodeElement {
-                    smallest_gap = smallest_gap.min(gap);
-                }
-            });
-            (DISTANCE_PER_GAP * smallest_gap).min(max_distance)
-        });
-        model.distance = distance;
         model
     }
 
@@ -149,13 +135,8 @@ impl ContactModel {
 
     /// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
     pub fn pairs_within(&self, positions: &Field, radius: f64, mut visit: impl FnMut(Pair, f64)) {
-        let kdops = KDops::new(&self.mesh.hierarchy, positions);
-        let kind = QueryKind::Collision;
-        pairs_within_bounds(kind, &self.mesh, &kdops, radius, |kind, [first, second]| {
-            let pair = Pair { kind: pair_kind(kind), first, second };
-            let nodes = pair.nodes(&self.mesh.topology);
-            let gap = pair.closest(&vectors_of(positions, nodes)).squared.sqrt();
-            if gap < radius && (self.edge_contacts || pair.kind == PairKind::NodeElement) {
+        pairs_within(&self.mesh, positions, radius, |pair, gap| {
+            if self.edge_contacts || pair.kind == PairKind::NodeElement {
                 visit(pair, gap);
             }
         });
@@ -181,6 +162,44 @@ impl ContactModel {
             PairKind::EdgeEdge => gaps.resize(gaps.len() + pairs.len(), f64::INFINITY),
         }
     }
+}
+
+/// The default contact distance of film at these positions (m), m: 0.4 of the smallest gap of a node
+/// and an element, but at most 0.02 of the mean edge length.
+pub fn default_distance(mesh: &CollisionMesh, positions: &Field) -> f64 {
+    let max_distance = MAX_DISTANCE_PER_EDGE * mean_edge_length(mesh, positions);
+    let mut smallest_gap = f64::INFINITY;
+    pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
+        if pair.kind == PairKind::NodeElement {
+            smallest_gap = smallest_gap.min(gap);
+        }
+    });
+    (DISTANCE_PER_GAP * smallest_gap).min(max_distance)
+}
+
+/// Mean edge length, m.
+fn mean_edge_length(mesh: &CollisionMesh, positions: &Field) -> f64 {
+    let edges = &mesh.topology.edges;
+    let length =
+        |[a, b]: &[u32; 2]| (positions.get(*a as usize) - positions.get(*b as usize)).norm();
+    edges.iter().map(length).sum::<f64>() / edges.len() as f64
+}
+
+/// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
+fn pairs_within(
+    mesh: &CollisionMesh,
+    positions: &Field,
+    radius: f64,
+    mut visit: impl FnMut(Pair, f64),
+) {
+    let kdops = KDops::new(&mesh.hierarchy, positions);
+    pairs_within_bounds(QueryKind::Collision, mesh, &kdops, radius, |kind, [first, second]| {
+        let pair = Pair { kind: pair_kind(kind), first, second };
+        let gap = pair.closest(&vectors_of(positions, pair.nodes(&mesh.topology))).squared.sqrt();
+        if gap < radius {
+            visit(pair, gap);
+        }
+    });
 }
 
 /// The kind of pair that a candidate of a collision query is.

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::imperfection;
-use crate::collision::contact::{self, Adhesion, ContactModel};
+use super::{imperfection, reference_gap};
+use crate::collision::contact::{Adhesion, ContactModel};
 use crate::geometry::field::Field;
-use crate::geometry::fold::FoldPattern;
+use crate::geometry::fold::{FoldDesign, FoldPattern};
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::geometry::shell::Shell;
 use crate::integrators::explicit::{Explicit, Parameters, PressureLoad};
@@ -14,35 +14,66 @@ use crate::mechanics::gas::{Gas, GasState};
 use crate::mechanics::supports::Supports;
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
-use crate::scene::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver};
+use crate::scene::film_scene::{Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver};
 use crate::scene::film_support::{FilmSupport, Hold};
 use crate::scene::plate::Plate;
-use crate::scene::{Film, Scene, Support, SupportLocation};
+use crate::scene::{Scene, Support, SupportLocation};
 
-/// Amplitude of the imperfection of a stowed capsule over its smallest gap. Chosen.
-const IMPERFECTION_OVER_GAP: f64 = 0.1;
+/// Subdivisions of the mesh on which the largest displacement of the imperfection is its amplitude.
+/// Chosen: an edge is short against the shortest wave.
+const AMPLITUDE_SUBDIVISIONS: u32 = 8;
 
-/// Adds the imperfection of a seed to a stowed capsule; seed 0 adds none.
+/// Adds the imperfection of a scene's seed to its stowed capsule: the same displacement field on every
+/// mesh. Returns [`imperfection_amplitude`].
 ///
 /// # Errors
-/// [`SceneError::Invalid`] if the mesh is not a film.
-pub fn imperfect(
-    instruction_set: InstructionSet,
-    mesh: &mut Mesh,
-    film: &Film,
-    seed: u64,
-) -> Result<(), SceneError> {
-    if seed == 0 {
-        return Ok(());
+/// If the design has no pattern.
+pub fn imperfect(mesh: &mut Mesh, scene: &Scene) -> Result<Option<f64>, SceneError> {
+    let amplitude = imperfection_amplitude(scene)?;
+    if let Some(amplitude) = amplitude {
+        let stowed = Shape::Stowed(scene.design.stowed_height);
+        let pattern = FoldPattern::new(&scene.design)?;
+        let reference = Mesh::new(&pattern, AMPLITUDE_SUBDIVISIONS, stowed)?.positions;
+        imperfection::imperfect(&mut mesh.positions, &reference, scene.seed, amplitude);
     }
-    let positions = Field::of(&mesh.positions);
-    let model = FilmModel::of_shell(film, &Shell::of_mesh(mesh)).map_err(|error| {
-        SceneError::Invalid { key: "design".to_owned(), problem: error.to_string() }
-    })?;
-    let gap = ContactModel::of_film(&model, &positions, None, instruction_set).distance
-        / contact::DISTANCE_PER_GAP;
-    imperfection::imperfect(&mut mesh.positions, seed, IMPERFECTION_OVER_GAP * gap);
-    Ok(())
+    Ok(amplitude)
+}
+
+/// Amplitude of the imperfection of a scene's stowed capsule, m; `None` for seed 0.
+///
+/// # Errors
+/// If the design has no pattern.
+pub fn imperfection_amplitude(scene: &Scene) -> Result<Option<f64>, SceneError> {
+    if scene.seed == 0 {
+        return Ok(None);
+    }
+    Ok(Some(match scene.imperfection_amplitude {
+        Some(amplitude) => amplitude,
+        None => reference_gap::imperfection_amplitude(&scene.design)?,
+    }))
+}
+
+/// Contact distance of the capsule of a design, m: the given one, or the default of the design.
+///
+/// # Errors
+/// If the design has no pattern.
+pub fn contact_distance(given: Option<f64>, design: &FoldDesign) -> Result<f64, SceneError> {
+    match given {
+        Some(distance) => Ok(distance),
+        None => Ok(reference_gap::contact_distance(design)?),
+    }
+}
+
+/// Contact of the capsule of a design, with its [`contact_distance`].
+///
+/// # Errors
+/// If the design has no pattern.
+pub fn resolved_contact(
+    contact: FilmContact,
+    design: &FoldDesign,
+) -> Result<FilmContact, SceneError> {
+    let distance = contact_distance(contact.distance, design)?;
+    Ok(FilmContact { distance: Some(distance), ..contact })
 }
 
 /// Name of the plate above packed film.
@@ -64,7 +95,7 @@ pub fn film_scene(
     let pattern = FoldPattern::new(&scene.design)?;
     let mut mesh = Mesh::new(&pattern, scene.design.subdivisions, shape)?;
     if matches!(shape, Shape::Stowed(_)) {
-        imperfect(instruction_set, &mut mesh, &scene.film, scene.seed)?;
+        imperfect(&mut mesh, scene)?;
     }
     let film = FilmScene {
         shell: Shell::of_mesh(&mesh),

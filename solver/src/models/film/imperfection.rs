@@ -7,16 +7,25 @@
 //! Symbols: h height of the stack, m; q wave vectors of one to four waves over the capsule's width.
 //! Nodes above each other move alike, so layers approach each other only as much as the stack is
 //! compressed. The bottom ring (z = 0) does not move. Seed 0 means no imperfection.
+//!
+//! The largest |Δz| is that over given positions, those of the same mesh for every mesh of a design. The
+//! field is then the same on all of them.
 
 use nalgebra::Vector3;
 
 /// Number of waves in the field. Chosen.
 const WAVES: usize = 6;
 
-/// Adds the imperfection of a seed to stowed positions (m); `amplitude`: its largest value, m.
-pub fn imperfect(positions: &mut [Vector3<f64>], seed: u64, amplitude: f64) {
-    let size = positions.iter().map(|x| x.xy().norm()).fold(0.0, f64::max);
-    let height = positions.iter().map(|x| x.z).fold(0.0, f64::max);
+/// Adds the imperfection of a seed to stowed positions (m); `amplitude`: its largest value (m) at the
+/// `reference` positions (m).
+pub fn imperfect(
+    positions: &mut [Vector3<f64>],
+    reference: &[Vector3<f64>],
+    seed: u64,
+    amplitude: f64,
+) {
+    let size = reference.iter().map(|x| x.xy().norm()).fold(0.0, f64::max);
+    let height = reference.iter().map(|x| x.z).fold(0.0, f64::max);
     // Also false for NaN.
     let valid = seed != 0 && size > 0.0 && height > 0.0;
     if !valid {
@@ -44,11 +53,10 @@ pub fn imperfect(positions: &mut [Vector3<f64>], seed: u64, amplitude: f64) {
         let sum: f64 = waves.iter().map(|[p, q, r, c]| c * libm::sin(p * x.x + q * x.y + r)).sum();
         sum * x.z / height
     };
-    let values: Vec<f64> = positions.iter().map(field).collect();
-    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = reference.iter().map(field).fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if largest > 0.0 {
-        for (position, value) in positions.iter_mut().zip(values) {
-            position.z += amplitude * value / largest;
+        for position in positions {
+            position.z += amplitude * field(position) / largest;
         }
     }
 }
@@ -67,7 +75,7 @@ mod tests {
             .collect();
         let with = |seed: u64| {
             let mut positions = flat.clone();
-            imperfect(&mut positions, seed, 1e-4);
+            imperfect(&mut positions, &flat, seed, 1e-4);
             positions
         };
         assert_eq!(with(0), flat);

@@ -33,6 +33,7 @@ use crate::scene::{Scene, Stepping};
 
 pub mod capsule;
 mod imperfection;
+pub mod reference_gap;
 mod statics;
 mod tracks;
 
@@ -212,7 +213,8 @@ impl FilmRun {
         Self { film, rings, reference: None, nodes, elements, fans, temperature }
     }
 
-    /// The capsule of a scene, stowed, at time 0, with this contact.
+    /// The capsule of a scene, stowed, at time 0, with this contact. Contact without a distance has the
+    /// default one of the design.
     ///
     /// # Errors
     /// As [`solve`].
@@ -225,7 +227,8 @@ impl FilmRun {
     ) -> Result<Self, SceneError> {
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let (film, mesh) = capsule::film_scene(instruction_set, scene, stowed, cfl)?;
-        let film = FilmScene { contact, ..film };
+        let resolved = |contact| capsule::resolved_contact(contact, &scene.design);
+        let film = FilmScene { contact: contact.map(resolved).transpose()?, ..film };
         let run = Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))?;
         Ok(Self { reference, ..run })
     }

@@ -218,6 +218,7 @@ pub fn reference_scene(scene: &Scene) -> Scene {
         },
         outputs: Outputs { sample_interval: 1.0, frames: 0, thresholds: Thresholds::default() },
         seed: 0,
+        imperfection_amplitude: None,
     }
 }
 

@@ -6,6 +6,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 mod forecast;
+mod lengths;
 
 use forecast::forecast;
 
@@ -61,8 +62,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
-/// Prints how many jobs are finished, if the results folder belongs to this study, and the estimated
-/// cost of the others.
+/// Prints how many jobs are finished, if the results folder belongs to this study, the lengths in use,
+/// and the estimated cost of the other jobs.
 fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generation) -> Result<()> {
     let root = results_folder(&args.results, study);
     let results = Results::new(&Disk, &root);
@@ -78,6 +79,9 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Err(error) = memory::check(&args.study.display().to_string(), study) {
         eprintln!("{error}");
         return Ok(());
+    }
+    if let Some(text) = lengths::in_use(&generation.points) {
+        eprintln!("{text}");
     }
     let references = results.references().into_iter().map(|(id, _)| id).collect();
     if let Some(text) = forecast(&missing, references) {

@@ -159,6 +159,7 @@ fn empty_scene() -> Scene {
             },
         },
         seed: 0,
+        imperfection_amplitude: None,
     }
 }
 

@@ -185,8 +185,9 @@ pub static KEYS: &[Key] = &[
         .to(|draft, value| draft.scene.gas.discharge_coefficient = number(value)),
 
     key("contact.distance", above(Dimension::Length, 0.0, 0.1),
-        Absent("0.4 of the smallest stowed gap"), "\"0.6 mm\"",
-        "Distance at which contact starts to push layers of film apart.")
+        Absent("0.4 of the design's reference gap; of a mesh, 0.4 of its smallest gap"), "\"0.6 mm\"",
+        "Distance at which contact starts to push layers of film apart. The reference gap is the \
+         smallest stowed gap of the design at 16 subdivisions; it does not depend on the mesh.")
         .to(|draft, value| draft.scene.contact.distance = optional(value)),
     key("contact.friction", from(Dimension::Number, 0.0, 10.0), Number(0.0), "0.2",
         "Coulomb friction coefficient.")
@@ -261,6 +262,11 @@ pub static KEYS: &[Key] = &[
     key("seed", KeyKind::Integer(0, MAX_EXACT_INTEGER), Integer(0), "1",
         "Seed of the imperfection of the stowed shape. Models without one ignore it.")
         .to(|draft, value| draft.scene.seed = unsigned(value)),
+    key("imperfection_amplitude", above(Dimension::Length, 0.0, 0.1),
+        Absent("0.2 of the design's reference gap"), "\"0.15 mm\"",
+        "Amplitude of the imperfection: its largest displacement, along z. Equal displacements on \
+         every mesh of a design. Seed 0 has none.")
+        .to(|draft, value| draft.scene.imperfection_amplitude = optional(value)),
 ];
 
 /// The keys of a strategy; paths are those within `strategies.<name>`.

@@ -87,6 +87,7 @@ pub const fn model(kind: ModelKind) -> Model {
                 "solver.cfl",
                 "outputs.frames",
                 "seed",
+                "imperfection_amplitude",
             ],
         },
         ModelKind::Film => Model {

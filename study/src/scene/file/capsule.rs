@@ -7,7 +7,6 @@ use billow_solver::geometry::mesh_io::obj_reader::{Face, Surface};
 use billow_solver::geometry::shell::Shell;
 use billow_solver::models::film::Rings;
 use billow_solver::models::film::capsule::{imperfect, part_nodes};
-use billow_solver::platform::simd::InstructionSet;
 
 use super::shape::{Numbering, Shape};
 use crate::input::keys::draft::Draft;
@@ -19,11 +18,7 @@ use crate::platform::error::InputError;
 const MAX_ELEMENTS: u64 = 4_000_000;
 
 /// Reads the film of a design.
-pub(super) fn read(
-    draft: &Draft,
-    instruction_set: InstructionSet,
-    source: &Source,
-) -> Result<Shape, InputError> {
+pub(super) fn read(draft: &Draft, source: &Source) -> Result<Shape, InputError> {
     let design = &draft.scene.design;
     let erected = draft.film_scene.erected.unwrap_or(draft.film_scene.statics);
     check(design, erected, source)?;
@@ -32,10 +27,12 @@ pub(super) fn read(
     let stowed = State::Stowed(design.stowed_height);
     let state = if erected { State::Erected } else { stowed };
     let mut mesh = Mesh::new(&pattern, design.subdivisions, state).map_err(fold_error)?;
-    if !erected {
-        imperfect(instruction_set, &mut mesh, &draft.scene.film, draft.scene.seed)
-            .map_err(|error| source.error("seed", "", error.to_string(), ""))?;
-    }
+    let imperfection_amplitude = if erected {
+        None
+    } else {
+        imperfect(&mut mesh, &draft.scene)
+            .map_err(|error| source.error("seed", "", error.to_string(), ""))?
+    };
     let stowed = if erected && design.caps == Caps::Polygon {
         Some(Mesh::new(&pattern, design.subdivisions, stowed).map_err(fold_error)?.positions)
     } else {
@@ -57,6 +54,7 @@ pub(super) fn read(
         ],
         centres: vec![("bottom_centre", mesh.bottom_centre), ("top_centre", mesh.top_centre)],
         folded: !erected,
+        imperfection_amplitude,
         stowed,
         numbering: numbering(mesh),
         file: String::new(),

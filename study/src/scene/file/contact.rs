@@ -35,11 +35,17 @@ pub(super) fn read(
     if statics || enabled == Some(false) {
         return Ok(None);
     }
-    Ok(Some(FilmContact {
+    let contact = FilmContact {
         adhesion_range: draft.film_scene.adhesion_range,
         plates,
         ..FilmContact::of(&draft.scene.contact)
-    }))
+    };
+    if tree.get("design").is_none() {
+        return Ok(Some(contact));
+    }
+    let resolved = capsule::resolved_contact(contact, &draft.scene.design)
+        .map_err(|error| source.error("design", "", error.to_string(), ""))?;
+    Ok(Some(resolved))
 }
 
 /// Smallest gap between film and a plate at the start, m (chosen: far above rounding).

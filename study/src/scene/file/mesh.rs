@@ -80,6 +80,7 @@ pub(super) fn read(json: &Json, reader: &mut Reader) -> Result<Shape> {
         regions: Vec::new(),
         centres: Vec::new(),
         folded: false,
+        imperfection_amplitude: None,
         stowed: None,
         file,
     })

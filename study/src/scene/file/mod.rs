@@ -58,6 +58,8 @@ pub struct SceneFile {
     pub seating: Vec<PrescribedNodes>,
     /// Rings of a capsule; `None` for any other mesh.
     pub rings: Option<Rings>,
+    /// Amplitude of the imperfection of a stowed capsule, m; `None` without one.
+    pub imperfection_amplitude: Option<f64>,
     /// Names of what is recorded.
     pub recorded: Recorded,
     /// From the numbers of the user's file to those of the run.
@@ -123,7 +125,7 @@ impl SceneFile {
         let statics = draft.film_scene.statics;
         let mut shape = match tree.get("mesh") {
             Some(json) => mesh::read(json, reader)?,
-            None => capsule::read(&draft, instruction_set, &reader.source)?,
+            None => capsule::read(&draft, &reader.source)?,
         };
         let filling = filling::read(tree, &draft, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &draft, &shape, &reader.source)?;
@@ -169,6 +171,7 @@ impl SceneFile {
             film,
             seating,
             rings: shape.rings,
+            imperfection_amplitude: shape.imperfection_amplitude,
             recorded,
             numbering: shape.numbering,
             json,

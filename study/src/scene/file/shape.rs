@@ -18,6 +18,8 @@ pub(super) struct Shape {
     pub centres: Vec<(&'static str, u32)>,
     /// Whether it starts folded.
     pub folded: bool,
+    /// Amplitude of the imperfection of a stowed capsule, m; `None` without one.
+    pub imperfection_amplitude: Option<f64>,
     /// Stowed positions of the nodes of an erected capsule, m: its bottom ring is held there.
     pub stowed: Option<Vec<Vector3<f64>>>,
     /// Name of its file in errors; empty for a design.
