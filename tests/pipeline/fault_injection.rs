@@ -18,7 +18,7 @@ const ALL_REGIMES: Detector = ("path_energy", "work plus change");
 const PANEL: Detector = ("shear_panel", "P12");
 
 /// For each term: the detector of an error of 1 %, and that of the wrong sign.
-const DETECTORS: [(Term, Detector, Detector); 22] = [
+const DETECTORS: [(Term, Detector, Detector); 23] = [
     (Term::Elastic, TAUT_FORCE, TAUT_FORCE),
     (
         Term::NumericalStress,
@@ -26,6 +26,7 @@ const DETECTORS: [(Term, Detector, Detector); 22] = [
         ("dissipation", "dissipated power"),
     ),
     (Term::NumericalWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
+    (Term::Creep, ("strip_loss", "log decrement"), ("strip_loss", "log decrement")),
     (Term::PressureForce, FILM_LEDGER, SPHERE_STOPS),
     (Term::Volume, FILM_LEDGER, SPHERE_STOPS),
     (Term::Gravity, ("force_energy", "weight"), FILM_LEDGER),

@@ -31,9 +31,9 @@ pub const TEMPERATURE: f64 = 293.0;
 
 /// Largest loss factor of the film. Assumed: the paper gives none; polyimide films at room temperature
 /// have 0.003 to 0.03.
-pub const LOSS_FACTOR: f64 = 0.01;
+pub const LOSS_FACTOR: f64 = 0.015;
 /// Frequency of the largest loss factor, Hz. Assumed: that of the capsule's structural vibrations.
-pub const LOSS_FREQUENCY: f64 = 100.0;
+pub const LOSS_FREQUENCY: f64 = 1000.0;
 /// Numerical damping ratio. Chosen by the runs of docs/performance.md.
 pub const NUMERICAL_DAMPING: f64 = 1e-4;
 

@@ -21,7 +21,7 @@ use super::{Outcome, Rig, Row};
 /// Contact distance, m.
 const DISTANCE: f64 = 2e-3;
 
-fn viscous() -> Film {
+fn damped() -> Film {
     Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC }
 }
 
@@ -74,7 +74,7 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
         let scene = FilmScene {
             velocities: (0..nodes).map(velocity).collect(),
             contact: Some(monitored_contact(DISTANCE)),
-            ..free_film(shell, viscous())
+            ..free_film(shell, damped())
         };
         let mut film = rig.start(&scene)?;
         let momentum = |film: &Explicit| -> Vector3<f64> {
@@ -139,7 +139,7 @@ pub fn squeezed_bag(rig: &Rig) -> Outcome {
         let scene = FilmScene {
             filling: Filling::Gas { supply, initial_temperature: 293.0 },
             contact: Some(FilmContact { plates, ..monitored_contact(DISTANCE) }),
-            ..free_film(shell.clone(), Film { compression, ..viscous() })
+            ..free_film(shell.clone(), Film { compression, ..damped() })
         };
         let mut film = rig.start(&scene)?;
         let whole = height(&film);
@@ -174,7 +174,7 @@ pub fn dropped_sheet(rig: &Rig) -> Outcome {
             velocities: (0..shell.positions.len()).map(velocity).collect(),
             gravity: Vector3::new(0.0, 0.0, -500.0),
             contact: Some(FilmContact { plates: vec![floor], ..monitored_contact(DISTANCE) }),
-            ..free_film(shell, Film { compression, ..viscous() })
+            ..free_film(shell, Film { compression, ..damped() })
         };
         let mut film = rig.start(&scene)?;
         let record = run_recorded(&mut film, 0.03, 60, &Phase::default())?;

@@ -2,7 +2,7 @@
 //! equations.
 //!
 //! ```text
-//! residual = |Δ(kinetic + strain) + viscous + damping − external works| / (peak kinetic + Σ|external works|)
+//! residual = |Δ(kinetic + stored) + lost + numerical + damping − external works| / (peak kinetic + Σ|external works|)
 //! ```
 
 use billow_solver::geometry::shapes::icosphere;
@@ -48,7 +48,7 @@ pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     ])
 }
 
-/// A viscous sphere that is thrown upward in air, filled, leaks, exchanges heat and has mass damping:
+/// A damped sphere that is thrown upward in air, filled, leaks, exchanges heat and has mass damping:
 /// every term at once.
 pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     let ambient = 1000.0;
@@ -68,10 +68,7 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
         velocities,
         filling: Filling::Gas { supply, initial_temperature: 350.0 },
         gravity: Vector3::new(0.0, 0.0, -9.806_65),
-        ..free_film(
-            shell,
-            Film { numerical_damping: 0.1, compression: 0.01, ..Film::PAPER_ELASTIC },
-        )
+        ..free_film(shell, Film { numerical_damping: 0.1, compression: 0.01, ..Film::PAPER })
     };
     scene.solver.mass_damping = 5.0;
     scene.solver.cfl = 0.2;

@@ -13,7 +13,7 @@ use super::reference::number;
 use super::rig::held;
 
 /// Material of the strip.
-pub const FILM: Film = Film::PAPER_ELASTIC;
+pub const FILM: Film = Film::PAPER;
 /// Length of an arm over the width of the strip.
 const ASPECT: u32 = 5;
 /// Largest coefficient of a mode of the perturbation, m. Chosen: all modes together stay below the

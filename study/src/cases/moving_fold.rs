@@ -132,26 +132,27 @@ fn spread(values: impl Iterator<Item = f64>) -> [f64; 3] {
     [sorted[0], sorted[sorted.len() / 2], sorted[sorted.len() - 1]]
 }
 
-/// Medians over the perturbed starts on one mesh, the coherent share with this floor.
-fn judged(rig: &Rig, cells: u32, floor: Option<f64>) -> Outcome {
+/// Medians over the perturbed starts on one mesh, with floors of the energy kept and of the coherent
+/// share at each of the lengths.
+fn judged(rig: &Rig, cells: u32, kept: &[f64], coherent: Option<&[f64]>) -> Outcome {
+    let (kept_floors, coherent_floors) = (kept, coherent);
     let lengths = numbers("moving_fold/lengths");
     let last = lengths.iter().copied().fold(1.0, f64::min);
     let runs: Result<Vec<Unrolling>, String> =
         SEEDS.iter().map(|seed| Unrolling::run(rig, Strip { cells }, *seed, last)).collect();
     let runs = runs?;
     let mut rows = Vec::new();
-    for length in lengths {
+    for (place, length) in lengths.into_iter().enumerate() {
         let of = |value: fn(&Unrolling, f64) -> f64| spread(runs.iter().map(|r| value(r, length)));
         let [least, kept, most] = of(Unrolling::energy_kept);
         let quantity = |name: &str| format!("L/{cells}, l/L {length}: {name}");
-        let energy =
-            Row::at_least(&quantity("energy kept"), kept, number("moving_fold/energy_kept"))
-                .with_note(&format!("{least:.3} to {most:.3}"));
+        let energy = Row::at_least(&quantity("energy kept"), kept, kept_floors[place])
+            .with_note(&format!("{least:.3} to {most:.3}"));
         let [least, coherent, most] = of(Unrolling::coherent_share);
         let [_, body, _] = of(Unrolling::body_share);
         let note = format!("{least:.3} to {most:.3}; arm B as one body {body:.3}");
-        if let Some(floor) = floor {
-            let share = Row::at_least(&quantity("coherent share"), coherent, floor);
+        if let Some(floors) = coherent_floors {
+            let share = Row::at_least(&quantity("coherent share"), coherent, floors[place]);
             rows.extend([energy, share.with_note(&note)]);
         } else {
             rows.push(energy.with_note(&format!("coherent share {coherent:.3}, {note}")));
@@ -165,13 +166,17 @@ fn judged(rig: &Rig, cells: u32, floor: Option<f64>) -> Outcome {
 
 /// Elements of L/10, without a floor of the coherent share, and of L/20.
 pub fn moving_fold(rig: &Rig) -> Outcome {
-    let coarse = judged(rig, 10, None)?;
-    Ok([coarse, judged(rig, 20, Some(number("moving_fold/coherent_share")))?].concat())
+    let coarse = judged(rig, 10, &numbers("moving_fold/energy_kept_coarse"), None)?;
+    let (kept, coherent) =
+        (numbers("moving_fold/energy_kept"), numbers("moving_fold/coherent_share"));
+    Ok([coarse, judged(rig, 20, &kept, Some(&coherent))?].concat())
 }
 
 /// Elements of L/40.
 pub fn moving_fold_fine(rig: &Rig) -> Outcome {
-    judged(rig, 40, Some(number("moving_fold/coherent_share_fine")))
+    let (kept, coherent) =
+        (numbers("moving_fold/energy_kept"), numbers("moving_fold/coherent_share_fine"));
+    judged(rig, 40, &kept, Some(&coherent))
 }
 
 #[cfg(test)]

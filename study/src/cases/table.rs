@@ -92,8 +92,13 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "strip_damping",
-        "decrement of a strip's mode under film viscosity, with 2 pi zeta omega/omega_e",
+        "decrement of a strip's mode under numerical damping, with 2 pi zeta omega/omega_e",
         damping::strip_decrement,
+    ),
+    quick(
+        "strip_loss",
+        "decrement of a strip's mode under material loss, with the root of its equation",
+        damping::strip_loss,
     ),
     quick(
         "free_flight_damping",
@@ -133,7 +138,7 @@ pub const CASES: &[Case] = &[
     ),
     quick(
         "dissipation",
-        "power of viscosity, with the reported power; its net force and moment, with zero",
+        "power of numerical damping, with the reported power; its net force and moment, with zero",
         forces::dissipation,
     ),
     quick(
