@@ -75,7 +75,7 @@ pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected
     let (mut capsule, mesh) = film_scene(instruction_set, &reference, Shape::Erected, 1.0)?;
     capsule.filling = Filling::Pressure(0.0);
     let invalid = |problem: String| SceneError::Invalid { key: "design".to_owned(), problem };
-    let model = FilmModel::of_shell(&capsule.film, &capsule.shell)
+    let model = FilmModel::of_shell(&capsule.film.elastic(), &capsule.shell)
         .map_err(|error| invalid(error.to_string()))?;
     let positions = Field::of(&capsule.shell.positions);
     let mut supports = Supports::new(&capsule.supports, &positions);

@@ -151,7 +151,8 @@ fn numerical_dissipation_is_the_trapezoidal_work_of_the_damping_forces() {
 /// dissipates; the rest falls with the step.
 #[test]
 fn work_on_the_film_is_stored_lost_or_dissipated() {
-    let film = Film { loss_factor: 0.1, numerical_damping: 0.0, ..Film::PAPER };
+    let film =
+        Film { loss_factor: 0.1, loss_frequency: 100.0, numerical_damping: 0.0, ..Film::PAPER };
     let (model, flat) = nine_elements(&film);
     let at = |time: f64| {
         let swing = libm::sin(core::f64::consts::TAU * 100.0 * time);
