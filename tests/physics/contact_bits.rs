@@ -55,7 +55,7 @@ fn a_resumed_run_with_contact_has_the_same_bits() {
     let mut whole = capsule_in_contact(InstructionSet::detect());
     whole.advance(0.02, &INFLOW).unwrap();
     assert!(whole.state.contact_state.path_length > 0.1 && whole.state.works.contact != 0.0);
-    for pause in [1, 100, 777, 1500] {
+    for pause in [1, 100, 777, 1300] {
         let mut film = capsule_in_contact(InstructionSet::detect());
         let mut steps = pause;
         assert!(!film.advance_at_most(0.02, &INFLOW, &mut steps).unwrap());

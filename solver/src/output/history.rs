@@ -156,6 +156,9 @@ pub const RENAMED_COLUMNS: &[(&str, &str)] = &[
     ("viscous_work", "numerical_dissipation"),
 ];
 
+/// Columns that files of physics version 4 and less do not have; all their values were 0 then.
+pub const ADDED_COLUMNS: &[&str] = &["material_loss"];
+
 impl Default for History {
     fn default() -> Self {
         Self::new()

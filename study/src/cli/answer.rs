@@ -161,8 +161,13 @@ fn audit(trust: &Trust) -> String {
             format!("passages {}, intersections {}{jobs}", number(passages), number(intersections))
         }
     };
+    let damped = match trust.numerically_damped {
+        0 => String::new(),
+        jobs => format!("; {} numerically_damped", count(jobs, "job")),
+    };
     format!(
-        "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); {film}",
+        "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); \
+         {film}{damped}",
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)
     )
@@ -247,6 +252,7 @@ fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
         "passages": trust.passages,
         "intersections": trust.intersections,
         "counted": trust.counted,
+        "numerically_damped": trust.numerically_damped,
         "film_stress_over_modulus": largest_strain,
     })
 }

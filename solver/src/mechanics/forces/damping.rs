@@ -12,7 +12,7 @@
 //! [`crate::mechanics::material_loss`]; ζ numerical damping ratio of the element's highest mode, `ω_e`
 //! its frequency (rad/s); c mass damping (1/s), h time between the two velocities (s).
 //!
-//! - 2ζ/ω_e Ṡ damps stress that changes. It acts on film that carries tension and leaves slack film
+//! - `2ζ/ω_e` Ṡ damps stress that changes. It acts on film that carries tension and leaves slack film
 //!   alone: ΔS is 0 there. ΔS:ΔÊ ≥ 0 because W is convex.
 //! - κ ΔS completes the impulse of a step in which the film goes taut or slack. Central differences give
 //!   such a step the mean of its two end stresses; the energy ½ (Sⁿ:Êⁿ⁻¹ − Sⁿ⁻¹:Êⁿ) per volume is then

@@ -67,6 +67,8 @@ pub struct Trust {
     pub intersections: Option<i64>,
     /// Number of jobs that counted passages.
     pub counted: usize,
+    /// Number of jobs marked `numerically_damped`.
+    pub numerically_damped: usize,
 }
 
 /// Medians by the values of one parameter. Every value has one job in each set; the jobs of a set are
@@ -185,6 +187,12 @@ fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
         passages: total(&passages),
         intersections: total(&counts(ColumnId::Intersections)),
         counted: passages.len(),
+        numerically_damped: done
+            .iter()
+            .filter(|row| {
+                table.value(ColumnId::NumericallyDamped, **row) == Some(&Value::Bool(true))
+            })
+            .count(),
     })
 }
 

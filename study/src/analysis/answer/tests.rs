@@ -42,6 +42,11 @@ fn table() -> Table {
                 numbers(&[1e-9, 3e-9, 2e-9, 0., 0., 0., 0.5, 0.]),
             ),
             column("passages", CellType::Integer, vec![Value::Null; 8]),
+            column(
+                "numerically_damped",
+                CellType::Bool,
+                (0..8).map(|row| Value::Bool(row == 1 || row == 6)).collect(),
+            ),
         ],
     }
 }
@@ -59,6 +64,7 @@ fn only_done_jobs_enter_extremes_and_audit() {
     assert_eq!(answer.hardest.unwrap().job, "d");
     let trust = answer.trust.unwrap();
     assert_eq!((trust.jobs, trust.ledger_residual, trust.passages), (6, 3e-9, None));
+    assert_eq!(trust.numerically_damped, 1, "failed jobs do not count");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::PoisonError;
 
-use billow_solver::output::history::{COLUMNS, History, RING_COLUMNS};
+use billow_solver::output::history::{ADDED_COLUMNS, COLUMNS, History, RING_COLUMNS};
 use hdf5::{File, Group};
 
 use super::{HDF5_LOCK, damaged, open, read_text};
@@ -70,7 +70,9 @@ fn read_history(file: &File) -> hdf5::Result<History> {
     let mut columns = Vec::with_capacity(COLUMNS.len());
     let rings = RING_COLUMNS.iter().any(|name| group.link_exists(name));
     for column in COLUMNS {
-        if rings || !RING_COLUMNS.contains(&column.name) {
+        let stored = group.link_exists(stored_name(&group, column.name));
+        let expected = rings || !RING_COLUMNS.contains(&column.name);
+        if stored || (expected && !ADDED_COLUMNS.contains(&column.name)) {
             columns.push(group.dataset(stored_name(&group, column.name))?.read_raw::<f64>()?);
         } else {
             columns.push(vec![0.0; columns[0].len()]);
