@@ -135,7 +135,7 @@ fn static_states_rise_with_pressure() {
 }
 
 #[test]
-#[ignore = "long: the paper's capsule at three steps and two viscosities"]
+#[ignore = "long: the paper's capsule at three steps and two numerical dampings"]
 fn the_ledger_residual_falls_with_the_step() {
     let scene = paper::capsule(5, 0.3);
     let residuals: Vec<f64> = [0.9, 0.45, 0.225]

@@ -16,7 +16,7 @@ fn capsule(changes: &Value) -> Value {
             "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": 1,
             "subdivisions": 2,
         },
-        "film": {"compression": 0, "viscosity": 0.1},
+        "film": {"compression": 0, "numerical_damping": 0.1},
         "gas": {"windows": [{"from": 0, "mass_flow_rate": "5 g/s"}]},
         "solver": {"end_time": "20 ms"},
     });

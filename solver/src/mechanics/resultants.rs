@@ -8,7 +8,7 @@
 //! C = FᵀF = 1 + 2E,  J² = det C
 //! ```
 //!
-//! Symbols: S second Piola-Kirchhoff stress (Pa) without viscosity, E Green strain, t thickness (m)
+//! Symbols: S second Piola-Kirchhoff stress (Pa) of film whose creep is over, E Green strain, t thickness (m)
 //! of the stress-free film, J current area over reference area. T is the Cauchy stress times the current
 //! thickness; the product needs no assumption on how the thickness changes.
 

@@ -159,7 +159,7 @@ struct NewtonSearch<'a> {
     loaded: &'a Loaded<'a>,
     unknowns: Unknowns,
     positions: Field,
-    /// Scratch: trial positions, viscous history, node forces.
+    /// Scratch: trial positions, element histories, node forces.
     trial: Field,
     element_history: Vec<[ElementHistory; 2]>,
     nodes: NodeForces,

@@ -12,8 +12,8 @@
 //! Each work is the trapezoid rule of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx; the
 //! work of numerical damping agrees with that up to third order in Δt ([`crate::mechanics::forces::damping`]).
 //! With equal steps these works and the kinetic energy above add up exactly. So a ledger residual has
-//! one of two causes: a force that is not the derivative of its energy, or a step too long for a
-//! change of stiffness. The gas does the work ½ (pⁿ + pⁿ⁺¹) ΔV, and the ledger of the film takes the
+//! one of two causes: a force that is not the derivative of its energy, or a step that turns an element
+//! too far. The gas does the work ½ (pⁿ + pⁿ⁺¹) ΔV, and the ledger of the film takes the
 //! same number.
 //!
 //! Between two targets all steps are equal, so a run reaches every target exactly and without a tiny

@@ -21,7 +21,7 @@
 //! subdivisions and the seed have no effect, so the same scene runs on every model. Compared with the
 //! film model on the paper's capsule (5 g/s from time 0), times are up to 25 % too early, the peak speed
 //! is 65-75 % too high and the peak kinetic energy 40-60 % too high: a single mass spends no energy on
-//! twist, radial motion and the viscosity of opening folds. Read both as upper bounds. A piston deploys
+//! twist, radial motion and the loss in opening folds. Read both as upper bounds. A piston deploys
 //! whenever it has enough gas, so the model answers how fast, not whether.
 
 use super::{Cost, ModelEntry};

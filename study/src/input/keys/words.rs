@@ -81,6 +81,9 @@ pub const fn model(kind: ModelKind) -> Model {
             ignores: &[
                 "design.subdivisions",
                 "film.compression",
+                "film.loss_factor",
+                "film.loss_frequency",
+                "film.numerical_damping",
                 "contact.distance",
                 "contact.friction",
                 "contact.adhesion",

@@ -35,7 +35,7 @@ pub struct MembraneSums {
     pub numerical_dissipation: f64,
     /// Material loss of the step, J.
     pub material_loss: f64,
-    /// Largest principal second Piola-Kirchhoff stress, Pa, without its viscous part.
+    /// Largest principal second Piola-Kirchhoff stress, Pa, without the numerical stress.
     pub largest_stress: f64,
 }
 
