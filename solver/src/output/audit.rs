@@ -102,4 +102,25 @@ mod tests {
         assert_eq!((audit.passages, audit.intersections), (None, None));
         assert_eq!(Audit::of(&History::of(&series), true).passages, Some(0));
     }
+
+    #[test]
+    fn numerical_dissipation_is_judged_at_the_first_peak_and_marked() {
+        let at = |time: f64, z_rim: f64, numerical_dissipation: f64, gas_work: f64| {
+            let ledger = Ledger { gas_work, numerical_dissipation, ..Ledger::default() };
+            Sample { time, z_rim, ledger, ..Sample::default() }
+        };
+        let start = at(0.0, 0.04, 0.0, 0.0);
+        let series = |at_peak: f64| {
+            Audit::of(
+                &History::of(&[start, at(0.1, 0.9, at_peak, 4.0), at(0.2, 0.5, 3.0, 4.0)]),
+                false,
+            )
+        };
+        assert_eq!(series(0.2).numerical_fraction, 0.05);
+        assert!(!series(0.2).numerically_damped() && series(0.21).numerically_damped());
+        assert!(series(-0.21).numerically_damped() && series(f64::NAN).numerically_damped());
+        let rising = Audit::of(&History::of(&[start, at(0.1, 0.9, 0.4, 4.0)]), false);
+        assert_eq!(rising.numerical_fraction, 0.1);
+        assert!(rising.numerically_damped());
+    }
 }
