@@ -106,7 +106,11 @@ def same(a, b):
 
 
 # A renamed column enters the content hash under its first name.
-FIRST_NAMES = {"broad_phase_rebuilds": "contact_searches", "collision_impulses": "contact_impulses"}
+FIRST_NAMES = {
+    "broad_phase_rebuilds": "contact_searches",
+    "collision_impulses": "contact_impulses",
+    "numerical_dissipation": "viscous_work",
+}
 
 
 def content_hash(arrays):
