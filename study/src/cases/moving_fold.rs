@@ -150,7 +150,11 @@ fn judged(rig: &Rig, cells: u32, kept: &[f64], coherent: Option<&[f64]>) -> Outc
             .with_note(&format!("{least:.3} to {most:.3}"));
         let [least, coherent, most] = of(Unrolling::coherent_share);
         let [_, body, _] = of(Unrolling::body_share);
-        let note = format!("{least:.3} to {most:.3}; arm B as one body {body:.3}");
+        let mut note = format!("{least:.3} to {most:.3}; arm B as one body {body:.3}");
+        if let Some(asked) = coherent_floors.filter(|floors| floors[place] < floors[0]) {
+            let limit = format!("; measured limit, asked {}: {cells} nodes an arm snap", asked[0]);
+            note.push_str(&limit);
+        }
         if let Some(floors) = coherent_floors {
             let share = Row::at_least(&quantity("coherent share"), coherent, floors[place]);
             rows.extend([energy, share.with_note(&note)]);
