@@ -151,8 +151,9 @@ fn judged(rig: &Rig, cells: u32, kept: &[f64], coherent: Option<&[f64]>) -> Outc
         let [least, coherent, most] = of(Unrolling::coherent_share);
         let [_, body, _] = of(Unrolling::body_share);
         let mut note = format!("{least:.3} to {most:.3}; arm B as one body {body:.3}");
-        if let Some(asked) = coherent_floors.filter(|floors| floors[place] < floors[0]) {
-            let limit = format!("; measured limit, asked {}: {cells} nodes an arm snap", asked[0]);
+        let lowered = coherent_floors.filter(|floors| floors[place] < floors[0]);
+        if let Some([asked, ..]) = lowered {
+            let limit = format!("; measured limit, asked {asked}: {cells} nodes an arm snap");
             note.push_str(&limit);
         }
         if let Some(floors) = coherent_floors {
