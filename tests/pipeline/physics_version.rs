@@ -57,7 +57,7 @@ fn end_state(film: &Explicit) -> String {
         works.ambient,
         works.support,
         works.material_loss,
-        works.numerical,
+        works.numerical_dissipation,
         works.damping,
     ];
     let contact_work = film.parameters.contact.as_ref().map(|_| works.contact);

@@ -117,6 +117,13 @@ impl Material {
         self.plane_modulus
     }
 
+    /// C as the factors of (exx + eyy) and of (exx − eyy, 2 exy) that give the mean stress and the half
+    /// difference and shear, Pa.
+    pub fn stiffness(&self) -> [f64; 2] {
+        let (k, nu) = (self.plane_modulus, self.poisson_ratio);
+        [0.5 * k * (1.0 + nu), 0.5 * k * (1.0 - nu)]
+    }
+
     /// The regime at a strain.
     pub fn regime(&self, strain: PlaneTensor) -> Regime {
         let (e1, e2) = strain.principal();
@@ -164,16 +171,17 @@ impl Material {
     #[inline(always)]
     pub fn response<L: Wide>(&self, strain: MohrCircle<L>) -> StressResponse<L> {
         let MohrCircle { sum, diameter, .. } = strain;
-        let (k, nu) = (self.plane_modulus, self.poisson_ratio);
+        let nu = self.poisson_ratio;
+        let [full_mean, full_shear] = self.stiffness();
         let twice_e1 = sum + diameter;
         let wrinkled_mean = twice_e1 * (0.25 * self.youngs_modulus);
         // 2 (e2 + ν e1).
         let taut = sum * (1.0 + nu) - diameter * (1.0 - nu);
         let c = self.compression;
         // A function, not a closure: a closure is not inlined into another target feature.
-        let mean = select_regime(taut, twice_e1, wrinkled_mean, sum * (0.5 * k * (1.0 + nu)), c);
+        let mean = select_regime(taut, twice_e1, wrinkled_mean, sum * full_mean, c);
         let wrinkled_modulus = wrinkled_mean.over(diameter);
-        let full_modulus = L::splat(0.5 * k * (1.0 - nu));
+        let full_modulus = L::splat(full_shear);
         let shear_modulus = select_regime(taut, twice_e1, wrinkled_modulus, full_modulus, c);
         StressResponse { mean, shear_modulus, largest: mean + shear_modulus * diameter }
     }

@@ -44,8 +44,7 @@ impl Creep {
     pub fn new(film: &Film, material: &Material) -> Self {
         let eta = film.loss_factor;
         let ratio = 2.0 * eta * (eta + (1.0 + eta * eta).sqrt());
-        let (k, nu) = (material.plane_modulus(), material.poisson_ratio);
-        let stiffness = [0.5 * k * (1.0 + nu), 0.5 * k * (1.0 - nu)];
+        let stiffness = material.stiffness();
         Self {
             ratio,
             time: (1.0 + ratio).sqrt() / (2.0 * core::f64::consts::PI * film.loss_frequency),

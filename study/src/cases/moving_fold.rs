@@ -134,8 +134,7 @@ fn spread(values: impl Iterator<Item = f64>) -> [f64; 3] {
 
 /// Medians over the perturbed starts on one mesh, with floors of the energy kept and of the coherent
 /// share at each of the lengths.
-fn judged(rig: &Rig, cells: u32, kept: &[f64], coherent: Option<&[f64]>) -> Outcome {
-    let (kept_floors, coherent_floors) = (kept, coherent);
+fn judged(rig: &Rig, cells: u32, kept_floors: &[f64], coherent_floors: Option<&[f64]>) -> Outcome {
     let lengths = numbers("moving_fold/lengths");
     let last = lengths.iter().copied().fold(1.0, f64::min);
     let runs: Result<Vec<Unrolling>, String> =

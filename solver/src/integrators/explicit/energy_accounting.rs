@@ -34,7 +34,7 @@ impl Explicit {
                 .dot(&(self.first_moment() - Vector3::from(self.state.start_moment))),
             support_work: works.support,
             material_loss: works.material_loss,
-            numerical_dissipation: works.numerical,
+            numerical_dissipation: works.numerical_dissipation,
             damping_work: works.damping,
             contact: -works.contact,
             contact_dissipation: contact_state.friction_dissipation

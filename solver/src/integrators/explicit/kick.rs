@@ -25,7 +25,7 @@ impl Explicit {
         let mut planes = core::mem::take(&mut self.state.planes);
         self.kick_free(kick, &mut next, &mut planes);
         if self.state.last_step == 0.0 {
-            self.state.works.numerical += self.starting_loss(&next, &planes);
+            self.state.works.numerical_dissipation += self.starting_loss(&next, &planes);
         }
         if self.parameters.mass_damping > 0.0 {
             self.state.works.damping += self.damping_work(kick, &next, &planes);

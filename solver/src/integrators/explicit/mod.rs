@@ -10,11 +10,11 @@
 //! ```
 //!
 //! Each work is the trapezoid rule of its own force along its own displacement, ½ (fⁿ + fⁿ⁺¹)·Δx; the
-//! work of numerical damping agrees with that up to third order in Δt ([`crate::mechanics::forces::damping`]).
-//! With equal steps these works and the kinetic energy above add up exactly. So a ledger residual has
-//! one of two causes: a force that is not the derivative of its energy, or a step that turns an element
-//! too far. The gas does the work ½ (pⁿ + pⁿ⁺¹) ΔV, and the ledger of the film takes the
-//! same number.
+//! work of numerical damping agrees with that up to third order in Δt
+//! ([`crate::mechanics::forces::damping`]). With equal steps these works and the kinetic energy above
+//! add up exactly. So a ledger residual has one of two causes: a force that is not the derivative of its
+//! energy, or a step that turns an element too far. The gas does the work ½ (pⁿ + pⁿ⁺¹) ΔV, and the
+//! ledger of the film takes the same number.
 //!
 //! Between two targets all steps are equal, so a run reaches every target exactly and without a tiny
 //! last step. One exception: contact with a quiescent film shortens the steps from there on.
@@ -54,8 +54,8 @@ pub use parameters::{DEFAULT_CFL, Parameters, PressureLoad};
 pub use quiescence::Quiescence;
 pub use state::{State, StepInterval, Works};
 
-/// Upper bound of step × largest film frequency for a step that leaves creep and damping unchanged. Such steps
-/// lie between targets that differ by rounding. Chosen: far below any step of a run (about 1).
+/// Upper bound of step × largest film frequency for a step that leaves creep and damping unchanged. Such
+/// steps lie between targets that differ by rounding. Chosen: far below any step of a run (about 1).
 const MAX_TINY_STEP: f64 = 1e-6;
 
 /// Film in motion: film model, parameters and state.
@@ -264,7 +264,7 @@ impl Explicit {
             return Err(self.unstable());
         }
         let works = &mut self.state.works;
-        works.numerical +=
+        works.numerical_dissipation +=
             sums.numerical_dissipation * self.parameters.fault_factor(Term::NumericalWork);
         works.material_loss += sums.material_loss;
         self.state.film_stress = self.state.film_stress.max(sums.largest_stress);

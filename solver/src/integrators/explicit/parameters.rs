@@ -51,8 +51,8 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Film without supports, gravity, numerical damping, mass damping or contact, at the default CFL number,
-    /// on the widest instruction set of this machine.
+    /// Film without supports, gravity, numerical damping, mass damping or contact, at the default CFL
+    /// number, on the widest instruction set of this machine.
     pub fn free(pressure_load: PressureLoad, nodes: usize) -> Self {
         Self {
             pressure_load,

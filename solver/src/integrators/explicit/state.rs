@@ -66,7 +66,7 @@ pub struct Works {
     /// Energy lost in the material.
     pub material_loss: f64,
     /// Energy taken by numerical damping and by the time step; negative where they gave energy.
-    pub numerical: f64,
+    pub numerical_dissipation: f64,
     /// Energy dissipated by mass damping.
     pub damping: f64,
 }

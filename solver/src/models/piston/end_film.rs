@@ -16,7 +16,8 @@
 use std::f64::consts::PI;
 
 /// Damping ratio of the end film on the piston's effective mass. Chosen: a piston has one motion, and the
-/// energy that leaves it when the film snaps taut goes into waves of the film, which it does not have.
+/// energy that leaves it when the film snaps taut goes into waves of the film, which it does not have. The
+/// ledger counts what the damper takes as material loss.
 pub const END_DAMPING_RATIO: f64 = 0.1;
 
 /// Constants of the end film.

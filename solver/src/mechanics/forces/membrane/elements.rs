@@ -190,6 +190,7 @@ fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
         let twice_missed = contract(stress, last_strain) - contract(last_stress, strain);
         let work = contract(stress_step, strain_step).max(L::splat(f64::MIN_POSITIVE));
         let half = L::splat(0.5);
+        // κ, from −½ to ½: rounding alone takes the quotient out of these bounds.
         let share = (twice_missed * half).over(work);
         let share = -((-share.max(-half)).max(-half));
         let damping = load::<L>(&block.damping_time) * step.inverse;

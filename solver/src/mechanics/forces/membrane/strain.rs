@@ -24,14 +24,17 @@ fn gradient([p, q]: [Vector3<f64>; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> [Vect
 
 /// Green strain of an element with these edges (m) and this Dm⁻¹ (row by row, 1/m).
 pub(super) fn of_edges(edges: [Vector3<f64>; 2], inverse_shape: [[f64; 2]; 2]) -> PlaneTensor {
-    let [f, g] = gradient(edges, inverse_shape);
+    green_strain(gradient(edges, inverse_shape))
+}
+
+/// E = (`FᵀF` − 1)/2 of the columns of F.
+fn green_strain([f, g]: [Vector3<f64>; 2]) -> PlaneTensor {
     PlaneTensor { xx: (f.dot(&f) - 1.0) * 0.5, yy: (g.dot(&g) - 1.0) * 0.5, xy: f.dot(&g) * 0.5 }
 }
 
 /// Green strain of an element at these positions (m).
 pub fn strain(model: &FilmModel, positions: &Field, element: usize) -> PlaneTensor {
-    let [f, g] = deformation_gradient(model, positions, element);
-    PlaneTensor { xx: (f.dot(&f) - 1.0) * 0.5, yy: (g.dot(&g) - 1.0) * 0.5, xy: f.dot(&g) * 0.5 }
+    green_strain(deformation_gradient(model, positions, element))
 }
 
 /// Elastic energy Σ A t W of film without creep at these positions (m), J.
