@@ -36,8 +36,8 @@ fn interpolated_shapes_are_those_of_a_separate_search() {
         let found = ladder.at(overpressure, &mut go_on()).unwrap();
         let mut capsule = erected(InstructionSet::detect(), &scene).unwrap();
         let exact = capsule.settle(overpressure).unwrap();
-        assert!((found.volume / exact.volume - 1.0).abs() < 2e-3, "{overpressure}: {found:?}");
-        assert!((found.height / exact.z_rim - 1.0).abs() < 2e-3, "{overpressure}: {found:?}");
+        assert!((found.volume / exact.volume - 1.0).abs() < 1e-3, "{overpressure}: {found:?}");
+        assert!((found.height / exact.z_rim - 1.0).abs() < 1e-3, "{overpressure}: {found:?}");
     }
 }
 
