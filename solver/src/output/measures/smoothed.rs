@@ -5,7 +5,7 @@
 //! W = 5 (t_half − t_low)                   low: midway between the first height and the half
 //! ```
 //!
-//! Film rebounds several times on its way to its final height. Which rebound first reaches nine tenths
+//! Film rebounds several times before it rests at its final height. Which rebound first reaches nine tenths
 //! depends on small causes: the mesh, the seed, the time step. Its smoothed course passes the level once.
 //! The width W follows from the opening of the film, so it scales with the motion and does not depend on
 //! when the motion begins. A Hann window has no negative side lobes: no bounce is amplified. The series is
