@@ -17,8 +17,8 @@
 use nalgebra::Vector3;
 
 use super::newton::{
-    Equilibrium, IterationObserver, Loaded, StaticFailure, StaticFailureKind, Tolerances,
-    equilibrium, extent, tensile_stiffness,
+    Equilibrium, FIRST_SHIFT, IterationObserver, Loaded, StaticFailure, StaticFailureKind, System,
+    Tolerances, equilibrium_of, extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
 use crate::geometry::field::Field;
@@ -71,10 +71,16 @@ pub fn settle(
     let stages = stages(loaded, positions, from);
     let moves = !loaded.supports.movers.is_empty();
     let attempts = if moves { &MOTION_PARTS[..] } else { &MOTION_PARTS[..1] };
+    let mut system = System::new(loaded, positions);
     let mut last = None;
     for parts in attempts {
-        let mut continuation =
-            Continuation { loaded, tolerances, observer: &mut *observer, iterations: 0 };
+        let mut continuation = Continuation {
+            loaded,
+            system: &mut system,
+            tolerances,
+            observer: &mut *observer,
+            iterations: 0,
+        };
         match continuation.run(positions, &stages, *parts) {
             Ok(found) => return Ok(found),
             Err(failure) if failure.kind == StaticFailureKind::Stopped => return Err(failure),
@@ -134,6 +140,7 @@ fn fullness(model: &FilmModel, positions: &Field) -> f64 {
 /// A continuation in progress.
 struct Continuation<'a, 'b> {
     loaded: &'a Loaded<'a>,
+    system: &'a mut System,
     tolerances: &'a Tolerances,
     observer: IterationObserver<'b>,
     iterations: u32,
@@ -191,7 +198,14 @@ impl Continuation<'_, '_> {
         let mut model = self.loaded.model.clone();
         model.material.compression = stage.compression;
         let loaded = Loaded { model: &model, overpressure: stage.overpressure, ..*self.loaded };
-        let found = equilibrium(&loaded, positions, tolerances, &mut *self.observer);
+        let found = equilibrium_of(
+            self.system,
+            &loaded,
+            positions,
+            FIRST_SHIFT,
+            tolerances,
+            &mut *self.observer,
+        );
         self.iterations += match &found {
             Ok(found) => found.iterations,
             Err(failure) => failure.iterations,
