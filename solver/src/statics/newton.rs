@@ -125,8 +125,10 @@ pub struct Equilibrium {
 
 /// Lower bound of μ. It determines rigid motions and slack film. Chosen.
 const MIN_SHIFT: f64 = 1e-12;
-/// μ of the first step. Chosen.
+/// μ of the first step from any positions. Chosen.
 pub(super) const FIRST_SHIFT: f64 = 1e-7;
+/// μ of the first step from an equilibrium under another load. Chosen.
+pub(super) const NEAR_SHIFT: f64 = 1e-9;
 /// Upper bound of μ. With a larger one steps are too small to move anything. Chosen.
 const MAX_SHIFT: f64 = 1e4;
 /// Upper bound of μ at an equilibrium: with a larger μ a small step proves nothing. Chosen.
