@@ -8,8 +8,8 @@
 //!
 //! Slack or flat film of extent L converges fastest under a pressure p0 that makes it taut everywhere;
 //! the equilibrium then follows the pressure down to p. Film that starts full, near its shape, begins at
-//! a tenth of that pressure. From a known equilibrium the first attempt goes to p in one step; if it fails,
-//! pressures descend from there. At intermediate pressures film has a compression fraction `c_k` in proportion
+//! a tenth of that pressure. From there, and from a known equilibrium, the first attempt goes to a near p in
+//! one step; if it fails, pressures descend as above. At intermediate pressures film has a compression fraction `c_k` in proportion
 //! to the pressure, so that its shape hardly depends on it and each pressure needs few steps; the last
 //! step has the fraction of the film. Wrinkled film has many energy minima near each other. Descending
 //! pressures reach the minimum that continues the taut film, with its symmetry; a start at the final
@@ -49,6 +49,8 @@ const MAX_PRESSURE_RATIO: f64 = 4.0;
 const MAX_DIRECT_RATIO: f64 = 12.0;
 /// Upper bound of the number of Newton steps of an attempt in one step. Chosen.
 const DIRECT_ITERATIONS: u32 = 40;
+/// Upper bound of the number of Newton steps of a whole search. Chosen.
+const SEARCH_ITERATIONS: u32 = 2000;
 /// Number of parts of the motion of held nodes, one attempt after the other. Chosen.
 const MOTION_PARTS: [u32; 3] = [1, 4, 16];
 /// Steps of the relaxation after a failure of Newton's method. Chosen.
@@ -80,13 +82,13 @@ pub fn settle(
         observer,
         iterations: 0,
     };
-    if from.is_some_and(|from| from.abs() <= MAX_DIRECT_RATIO * loaded.overpressure.abs()) {
-        match continuation.direct(positions) {
+    let stages = stages(loaded, positions, from);
+    if let Some(first) = short_path(loaded, positions, from, stages[0]) {
+        match continuation.run_short(positions, first) {
             Err(failure) if failure.kind != StaticFailureKind::Stopped => {}
             ended => return ended,
         }
     }
-    let stages = stages(loaded, positions, from);
     let moves = !loaded.supports.movers.is_empty();
     let attempts = if moves { &MOTION_PARTS[..] } else { &MOTION_PARTS[..1] };
     let mut last = None;
@@ -139,6 +141,24 @@ fn stages(loaded: &Loaded<'_>, positions: &Field, from: Option<f64>) -> Vec<Stag
     all
 }
 
+/// The loads before the last of a path in one step: the first stage, or none from a known equilibrium.
+/// `None` if the pressure is too far away, or the film neither known nor full.
+fn short_path(
+    loaded: &Loaded<'_>,
+    positions: &Field,
+    from: Option<f64>,
+    first: Stage,
+) -> Option<Option<Stage>> {
+    let near = |pressure: f64| pressure.abs() <= MAX_DIRECT_RATIO * loaded.overpressure.abs();
+    match from {
+        Some(from) => near(from).then_some(None),
+        None => {
+            let full = fullness(loaded.model, positions) > MIN_FULLNESS;
+            (full && near(first.overpressure)).then_some(Some(first))
+        }
+    }
+}
+
 /// V/A^(3/2), A the film's area free of stress.
 fn fullness(model: &FilmModel, positions: &Field) -> f64 {
     let area: f64 = (0..model.elements())
@@ -157,10 +177,17 @@ struct Continuation<'a, 'b> {
 }
 
 impl Continuation<'_, '_> {
-    /// The equilibrium of the load asked for, in one step from a known equilibrium.
-    fn direct(&mut self, positions: &Field) -> Result<Equilibrium, StaticFailure> {
+    /// Moves held nodes, then takes the first load, if any, and in one step the load asked for.
+    fn run_short(
+        &mut self,
+        positions: &Field,
+        first: Option<Stage>,
+    ) -> Result<Equilibrium, StaticFailure> {
         let mut positions = positions.clone();
         move_held(self.loaded.supports, &mut positions, 1.0);
+        if let Some(first) = first {
+            positions = self.approach(positions, first, FIRST_SHIFT)?;
+        }
         let limit = self.tolerances.iterations.min(DIRECT_ITERATIONS);
         let tolerances = Tolerances { iterations: limit, ..*self.tolerances };
         let found = self.equilibrium(positions, self.final_load(), NEAR_SHIFT, &tolerances);
@@ -195,9 +222,7 @@ impl Continuation<'_, '_> {
         }
         let found = match self.equilibrium(positions, *last, shift, self.tolerances) {
             Err(failure) if !is_final(&failure) => match relaxed(self.loaded, &failure.positions) {
-                Some(positions) => {
-                    self.equilibrium(positions, *last, FIRST_SHIFT, self.tolerances)
-                }
+                Some(positions) => self.equilibrium(positions, *last, FIRST_SHIFT, self.tolerances),
                 None => Err(failure),
             },
             found => found,
@@ -242,6 +267,9 @@ impl Continuation<'_, '_> {
         let mut model = self.loaded.model.clone();
         model.material.compression = stage.compression;
         let loaded = Loaded { model: &model, overpressure: stage.overpressure, ..*self.loaded };
+        let remaining = SEARCH_ITERATIONS.saturating_sub(self.iterations);
+        let tolerances =
+            &Tolerances { iterations: tolerances.iterations.min(remaining), ..*tolerances };
         let found = equilibrium_of(
             &mut self.system,
             &loaded,

@@ -111,34 +111,49 @@ impl Assembly<'_> {
             let first = block * WIDTH;
             let columns = &complement[start..start + first + rows.len()];
             start += first + WIDTH;
-            // Only the lower triangle.
-            let first_lane = |column: usize| column.saturating_sub(first);
             let split = in_panel.min(columns.len());
             let mut targets = [(0, 0); WIDTH];
             for (target, row) in targets.iter_mut().zip(rows) {
                 *target = self.front.panel_row(*row as usize);
             }
-            for (column, lanes) in columns[..split].iter().enumerate() {
-                let into = in_parent[column] as usize;
-                for lane in first_lane(column)..rows.len() {
-                    let (group, place) = targets[lane];
-                    self.panel[group + into].0[place % WIDTH] += lanes.0[lane];
-                }
-            }
-            if split == columns.len() {
-                continue;
-            }
+            let (own, above) = columns.split_at(split);
+            add_block(self.panel, &targets, rows.len(), first, 0..split, own, |column| {
+                in_parent[column] as usize
+            });
             for (target, row) in targets.iter_mut().zip(rows) {
                 if let Some(above) = (*row as usize).checked_sub(pivots) {
                     *target = Front::complement_row(above);
                 }
             }
-            for (column, lanes) in columns.iter().enumerate().skip(split) {
-                let into = in_parent[column] as usize - pivots;
-                for lane in first_lane(column)..rows.len() {
-                    let (group, place) = targets[lane];
-                    self.complement[group + into].0[place % WIDTH] += lanes.0[lane];
-                }
+            let columns = split..columns.len();
+            add_block(self.complement, &targets, rows.len(), first, columns, above, |column| {
+                in_parent[column] as usize - pivots
+            });
+        }
+    }
+}
+
+/// Adds the lower triangle of some columns of a row block. `targets` says where each row begins in `into`,
+/// `place` which column of it a column goes to.
+fn add_block(
+    into: &mut [Lanes],
+    targets: &[(usize, usize); WIDTH],
+    rows: usize,
+    first_row: usize,
+    columns: core::ops::Range<usize>,
+    block: &[Lanes],
+    place: impl Fn(usize) -> usize,
+) {
+    for (column, lanes) in columns.zip(block) {
+        let at = place(column);
+        if rows == WIDTH && column <= first_row {
+            for (value, (group, lane)) in lanes.0.iter().zip(targets) {
+                into[group + at].0[lane % WIDTH] += value;
+            }
+        } else {
+            let first = column.saturating_sub(first_row);
+            for (value, (group, lane)) in lanes.0[..rows].iter().zip(targets).skip(first) {
+                into[group + at].0[lane % WIDTH] += value;
             }
         }
     }

@@ -77,22 +77,26 @@ pub struct Iteration {
 pub type IterationObserver<'a> = &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>;
 
 /// Why a search found no equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StaticFailureKind {
     /// It reached the limit of steps.
+    #[error("the search reached its limit of steps")]
     IterationLimit,
     /// No step lowers the residual, and the residual is not small.
+    #[error("no step lowers the residual")]
     Stalled,
     /// A force is not finite.
+    #[error("a force is not finite")]
     NotFinite,
     /// The observer ended the search.
+    #[error("the search was stopped")]
     Stopped,
 }
 
 /// A search that found no equilibrium.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "no static equilibrium ({kind:?}) after {iterations} Newton steps: residual {residual:e} of the load, \
+    "no static equilibrium found: {kind}, after {iterations} Newton steps, residual {residual:e} of the load, \
      largest at node {node}"
 )]
 pub struct StaticFailure {
@@ -189,8 +193,10 @@ impl System {
     fn assemble(&mut self, loaded: &Loaded<'_>, positions: &Field) {
         let Loaded { model, overpressure, .. } = *loaded;
         let film = (0..model.elements()).map(|element| {
-            tangent::elastic(model, positions, element)
-                + tangent::pressure(model.triangles[element], positions, overpressure)
+            let mut stiffness = tangent::elastic(model, positions, element);
+            let face = model.triangles[element];
+            tangent::add_pressure(&mut stiffness, face, positions, overpressure);
+            stiffness
         });
         let closure =
             model.closure.iter().map(|face| tangent::pressure(*face, positions, overpressure));
