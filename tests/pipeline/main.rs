@@ -29,3 +29,4 @@ mod status_why_show;
 mod study_files;
 mod support;
 mod validate;
+mod verdict;

@@ -12,6 +12,7 @@ use super::print::count;
 use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
 use crate::input::value::{Value, brief_number, json_value, short_number};
 use crate::job::Status;
+use crate::job::row::HEADLINE;
 
 /// Most characters in a line of medians.
 const MAX_LINE_WIDTH: usize = 120;
@@ -43,7 +44,8 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if !answer.effects.is_empty() {
         writeln!(
             out,
-            "  medians  t_90_z_rim (s), peak_vz (m/s) per value, all other parameters being equal"
+            "  medians  t_90_z_rim_since_release (s), peak_kinetic_energy (J) per value, all other \
+             parameters being equal"
         )?;
     }
     let names = answer.effects.iter().map(|effect| name(effect).chars().count());
@@ -59,18 +61,18 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(fastest) = &answer.fastest {
-        let value = format!("t_90_z_rim {} s", brief_number(fastest.value));
+        let value = format!("{} {} s", HEADLINE[0].name(), brief_number(fastest.value));
         writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
     }
-    let Some(hardest) = &answer.hardest else { return Ok(()) };
-    let mut value = format!("peak_vz {} m/s", brief_number(hardest.value));
-    let energy = answer.most_energy.as_ref();
-    if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
-        let _ = write!(value, ", peak_kinetic_energy {} J", brief_number(same.value));
+    let Some(energy) = &answer.most_energy else { return Ok(()) };
+    let mut value = format!("peak_kinetic_energy {} J", brief_number(energy.value));
+    let speed = answer.hardest.as_ref();
+    if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
+        let _ = write!(value, ", peak_vz {} m/s", brief_number(same.value));
     }
-    writeln!(out, "  hardest  {value}: {}", job_text(hardest))?;
-    if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
-        let value = format!("peak_kinetic_energy {} J", brief_number(other.value));
+    writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
+    if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
+        let value = format!("peak_vz {} m/s (noisy)", brief_number(other.value));
         writeln!(out, "           {value}: {}", job_text(other))?;
     }
     Ok(())
@@ -220,7 +222,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "question": answer.question,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
-        "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
+        "fastest": extreme_json(answer.fastest.as_ref(), HEADLINE[0].name()),
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
         "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),

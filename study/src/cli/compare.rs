@@ -22,7 +22,7 @@ use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
 /// Measures that a table compares by default.
-const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim", "peak_vz"];
+const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
 
 /// Arguments of `billow compare`.
 #[derive(Debug, clap::Args)]
@@ -35,8 +35,8 @@ pub struct Args {
     /// The value that the other values are compared with; with its unit, as in "1 g/s".
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub base: String,
-    /// Measures, comma-separated [default: `t_90_z_rim,peak_vz`; for csv and json all measures for
-    /// which smaller or larger is better].
+    /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy`; for csv and
+    /// json all measures for which smaller or larger is better].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub measures: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and M >= 3`.

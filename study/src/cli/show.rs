@@ -119,7 +119,8 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         let group_cells =
             cells.iter().filter(|(column, value)| column.group == group && **value != Value::Null);
         rows.extend(group_cells.map(|(column, value)| {
-            let (unit, meaning) = (text(column.unit), text(column.meaning));
+            let noisy = if column.id.is_noisy() { "noisy: " } else { "" };
+            let (unit, meaning) = (text(column.unit), text(&format!("{noisy}{}", column.meaning)));
             vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }

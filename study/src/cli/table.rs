@@ -12,15 +12,14 @@ use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
-/// Columns shown after the parameters by default, in this order, as far as they fit.
-const MAIN_COLUMNS: [ColumnId; 10] = [
+/// Columns shown after the parameters by default, in this order, as far as they fit. None is noisy.
+const MAIN_COLUMNS: [ColumnId; 9] = [
     ColumnId::Status,
     ColumnId::Verdict,
     ColumnId::T90ZRim,
-    ColumnId::PeakVz,
+    ColumnId::PeakKineticEnergy,
     ColumnId::FinalPressure,
     ColumnId::TDeployed,
-    ColumnId::PeakKineticEnergy,
     ColumnId::VolumeRatio,
     ColumnId::HeightRatio,
     ColumnId::Overshoot,
@@ -68,6 +67,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         .collect();
     print_rows(&names, &cells, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
+        if let Some(note) = noisy_note(&names) {
+            eprintln!("{note}");
+        }
         if rows.is_empty() && args.condition.is_some() {
             eprintln!(
                 "billow: no row fulfils --where; a number without a unit is SI, a unit is written as in \
@@ -77,6 +79,19 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         eprintln!("{}", legend(&columns, table.columns.len()));
     }
     Ok(())
+}
+
+/// A note when noisy measures are among the printed columns.
+fn noisy_note(names: &[&str]) -> Option<String> {
+    let noisy: Vec<&str> = names
+        .iter()
+        .copied()
+        .filter(|name| ColumnId::from_name(name).is_some_and(ColumnId::is_noisy))
+        .collect();
+    let measures = noisy.join(", ");
+    (!noisy.is_empty()).then(|| {
+        format!("note: noisy: {measures}; the seed alone changes them by more than 3 %, use several seeds")
+    })
 }
 
 /// Units of the printed columns, and the number of all columns.

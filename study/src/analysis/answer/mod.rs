@@ -7,12 +7,12 @@ use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::point::Point;
-use crate::job::row::{ColumnId, Counts};
+use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
 /// Measures whose medians are given: speed of the deployment, impact.
-pub const MEDIANS: [ColumnId; 2] = [ColumnId::T90ZRim, ColumnId::PeakVz];
+pub const MEDIANS: [ColumnId; 2] = HEADLINE;
 /// Values of a parameter whose effect is listed, at most. Chosen: more values need a chart.
 const MAX_VALUES: usize = 6;
 
@@ -23,7 +23,7 @@ pub struct Answer {
     pub question: String,
     /// Numbers of rows by how they ended.
     pub counts: Counts,
-    /// The done job with the smallest `t_90_z_rim`.
+    /// The done job with the smallest `t_90_z_rim_since_release`.
     pub fastest: Option<Extreme>,
     /// The done job with the largest `peak_vz`.
     pub hardest: Option<Extreme>,
@@ -114,7 +114,7 @@ impl Answer {
                 answer.counts.add(status, verdict, near);
             }
         }
-        answer.fastest = extreme(table, ColumnId::T90ZRim, |value, best| value < best);
+        answer.fastest = extreme(table, HEADLINE[0], |value, best| value < best);
         answer.hardest = extreme(table, ColumnId::PeakVz, |value, best| value > best);
         answer.most_energy =
             extreme(table, ColumnId::PeakKineticEnergy, |value, best| value > best);

@@ -34,8 +34,16 @@ fn table() -> Table {
                     )
                     .collect(),
             ),
-            column("t_90_z_rim", CellType::Number, numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.])),
-            column("peak_vz", CellType::Number, numbers(&[10., 20., 30., 40., 0., 5., 99., 5.])),
+            column(
+                "t_90_z_rim_since_release",
+                CellType::Number,
+                numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.]),
+            ),
+            column(
+                "peak_kinetic_energy",
+                CellType::Number,
+                numbers(&[10., 20., 30., 40., 0., 5., 99., 5.]),
+            ),
             column(
                 "ledger_residual",
                 CellType::Number,
@@ -61,7 +69,7 @@ fn only_done_jobs_enter_extremes_and_audit() {
     let fastest = answer.fastest.unwrap();
     assert_eq!((fastest.job.as_str(), fastest.value), ("b", 2.0));
     assert_eq!(fastest.parameters[0], ("flow".to_owned(), Value::Number(2.0)));
-    assert_eq!(answer.hardest.unwrap().job, "d");
+    assert_eq!(answer.most_energy.unwrap().job, "d");
     let trust = answer.trust.unwrap();
     assert_eq!((trust.jobs, trust.ledger_residual, trust.passages), (6, 3e-9, None));
     assert_eq!(trust.numerically_damped, 1, "failed jobs do not count");

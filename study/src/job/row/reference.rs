@@ -29,9 +29,10 @@ fn table_columns(page: &mut String) {
          The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
          called `<name>_resolved`. Any cell may be null. The column \"better\" says which side\n\
-         `billow compare` calls the better one.\n\n\
-         | name | type | unit | group | better | meaning |\n\
-         |---|---|---|---|---|---|\n",
+         `billow compare` calls the better one. A measure marked \"noisy\" changes by more than 3 % with the\n\
+         seed, the time step, the numerical damping or the contact distance: compare it over several seeds.\n\n\
+         | name | type | unit | group | better | noisy | meaning |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for column in COLUMNS {
         let better = match column.better {
@@ -41,11 +42,12 @@ fn table_columns(page: &mut String) {
         };
         let _ = writeln!(
             page,
-            "| `{}` | {} | {} | {} | {better} | {} |",
+            "| `{}` | {} | {} | {} | {better} | {} | {} |",
             column.name,
             column.cell_type.name(),
             column.unit,
             column.group.name(),
+            if column.id.is_noisy() { "noisy" } else { "" },
             column.meaning
         );
     }
