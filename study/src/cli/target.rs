@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::options::ResultsOption;
+use super::options::{ResultsOption, UnitsOption};
 use crate::input::expression::{Expression, Type, Variable};
 use crate::input::keys;
 use crate::input::units::Dimension;
@@ -37,11 +37,11 @@ pub struct Target {
 
 /// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
 /// stderr says when the given study file, with its overrides `set`, differs from the study of the
-/// results.
+/// results. The table is shown in the units of the given study file, or in those of the results.
 ///
 /// # Errors
-/// When there are no results, or their table cannot be read.
-pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
+/// When there are no results, or their table cannot be read; units that do not fit.
+pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, set)?);
     // A run that was stopped before it wrote its table has a plan and a journal.
     let table = if !results.table_path().exists() && results.owner()?.is_some() {
@@ -49,6 +49,7 @@ pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
     } else {
         results.read_table()?
     };
+    let mut display = results.display_units()?;
     if let Some(path) = given.study.as_deref().filter(|path| path.is_file()) {
         let study = Study::load(path, set)?;
         if !results.holds(&study.name, &study.resolved())? {
@@ -57,7 +58,9 @@ pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
                 path.display()
             );
         }
+        display = study.display_units().clone();
     }
+    let table = units.show(table, &display)?;
     Ok(Target { results, table })
 }
 

@@ -68,7 +68,14 @@ impl<'a> Stored<'a> {
 
     /// The table, built from plan and journal.
     pub fn table(&self) -> Table {
-        Table::build(&self.points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+        self.built(&self.points)
+    }
+
+    /// The table of these points, shown in the study's units.
+    fn built(&self, points: &[Point]) -> Table {
+        let unit = |name: &str| self.study.unit(name).to_owned();
+        let table = Table::build(points, &self.journal.records, &unit);
+        table.shown_in(self.study.display_units())
     }
 
     /// The table with one row per point of the grid, also for points that share a job.
@@ -84,7 +91,7 @@ impl<'a> Stored<'a> {
                 }
             }
         }
-        Table::build(&points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+        self.built(&points)
     }
 
     /// The planned point of a job.

@@ -17,6 +17,7 @@ mod range;
 mod resolve;
 mod strategy;
 mod target;
+mod units;
 mod variables;
 
 use std::path::Path;
@@ -25,12 +26,16 @@ use crate::input::keys::{KEYS, STUDY, position};
 use crate::input::overrides;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
+use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::platform::error::{InputError, Result as BillowResult};
 use base::Base;
 use grid::Grid;
 pub use limits::Limits;
 pub(crate) use point::StudyPoint;
+
+/// The key of the units in which quantities are shown. It changes no job.
+pub(crate) const UNITS: &str = "units";
 
 /// A validated study.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +46,8 @@ pub struct Study {
     pub question: String,
     /// Keys that the file gives by an old name.
     renamed: Vec<String>,
+    /// The units in which its quantities are shown.
+    units: DisplayUnits,
     base: Base,
     grid: Grid,
     points: Vec<StudyPoint>,
@@ -101,11 +108,12 @@ impl Study {
         let base = Base::read(&tree, &source)?;
         let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
         grid::refuse_varied(&grid, &source)?;
+        let units = units::read(&tree, &base, &source)?;
         let points = expand::points(&base, &grid, &source, limits)?;
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
-        Ok(Self { name, question, renamed, base, grid, points })
+        Ok(Self { name, question, renamed, units, base, grid, points })
     }
 
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
@@ -152,6 +160,12 @@ impl Study {
         column.map_or("", |column| column.target.key().unit())
     }
 
+    /// The units in which its parameters and measures are shown: those that the file writes, or asks for
+    /// under `units`.
+    pub fn display_units(&self) -> &DisplayUnits {
+        &self.units
+    }
+
     /// The resolved study: units converted, defaults written out, axes as lists. It is a study file
     /// itself: read again, it plans the same jobs in the same order, with the same order of
     /// parameters.
@@ -159,6 +173,12 @@ impl Study {
         let mut json = self.base.to_json();
         json["name"] = self.name.as_str().into();
         let mut json = Json::from(json);
+        let units = self.units.iter();
+        let units: Vec<(String, Json)> =
+            units.map(|(name, symbol)| (name.to_owned(), Json::Text(symbol.to_owned()))).collect();
+        if !units.is_empty() {
+            json.set(UNITS, Json::Object(units));
+        }
         if !self.grid.is_empty() {
             json.set("grid", self.grid.resolved());
         }

@@ -4,7 +4,14 @@ use super::*;
 use crate::job::row::CellType;
 
 fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column { name: name.to_owned(), cell_type, unit: String::new(), meaning: String::new(), cells }
+    Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: String::new(),
+        shown: crate::input::units::DisplayUnit::si(""),
+        meaning: String::new(),
+        cells,
+    }
 }
 
 /// Two flows, two residual masses, one combination infeasible, one job failed.

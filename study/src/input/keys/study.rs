@@ -38,6 +38,12 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
          from release to the end.",
     ),
     ("grid", "What varies: every combination of the axes, the first varying slowest."),
+    (
+        "units",
+        "Units in which tables, charts and answers show keys and columns, as in {\"mass_flow_rate\": \
+         \"g/s\", \"t_90_z_rim\": \"ms\"}. Default: the unit that this file writes for the key, SI for a \
+         column. Stored numbers, csv and json are SI.",
+    ),
 ];
 
 /// Largest whole number that every JSON reader keeps exactly, 2^53 − 1.
