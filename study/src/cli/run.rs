@@ -55,6 +55,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     memory::check(&args.study.display().to_string(), &study)?;
     let root = results_folder(&args.results, &study);
+    if !args.options.progress.quiet {
+        notes::print_warnings(&study);
+    }
     run_study(&study, &root, None, &args.options, out)
 }
 

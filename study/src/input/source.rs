@@ -1,5 +1,9 @@
 //! Where a value comes from, for errors: the file, or a `--set` flag.
 
+use std::cell::RefCell;
+use std::fmt::Write as _;
+
+use crate::input::plausible::Implausible;
 use crate::platform::error::InputError;
 
 /// The file and the flags that give the values of a study or a scene.
@@ -9,11 +13,55 @@ pub(crate) struct Source {
     pub file: String,
     /// Dotted keys, and the flag that sets each.
     pub sets: Vec<(String, String)>,
+    /// Warnings about values, in the order of reading.
+    warnings: RefCell<Vec<Warning>>,
+}
+
+/// A warning about the values of one place: a key, or all values of an axis.
+#[derive(Debug, Clone)]
+struct Warning {
+    /// The key, without the number of a value in a list.
+    place: String,
+    text: InputError,
+    /// Number of further values of this place with the same problem.
+    more: usize,
 }
 
 impl Source {
     pub fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), sets: Vec::new() }
+        Self { file: file.to_owned(), sets: Vec::new(), warnings: RefCell::default() }
+    }
+
+    /// Keeps a warning about a value that is read.
+    pub fn warn(&self, key: &str, value: &str, implausible: Implausible) {
+        let place = key.rsplit_once('[').filter(|(_, index)| index.ends_with(']'));
+        let place = place.map_or(key, |(place, _)| place);
+        let has_unit = |value: &str| value.starts_with('"');
+        let mut warnings = self.warnings.borrow_mut();
+        let known = warnings
+            .iter_mut()
+            .find(|known| known.place == place && has_unit(&known.text.value) == has_unit(value));
+        if let Some(known) = known {
+            known.more += 1;
+            return;
+        }
+        let mut text = self.error(key, value, implausible.problem, "");
+        text.hint = implausible.next;
+        warnings.push(Warning { place: place.to_owned(), text, more: 0 });
+    }
+
+    /// The warnings so far, one text each.
+    pub fn warnings(&self) -> Vec<String> {
+        let warnings = self.warnings.borrow();
+        let text = |warning: &Warning| {
+            let mut error = warning.text.clone();
+            if warning.more > 0 {
+                let values = if warning.more == 1 { "value" } else { "values" };
+                let _ = write!(error.value, " (and {} more {values} of this list)", warning.more);
+            }
+            format!("warning: {error}")
+        };
+        warnings.iter().map(text).collect()
     }
 
     /// An error about a key. It names the flag where a flag sets the key, the file otherwise.

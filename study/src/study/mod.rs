@@ -46,6 +46,8 @@ pub struct Study {
     pub question: String,
     /// Keys that the file gives by an old name.
     renamed: Vec<String>,
+    /// Warnings about its values.
+    warnings: Vec<String>,
     /// The units in which its quantities are shown.
     units: DisplayUnits,
     base: Base,
@@ -113,7 +115,8 @@ impl Study {
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
-        Ok(Self { name, question, renamed, units, base, grid, points })
+        let warnings = source.warnings();
+        Ok(Self { name, question, renamed, warnings, units, base, grid, points })
     }
 
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
@@ -183,6 +186,11 @@ impl Study {
             json.set("grid", self.grid.resolved());
         }
         json
+    }
+
+    /// Values that are probably mistaken: likely forgotten units.
+    pub(crate) fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// What a reader of the plan must know: keys given by an old name, and inflow windows that are ignored.

@@ -57,6 +57,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
         eprintln!("{}: {}", study.name, summary(&generation));
         print_progress_and_forecast(args, &study, &generation)?;
+        notes::print_warnings(&study);
         notes::print(&study);
     }
     Ok(())

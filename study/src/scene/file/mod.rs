@@ -166,6 +166,7 @@ impl SceneFile {
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &draft));
         let film = check_film(film, tree, &mut notes, &reader.source)?;
+        notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);
         Ok(Self {
             film,
