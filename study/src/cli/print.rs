@@ -261,8 +261,7 @@ mod tests {
         headings[2].unit = DisplayUnit::new("ms", "s").unwrap();
         let mut out = Vec::new();
         print_quantities(&headings, &rows(), Format::Table, &mut out).unwrap();
-        let expected =
-            " N  note         x\n              (ms)\n 6  a, \"b\"     300\n12  -          NaN\n";
+        let expected = " N  note       x\n            (ms)\n 6  a, \"b\"   300\n12  -        NaN\n";
         assert_eq!(String::from_utf8(out).unwrap(), expected);
         let mut out = Vec::new();
         print_quantities(&headings, &rows(), Format::Csv, &mut out).unwrap();

@@ -20,10 +20,12 @@ pub(crate) struct Source {
 /// A warning about the values of one place: a key, or all values of an axis.
 #[derive(Debug, Clone)]
 struct Warning {
-    /// The key, without the number of a value in a list.
+    /// What the warning is about, without the number of a value in a list.
     place: String,
+    /// What `more` counts: values of a list, or points.
+    noun: &'static str,
     text: InputError,
-    /// Number of further values of this place with the same problem.
+    /// Number of further ones with the same problem.
     more: usize,
 }
 
@@ -32,22 +34,36 @@ impl Source {
         Self { file: file.to_owned(), sets: Vec::new(), warnings: RefCell::default() }
     }
 
-    /// Keeps a warning about a value that is read.
+    /// Keeps a warning about a value that is read. Further values of a list are counted.
     pub fn warn(&self, key: &str, value: &str, implausible: Implausible) {
         let place = key.rsplit_once('[').filter(|(_, index)| index.ends_with(']'));
         let place = place.map_or(key, |(place, _)| place);
-        let has_unit = |value: &str| value.starts_with('"');
+        // A list may have numbers with and without a unit.
+        let kind = if value.starts_with('"') { "with a unit" } else { "" };
+        self.keep(format!("{place} {kind}"), "value of this list", key, value, implausible);
+    }
+
+    /// Keeps a warning about a point of the study. Further points are counted.
+    pub fn warn_point(&self, key: &str, value: &str, implausible: Implausible) {
+        self.keep(format!("point {key}"), "point", key, value, implausible);
+    }
+
+    fn keep(
+        &self,
+        place: String,
+        noun: &'static str,
+        key: &str,
+        value: &str,
+        implausible: Implausible,
+    ) {
         let mut warnings = self.warnings.borrow_mut();
-        let known = warnings
-            .iter_mut()
-            .find(|known| known.place == place && has_unit(&known.text.value) == has_unit(value));
-        if let Some(known) = known {
+        if let Some(known) = warnings.iter_mut().find(|known| known.place == place) {
             known.more += 1;
             return;
         }
         let mut text = self.error(key, value, implausible.problem, "");
         text.hint = implausible.next;
-        warnings.push(Warning { place: place.to_owned(), text, more: 0 });
+        warnings.push(Warning { place, noun, text, more: 0 });
     }
 
     /// The warnings so far, one text each.
@@ -56,8 +72,11 @@ impl Source {
         let text = |warning: &Warning| {
             let mut error = warning.text.clone();
             if warning.more > 0 {
-                let values = if warning.more == 1 { "value" } else { "values" };
-                let _ = write!(error.value, " (and {} more {values} of this list)", warning.more);
+                let noun = match warning.more {
+                    1 => warning.noun.to_owned(),
+                    _ => warning.noun.replacen("value", "values", 1).replacen("point", "points", 1),
+                };
+                let _ = write!(error.value, " (and {} more {noun})", warning.more);
             }
             format!("warning: {error}")
         };

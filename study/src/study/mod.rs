@@ -15,6 +15,7 @@ pub mod plan;
 mod point;
 mod range;
 mod resolve;
+mod schedule;
 mod strategy;
 mod target;
 mod units;
@@ -188,36 +189,14 @@ impl Study {
         json
     }
 
-    /// Values that are probably mistaken: likely forgotten units.
+    /// Values that are probably mistaken: likely forgotten units, and times that do not fit the run.
     pub(crate) fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// What a reader of the plan must know: keys given by an old name, and inflow windows that are ignored.
-    pub(crate) fn notes(&self) -> Vec<String> {
-        self.renamed.iter().cloned().chain(self.late_windows()).collect()
-    }
-
-    /// Inflow windows, or parts of them, that lie after the end of every run.
-    fn late_windows(&self) -> Vec<String> {
-        let ends = self.points.iter().map(|point| point.scene.solver.end_time);
-        let end = ends.fold(0.0, f64::max);
-        let late = |(name, strategy): (&String, &strategy::Strategy)| -> Vec<String> {
-            let note = |(index, window): (usize, strategy::Window)| {
-                let path = format!("strategies.{name}.inflow[{index}]");
-                if let Some(from) = window.from.filter(|from| *from >= end) {
-                    return Some(format!(
-                        "{path} begins at {from} s, after solver.end_time ({end} s): it is ignored"
-                    ));
-                }
-                let to = window.to.filter(|to| *to > end)?;
-                Some(format!(
-                    "{path} ends at {to} s: its part after solver.end_time ({end} s) is ignored"
-                ))
-            };
-            strategy.windows().enumerate().filter_map(note).collect()
-        };
-        self.base.strategies.iter().flat_map(late).collect()
+    /// What a reader of the plan must know: keys given by an old name.
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.renamed
     }
 
     /// The points that the filter keeps, in plan order.
