@@ -76,14 +76,34 @@ fn compare_pairs_rows_that_differ_in_one_parameter_only() {
 }
 
 #[test]
-fn a_job_shared_by_two_points_is_compared_at_both() {
+fn a_job_shared_by_two_points_has_both_rows() {
     // Without residual gas, burst and stored are the same job.
     let folder = TestFolder::new(&grid(&json!({
         "N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"],
         "residual_gas_mass": [0, "0.05 g"], "residual_gas": ["burst", "stored"]
     })));
-    folder.stdout(&["run", "grid.json", "-q"]);
-    assert_eq!(folder.rows("results/grid").len(), 3);
+    let said = folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(said.contains("deployed 3 of 3 jobs"), "counted once: {said}");
+    let rows = folder.rows("results/grid");
+    assert_eq!(rows.len(), 4, "one row per point");
+    assert_eq!(rows[0]["job"], rows[1]["job"]);
+    assert_eq!(rows[0]["same_job_as"], "residual_gas=stored");
+    assert_eq!(rows[1]["same_job_as"], "residual_gas=burst");
+    assert!(rows[2]["same_job_as"].is_null());
+    let found = folder.run(&["table", "--where", "residual_gas == 'stored'", "--columns", "job"]);
+    assert_eq!(String::from_utf8_lossy(&found.stdout).lines().count(), 3, "both points are found");
+    let short = &rows[0]["job"].as_str().unwrap()[..8];
+    let all = folder.run(&["table", "--columns", "job"]);
+    assert!(stderr(&all).contains("1 of these 4 rows are the same job as another row"));
+    let drawn = ["chart", "--jobs", short, "--measure", "peak_vz", "--over", "residual_gas"];
+    let chart = folder.stdout(&[&drawn[..], &["--out", "both.svg"]].concat());
+    assert!(chart.contains("both.svg"));
+    let svg = std::fs::read_to_string(folder.path().join("both.svg")).unwrap();
+    assert!(svg.contains("2 points") && svg.contains("stored"), "both points are drawn");
+    let histories = ["chart", "--history", "z_rim", "--jobs", short, "--out", "one.svg"];
+    folder.stdout(&histories);
+    let svg = std::fs::read_to_string(folder.path().join("one.svg")).unwrap();
+    assert!(svg.contains("1 point"), "one history per job");
     let pairs = json_of(&folder, &["compare", "--by", "residual_gas", "--base", "burst"]);
     assert_eq!(pairs.as_array().unwrap().len(), 2);
     assert_eq!(pairs[0]["base_job"], pairs[0]["other_job"]);

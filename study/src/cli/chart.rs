@@ -160,7 +160,11 @@ fn draw(
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
 ) -> Result<String> {
     match kind {
-        ChartKind::History(columns) => history::svg(source, columns, range, read),
+        ChartKind::History(columns) => {
+            // Points that are one job have one history.
+            let rows = source.table.one_row_per_job(&source.rows);
+            history::svg(&Source { rows, ..source.clone() }, columns, range, read)
+        }
         ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
         ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
     }

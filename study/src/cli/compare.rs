@@ -83,7 +83,7 @@ struct Comparison<'a> {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &[])?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
-    let table = stored.table_of_all_points();
+    let table = stored.table();
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let rows = filtered(&table, args.condition.as_deref())?;

@@ -8,7 +8,7 @@ use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, filtered, find};
 use crate::input::value::{Value, short_number};
-use crate::job::row::ColumnId;
+use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
@@ -75,6 +75,14 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             );
         }
         eprintln!("{}", legend(&columns, table.columns.len()));
+        let jobs = table.one_row_per_job(&rows).len();
+        if jobs < rows.len() {
+            eprintln!(
+                "note: {} of these {} rows are the same job as another row ({SAME_JOB_AS})",
+                rows.len() - jobs,
+                rows.len()
+            );
+        }
     }
     Ok(())
 }

@@ -232,7 +232,8 @@ fn variable_type(column: &Column) -> Type {
     }
 }
 
-/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given.
+/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given: every point of
+/// each job.
 ///
 /// # Errors
 /// A prefix of no job, or of several; the error gives the nearest ids.
@@ -247,14 +248,16 @@ pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
     for prefix in prefixes.iter().map(|prefix| prefix.trim()) {
         let found: Vec<usize> =
             (0..ids.len()).filter(|row| ids[*row].starts_with(prefix)).collect();
-        match found.as_slice() {
-            [row] if !rows.contains(row) => rows.push(*row),
-            [_] => {}
+        match table.one_row_per_job(&found).len() {
+            1 => {
+                let new: Vec<usize> = found.into_iter().filter(|row| !rows.contains(row)).collect();
+                rows.extend(new);
+            }
             several => {
-                let problem = if several.is_empty() {
+                let problem = if several == 0 {
                     "no job id starts with this".to_owned()
                 } else {
-                    format!("{} job ids start with this", several.len())
+                    format!("{several} job ids start with this")
                 };
                 let hint = "billow table --columns job,status lists them";
                 let allowed = nearest_ids(&ids, prefix);

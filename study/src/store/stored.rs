@@ -66,25 +66,9 @@ impl<'a> Stored<'a> {
             .unwrap_or_else(|| Cells::new(Status::Pending))
     }
 
-    /// The table, built from plan and journal.
+    /// The table, built from plan and journal: one row per point, also for points that share a job.
     pub fn table(&self) -> Table {
         Table::build(&self.points, &self.journal.records, &|name| self.study.unit(name).to_owned())
-    }
-
-    /// The table with one row per point of the grid, also for points that share a job.
-    pub fn table_of_all_points(&self) -> Table {
-        let mut points = Vec::with_capacity(self.points.len());
-        let mut seen: BTreeSet<String> = BTreeSet::new();
-        for point in &self.points {
-            for parameters in [&point.job.parameters].into_iter().chain(&point.merged) {
-                if seen.insert(format!("{parameters:?}")) {
-                    let mut point = point.clone();
-                    point.job.parameters.clone_from(parameters);
-                    points.push(point);
-                }
-            }
-        }
-        Table::build(&points, &self.journal.records, &|name| self.study.unit(name).to_owned())
     }
 
     /// The planned point of a job.

@@ -94,16 +94,15 @@ impl Answer {
         let mut answer = Self::of_jobs(&table);
         answer.question.clone_from(&stored.study.question);
         answer.largest_strain = largest_strain(stored);
-        answer.effects = effects(&stored.table_of_all_points(), &|parameter| {
-            stored.study.zipped_with(parameter)
-        });
+        answer.effects = effects(&table, &|parameter| stored.study.zipped_with(parameter));
         answer
     }
 
     /// The parts of the answer that need only the table.
     fn of_jobs(table: &Table) -> Self {
         let mut answer = Self::default();
-        let rows: Vec<usize> = (0..table.rows()).collect();
+        let all: Vec<usize> = (0..table.rows()).collect();
+        let rows = table.one_row_per_job(&all);
         for row in &rows {
             let verdict = match table.value(ColumnId::Verdict, *row) {
                 Some(Value::Text(verdict)) => verdict.as_str(),
@@ -114,20 +113,25 @@ impl Answer {
                 answer.counts.add(status, verdict, near);
             }
         }
-        answer.fastest = extreme(table, ColumnId::T90ZRim, |value, best| value < best);
-        answer.hardest = extreme(table, ColumnId::PeakVz, |value, best| value > best);
+        answer.fastest = extreme(table, &rows, ColumnId::T90ZRim, |value, best| value < best);
+        answer.hardest = extreme(table, &rows, ColumnId::PeakVz, |value, best| value > best);
         answer.most_energy =
-            extreme(table, ColumnId::PeakKineticEnergy, |value, best| value > best);
+            extreme(table, &rows, ColumnId::PeakKineticEnergy, |value, best| value > best);
         answer.trust = trust(table, &rows);
         answer
     }
 }
 
 /// The first done job with the best value of a measure.
-fn extreme(table: &Table, measure: ColumnId, better: fn(f64, f64) -> bool) -> Option<Extreme> {
+fn extreme(
+    table: &Table,
+    rows: &[usize],
+    measure: ColumnId,
+    better: fn(f64, f64) -> bool,
+) -> Option<Extreme> {
     let column = table.column(measure.name())?;
     let mut best: Option<(usize, f64)> = None;
-    for row in 0..table.rows() {
+    for row in rows.iter().copied() {
         let Some(value) = compare::measured(table, column, row) else { continue };
         if best.is_none_or(|(_, best)| better(value, best)) {
             best = Some((row, value));
@@ -135,7 +139,7 @@ fn extreme(table: &Table, measure: ColumnId, better: fn(f64, f64) -> bool) -> Op
     }
     let (row, value) = best?;
     let same = |other: f64| (other - value).abs() <= compare::DEFAULT_TIE * value.abs();
-    let measured = (0..table.rows()).filter_map(|row| compare::measured(table, column, row));
+    let measured = rows.iter().filter_map(|row| compare::measured(table, column, *row));
     let others = measured.filter(|other| same(*other)).count().saturating_sub(1);
     let parameters = table.parameters();
     Some(Extreme {

@@ -20,6 +20,12 @@ pub use renamed::{
     RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, current_column_name, hashed_column_name, note,
 };
 
+/// Name of the last column of the table, which lists the other points of a job.
+pub const SAME_JOB_AS: &str = "same_job_as";
+/// Meaning of that column, one line.
+pub const SAME_JOB_AS_MEANING: &str =
+    "other points of the study that are the same job: the parameters in which they differ";
+
 /// The cells of one row, in the order of [`COLUMNS`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {

@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use billow_solver::models::film::CONTACT_COLUMNS;
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
-use super::{BetterSide, COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS};
+use super::{
+    BetterSide, COLUMNS, CellType, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, SAME_JOB_AS,
+    SAME_JOB_AS_MEANING,
+};
 use crate::job::status::{RENAMED_STATUSES, Status};
 
 /// The text of the page, Markdown.
@@ -28,7 +31,8 @@ fn table_columns(page: &mut String) {
          `summary.parquet`, `billow table`, `billow show`, `billow chart --measure`.\n\n\
          The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
-         called `<name>_resolved`. Any cell may be null. The column \"better\" says which side\n\
+         called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
+         them. Any cell may be null. The column \"better\" says which side\n\
          `billow compare` calls the better one.\n\n\
          | name | type | unit | group | better | meaning |\n\
          |---|---|---|---|---|---|\n",
@@ -49,6 +53,8 @@ fn table_columns(page: &mut String) {
             column.meaning
         );
     }
+    let text = CellType::Text.name();
+    let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  | {SAME_JOB_AS_MEANING} |");
 }
 
 fn statuses(page: &mut String) {
