@@ -7,7 +7,7 @@ use super::options::{OutputOptions, QuietOption, SetOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
-use super::{Format, output_error};
+use super::{Format, best, output_error};
 use crate::chart::standard::{self, ChartKind};
 use crate::chart::{Source, history, map, over};
 use crate::input::value::Value;
@@ -96,7 +96,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             Err(error) => return Err(error),
         }
     }
-    print(&written, args.output.format(), out)
+    print(&written, args.output.format(), out)?;
+    if !args.quiet.quiet && args.output.format() == Format::Table {
+        best::print(&results, &table, &source.rows)?;
+    }
+    Ok(())
 }
 
 /// The rows that `--jobs` or `--where` choose.

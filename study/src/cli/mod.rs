@@ -13,6 +13,7 @@ use crate::platform::exit_code::{EXIT_CODES, Exit};
 
 mod answer;
 pub mod bench;
+mod best;
 mod chart;
 mod compare;
 mod completions;

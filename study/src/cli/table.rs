@@ -3,10 +3,10 @@
 use std::cmp::Ordering;
 use std::io::Write;
 
-use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::print_rows;
-use super::target::{self, StudyArgs, filtered, find};
+use super::target::{self, StudyArgs, Target, filtered, find};
+use super::{Format, best};
 use crate::input::value::{Value, short_number};
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::{Error, Result};
@@ -57,7 +57,7 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let table = target::open(&args.study, &args.set.set)?.table;
+    let Target { results, table } = target::open(&args.study, &args.set.set)?;
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = args.output.format();
     let columns = chosen(&table, &args.columns, format)?;
@@ -83,6 +83,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                 rows.len()
             );
         }
+        best::print(&results, &table, &rows)?;
     }
     Ok(())
 }

@@ -46,6 +46,15 @@ pub struct Study {
     points: Vec<StudyPoint>,
 }
 
+/// A parameter that changes together with another one on an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zipped {
+    /// Its name.
+    pub name: String,
+    /// The steps of the axis: value of the other parameter, value of this one.
+    pub steps: Vec<(Value, Value)>,
+}
+
 impl Study {
     /// Reads a study file, with `--set key=value` overrides applied to it.
     ///
@@ -119,13 +128,17 @@ impl Study {
     }
 
     /// Varied parameters on the same axis as this one, which change together with it.
-    pub fn zipped_with(&self, parameter: &str) -> Vec<String> {
-        let named = |column: &&usize| self.grid.columns[**column].name == parameter;
-        let axis =
-            self.grid.axes.iter().find(|axis| axis.columns.iter().any(|column| named(&column)));
-        let columns = axis.map(|axis| axis.columns.as_slice()).unwrap_or_default();
-        let others = columns.iter().filter(|column| !named(column));
-        others.map(|column| self.grid.columns[*column].name.clone()).collect()
+    pub fn zipped_with(&self, parameter: &str) -> Vec<Zipped> {
+        let named = |column: &usize| self.grid.columns[*column].name == parameter;
+        let axis = self.grid.axes.iter().find(|axis| axis.columns.iter().any(named));
+        let Some(axis) = axis else { return Vec::new() };
+        let by = axis.columns.iter().position(named).unwrap_or(0);
+        let others = axis.columns.iter().enumerate().filter(|(index, _)| *index != by);
+        let zipped = |(index, column): (usize, &usize)| Zipped {
+            name: self.grid.columns[*column].name.clone(),
+            steps: axis.rows.iter().map(|row| (row[by].clone(), row[index].clone())).collect(),
+        };
+        others.map(zipped).collect()
     }
 
     /// Reads a value of a varied parameter as a user writes it on a command line: a number (SI), a

@@ -33,9 +33,10 @@ fn table_columns(page: &mut String) {
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
          called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
          them. Any cell may be null. The column \"better\" says which side\n\
-         `billow compare` calls the better one.\n\n\
-         | name | type | unit | group | better | meaning |\n\
-         |---|---|---|---|---|---|\n",
+         `billow compare` calls the better one; \"signed\" marks values that can be negative or zero,\n\
+         which are compared by difference and not by ratio.\n\n\
+         | name | type | unit | group | better | signed | meaning |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for column in COLUMNS {
         let better = match column.better {
@@ -45,16 +46,17 @@ fn table_columns(page: &mut String) {
         };
         let _ = writeln!(
             page,
-            "| `{}` | {} | {} | {} | {better} | {} |",
+            "| `{}` | {} | {} | {} | {better} | {} | {} |",
             column.name,
             column.cell_type.name(),
             column.unit,
             column.group.name(),
+            if column.signed { "signed" } else { "" },
             column.meaning
         );
     }
     let text = CellType::Text.name();
-    let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  | {SAME_JOB_AS_MEANING} |");
+    let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");
 }
 
 fn statuses(page: &mut String) {

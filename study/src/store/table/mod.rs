@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use billow_solver::output::measures::Verdict;
+
 use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
@@ -105,6 +107,14 @@ impl Table {
     pub fn status(&self, row: usize) -> Option<Status> {
         match self.value(ColumnId::Status, row) {
             Some(Value::Text(name)) => Status::from_name(name),
+            _ => None,
+        }
+    }
+
+    /// Verdict of a row; `None` without one.
+    pub fn verdict(&self, row: usize) -> Option<Verdict> {
+        match self.value(ColumnId::Verdict, row) {
+            Some(Value::Text(name)) => Verdict::from_name(name),
             _ => None,
         }
     }
