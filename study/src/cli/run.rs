@@ -90,8 +90,7 @@ pub(super) fn run_study(
         progress::reporter(options.progress.loudness()).as_mut(),
     )?;
     let answer = Answer::of(&Stored::read(results)?);
-    print(&study.name, root, &summary, &answer, options.output.format(), out)
-        .map_err(output_error)?;
+    print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
     if !options.progress.quiet {
         notes::print(study);
     }
@@ -124,18 +123,20 @@ fn result(summary: &Summary, root: &Path) -> Result<()> {
 }
 
 fn print(
-    name: &str,
+    study: &Study,
     root: &Path,
     summary: &Summary,
     answer: &Answer,
     format: Format,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let counts = &summary.counts;
+    let (name, counts) = (&study.name, &summary.counts);
+    let points = count(study.points().len(), "point");
     if format == Format::Json {
         let mut json = serde_json::json!({
             "study": name,
             "results": root.display().to_string(),
+            "points": study.points().len(),
             "ran": summary.ran,
             "failed": counts.failed(),
             "status": counts.status,
@@ -150,11 +151,14 @@ fn print(
         }
         return writeln!(out, "{json}");
     }
-    if summary.ran == 0 && counts.of(Status::Pending) == 0 {
+    if counts.jobs() == 0 {
+        writeln!(out, "{name}: nothing to run, no fold pattern fits any of {points}")?;
+        let root = root.display();
+        writeln!(out, "  next     billow table {root} --columns job,reason,nearest")?;
+    } else if summary.ran == 0 && counts.of(Status::Pending) == 0 {
         writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
     } else {
-        let (ran, points) = (count(summary.ran, "job"), count(counts.rows(), "point"));
-        writeln!(out, "{name}: {ran} run, {points}")?;
+        writeln!(out, "{name}: {} run, {points}", count(summary.ran, "job"))?;
     }
     writeln!(out, "  status   {}", listed(&counts.status))?;
     if !counts.verdict.is_empty() {

@@ -103,7 +103,7 @@ impl<'a> Status<'a> {
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
             "running": self.health.running,
-            "points": counts.rows(),
+            "points": stored.study.points().len(),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
@@ -151,8 +151,13 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
+        let points = self.stored.study.points().len();
+        let duplicates = match points.saturating_sub(counts.rows()) {
+            0 => String::new(),
+            number => format!(", {}", count(number, "duplicate")),
+        };
         let mut lines =
-            vec![("points", format!("{}: {jobs}, {infeasible} infeasible", counts.rows()))];
+            vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
         let invalidated = match self.stored.journal.invalidated.len() {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),

@@ -44,6 +44,8 @@ pub struct Study {
     base: Base,
     grid: Grid,
     points: Vec<StudyPoint>,
+    /// Number of points of the product that the filter removed.
+    filtered: usize,
 }
 
 /// A parameter that changes together with another one on an axis.
@@ -110,11 +112,11 @@ impl Study {
         let base = Base::read(&tree, &source)?;
         let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
         grid::refuse_varied(&grid, &source)?;
-        let points = expand::points(&base, &grid, &source, limits)?;
+        let (points, filtered) = expand::points(&base, &grid, &source, limits)?;
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
-        Ok(Self { name, question, renamed, base, grid, points })
+        Ok(Self { name, question, renamed, base, grid, points, filtered })
     }
 
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
@@ -205,9 +207,15 @@ impl Study {
         self.base.strategies.iter().flat_map(late).collect()
     }
 
-    /// The points that the filter keeps, in plan order.
+    /// The points of the study, in plan order: those of the product that the filter keeps, and the single
+    /// points.
     pub(crate) fn points(&self) -> &[StudyPoint] {
         &self.points
+    }
+
+    /// Number of points of the product that the filter removed.
+    pub fn filtered(&self) -> usize {
+        self.filtered
     }
 }
 

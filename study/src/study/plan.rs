@@ -39,6 +39,39 @@ impl FinishedRow {
     }
 }
 
+/// Numbers of points and jobs of a plan: points = jobs + duplicates + infeasible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PlanCounts {
+    /// Points of the study, without the filtered ones.
+    pub points: usize,
+    /// Different scenes to run.
+    pub jobs: usize,
+    /// Points whose job another point has already.
+    pub duplicates: usize,
+    /// Points without a fold pattern.
+    pub infeasible: usize,
+    /// Points of the product that the filter removed.
+    pub filtered: usize,
+}
+
+impl PlanCounts {
+    /// Counts the points of a study and of its generation.
+    pub fn of(study: &Study, generation: &Generation) -> Self {
+        let (infeasible, feasible): (Vec<&Point>, Vec<&Point>) =
+            generation.points.iter().partition(|point| point.infeasible.is_some());
+        let number = |points: &[&Point]| -> usize {
+            points.iter().map(|point| 1 + point.merged.len()).sum()
+        };
+        Self {
+            points: study.points().len(),
+            jobs: feasible.len(),
+            duplicates: number(&feasible) - feasible.len(),
+            infeasible: number(&infeasible),
+            filtered: study.filtered(),
+        }
+    }
+}
+
 /// The next generation of a study; `None` when every job is finished. The same study and the same
 /// finished rows, in any order, give the same generation.
 ///
