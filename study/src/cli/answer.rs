@@ -121,12 +121,11 @@ pub fn shell_word(value: &Value) -> String {
 
 fn deployed(answer: &Answer) -> String {
     let counts = &answer.counts;
-    let with = |verdict: Verdict| counts.verdict.get(verdict.name()).copied().unwrap_or(0);
     let jobs = counts.jobs();
-    let mut text = format!("{} of {}", with(Verdict::Deployed), count(jobs, "job"));
+    let mut text = format!("{} of {}", counts.with(Verdict::Deployed), count(jobs, "job"));
     for (number, noun) in [
-        (with(Verdict::Partial), Verdict::Partial.name()),
-        (with(Verdict::Stalled), Verdict::Stalled.name()),
+        (counts.with(Verdict::Partial), Verdict::Partial.name()),
+        (counts.with(Verdict::Stalled), Verdict::Stalled.name()),
         (counts.failed(), "failed"),
         (counts.of(Status::Pending), Status::Pending.name()),
     ] {

@@ -6,8 +6,8 @@ use std::io::Write;
 use super::best;
 use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::{count, print_rows};
-use super::target::{self, StudyArgs, filtered, find, folder};
-use super::{Format, output_error};
+use super::target::{StudyArgs, filtered, find, folder};
+use super::{Format, changes, output_error};
 use crate::analysis::compare::{
     self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, ToleranceSource, measures_with,
     pairs_of_jobs,
@@ -89,7 +89,7 @@ struct Comparison<'a> {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &args.set.set)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
-    target::note_changes(&stored.results, &args.study, &args.set.set)?;
+    changes::note(&stored.results, &args.study, &args.set.set)?;
     let table = stored.table();
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::options::{OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption};
 use super::print::count;
 use super::target::results_folder;
-use super::{Format, memory, notes, output_error};
+use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
 use crate::job::references::References;
@@ -18,7 +18,7 @@ use crate::platform::stop::Stop;
 use crate::run::progress;
 use crate::run::runner::{self, Run, Summary};
 use crate::store::results::Results;
-use crate::store::stored::Stored;
+use crate::store::stored::{Stored, other_physics};
 use crate::study::Study;
 use crate::study::plan;
 
@@ -55,6 +55,15 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     memory::check(&args.study.display().to_string(), &study)?;
     let root = results_folder(&args.results, &study);
+    if !args.options.progress.quiet {
+        let results = Results::new(&Disk, &root);
+        changes::note_before_run(&results, &study)?;
+        let points = plan::next_jobs(&study, &[]).map(|plan| plan.points).unwrap_or_default();
+        let versions = other_physics(&points, &results.journal()?.records);
+        if let Some(note) = changes::other_physics(&versions) {
+            eprintln!("note: {note}");
+        }
+    }
     run_study(&study, &root, None, &args.options, out)
 }
 

@@ -1,8 +1,8 @@
 //! The results folder that a command reads, and the rows of its table.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::changes;
 use super::options::ResultsOption;
 use crate::input::expression::{Expression, Type, Variable};
 use crate::input::keys;
@@ -13,7 +13,6 @@ use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note
 use crate::job::status::RENAMED_STATUSES;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, Files};
-use crate::scene::summary;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
@@ -51,60 +50,9 @@ pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
     } else {
         results.read_table()?
     };
-    note_changes(&results, given, set)?;
+    changes::note(&results, given, set)?;
+    changes::note_other_physics(&table);
     Ok(Target { results, table })
-}
-
-/// Says on stderr in which keys the given study file, with its overrides `set`, differs from the study of
-/// the results.
-///
-/// # Errors
-/// An invalid study file; a study.json that cannot be read.
-pub fn note_changes(results: &Results<'_>, given: &StudyArgs, set: &[String]) -> Result<()> {
-    let Some(path) = given.study.as_deref().filter(|path| path.is_file()) else { return Ok(()) };
-    let study = Study::load(path, set)?;
-    if results.holds(&study.name, &study.resolved())? {
-        return Ok(());
-    }
-    let stored = Study::load(&results.study_path(), &[])?;
-    let changes = changes(&stored, &study).join(", ");
-    eprintln!(
-        "billow: {file} is not the study of these rows ({changes}): the last run had another file or \
-         --set; give the same --set, or `billow run {file}`: it keeps all finished jobs",
-        file = path.display()
-    );
-    Ok(())
-}
-
-/// The keys in which two studies differ, with both values: "film.thickness 2.54e-5 → 3e-5".
-pub fn changes(from: &Study, to: &Study) -> Vec<String> {
-    const MAX_SHOWN: usize = 4;
-    const GRID: &str = "grid";
-    let values = |study: &Study| -> BTreeMap<String, String> {
-        let mut json = serde_json::to_value(study.resolved()).unwrap_or_default();
-        // The grid is named as a whole.
-        let grid = json.as_object_mut().and_then(|keys| keys.remove("grid")).unwrap_or_default();
-        let rows = summary::rows(&json).into_iter();
-        rows.map(|row| (row[0].to_string(), row[1].to_string()))
-            .chain([(GRID.to_owned(), grid.to_string())])
-            .collect()
-    };
-    let (old, new) = (values(from), values(to));
-    let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
-    let differing = keys.into_iter().filter(|key| old.get(*key) != new.get(*key));
-    let shown = |value: Option<&String>| value.map_or_else(|| "none".to_owned(), String::clone);
-    let mut changes: Vec<String> = differing
-        .map(|key| match key.as_str() {
-            GRID => GRID.to_owned(),
-            _ => format!("{key} {} → {}", shown(old.get(key)), shown(new.get(key))),
-        })
-        .collect();
-    let more = changes.len().saturating_sub(MAX_SHOWN);
-    changes.truncate(MAX_SHOWN);
-    if more > 0 {
-        changes.push(format!("and {more} more"));
-    }
-    changes
 }
 
 /// The results folder: the given folder, or the folder of the given study file, or the only folder under

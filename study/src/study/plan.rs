@@ -6,8 +6,10 @@
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
+use billow_solver::output::measures::Verdict;
+
 use crate::job::point::Point;
-use crate::job::row::{Cells, ColumnId};
+use crate::job::row::Cells;
 use crate::job::{Job, JobId, Status};
 use crate::study::Study;
 
@@ -27,15 +29,14 @@ pub struct FinishedRow {
     pub id: JobId,
     /// Its status, as in the table.
     pub status: Status,
-    /// Its verdict, as in the table.
-    pub verdict: Option<String>,
+    /// Its verdict.
+    pub verdict: Option<Verdict>,
 }
 
 impl FinishedRow {
     /// The row of a job that ended with these cells.
     pub fn of(id: &JobId, cells: &Cells) -> Self {
-        let verdict = Some(cells.text(ColumnId::Verdict)).filter(|text| !text.is_empty());
-        Self { id: id.clone(), status: cells.status(), verdict: verdict.map(str::to_owned) }
+        Self { id: id.clone(), status: cells.status(), verdict: cells.verdict() }
     }
 }
 

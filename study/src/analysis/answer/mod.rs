@@ -75,10 +75,9 @@ impl Answer {
         let all: Vec<usize> = (0..table.rows()).collect();
         let rows = table.one_row_per_job(&all);
         for row in &rows {
-            let verdict = table.verdict(*row).map_or("", Verdict::name);
             let near = table.value(ColumnId::NearThreshold, *row) == Some(&Value::Bool(true));
             if let Some(status) = table.status(*row) {
-                answer.counts.add(status, verdict, near);
+                answer.counts.add(status, table.verdict(*row), near);
             }
         }
         let judged = rows.iter().any(|row| table.verdict(*row).is_some());

@@ -12,13 +12,14 @@ use forecast::forecast;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption};
 use super::print::{self, print_rows};
 use super::target::results_folder;
-use super::{Format, memory, notes, output_error};
+use super::{Format, changes, memory, notes, output_error};
 use crate::input::value::{Value, short_number};
 use crate::job::Parameters;
 use crate::job::point::Point;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::store::results::Results;
+use crate::store::stored::other_physics;
 use crate::study::Study;
 use crate::study::plan::{Generation, PlanCounts, next_jobs};
 
@@ -81,6 +82,9 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if !finished.is_empty() {
         let jobs = print::count(finished.len() + missing.len(), "job");
         eprintln!("{}: {} of {jobs} finished already", root.display(), finished.len());
+    }
+    if let Some(note) = changes::other_physics(&other_physics(&generation.points, &records)) {
+        eprintln!("{}: {note}", root.display());
     }
     if let Err(error) = memory::check(&args.study.display().to_string(), study) {
         eprintln!("{error}");

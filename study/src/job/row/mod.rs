@@ -1,5 +1,7 @@
 //! One row of the summary table: what a job was, how it ended, what it measured, what it took.
 
+use billow_solver::output::measures::Verdict;
+
 use crate::input::value::Value;
 use crate::job::executor::Outcome;
 use crate::job::point::Infeasible;
@@ -72,6 +74,11 @@ impl Cells {
     /// The text of that column, empty for a cell without one.
     pub fn text(&self, column: ColumnId) -> &str {
         if let Value::Text(text) = self.get(column) { text } else { "" }
+    }
+
+    /// The verdict; `None` for a row without one.
+    pub fn verdict(&self) -> Option<Verdict> {
+        Verdict::from_name(self.text(ColumnId::Verdict))
     }
 
     /// Sets a cell. The status is set by [`Self::new`] alone.
