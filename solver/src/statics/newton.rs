@@ -11,6 +11,7 @@
 //! alone. That is the slope of the energy, and it also exists without an energy (open film under a
 //! follower pressure). A step to a smaller slope lowers the energy.
 
+use core::fmt;
 use core::ops::ControlFlow;
 
 use nalgebra::Vector3;
@@ -89,10 +90,21 @@ pub enum StaticFailureKind {
     Stopped,
 }
 
+impl fmt::Display for StaticFailureKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::IterationLimit => "limit of steps reached",
+            Self::Stalled => "no step lowers the residual",
+            Self::NotFinite => "a force is not finite",
+            Self::Stopped => "stopped",
+        })
+    }
+}
+
 /// A search that found no equilibrium.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "no static equilibrium ({kind:?}) after {iterations} Newton steps: residual {residual:e} of the load, \
+    "no static equilibrium ({kind}) after {iterations} Newton steps: residual {residual:e} of the load, \
      largest at node {node}"
 )]
 pub struct StaticFailure {

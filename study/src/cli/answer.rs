@@ -8,13 +8,14 @@ use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::Verdict;
 use serde_json::{Map, json};
 
+use super::best::{self, MAX_LINE_WIDTH, MAX_VALUES};
 use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
+use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Extremes, HEADLINE, Trust};
 use crate::input::value::{Value, brief_number, json_value, short_number};
 use crate::job::Status;
 
-/// Most characters in a line of medians.
-const MAX_LINE_WIDTH: usize = 120;
+/// Characters before the text of a line: two spaces, the topic, a space.
+const TOPIC_WIDTH: usize = 11;
 
 /// Film stress over Young's modulus above which a note asks for a missing unit. Chosen: no film is linear
 /// up to there, and short peaks of film that is pulled taut reach half of it.
@@ -40,17 +41,31 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             brief_number(100.0 * answer.largest_strain)
         )?;
     }
-    if !answer.effects.is_empty() {
+    print_effects(&answer.effects, out)
+}
+
+/// The medians of each parameter, its best and worst values, and what is not compared.
+fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
+    if !effects.effects.is_empty() {
         writeln!(
             out,
             "  medians  t_90_z_rim (s), peak_vz (m/s) per value, all other parameters being equal"
         )?;
     }
-    let names = answer.effects.iter().map(|effect| name(effect).chars().count());
+    let names = effects.effects.iter().map(|effect| name(effect).chars().count());
     let indent = names.max().unwrap_or(0);
-    for effect in &answer.effects {
+    for effect in &effects.effects {
         for line in lines(effect, indent) {
             writeln!(out, "{line}")?;
+        }
+    }
+    for (topic, texts) in [("best", best::lines(effects)), ("left out", best::left_out(effects))] {
+        let mut topic = topic;
+        for text in &texts {
+            for line in best::wrapped(text, TOPIC_WIDTH) {
+                writeln!(out, "  {topic:<8} {line}")?;
+                topic = "";
+            }
         }
     }
     Ok(())
@@ -83,10 +98,10 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     writeln!(out, "           billow chart {root}")?;
     // Compare a named choice (a strategy) first, then a quantity with a unit.
     let first_with =
-        |unit: fn(&str) -> bool| answer.effects.iter().find(|effect| unit(&effect.unit));
+        |unit: fn(&str) -> bool| answer.effects.effects.iter().find(|effect| unit(&effect.unit));
     let effect = first_with(str::is_empty).or_else(|| first_with(|unit| unit != "1"));
-    if let Some(effect) = effect.or(answer.effects.first())
-        && let Some((base, _)) = effect.values.first()
+    if let Some(effect) = effect.or(answer.effects.effects.first())
+        && let Some(base) = effect.values.first()
     {
         let base = shell_word(base);
         writeln!(out, "           billow compare {root} --by {} --base {base}", effect.parameter)?;
@@ -106,12 +121,11 @@ pub fn shell_word(value: &Value) -> String {
 
 fn deployed(answer: &Answer) -> String {
     let counts = &answer.counts;
-    let with = |verdict: Verdict| counts.verdict.get(verdict.name()).copied().unwrap_or(0);
     let jobs = counts.jobs();
-    let mut text = format!("{} of {}", with(Verdict::Deployed), count(jobs, "job"));
+    let mut text = format!("{} of {}", counts.with(Verdict::Deployed), count(jobs, "job"));
     for (number, noun) in [
-        (with(Verdict::Partial), Verdict::Partial.name()),
-        (with(Verdict::Stalled), Verdict::Stalled.name()),
+        (counts.with(Verdict::Partial), Verdict::Partial.name()),
+        (counts.with(Verdict::Stalled), Verdict::Stalled.name()),
         (counts.failed(), "failed"),
         (counts.of(Status::Pending), Status::Pending.name()),
     ] {
@@ -183,24 +197,33 @@ fn name(effect: &Effect) -> String {
 
 /// One parameter: its values with both medians, on as many lines as needed.
 fn lines(effect: &Effect, indent: usize) -> Vec<String> {
+    let listed = effect.values.len() <= MAX_VALUES;
+    let median = |measure, index: usize| {
+        let effect = effect.measures.iter().find(|effect| effect.measure == measure);
+        effect.and_then(|effect| effect.medians[index])
+    };
     let mut parts: Vec<String> = effect
         .values
         .iter()
-        .map(|(value, medians)| {
-            let value = match value {
-                Value::Number(number) => short_number(*number),
-                other => other.to_string(),
-            };
-            let medians = medians.map(|median| median.map_or_else(|| "-".to_owned(), brief_number));
-            format!("{value}: {}", medians.join(", "))
+        .enumerate()
+        .filter(|(index, _)| listed && HEADLINE.iter().any(|id| median(*id, *index).is_some()))
+        .map(|(index, value)| {
+            let medians = HEADLINE
+                .map(|measure| median(measure, index).map_or_else(|| "-".to_owned(), brief_number));
+            format!("{}: {}", best::value_text(value, ""), medians.join(", "))
         })
         .collect();
+    if !listed {
+        let values = effect.values.len();
+        let name = &effect.parameter;
+        parts.push(format!("{values} values: billow chart --measure peak_vz --over {name}"));
+    }
     let with = if effect.carried.is_empty() {
         String::new()
     } else {
         format!(", {} with it", effect.carried.join(", "))
     };
-    parts.push(format!("({}{with})", count(effect.sets, "set")));
+    parts.push(format!("({}{with})", count(sets(effect), "set")));
     let mut lines = vec![format!("{:<indent$}", name(effect))];
     for part in parts {
         let length = lines.last().map_or(0, |line| line.chars().count());
@@ -214,6 +237,11 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     lines
 }
 
+/// Number of sets of the measure with the most.
+fn sets(effect: &Effect) -> usize {
+    effect.measures.iter().map(|measure| measure.sets).max().unwrap_or(0)
+}
+
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
     json!({
@@ -224,7 +252,10 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
         "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),
-        "medians": answer.effects.iter().map(effect_json).collect::<Vec<_>>(),
+        "medians": answer.effects.effects.iter().map(effect_json).collect::<Vec<_>>(),
+        "not_compared": answer.effects.not_compared.iter()
+            .map(|(parameter, reason)| json!({"parameter": parameter, "reason": reason}))
+            .collect::<Vec<_>>(),
     })
 }
 
@@ -258,19 +289,50 @@ fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
 }
 
 fn effect_json(effect: &Effect) -> serde_json::Value {
-    let values = effect.values.iter().map(|(value, medians)| {
+    let values = effect.values.iter().enumerate().map(|(index, value)| {
         let mut keys = Map::new();
         keys.insert("value".to_owned(), json_value(value));
-        for (measure, median) in MEDIANS.iter().zip(medians) {
-            keys.insert(measure.name().to_owned(), json!(median));
+        for measure in &effect.measures {
+            keys.insert(measure.measure.name().to_owned(), json!(measure.medians[index]));
         }
+        let (deployed, jobs) = effect.deployed[index];
+        keys.insert("deployed".to_owned(), deployed.into());
+        keys.insert("jobs".to_owned(), jobs.into());
         serde_json::Value::from(keys)
+    });
+    let listed = |indices: &[usize]| -> Vec<serde_json::Value> {
+        indices.iter().map(|index| json_value(&effect.values[*index])).collect()
+    };
+    let measures = effect.measures.iter().map(|measure| {
+        let mut keys = json!({
+            "measure": measure.measure.name(),
+            "sets": measure.sets,
+            "tolerance": measure.tolerance.limit,
+            "equal": measure.extremes == Extremes::Equal,
+        });
+        match &measure.extremes {
+            Extremes::Equal => {}
+            Extremes::Judged { best, worst } => {
+                keys["best"] = listed(best).into();
+                keys["worst"] = listed(worst).into();
+            }
+            Extremes::Range { lowest, highest } => {
+                keys["lowest"] = listed(lowest).into();
+                keys["highest"] = listed(highest).into();
+            }
+        }
+        keys
+    });
+    let left_out = effect.left_out.iter().map(|(value, measure, reason)| {
+        json!({"value": json_value(value), "measure": measure.name(), "reason": reason})
     });
     json!({
         "parameter": effect.parameter,
         "unit": effect.unit,
         "with_it": effect.carried,
-        "sets": effect.sets,
+        "sets": sets(effect),
         "values": values.collect::<Vec<_>>(),
+        "measures": measures.collect::<Vec<_>>(),
+        "left_out": left_out.collect::<Vec<_>>(),
     })
 }

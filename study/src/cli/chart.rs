@@ -7,7 +7,7 @@ use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
-use super::{Format, output_error};
+use super::{Format, best, output_error};
 use crate::chart::standard::{self, ChartKind};
 use crate::chart::{Source, history, map, over};
 use crate::input::value::Value;
@@ -98,7 +98,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             Err(error) => return Err(error),
         }
     }
-    print(&written, args.output.format(), out)
+    print(&written, args.output.format(), out)?;
+    if !args.quiet.quiet && args.output.format() == Format::Table {
+        best::print(&results, &table, &source.rows)?;
+    }
+    Ok(())
 }
 
 /// The rows that `--jobs` or `--where` choose.
@@ -162,7 +166,11 @@ fn draw(
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
 ) -> Result<String> {
     match kind {
-        ChartKind::History(columns) => history::svg(source, columns, range, read),
+        ChartKind::History(columns) => {
+            // Points that are one job have one history.
+            let rows = source.table.one_row_per_job(&source.rows);
+            history::svg(&Source { rows, ..source.clone() }, columns, range, read)
+        }
         ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
         ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
     }

@@ -3,12 +3,12 @@
 use std::cmp::Ordering;
 use std::io::Write;
 
-use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::print::{Heading, print_quantities};
-use super::target::{self, StudyArgs, filtered, find};
+use super::target::{self, StudyArgs, Target, filtered, find};
+use super::{Format, best};
 use crate::input::value::Value;
-use crate::job::row::ColumnId;
+use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
@@ -59,7 +59,7 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let table = target::open(&args.study, &args.set.set, &args.units)?.table;
+    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = args.output.format();
     let columns = chosen(&table, &args.columns, format)?;
@@ -77,6 +77,15 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             );
         }
         eprintln!("{} of {} columns (--columns all)", columns.len(), table.columns.len());
+        let jobs = table.one_row_per_job(&rows).len();
+        if jobs < rows.len() {
+            eprintln!(
+                "note: {} of these {} rows are the same job as another row ({SAME_JOB_AS})",
+                rows.len() - jobs,
+                rows.len()
+            );
+        }
+        best::print(&results, &table, &rows)?;
     }
     Ok(())
 }

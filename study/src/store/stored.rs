@@ -4,11 +4,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::point::Point;
-use crate::job::row::Cells;
+use crate::job::row::{Cells, ColumnId};
 use crate::job::{self, JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
+use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
@@ -66,7 +68,7 @@ impl<'a> Stored<'a> {
             .unwrap_or_else(|| Cells::new(Status::Pending))
     }
 
-    /// The table, built from plan and journal.
+    /// The table, built from plan and journal: one row per point, also for points that share a job.
     pub fn table(&self) -> Table {
         self.built(&self.points)
     }
@@ -76,22 +78,6 @@ impl<'a> Stored<'a> {
         let unit = |name: &str| self.study.unit(name).to_owned();
         let table = Table::build(points, &self.journal.records, &unit);
         table.shown_in(self.study.display_units())
-    }
-
-    /// The table with one row per point of the grid, also for points that share a job.
-    pub fn table_of_all_points(&self) -> Table {
-        let mut points = Vec::with_capacity(self.points.len());
-        let mut seen: BTreeSet<String> = BTreeSet::new();
-        for point in &self.points {
-            for parameters in [&point.job.parameters].into_iter().chain(&point.merged) {
-                if seen.insert(format!("{parameters:?}")) {
-                    let mut point = point.clone();
-                    point.job.parameters.clone_from(parameters);
-                    points.push(point);
-                }
-            }
-        }
-        self.built(&points)
     }
 
     /// The planned point of a job.
@@ -181,6 +167,21 @@ impl<'a> Stored<'a> {
     }
 }
 
+/// Numbers of finished jobs of other versions of the physics, by version. A planned job does not count,
+/// whatever version its record has.
+pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTreeMap<i64, usize> {
+    let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
+    let mut versions = BTreeMap::new();
+    for record in records.values().filter(|record| !planned.contains(&record.job)) {
+        if let Value::Integer(version) = record.cells.get(ColumnId::PhysicsVersion)
+            && *version != i64::from(PHYSICS_VERSION)
+        {
+            *versions.entry(*version).or_default() += 1;
+        }
+    }
+    versions
+}
+
 /// Every point that the study plans with these finished jobs: generation after generation, as in a
 /// run.
 pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
@@ -199,4 +200,27 @@ pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
         finished = points.iter().filter_map(row).collect();
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::fixture;
+
+    #[test]
+    fn unplanned_jobs_of_another_physics_version_are_counted() {
+        let all = fixture::generation(5).points;
+        let mut records = BTreeMap::new();
+        for (number, point) in all.iter().enumerate() {
+            let mut cells = Cells::new(Status::Done);
+            let version = i64::from(PHYSICS_VERSION) - i64::from(number != 4);
+            cells.set(ColumnId::PhysicsVersion, version);
+            let record = Record { job: point.job.id.clone(), cells, file_hash: None };
+            records.insert(record.job.clone(), record);
+        }
+        // Jobs 0 and 1 are planned, job 4 is of the version of today.
+        let old = i64::from(PHYSICS_VERSION) - 1;
+        assert_eq!(other_physics(&all[..2], &records), [(old, 2)].into());
+        assert!(other_physics(&all, &records).is_empty());
+    }
 }

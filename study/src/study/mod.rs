@@ -54,6 +54,17 @@ pub struct Study {
     base: Base,
     grid: Grid,
     points: Vec<StudyPoint>,
+    /// Number of points of the product that the filter removed.
+    filtered: usize,
+}
+
+/// A parameter that changes together with another one on an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zipped {
+    /// Its name.
+    pub name: String,
+    /// The steps of the axis: value of the other parameter, value of this one.
+    pub steps: Vec<(Value, Value)>,
 }
 
 impl Study {
@@ -112,12 +123,12 @@ impl Study {
         let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
         grid::refuse_varied(&grid, &source)?;
         let units = units::read(&tree, &base, &source)?;
-        let points = expand::points(&base, &grid, &source, limits)?;
+        let (points, filtered) = expand::points(&base, &grid, &source, limits)?;
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
         let warnings = source.warnings();
-        Ok(Self { name, question, renamed, warnings, units, base, grid, points })
+        Ok(Self { name, question, renamed, warnings, units, base, grid, points, filtered })
     }
 
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
@@ -131,13 +142,17 @@ impl Study {
     }
 
     /// Varied parameters on the same axis as this one, which change together with it.
-    pub fn zipped_with(&self, parameter: &str) -> Vec<String> {
-        let named = |column: &&usize| self.grid.columns[**column].name == parameter;
-        let axis =
-            self.grid.axes.iter().find(|axis| axis.columns.iter().any(|column| named(&column)));
-        let columns = axis.map(|axis| axis.columns.as_slice()).unwrap_or_default();
-        let others = columns.iter().filter(|column| !named(column));
-        others.map(|column| self.grid.columns[*column].name.clone()).collect()
+    pub fn zipped_with(&self, parameter: &str) -> Vec<Zipped> {
+        let named = |column: &usize| self.grid.columns[*column].name == parameter;
+        let axis = self.grid.axes.iter().find(|axis| axis.columns.iter().any(named));
+        let Some(axis) = axis else { return Vec::new() };
+        let by = axis.columns.iter().position(named).unwrap_or(0);
+        let others = axis.columns.iter().enumerate().filter(|(index, _)| *index != by);
+        let zipped = |(index, column): (usize, &usize)| Zipped {
+            name: self.grid.columns[*column].name.clone(),
+            steps: axis.rows.iter().map(|row| (row[by].clone(), row[index].clone())).collect(),
+        };
+        others.map(zipped).collect()
     }
 
     /// Reads a value of a varied parameter as a user writes it on a command line: a number (SI), a
@@ -199,9 +214,15 @@ impl Study {
         &self.renamed
     }
 
-    /// The points that the filter keeps, in plan order.
+    /// The points of the study, in plan order: those of the product that the filter keeps, and the single
+    /// points.
     pub(crate) fn points(&self) -> &[StudyPoint] {
         &self.points
+    }
+
+    /// Number of points of the product that the filter removed.
+    pub fn filtered(&self) -> usize {
+        self.filtered
     }
 }
 

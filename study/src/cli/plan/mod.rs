@@ -1,7 +1,6 @@
 //! `billow plan`: lists the jobs of a study.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -11,9 +10,9 @@ mod lengths;
 use forecast::forecast;
 
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
-use super::print::{self, Heading, print_quantities};
+use super::print::{self, Heading, print_quantities, print_rows};
 use super::target::results_folder;
-use super::{Format, memory, notes};
+use super::{Format, changes, memory, notes, output_error};
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::Parameters;
@@ -21,8 +20,9 @@ use crate::job::point::Point;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::store::results::Results;
+use crate::store::stored::other_physics;
 use crate::study::Study;
-use crate::study::plan::{Generation, next_jobs};
+use crate::study::plan::{Generation, PlanCounts, next_jobs};
 
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]
@@ -36,6 +36,9 @@ pub struct Args {
     units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
+    /// Print only the numbers of points and jobs.
+    #[arg(long)]
+    summary: bool,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -50,6 +53,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
     let format = args.output.format();
+    let counts = PlanCounts::of(&study, &generation);
+    if args.summary {
+        return print_summary(&counts, format, out);
+    }
     let units = args.units.apply(study.display_units(), &|name| si_unit(&study, name))?;
     let rows: Vec<Vec<Value>> = generation
         .points
@@ -58,7 +65,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         .collect();
     print_quantities(&headings(&study, &units), &rows, format, out)?;
     if !args.quiet.quiet {
-        eprintln!("{}: {}", study.name, summary(&generation));
+        eprintln!("{}: {}", study.name, summary(&counts));
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print_warnings(&study);
         notes::print(&study);
@@ -79,6 +86,9 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if !finished.is_empty() {
         let jobs = print::count(finished.len() + missing.len(), "job");
         eprintln!("{}: {} of {jobs} finished already", root.display(), finished.len());
+    }
+    if let Some(note) = changes::other_physics(&other_physics(&generation.points, &records)) {
+        eprintln!("{}: {note}", root.display());
     }
     if let Err(error) = memory::check(&args.study.display().to_string(), study) {
         eprintln!("{error}");
@@ -182,19 +192,37 @@ fn note(merged: &[Parameters], unit: &dyn Fn(&str) -> DisplayUnit) -> String {
     format!("same job as {}", texts.join("; "))
 }
 
-fn summary(generation: &Generation) -> String {
-    let count = |number: usize, singular: &str, plural: &str| {
-        format!("{number} {}", if number == 1 { singular } else { plural })
-    };
-    let points = &generation.points;
-    let infeasible = points.iter().filter(|point| point.infeasible.is_some()).count();
-    let merged: usize = points.iter().map(|point| point.merged.len()).sum();
-    let mut text = count(points.len() - infeasible, "job", "jobs");
-    if infeasible > 0 {
-        let _ = write!(text, ", {}", count(infeasible, "infeasible point", "infeasible points"));
+/// The numbers of points and jobs, as one line.
+fn summary(counts: &PlanCounts) -> String {
+    format!(
+        "{}: {}, {}, {} infeasible; {} filtered out",
+        print::count(counts.points, "point"),
+        print::count(counts.jobs, "job"),
+        print::count(counts.duplicates, "duplicate"),
+        counts.infeasible,
+        counts.filtered
+    )
+}
+
+/// The numbers of points and jobs, one row each; an object in JSON.
+fn print_summary(counts: &PlanCounts, format: Format, out: &mut dyn Write) -> Result<()> {
+    let numbers = [
+        ("points", counts.points),
+        ("jobs", counts.jobs),
+        ("duplicates", counts.duplicates),
+        ("infeasible", counts.infeasible),
+        ("filtered", counts.filtered),
+    ];
+    if format == Format::Json {
+        let object: serde_json::Map<_, _> =
+            numbers.map(|(name, number)| (name.to_owned(), number.into())).into_iter().collect();
+        return writeln!(out, "{}", serde_json::Value::from(object)).map_err(output_error);
     }
-    if merged > 0 {
-        let _ = write!(text, ", {}", count(merged, "point merged", "points merged"));
-    }
-    text
+    let rows = numbers.map(|(name, number)| {
+        vec![
+            Value::Text(name.to_owned()),
+            Value::Integer(i64::try_from(number).unwrap_or(i64::MAX)),
+        ]
+    });
+    print_rows(&["quantity", "number"], &rows, format, out)
 }

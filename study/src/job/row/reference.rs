@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use billow_solver::models::film::CONTACT_COLUMNS;
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
-use super::{BetterSide, COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS};
+use super::{
+    BetterSide, COLUMNS, CellType, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, SAME_JOB_AS,
+    SAME_JOB_AS_MEANING,
+};
 use crate::job::status::{RENAMED_STATUSES, Status};
 
 /// The text of the page, Markdown.
@@ -28,10 +31,12 @@ fn table_columns(page: &mut String) {
          `summary.parquet`, `billow table`, `billow show`, `billow chart --measure`.\n\n\
          The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
-         called `<name>_resolved`. Any cell may be null. The column \"better\" says which side\n\
-         `billow compare` calls the better one.\n\n\
-         | name | type | unit | group | better | meaning |\n\
-         |---|---|---|---|---|---|\n",
+         called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
+         them. Any cell may be null. The column \"better\" says which side\n\
+         `billow compare` calls the better one; \"signed\" marks values that can be negative or zero,\n\
+         which are compared by difference and not by ratio.\n\n\
+         | name | type | unit | group | better | signed | meaning |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for column in COLUMNS {
         let better = match column.better {
@@ -41,14 +46,17 @@ fn table_columns(page: &mut String) {
         };
         let _ = writeln!(
             page,
-            "| `{}` | {} | {} | {} | {better} | {} |",
+            "| `{}` | {} | {} | {} | {better} | {} | {} |",
             column.name,
             column.cell_type.name(),
             column.unit,
             column.group.name(),
+            if column.signed { "signed" } else { "" },
             column.meaning
         );
     }
+    let text = CellType::Text.name();
+    let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");
 }
 
 fn statuses(page: &mut String) {
