@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::Write;
 
 use super::best;
-use super::options::{OutputOptions, QuietOption, SetOption};
-use super::print::{count, print_rows};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
+use super::print::{Heading, count, print_quantities};
 use super::target::{StudyArgs, filtered, find, folder};
 use super::{Format, changes, output_error};
 use crate::analysis::compare::{
@@ -13,10 +13,10 @@ use crate::analysis::compare::{
     pairs_of_jobs,
 };
 use crate::input::keys;
-use crate::input::units::{self, Dimension};
+use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::row::BetterSide;
-use crate::job::{self, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
 use crate::store::results::Results;
@@ -51,6 +51,8 @@ pub struct Args {
     /// Print only the summary: one row per value and measure.
     #[arg(long)]
     pub summary: bool,
+    #[command(flatten)]
+    units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
     #[command(flatten)]
@@ -90,7 +92,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &args.set.set)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     changes::note(&stored.results, &args.study, &args.set.set)?;
-    let table = stored.table();
+    let table = args.units.show(stored.table(), stored.study.display_units())?;
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let rows = filtered(&table, args.condition.as_deref())?;
@@ -147,9 +149,7 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
             })
     });
     found.cloned().ok_or_else(|| {
-        let unit = if matches!(by.unit.as_str(), "" | "1") { "" } else { &by.unit };
-        let values: Vec<String> =
-            values.iter().map(|value| format!("{value} {unit}").trim_end().to_owned()).collect();
+        let values: Vec<String> = values.iter().map(|value| by.shown.quantity(value)).collect();
         let problem = format!("not a value of {} in this study", by.name);
         Error::invalid_option("--base", text, problem, values.join(", "), "")
     })
@@ -201,19 +201,29 @@ impl Comparison<'_> {
             (true, false) => &["status"],
             (false, _) => &["job", "status", "verdict"],
         };
-        let mut columns: Vec<String> = self.sets.matched.clone();
-        columns.push(self.by.name.clone());
-        columns.extend(self.sets.carried.iter().cloned());
+        let parameters = self.sets.matched.iter().chain([&self.by.name]).chain(&self.sets.carried);
+        let mut columns: Vec<Heading> = parameters
+            .map(|name| {
+                let shown = self.table.column(name).map(|column| column.shown.clone());
+                Heading { name: name.clone(), unit: shown.unwrap_or_else(|| DisplayUnit::si("")) }
+            })
+            .collect();
         let sides = |name: &&str| [format!("base_{name}"), format!("other_{name}")];
-        columns.extend(outcome.iter().flat_map(sides));
+        columns.extend(outcome.iter().flat_map(sides).map(Heading::plain));
         for measure in &self.measures {
-            let figures = Self::figures(measure, brief);
-            columns
-                .extend(figures.iter().map(|figure| format!("{}_{figure}", measure.column.name)));
+            let shown = &measure.column.shown;
+            columns.extend(Self::figures(measure, brief).iter().map(|figure| Heading {
+                name: format!("{}_{figure}", measure.column.name),
+                unit: match *figure {
+                    "base" | "other" => shown.clone(),
+                    "difference" => shown.of_difference(),
+                    _ => DisplayUnit::si(""),
+                },
+            }));
         }
         let rows: Vec<Vec<Value>> =
             self.pairs.iter().map(|pair| self.row(*pair, outcome, brief)).collect();
-        print_rows(&columns, &rows, format, out)
+        print_quantities(&columns, &rows, format, out)
     }
 
     /// The figures of a measure. A table has the ratio, or the difference of a signed measure.
@@ -265,36 +275,47 @@ impl Comparison<'_> {
         } else {
             &[]
         };
-        let columns: Vec<&str> = [self.by.name.as_str(), "measure", "pairs"]
-            .into_iter()
+        let by = Heading { name: self.by.name.clone(), unit: self.by.shown.clone() };
+        let others = ["measure", "pairs"].into_iter();
+        let others = others
             .chain(outcomes.iter().map(|(name, _)| *name))
             .chain(["median_ratio", "least_ratio", "largest_ratio"])
-            .chain(differences.iter().copied())
-            .collect();
+            .chain(differences.iter().copied());
+        let columns: Vec<Heading> = [by].into_iter().chain(others.map(Heading::plain)).collect();
+        // Rows of the differences have the units of different measures, so a cell says its own.
+        let in_unit = |measure: &str, value: f64| {
+            let shown = self.measures.iter().find(|known| known.column.name == measure);
+            let unit = shown.map(|known| known.column.shown.of_difference());
+            match unit.filter(|_| format == Format::Table) {
+                Some(unit) => Value::Text(unit.brief(value)),
+                None => Value::Number(value),
+            }
+        };
         let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
         let row = |tally: &Tally| {
             let mut row = vec![tally.value.clone(), Value::Text(tally.measure.clone())];
             row.push(number(tally.pairs()));
             row.extend(outcomes.iter().map(|(_, outcome)| number(tally.count(*outcome))));
-            for spread in [tally.ratio, tally.difference].into_iter().take(1 + differences.len()) {
-                row.extend(spread.map_or([const { Value::Null }; 3], |spread| {
-                    [spread.median, spread.least, spread.largest].map(Value::Number)
+            row.extend(tally.ratio.map_or([const { Value::Null }; 3], |spread| {
+                [spread.median, spread.least, spread.largest].map(Value::Number)
+            }));
+            if with_differences {
+                row.extend(tally.difference.map_or([const { Value::Null }; 3], |spread| {
+                    [spread.median, spread.least, spread.largest]
+                        .map(|value| in_unit(&tally.measure, value))
                 }));
             }
             row
         };
         let rows: Vec<Vec<Value>> = tallies.iter().map(row).collect();
-        print_rows(&columns, &rows, format, out)
+        print_quantities(&columns, &rows, format, out)
     }
 
     /// Prints, on stderr, which value is the base, which ratios are better, and what is not compared.
     fn print_notes(&self, base: &Value, alone: &[usize]) {
         let by = &self.by.name;
-        let unit = match base {
-            Value::Number(_) if self.by.unit != "1" => format!(" {}", self.by.unit),
-            _ => String::new(),
-        };
-        let mut text = format!("base: {by} = {base}{unit}; ratio: other / base");
+        let base = self.by.shown.quantity(base);
+        let mut text = format!("base: {by} = {base}; ratio: other / base");
         for (noun, side) in [("smaller", BetterSide::Smaller), ("larger", BetterSide::Larger)] {
             let measures = self.measures.iter().filter(|measure| measure.side() == side);
             let names: Vec<&str> = measures.map(|measure| measure.column.name.as_str()).collect();
@@ -339,7 +360,12 @@ impl Comparison<'_> {
         const MAX_SHOWN: usize = 3;
         let label = |row: &usize| {
             let parameters = self.table.parameters();
-            job::label(&parameters.map(|c| (c.name.clone(), c.cells[*row].clone())).collect())
+            let texts: Vec<String> = parameters
+                .map(|column| {
+                    format!("{}={}", column.name, column.shown.quantity(&column.cells[*row]))
+                })
+                .collect();
+            texts.join(", ")
         };
         let mut labels: Vec<String> = rows.iter().take(MAX_SHOWN).map(label).collect();
         if rows.len() > MAX_SHOWN {

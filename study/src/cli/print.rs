@@ -5,7 +5,7 @@ use std::io::{self, IsTerminal, Write};
 
 use super::{Format, output_error};
 use crate::input::units::DisplayUnit;
-use crate::input::value::{Value, brief_number, json_value, short_number};
+use crate::input::value::{Value, brief_number, json_value};
 use crate::platform::error::Result;
 
 /// A column of a list: its name, and the unit in which a table shows its numbers.
@@ -163,11 +163,10 @@ fn aligned(
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
-        Value::Number(number) => short_number(*number),
         Value::Text(text) => {
             text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>()
         }
-        other => other.to_string(),
+        other => other.short(),
     }
 }
 

@@ -4,13 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::options::{OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption};
+use super::options::{
+    OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
+};
 use super::print::count;
 use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
 use crate::job::references::References;
+use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
@@ -38,6 +41,8 @@ pub struct Args {
 /// Options of the commands that run jobs.
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct RunOptions {
+    #[command(flatten)]
+    units: UnitsOption,
     #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
@@ -79,6 +84,12 @@ pub(super) fn run_study(
     options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
+    let units = options.units.apply(study.display_units(), &|name| {
+        let is_parameter = study.parameter_names().iter().any(|parameter| parameter == name);
+        let column = COLUMNS.iter().find(|column| column.name == name);
+        let unit = is_parameter.then(|| study.unit(name));
+        unit.or(column.map(|column| column.unit)).map(str::to_owned)
+    })?;
     let instruction_set = super::instruction_set::selected()?;
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
@@ -99,7 +110,9 @@ pub(super) fn run_study(
         },
         progress::reporter(options.progress.loudness()).as_mut(),
     )?;
-    let answer = Answer::of(&Stored::read(results)?);
+    let mut stored = Stored::read(results)?;
+    stored.units = units;
+    let answer = Answer::of(&stored);
     print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
     if !options.progress.quiet {
         notes::print(study);

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::point::Point;
@@ -26,6 +27,8 @@ pub struct Stored<'a> {
     pub results: Results<'a>,
     /// The study that the folder was last run for.
     pub study: Study,
+    /// The units in which its quantities are shown: those of the study.
+    pub units: DisplayUnits,
     /// Its journals.
     pub journal: Journal,
     /// Every point planned so far, in plan order.
@@ -59,7 +62,8 @@ impl<'a> Stored<'a> {
         let study = Study::load(&results.study_path(), &[])?;
         let (journal, faults) = journal::examine(results.files(), &results.journal_path())?;
         let points = planned(&study, &journal.records);
-        Ok((Self { results, study, journal, points }, faults))
+        let units = study.display_units().clone();
+        Ok((Self { results, study, units, journal, points }, faults))
     }
 
     /// The row of a point.
@@ -77,7 +81,7 @@ impl<'a> Stored<'a> {
     fn built(&self, points: &[Point]) -> Table {
         let unit = |name: &str| self.study.unit(name).to_owned();
         let table = Table::build(points, &self.journal.records, &unit);
-        table.shown_in(self.study.display_units())
+        table.shown_in(&self.units)
     }
 
     /// The planned point of a job.

@@ -5,6 +5,7 @@
 use billow_solver::output::measures::Verdict;
 
 use crate::analysis::compare;
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::point::Point;
@@ -48,10 +49,12 @@ pub struct Answer {
 pub struct Extreme {
     /// Id of the job.
     pub job: String,
-    /// Its parameters.
-    pub parameters: Vec<(String, Value)>,
+    /// Its parameters, and the units in which they are shown.
+    pub parameters: Vec<(String, Value, DisplayUnit)>,
     /// Value of the measure, SI.
     pub value: f64,
+    /// Unit in which the measure is shown.
+    pub shown: DisplayUnit,
     /// Number of other jobs with the same value, up to rounding.
     pub others: usize,
 }
@@ -118,9 +121,10 @@ fn extreme(
     Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),
         parameters: parameters
-            .map(|column| (column.name.clone(), column.cells[row].clone()))
+            .map(|column| (column.name.clone(), column.cells[row].clone(), column.shown.clone()))
             .collect(),
         value,
+        shown: column.shown.clone(),
         others,
     })
 }

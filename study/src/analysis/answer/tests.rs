@@ -69,7 +69,8 @@ fn only_done_jobs_enter_extremes_and_audit() {
     let fastest = answer.fastest.unwrap();
     // Job b is faster, but the numerics damped it.
     assert_eq!((fastest.job.as_str(), fastest.value), ("d", 3.0));
-    assert_eq!(fastest.parameters[0], ("flow".to_owned(), Value::Number(2.0)));
+    let (name, value, _) = &fastest.parameters[0];
+    assert_eq!((name.as_str(), value), ("flow", &Value::Number(2.0)));
     assert_eq!(answer.hardest.unwrap().job, "d");
     let trust = answer.trust.unwrap();
     assert_eq!((trust.jobs, trust.ledger_residual, trust.passages), (6, 3e-9, None));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::symbol::{self, Scale};
 use super::{CELSIUS, ZERO_CELSIUS, decimal, dimension, split};
-use crate::input::value::{Value, brief_number, short_number};
+use crate::input::value::{Value, brief_number};
 
 /// Suffix of a column whose name a parameter of the study has.
 const RESOLVED: &str = "_resolved";
@@ -79,6 +79,15 @@ impl DisplayUnit {
         shown.unwrap_or(si)
     }
 
+    /// The unit of a difference of two such quantities: a temperature in °C has its differences in K.
+    #[must_use]
+    pub fn of_difference(&self) -> Self {
+        match self.conversion {
+            Conversion::Celsius => Self::si("K"),
+            _ => self.clone(),
+        }
+    }
+
     /// An SI value in this unit. Texts, flags and empty values stay, and so do whole numbers that no
     /// conversion changes.
     pub fn value(&self, si: &Value) -> Value {
@@ -93,10 +102,7 @@ impl DisplayUnit {
 
     /// An SI value in this unit as text, without the unit: six significant digits.
     pub fn text(&self, si: &Value) -> String {
-        match self.value(si) {
-            Value::Number(number) => short_number(number),
-            other => other.to_string(),
-        }
+        self.value(si).short()
     }
 
     /// An SI value as text with its unit, as in "5 g/s".
