@@ -13,6 +13,8 @@ use crate::platform::exit_code::{EXIT_CODES, Exit};
 
 mod answer;
 pub mod bench;
+mod best;
+mod changes;
 mod chart;
 mod compare;
 mod completions;

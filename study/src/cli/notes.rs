@@ -1,9 +1,17 @@
-//! Notes on the results of a study, on stderr: limits of the models, and keys that a model ignores.
+//! Warnings about the values of a study, and notes on its results, on stderr: limits of the models, and
+//! keys that a model ignores.
 
 use billow_solver::scene::ModelKind;
 
 use crate::input::keys::{MODELS, Model};
 use crate::study::Study;
+
+/// Prints the warnings about values of the study: before anything runs.
+pub fn print_warnings(study: &Study) {
+    for line in study.warnings() {
+        eprintln!("{line}");
+    }
+}
 
 /// Prints the notes.
 pub fn print(study: &Study) {

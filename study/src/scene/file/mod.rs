@@ -139,6 +139,9 @@ impl SceneFile {
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&draft, &reader.source)?;
         check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
+        if !statics {
+            outputs::check_samples(outputs.sample_interval, end_time, &reader.source);
+        }
         let contact = contact::read(tree, &draft, &reader.source)?;
         if contact.is_none() && !statics && shape.folded {
             notes
@@ -166,6 +169,7 @@ impl SceneFile {
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &draft));
         let film = check_film(film, tree, &mut notes, &reader.source)?;
+        notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);
         Ok(Self {
             film,
