@@ -26,6 +26,7 @@ mod run_and_table;
 mod scene_files;
 mod solve;
 mod status_why_show;
+mod streams;
 mod study_files;
 mod support;
 mod validate;
