@@ -10,13 +10,13 @@ use super::{Format, output_error};
 use crate::analysis::compare::{
     self, Better, Compared, DEFAULT_TIE, Pair, Sets, Tally, measures_with,
 };
-use crate::input::keys;
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
@@ -111,7 +111,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 fn parameter<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {
     let names = || table.parameters().map(|column| column.name.as_str());
     table.parameters().find(|column| column.name == name).ok_or_else(|| {
-        let near = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let near = did_you_mean(name, names());
         let mut allowed = names().collect::<Vec<_>>().join(", ");
         if allowed.is_empty() {
             "none: the study varies no parameter".clone_into(&mut allowed);
