@@ -70,6 +70,10 @@ pub(super) fn run_study(
     out: &mut dyn Write,
 ) -> Result<()> {
     let instruction_set = super::instruction_set::selected()?;
+    if !options.progress.quiet {
+        // Before the run: a reader may want to change the study.
+        notes::print(study);
+    }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
     let summary = runner::run(
@@ -87,14 +91,11 @@ pub(super) fn run_study(
             stop,
             rerun: again,
         },
-        progress::reporter(options.progress.loudness()).as_mut(),
+        progress::reporter(options.progress.loudness(), options.threads.count()?).as_mut(),
     )?;
     let answer = Answer::of(&Stored::read(results)?);
     print(&study.name, root, &summary, &answer, options.output.format(), out)
         .map_err(output_error)?;
-    if !options.progress.quiet {
-        notes::print(study);
-    }
     result(&summary, root)
 }
 
