@@ -17,6 +17,7 @@ mod instruction_sets;
 mod interruption;
 mod invalid_studies;
 mod keys;
+mod mistakes;
 mod monitor_detects_faults;
 mod old_results;
 mod physics_version;

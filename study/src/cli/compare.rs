@@ -138,7 +138,8 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
         let values: Vec<String> =
             values.iter().map(|value| format!("{value} {unit}").trim_end().to_owned()).collect();
         let problem = format!("not a value of {} in this study", by.name);
-        Error::invalid_option("--base", text, problem, values.join(", "), "")
+        let near = did_you_mean(text, values.iter().map(String::as_str)).unwrap_or_default();
+        Error::invalid_option("--base", text, problem, values.join(", "), near)
     })
 }
 

@@ -70,6 +70,7 @@ pub(super) fn run_study(
     out: &mut dyn Write,
 ) -> Result<()> {
     let instruction_set = super::instruction_set::selected()?;
+    let threads = options.threads.count()?;
     if !options.progress.quiet {
         // Before the run: a reader may want to change the study.
         notes::print(study);
@@ -87,11 +88,11 @@ pub(super) fn run_study(
                 references: References::known(results.references()),
             },
             results: results.clone(),
-            threads: options.threads.count()?,
+            threads,
             stop,
             rerun: again,
         },
-        progress::reporter(options.progress.loudness(), options.threads.count()?).as_mut(),
+        progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
     let answer = Answer::of(&Stored::read(results)?);
     print(&study.name, root, &summary, &answer, options.output.format(), out)

@@ -9,7 +9,7 @@ use crate::input::units::Dimension;
 use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note};
-use crate::job::status::RENAMED_STATUSES;
+use crate::job::status::{RENAMED_STATUSES, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{self, Disk, Files};
 use crate::platform::nearest::did_you_mean;
@@ -74,7 +74,15 @@ pub fn folder(given: &StudyArgs, set: &[String]) -> Result<PathBuf> {
     let Some(study) = &given.study else { return only_folder() };
     let under_results = Path::new("results").join(study);
     if study.is_dir() {
-        Ok(study.clone())
+        let inside = results_in(study);
+        if inside.is_empty() || is_results(study) {
+            return Ok(study.clone());
+        }
+        let problem = "holds folders of results and is none itself";
+        let names: Vec<String> = inside.iter().map(|path| path.display().to_string()).collect();
+        let file = "results folder";
+        let value = study.display().to_string();
+        Err(Error::invalid_option(file, &value, problem, names.join(", "), "name one of these"))
     } else if !study.exists() && under_results.is_dir() {
         Ok(under_results)
     } else if !study.exists() {
@@ -119,11 +127,21 @@ pub fn folder_of_job(job: &str, given: &StudyArgs) -> Result<PathBuf> {
     folder(given, &[])
 }
 
+/// Whether a folder is that of a study's results.
+fn is_results(path: &Path) -> bool {
+    path.join("summary.parquet").is_file() || path.join("study.json").is_file()
+}
+
+/// The results folders in a folder.
+fn results_in(folder: &Path) -> Vec<PathBuf> {
+    let mut folders = Disk.list(folder).unwrap_or_default();
+    folders.retain(|path| is_results(path));
+    folders
+}
+
 fn only_folder() -> Result<PathBuf> {
     let results = Path::new("results");
-    let mut folders = Disk.list(results).unwrap_or_default();
-    folders
-        .retain(|path| path.join("summary.parquet").is_file() || path.join("study.json").is_file());
+    let folders = results_in(results);
     match folders.as_slice() {
         [only] => Ok(only.clone()),
         [] => {
@@ -244,6 +262,9 @@ fn variable_type(table: &Table, column: &Column) -> Type {
             });
             let words: BTreeSet<String> = texts.collect();
             Type::Text((!words.is_empty()).then(|| words.into_iter().collect()))
+        }
+        CellType::Text if column.name == "status" => {
+            Type::Text(Some(Status::all().map(|status| status.name().to_owned()).collect()))
         }
         CellType::Text => Type::Text(None),
         CellType::Integer | CellType::Number => {

@@ -101,7 +101,7 @@ impl Usage<'_> {
         let names = self.program.get_subcommands().map(Command::get_name);
         let near = nearest(&given, names);
         let mut error = self.error(
-            &suggested(format!("{:?} is not a command", quote::echo(&given)), near),
+            &suggested(format!("\"{}\" is not a command", quote::echo(&given)), near),
             self.commands(),
         );
         "command line".clone_into(&mut error.file);
@@ -115,7 +115,7 @@ impl Usage<'_> {
         let given = self.part(ContextKind::InvalidArg);
         let name = given.split(['=', ' ']).next().unwrap_or_default();
         let Some(long) = name.strip_prefix('-') else {
-            let problem = format!("unexpected argument {:?}", quote::echo(&given));
+            let problem = format!("unexpected argument \"{}\"", quote::echo(&given));
             return self.error(&problem, self.synopsis());
         };
         let long = long.strip_prefix('-').unwrap_or(long);

@@ -11,6 +11,7 @@ use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
 use crate::platform::error::InputError;
 use crate::platform::nearest::did_you_mean;
+use crate::platform::quote;
 
 /// Members of a grid that are not the axis of a key.
 const GRID_WORDS: [&str; 3] = ["zip", "points", "filter"];
@@ -146,7 +147,8 @@ fn set_key(
     let first = path.split(['.', '[']).next().unwrap_or_default();
     let known = table.children("");
     if !known.contains(&first) {
-        let mut error = refused(set, &format!("{first} is not a key of {}", table.what));
+        let mut error =
+            refused(set, &format!("{} is not a key of {}", quote::echo(first), table.what));
         let short = table.keys.iter().map(|key| key.leaf());
         error.hint = did_you_mean(name, short.chain(table.keys.iter().map(|key| key.path)))
             .or_else(|| did_you_mean(first, known.iter().copied()))

@@ -346,7 +346,11 @@ pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
             }
             _ => String::new(),
         };
-        disk(format!("cannot read the {what}: {error}{next}"))
+        let problem = match error.kind() {
+            std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+            _ => error.to_string(),
+        };
+        disk(format!("cannot read the {what}: {problem}{next}"))
     };
     files::read_at_most(path, MAX_FILE_SIZE).map_err(unreadable)?.ok_or_else(|| {
         disk(format!("is larger than {} MiB, the limit of a {what}", MAX_FILE_SIZE >> 20))

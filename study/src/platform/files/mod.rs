@@ -159,7 +159,7 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
              with --out"
         }
         io::ErrorKind::AlreadyExists => {
-            "\n  next: a file has the name of the folder; choose another with --results DIR or --out"
+            "\n  next: it is a file and not a folder; choose another with --results DIR or --out"
         }
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
             "\n  next: name a file in an existing folder"
