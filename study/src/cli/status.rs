@@ -14,6 +14,7 @@ use crate::job::Status as JobStatus;
 use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
+use crate::platform::quote;
 use crate::scene::summary;
 use crate::store::doctor::{self, Depth, Health};
 use crate::store::results::Results;
@@ -133,7 +134,7 @@ impl<'a> Status<'a> {
         writeln!(out, "{}: {state}", self.stored.study.name).map_err(output_error)?;
         let mut lines: Vec<Line> = Vec::new();
         if !self.stored.study.question.is_empty() {
-            lines.push(("question", self.stored.study.question.clone()));
+            lines.push(("question", quote::printable(&self.stored.study.question)));
         }
         lines.extend(self.job_lines());
         lines.extend(self.time_lines());

@@ -101,7 +101,7 @@ impl Usage<'_> {
         let names = self.program.get_subcommands().map(Command::get_name);
         let near = nearest(&given, names);
         let mut error = self.error(
-            &suggested(format!("\"{}\" is not a command", quote::echo(&given)), near),
+            &suggested(&format!("\"{}\" is not a command", quote::echo(&given)), near),
             self.commands(),
         );
         "command line".clone_into(&mut error.file);
@@ -123,7 +123,7 @@ impl Usage<'_> {
         let near = nearest(long, known.iter().map(|name| name.trim_start_matches('-')));
         let problem = format!("unexpected argument {}", quote::echo(name));
         let near = near.map(|near| format!("--{near}"));
-        let mut error = self.error(&suggested(problem, near.as_deref()), known.join(", "));
+        let mut error = self.error(&suggested(&problem, near.as_deref()), known.join(", "));
         let others = self.program.get_subcommands().filter(|command| {
             near.is_none() && options(command).iter().any(|option| option == name)
         });
@@ -167,7 +167,7 @@ impl Usage<'_> {
             problem_of(self.refused)
         } else {
             let near = nearest(&value, words.iter().map(String::as_str));
-            (suggested("is not one of its values".to_owned(), near), words.join(", "))
+            (suggested("is not one of its values", near), words.join(", "))
         };
         let known = self.command.into_iter().flat_map(Command::get_arguments);
         let meaning = known.filter(|known| is_named(known, name)).find_map(Arg::get_help);
@@ -181,8 +181,8 @@ impl Usage<'_> {
 }
 
 /// A problem with the question after the nearest name.
-fn suggested(problem: String, near: Option<&str>) -> String {
-    near.map_or(problem.clone(), |near| format!("{problem}; did you mean {near}?"))
+fn suggested(problem: &str, near: Option<&str>) -> String {
+    near.map_or_else(|| problem.to_owned(), |near| format!("{problem}; did you mean {near}?"))
 }
 
 /// Problem and allowed values of a value that could not be read.
@@ -202,7 +202,7 @@ fn problem_of(refused: &clap::Error) -> (String, String) {
     if source.is::<ParseFloatError>() {
         return ("is not a number".to_owned(), "a number, SI".to_owned());
     }
-    // The parser's own text for a range: "70 is not in 1..=64".
+    // The text of the parser for a range: "70 is not in 1..=64".
     let text = source.to_string();
     match text.split_once(" is not in ") {
         Some((_, range)) => {

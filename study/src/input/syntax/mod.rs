@@ -7,6 +7,7 @@
 mod mistakes;
 pub mod place;
 
+use std::fmt::Write as _;
 use std::ops::Range;
 
 /// Objects and lists inside each other, at most: the limit of the reader of files.
@@ -154,9 +155,9 @@ impl<'a> Walk<'a> {
         self.open.push(open);
         self.at += 1;
         if bracket == b'{' {
-            self.members()?
+            self.members()?;
         } else {
-            self.items()?
+            self.items()?;
         }
         self.open.pop();
         Ok(Kind::Other)
@@ -210,7 +211,7 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         for index in 0.. {
-            self.path.push_str(&format!("[{index}]"));
+            let _ = write!(self.path, "[{index}]");
             self.value()?;
             self.path.truncate(length);
             if !self.next(']')? {
