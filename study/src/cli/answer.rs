@@ -28,7 +28,7 @@ const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
-        writeln!(out, "{}", answer.question)?;
+        writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
     }
     writeln!(out, "  deployed {}", deployed(answer))?;
     print_extremes(answer, out)?;

@@ -12,13 +12,13 @@ use crate::analysis::compare::{
     self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, ToleranceSource, measures_with,
     pairs_of_jobs,
 };
-use crate::input::keys;
 use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
@@ -126,7 +126,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 fn parameter<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {
     let names = || table.parameters().map(|column| column.name.as_str());
     table.parameters().find(|column| column.name == name).ok_or_else(|| {
-        let near = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let near = did_you_mean(name, names());
         let mut allowed = names().collect::<Vec<_>>().join(", ");
         if allowed.is_empty() {
             "none: the study varies no parameter".clone_into(&mut allowed);
@@ -151,7 +151,8 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
     found.cloned().ok_or_else(|| {
         let values: Vec<String> = values.iter().map(|value| by.shown.quantity(value)).collect();
         let problem = format!("not a value of {} in this study", by.name);
-        Error::invalid_option("--base", text, problem, values.join(", "), "")
+        let near = did_you_mean(text, values.iter().map(String::as_str)).unwrap_or_default();
+        Error::invalid_option("--base", text, problem, values.join(", "), near)
     })
 }
 

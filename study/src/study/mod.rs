@@ -96,6 +96,7 @@ impl Study {
     ) -> Result<Self, InputError> {
         let tree = study_file::parse(text, file)?;
         Self::from_tree(tree, file, stem, sets, limits)
+            .map_err(|error| study_file::with_place(error, text, file))
     }
 
     /// Reads a study from the tree of its text.
