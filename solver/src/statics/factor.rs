@@ -267,7 +267,7 @@ impl Elimination {
         for (plan, columns) in self.plans.iter().zip(&factor.columns) {
             local.clear();
             local.extend(plan.unknowns.iter().map(|unknown| all[*unknown as usize]));
-            for (index, column) in columns.chunks_exact(plan.front.stride()).enumerate() {
+            for (index, column) in columns.chunks_exact(plan.front.stride().max(1)).enumerate() {
                 let value = local[index] / column[index];
                 local[index] = value;
                 for (value_below, entry) in local[index + 1..].iter_mut().zip(&column[index + 1..])
@@ -282,7 +282,9 @@ impl Elimination {
         for (plan, columns) in self.plans.iter().zip(&factor.columns).rev() {
             local.clear();
             local.extend(plan.unknowns.iter().map(|unknown| all[*unknown as usize]));
-            for (index, column) in columns.chunks_exact(plan.front.stride()).enumerate().rev() {
+            for (index, column) in
+                columns.chunks_exact(plan.front.stride().max(1)).enumerate().rev()
+            {
                 let mut value = local[index];
                 for (value_below, entry) in local[index + 1..].iter().zip(&column[index + 1..]) {
                     value -= entry * value_below;

@@ -349,6 +349,7 @@ impl Explicit {
         stopwatch.begins(Stage::Membrane);
         let (model, instruction_set) = (&self.model, self.parameters.instruction_set);
         let State { positions, element_history, .. } = &mut self.state;
+        model.closure_nodes.place(positions);
         let mut sums = assemble_membrane(
             instruction_set,
             model,

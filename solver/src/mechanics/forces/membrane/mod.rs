@@ -122,6 +122,12 @@ impl NodeForces {
         }
     }
 
+    /// Six times ∂V/∂x (m²) of a node, which becomes zero.
+    pub(crate) fn take_normal(&mut self, node: usize) -> Vector3<f64> {
+        let [x, y, z, _] = core::mem::take(&mut self.sums[node].normal);
+        Vector3::new(x, y, z)
+    }
+
     /// Multiplies ∂V/∂x of a node by a factor.
     pub(crate) fn scale_area(&mut self, node: usize, factor: f64) {
         self.sums[node].normal.iter_mut().for_each(|entry| *entry *= factor);
