@@ -101,6 +101,8 @@ pub struct FilmModel {
     pub frequency: Vec<f64>,
     /// Largest entry of `frequency`, rad/s; kept because every step reads it.
     largest_frequency: f64,
+    /// Square root of the reference area of the film, m.
+    size: f64,
     /// `2ζ/ω_e` of each element, s; `N_e`.
     pub damping_time: Vec<f64>,
     /// m of each node, kg; `N_n`. Zero for a node of closing faces only.
@@ -165,6 +167,7 @@ impl FilmModel {
             volume: Vec::with_capacity(triangles.len()),
             frequency: Vec::with_capacity(triangles.len()),
             largest_frequency: 0.0,
+            size: 0.0,
             damping_time: Vec::with_capacity(triangles.len()),
             mass: vec![0.0; nodes],
             inverse_mass: Column::default(),
@@ -195,6 +198,7 @@ impl FilmModel {
                 model.mass[*node as usize] += film.density * volume / 3.0;
             }
         }
+        model.size = (model.volume.iter().sum::<f64>() / film.thickness).sqrt();
         let closure_nodes: BTreeSet<u32> = closure.iter().flatten().copied().collect();
         let loose = (0_u32..)
             .zip(&model.mass)
@@ -237,6 +241,11 @@ impl FilmModel {
     /// (Rayleigh quotient: stiffness and mass of the film are sums over the elements).
     pub fn largest_frequency(&self) -> f64 {
         self.largest_frequency
+    }
+
+    /// Square root of the reference area of the film, m: the size of its motions.
+    pub fn size(&self) -> f64 {
+        self.size
     }
 
     /// Speed of a plane wave in the film, √(E/(ρ(1−ν²))), m/s.
