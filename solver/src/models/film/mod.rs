@@ -42,7 +42,7 @@ pub use statics::{
     Erected, StaticState, erected, reference_scene, static_reference, static_reference_while,
     static_states,
 };
-pub use tracks::CONTACT as CONTACT_COLUMNS;
+pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
 
 /// The entry in the table of models.
 pub(super) const ENTRY: ModelEntry = ModelEntry {

@@ -21,7 +21,7 @@ mod element_history;
 mod elements;
 mod strain;
 
-pub use element_history::{ElementHistory, numerical_forces, stored_energy};
+pub use element_history::{ElementHistory, numerical_forces, stored_energy, stress_on_fraction};
 pub use strain::{deformation_gradient, strain, strain_energy};
 
 use elements::{LaneSums, sum_elements};
