@@ -9,6 +9,7 @@ mod compare_and_answer;
 mod contact_scenes;
 mod determinism;
 mod doctor_and_rerun;
+mod edge_of_physics;
 mod fault_injection;
 mod film_study;
 mod fold;

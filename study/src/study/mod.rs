@@ -10,6 +10,7 @@ mod base;
 mod expand;
 mod fold;
 mod grid;
+pub(crate) mod ground;
 mod limits;
 pub mod plan;
 mod point;

@@ -233,6 +233,12 @@ columns! {
     FilmStress "film_stress" Number ["Pa"] Measures Smaller
         "largest principal second Piola-Kirchhoff stress of the film"
         end => end.measure(|measures| measures.film_stress);
+    FilmStress99 "film_stress_99" Number ["Pa"] Measures Smaller
+        "largest value over the samples of the stress that 99 % of the film's area does not exceed"
+        end => end.film_stress_99().map(|[stress, _]| stress);
+    TFilmStress99 "t_film_stress_99" Number ["s"] Measures Neither
+        "time of film_stress_99"
+        end => end.film_stress_99().map(|[_, time]| time);
     PeakLidForce "peak_lid_force" Number ["N"] Measures Smaller
         "largest force on the packing lid"
         end => end.measure(|measures| measures.peak_lid_force);

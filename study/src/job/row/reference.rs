@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use billow_solver::models::film::CONTACT_COLUMNS;
+use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
 use super::{
@@ -107,6 +107,8 @@ fn history_columns(page: &mut String) {
         page,
         "| `vz_centre` | m/s | film with rings | velocity of the top centre node along z |"
     );
+    let (name, unit, meaning) = FILM_STRESS_99;
+    let _ = writeln!(page, "| `{name}` | {unit} | film | {meaning} |");
     for (name, unit, meaning) in CONTACT_COLUMNS {
         let _ = writeln!(page, "| `{name}` | {unit} | film with contact | {meaning} |");
     }

@@ -140,8 +140,9 @@ impl SceneFile {
             Some(json) => mesh::read(json, reader)?,
             None => capsule::read(&draft, &reader.source)?,
         };
-        let filling = filling::read(tree, &draft, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &draft, &shape, &reader.source)?;
+        let filling =
+            filling::read(tree, &draft, &mut shape, &supports, &mut notes, &reader.source)?;
         conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
@@ -179,6 +180,7 @@ impl SceneFile {
             outputs,
             contact,
         };
+        mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &draft));
         let film = check_film(film, tree, &mut notes, &reader.source)?;
