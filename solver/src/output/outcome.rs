@@ -68,8 +68,10 @@ pub struct Failure {
 /// The kinds of failure a run can end in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FailureKind {
-    /// The state is not finite, or grows without bound.
+    /// A step was unstable: the state is not finite, or its energy grew without a source.
     Unstable,
+    /// The film is stretched beyond the validity of its material model; its energy balances.
+    Overstretched,
     /// The energy ledger residual is above its bound
     /// ([`MAX_LEDGER_RESIDUAL`](super::audit::MAX_LEDGER_RESIDUAL)).
     EnergyDrift,
@@ -83,8 +85,9 @@ pub enum FailureKind {
 
 impl FailureKind {
     /// Every kind, in the order of the documentation.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Unstable,
+        Self::Overstretched,
         Self::EnergyDrift,
         Self::InvertedVolume,
         Self::StepLimit,
@@ -95,6 +98,7 @@ impl FailureKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Unstable => "unstable",
+            Self::Overstretched => "overstretched",
             Self::EnergyDrift => "energy_drift",
             Self::InvertedVolume => "inverted_volume",
             Self::StepLimit => "step_limit",

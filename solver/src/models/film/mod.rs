@@ -40,7 +40,7 @@ mod tracks;
 pub use crate::statics::Relaxation;
 pub use ladder::{Ladder, LadderState};
 pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
-pub use tracks::CONTACT as CONTACT_COLUMNS;
+pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
 
 /// The entry in the table of models.
 pub(super) const ENTRY: ModelEntry = ModelEntry {

@@ -99,6 +99,9 @@ pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected
     Ok(Erected { model, supports, positions, mesh, equilibrium_at: None, instruction_set })
 }
 
+/// Tolerances of a capsule's equilibria. Chosen: volumes and heights err by less than 1e-6.
+const TOLERANCES: Tolerances = Tolerances { residual: 1e-5, step: 1e-6, iterations: 400 };
+
 /// A motion without translation: each node has its own displacement ([`Mover::beside`]).
 const UNIT_MOTION: Motion = Motion {
     from: 0.0,
@@ -144,13 +147,8 @@ impl Erected {
         let observer = &mut |_: &_| {
             if continues() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        let equilibrium = settle(
-            &loaded,
-            &self.positions,
-            self.equilibrium_at,
-            &Tolerances::default(),
-            observer,
-        )?;
+        let equilibrium =
+            settle(&loaded, &self.positions, self.equilibrium_at, &TOLERANCES, observer)?;
         self.positions.clone_from(&equilibrium.positions);
         // Held nodes are at their stowed positions.
         self.supports.movers.clear();

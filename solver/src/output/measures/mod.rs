@@ -107,6 +107,14 @@ pub struct Measures {
 }
 
 impl Verdict {
+    /// Every verdict.
+    pub const ALL: [Self; 3] = [Self::Deployed, Self::Partial, Self::Stalled];
+
+    /// The verdict with that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|verdict| verdict.name() == name)
+    }
+
     /// Name, as in the table's `verdict` column.
     pub fn name(self) -> &'static str {
         match self {

@@ -32,7 +32,7 @@ impl Check {
 
 /// Whether the verdict is deployed.
 pub(super) fn is_deployed(cells: &Cells) -> bool {
-    cells.text(ColumnId::Verdict) == Verdict::Deployed.name()
+    cells.verdict() == Some(Verdict::Deployed)
 }
 
 /// Whether a small change of the ratios would change the verdict.
@@ -55,11 +55,11 @@ pub(super) fn checks(cells: &Cells) -> Vec<serde_json::Value> {
 /// The lines that explain a verdict.
 pub(super) fn explanation(cells: &Cells) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let verdict = cells.text(ColumnId::Verdict);
+    let verdict = cells.verdict();
     lines.extend(volume(cells, verdict).map(|text| ("volume", text)));
     lines.extend(height(cells).map(|text| ("height", text)));
     lines.extend(reference(cells).map(|text| ("reference", text)));
-    if verdict.is_empty() {
+    if verdict.is_none() {
         let reason = cells.text(ColumnId::Reason);
         let reason = reason.strip_prefix("no verdict: ").unwrap_or(reason);
         let text = if reason.is_empty() { "the run was not compared" } else { reason };
@@ -75,15 +75,15 @@ pub(super) fn explanation(cells: &Cells) -> Vec<Line> {
     lines
 }
 
-fn volume(cells: &Cells, verdict: &str) -> Option<String> {
+fn volume(cells: &Cells, verdict: Option<Verdict>) -> Option<String> {
     let deployed = Check::of(cells, CHECKS[0])?;
     let stalled = Check::of(cells, CHECKS[2])?;
     let mean = format!("volume_ratio {} (mean of the last tenth)", brief_number(deployed.value));
     let (least, low) = (deployed.threshold, stalled.threshold);
-    Some(if verdict == Verdict::Deployed.name() {
+    Some(if verdict == Some(Verdict::Deployed) {
         let margin = percent(deployed.margin);
         format!("{mean} ≥ {least}, at every sample of that tenth: deployed; {margin} above")
-    } else if verdict == Verdict::Stalled.name() {
+    } else if verdict == Some(Verdict::Stalled) {
         format!("{mean} < {low}: stalled; {} below", percent(stalled.margin))
     } else if deployed.margin >= 0.0 {
         format!("{mean} ≥ {least}, but not at every sample of that tenth: not deployed")

@@ -30,6 +30,9 @@ pub struct RowColumn {
     pub group: ColumnGroup,
     /// Which of two values is the better one.
     pub better: BetterSide,
+    /// Whether a value can be negative or zero: values are then compared by their difference, not by
+    /// their ratio.
+    pub signed: bool,
     /// Meaning, one line.
     pub meaning: &'static str,
     /// Takes the cell from a job that ended.
@@ -107,8 +110,18 @@ pub enum BetterSide {
     Neither,
 }
 
+/// Whether the word `Signed` stands in a row of the table.
+macro_rules! is_signed {
+    () => {
+        false
+    };
+    (Signed) => {
+        true
+    };
+}
+
 macro_rules! columns {
-    ($($id:ident $name:literal $type:ident [$unit:literal] $group:ident $better:ident
+    ($($id:ident $name:literal $type:ident [$unit:literal] $group:ident $better:ident $($signed:ident)?
        $meaning:literal $end:ident => $value:expr;)+) => {
         /// Identifies a column of [`COLUMNS`]. A wrong name does not compile.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,13 +137,14 @@ macro_rules! columns {
             unit: $unit,
             group: ColumnGroup::$group,
             better: BetterSide::$better,
+            signed: is_signed!($($signed)?),
             meaning: $meaning,
             take: |$end| Cell::from($value),
         }),+];
     };
 }
 
-// identifier, name, type, [unit], group, better side; meaning; how it is taken.
+// identifier, name, type, [unit], group, better side, whether it is signed; meaning; how it is taken.
 columns! {
     Status "status" Text [""] Outcome Neither
         "done, infeasible, pending, or how the job failed"
@@ -192,7 +206,7 @@ columns! {
     FirstMinimumZRim "first_minimum_z_rim" Number ["m"] Measures Neither
         "z_rim at the first minimum after its first peak"
         end => end.measure(|measures| measures.first_minimum_z_rim);
-    Overshoot "overshoot" Number ["1"] Measures Smaller
+    Overshoot "overshoot" Number ["1"] Measures Smaller Signed
         "largest z_rim over reference_height, minus 1"
         end => end.measure(|measures| measures.overshoot);
     RingingRms "ringing_rms" Number ["m/s"] Measures Smaller
@@ -219,6 +233,12 @@ columns! {
     FilmStress "film_stress" Number ["Pa"] Measures Smaller
         "largest principal second Piola-Kirchhoff stress of the film"
         end => end.measure(|measures| measures.film_stress);
+    FilmStress99 "film_stress_99" Number ["Pa"] Measures Smaller
+        "largest value over the samples of the stress that 99 % of the film's area does not exceed"
+        end => end.film_stress_99().map(|[stress, _]| stress);
+    TFilmStress99 "t_film_stress_99" Number ["s"] Measures Neither
+        "time of film_stress_99"
+        end => end.film_stress_99().map(|[_, time]| time);
     PeakLidForce "peak_lid_force" Number ["N"] Measures Smaller
         "largest force on the packing lid"
         end => end.measure(|measures| measures.peak_lid_force);
@@ -246,7 +266,7 @@ columns! {
     MaterialLossFraction "material_loss_fraction" Number ["1"] Audit Neither
         "energy lost in the film's material over the work of the gas"
         end => end.audit(|audit| audit.material_loss_fraction);
-    NumericalFraction "numerical_fraction" Number ["1"] Audit Neither
+    NumericalFraction "numerical_fraction" Number ["1"] Audit Neither Signed
         "numerical dissipation over the work of the gas until the first peak of z_rim"
         end => end.audit(|audit| audit.numerical_fraction);
     NumericallyDamped "numerically_damped" Bool [""] Audit Neither
@@ -285,7 +305,7 @@ columns! {
     Phi "phi" Number ["rad"] Pattern Neither
         "angle KAD of the solved pattern"
         end => end.pattern(|pattern| pattern.angles.phi);
-    HalfAngle "half_angle" Number ["rad"] Pattern Neither
+    HalfAngle "half_angle" Number ["rad"] Pattern Neither Signed
         "half top angle of the solved pattern"
         end => end.pattern(|pattern| pattern.half_angle);
     TopRadius "top_radius" Number ["m"] Pattern Neither
@@ -346,6 +366,11 @@ impl ColumnId {
     /// Name in the table.
     pub fn name(self) -> &'static str {
         self.column().name
+    }
+
+    /// Whether its values can be negative or zero.
+    pub fn is_signed(self) -> bool {
+        self.column().signed
     }
 
     /// The column with that name. Old names are not known here: see
