@@ -154,23 +154,26 @@ fn a_point_outside_the_grid_leaves_every_parameter_in_the_summary() {
         assert_eq!(with["measures"], without["measures"], "{}", with["parameter"]);
         assert_eq!(with["left_out"].as_array().unwrap().len(), 2, "one value, two measures");
     }
-    assert!(
-        said.contains("left out strategy direct in t_90_z_rim, peak_vz: no job differs"),
-        "{said}"
-    );
-    assert!(said.contains("best     strategy: t_90_z_rim preinflate"), "{said}");
+    assert!(said.contains("left out strategy direct in t_90_z_rim_since_release"), "{said}");
+    assert!(said.contains("best     strategy: t_90_z_rim_since_release preinflate"), "{said}");
     let strategy = &with["medians"][0];
     assert_eq!((&strategy["parameter"], &strategy["sets"]), (&json!("strategy"), &json!(2)));
     assert_eq!(strategy["measures"][0]["best"], json!(["preinflate"]));
 
     for command in ["table", "chart"] {
         let said = stderr(&folder.run(&[command, "grid.json"]));
-        assert!(said.contains("best: strategy: t_90_z_rim preinflate"), "{command}: {said}");
+        assert!(
+            said.contains("best: strategy: t_90_z_rim_since_release preinflate"),
+            "{command}: {said}"
+        );
         assert!(!stderr(&folder.run(&[command, "grid.json", "-q"])).contains("best:"));
     }
     let compared = ["compare", "grid.json", "--by", "strategy", "--base", "rapid"];
     let said = stderr(&folder.run(&compared));
-    assert!(said.contains("tie: t_90_z_rim within 3 % (spread of the method)"), "{said}");
+    assert!(
+        said.contains("tie: t_90_z_rim_since_release within 3 % (spread of the method)"),
+        "{said}"
+    );
     assert!(said.contains("1 row without a partner") && said.contains("strategy=direct"), "{said}");
     let changed = folder.run(&[&compared[..], &["--set", "solver.end_time=0.5"]].concat());
     let said = stderr(&changed);

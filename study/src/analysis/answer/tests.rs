@@ -109,8 +109,8 @@ fn study(rows: &[(&str, f64, f64, f64)]) -> Table {
             column("mass", CellType::Number, numbers(|row| row.1)),
             column("status", CellType::Text, all(text("done"))),
             column("verdict", CellType::Text, all(text("deployed"))),
-            column("t_90_z_rim", CellType::Number, numbers(|row| row.2)),
-            column("peak_vz", CellType::Number, numbers(|row| row.3)),
+            column("t_90_z_rim_since_release", CellType::Number, numbers(|row| row.2)),
+            column("peak_kinetic_energy", CellType::Number, numbers(|row| row.3)),
             column("passages", CellType::Integer, all(Value::Integer(0))),
         ],
     }
@@ -149,7 +149,7 @@ fn one_point_outside_the_grid_removes_no_parameter() {
         }
         let (value, measure, reason) = &with.left_out[0];
         let outside = if parameter == "mass" { "0" } else { "direct" };
-        assert_eq!((value.to_string().as_str(), *measure), (outside, ColumnId::T90ZRim));
+        assert_eq!((value.to_string().as_str(), *measure), (outside, HEADLINE[0]));
         assert_eq!(*reason, format!("no job differs from it in {parameter} alone"));
     }
     // A parameter of which no two points differ alone is named.
