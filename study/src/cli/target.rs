@@ -50,7 +50,7 @@ pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
     } else {
         results.read_table()?
     };
-    changes::note(&results, given, set)?;
+    changes::note(&results, given.study.as_deref(), set)?;
     changes::note_other_physics(&table);
     Ok(Target { results, table })
 }

@@ -133,7 +133,8 @@ fn one_point_outside_the_grid_removes_no_parameter() {
         }
         let (value, measure, reason) = &with.left_out[0];
         let outside = if parameter == "mass" { "0" } else { "direct" };
-        assert_eq!((value.to_string().as_str(), *measure), (outside, ColumnId::T90ZRim));
+        let value = value.as_ref().unwrap().to_string();
+        assert_eq!((value.as_str(), *measure), (outside, ColumnId::T90ZRim));
         assert_eq!(*reason, format!("no job differs from it in {parameter} alone"));
     }
     // A parameter of which no two points differ alone is named.
@@ -203,6 +204,14 @@ fn a_best_value_deploys_and_is_trusted_in_every_job() {
     ]);
     let many = strategy_of(&many);
     assert_eq!(many.measures[0].extremes, judged(&[0], &[2, 1]));
+
+    // One strategy never rises to 90 %: the measure is named, the other one is compared.
+    let mut never = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 1.0, 5.0, 20.0)]);
+    let time = never.columns.iter().position(|column| column.name == "t_90_z_rim").unwrap();
+    never.columns[time].cells[1] = Value::Null;
+    let never = strategy_of(&never);
+    assert_eq!(never.measures.len(), 1);
+    assert_eq!((&never.left_out[0].0, never.left_out[0].1), (&None, ColumnId::T90ZRim));
 
     // Within the spread of the measure there is no best.
     let equal = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 1.0, 5.1, 10.4)]);
