@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::analysis::answer::{Effect, Effects, Extremes, HEADLINE, MeasureEffect};
+use crate::analysis::answer::{Effect, Effects, Extremes, MeasureEffect};
 use crate::analysis::compare::{Tolerance, ToleranceSource};
-use crate::input::value::{Value, brief_number, short_number};
+use crate::input::value::{Value, brief_number};
+use crate::job::row::HEADLINE;
 use crate::platform::error::Result;
 use crate::store::results::Results;
 use crate::store::table::Table;
@@ -58,22 +59,18 @@ fn line(effect: &Effect) -> String {
 /// One measure: its best and worst values.
 fn part(effect: &Effect, measure: &MeasureEffect) -> String {
     let name = measure.measure.name();
-    let unit = match measure.measure.column().unit {
-        "1" => "",
-        unit => &format!(" {unit}"),
-    };
     // The extreme value with its median, then the values that are equal to it.
     let shown = |indices: &[usize], mark: &str| {
         let texts: Vec<String> = indices
             .iter()
             .take(MAX_VALUES)
-            .map(|index| value_text(&effect.values[*index], &effect.unit))
+            .map(|index| effect.shown.quantity(&effect.values[*index]))
             .collect();
         let more = indices.len() - texts.len();
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         let median = indices.first().and_then(|index| measure.medians[*index]);
-        let median = median.map_or_else(|| "-".to_owned(), brief_number);
-        format!("{}{more} {median}{unit} ({mark})", texts.join(", "))
+        let median = median.map_or_else(|| "-".to_owned(), |median| measure.shown.brief(median));
+        format!("{}{more} {median} ({mark})", texts.join(", "))
     };
     match &measure.extremes {
         Extremes::Equal => format!("{name} equal within {}", limit(&measure.tolerance)),
@@ -98,7 +95,7 @@ fn partly_deployed(effect: &Effect) -> Option<String> {
     let mut texts: Vec<String> = partly
         .filter(|(_, (deployed, jobs))| deployed < jobs)
         .map(|(value, (deployed, jobs))| {
-            format!("{} {deployed} of {jobs}", value_text(value, &effect.unit))
+            format!("{} {deployed} of {jobs}", effect.shown.quantity(value))
         })
         .collect();
     let more = texts.len().saturating_sub(MAX_VALUES);
@@ -127,7 +124,7 @@ pub fn left_out(effects: &Effects) -> Vec<String> {
         }
         let more = reasons.len().saturating_sub(MAX_VALUES);
         lines.extend(reasons.iter().take(MAX_VALUES).map(|(value, reason, measures)| {
-            let value = value.as_ref().map(|value| format!(" {}", value_text(value, &effect.unit)));
+            let value = value.as_ref().map(|value| format!(" {}", effect.shown.quantity(value)));
             let value = value.unwrap_or_default();
             format!("{}{value} in {}: {reason}", effect.parameter, measures.join(", "))
         }));
@@ -136,15 +133,6 @@ pub fn left_out(effects: &Effects) -> Vec<String> {
         }
     }
     lines
-}
-
-/// A value of a parameter with its unit.
-pub fn value_text(value: &Value, unit: &str) -> String {
-    match (value, unit) {
-        (Value::Number(number), "" | "1") => short_number(*number),
-        (Value::Number(number), unit) => format!("{} {unit}", short_number(*number)),
-        (other, _) => other.to_string(),
-    }
 }
 
 /// The limit of a tolerance: "5 %", or an absolute difference.

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::options::{OutputOptions, QuietOption, SetOption};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
@@ -57,6 +57,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     set: SetOption,
     #[command(flatten)]
     output: OutputOptions,
@@ -74,7 +76,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if let Some(path) = &args.out {
         Picture::of(path)?;
     }
-    let Target { results, table } = target::open(&args.study, &args.set.set)?;
+    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
     let name = study_name(&results);
     let source = source(args, &name, &table)?;
     let standard = asked.is_none();

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::point::Point;
@@ -26,6 +27,8 @@ pub struct Stored<'a> {
     pub results: Results<'a>,
     /// The study that the folder was last run for.
     pub study: Study,
+    /// The units in which its quantities are shown: those of the study.
+    pub units: DisplayUnits,
     /// Its journals.
     pub journal: Journal,
     /// Every point planned so far, in plan order.
@@ -59,7 +62,8 @@ impl<'a> Stored<'a> {
         let study = Study::load(&results.study_path(), &[])?;
         let (journal, faults) = journal::examine(results.files(), &results.journal_path())?;
         let points = planned(&study, &journal.records);
-        Ok((Self { results, study, journal, points }, faults))
+        let units = study.display_units().clone();
+        Ok((Self { results, study, units, journal, points }, faults))
     }
 
     /// The row of a point.
@@ -70,7 +74,14 @@ impl<'a> Stored<'a> {
 
     /// The table, built from plan and journal: one row per point, also for points that share a job.
     pub fn table(&self) -> Table {
-        Table::build(&self.points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+        self.built(&self.points)
+    }
+
+    /// The table of these points, shown in the study's units.
+    fn built(&self, points: &[Point]) -> Table {
+        let unit = |name: &str| self.study.unit(name).to_owned();
+        let table = Table::build(points, &self.journal.records, &unit);
+        table.shown_in(&self.units)
     }
 
     /// The planned point of a job.
@@ -138,7 +149,7 @@ impl<'a> Stored<'a> {
         InputError {
             file: "job".to_owned(),
             key: String::new(),
-            value: prefix.to_owned(),
+            value: if prefix.is_empty() { "\"\"" } else { prefix }.to_owned(),
             problem: problem.to_owned(),
             allowed: if allowed.is_empty() {
                 "nothing: the study has no jobs".to_owned()

@@ -136,7 +136,7 @@ impl Expansion<'_> {
             let parameters: Vec<String> = self
                 .parameters(point)
                 .iter()
-                .map(|(name, value)| format!("{name} = {value}"))
+                .map(|(name, value)| format!("{name} = {}", value.short()))
                 .collect();
             error.hint = format!("this is the point {}", parameters.join(", "));
         }

@@ -16,6 +16,7 @@ use super::medians::{Extremes, Set, block, extremes};
 use super::trust::is_trusted;
 use crate::analysis::compare::{self, Measure, Sets, Tolerance, canonical};
 use crate::analysis::statistics::Spread;
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::ColumnId;
@@ -38,6 +39,8 @@ pub struct Effect {
     pub parameter: String,
     /// Its SI unit; "1" for a dimensionless number, empty for text.
     pub unit: String,
+    /// Unit in which its values are shown.
+    pub shown: DisplayUnit,
     /// Parameters that change with it.
     pub carried: Vec<String>,
     /// Its values, in plan order.
@@ -55,6 +58,8 @@ pub struct Effect {
 pub struct MeasureEffect {
     /// The measure.
     pub measure: ColumnId,
+    /// Unit in which its medians are shown.
+    pub shown: DisplayUnit,
     /// Number of sets in which every value has a job.
     pub sets: usize,
     /// Median of each value; `None` for a value that is left out.
@@ -128,6 +133,7 @@ impl Comparable<'_> {
         let mut effect = Effect {
             parameter: self.parameter.name.clone(),
             unit: self.parameter.unit.clone(),
+            shown: self.parameter.shown.clone(),
             carried,
             deployed,
             measures: Vec::new(),
@@ -157,6 +163,7 @@ impl Comparable<'_> {
             let medians: Vec<Option<f64>> = medians.collect();
             effect.measures.push(MeasureEffect {
                 measure: *id,
+                shown: measure.column.shown.clone(),
                 sets: block.len(),
                 extremes: extremes(&medians, measure, &always),
                 medians,

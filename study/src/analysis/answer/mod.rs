@@ -5,10 +5,11 @@
 use billow_solver::output::measures::Verdict;
 
 use crate::analysis::compare;
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::point::Point;
-use crate::job::row::{ColumnId, Counts};
+use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
@@ -20,9 +21,6 @@ pub use effects::{Effect, Effects, MeasureEffect};
 pub use medians::Extremes;
 pub use trust::Trust;
 
-/// The headline measures, whose medians, best and worst values are given: speed of the deployment, impact.
-pub const HEADLINE: [ColumnId; 2] = [ColumnId::T90ZRim, ColumnId::PeakVz];
-
 /// The answer of a study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer {
@@ -30,7 +28,7 @@ pub struct Answer {
     pub question: String,
     /// Numbers of rows by how they ended.
     pub counts: Counts,
-    /// The trusted, deployed job with the smallest `t_90_z_rim`.
+    /// The trusted, deployed job with the smallest `t_90_z_rim_since_release`.
     pub fastest: Option<Extreme>,
     /// The done job with the largest `peak_vz`.
     pub hardest: Option<Extreme>,
@@ -50,10 +48,12 @@ pub struct Answer {
 pub struct Extreme {
     /// Id of the job.
     pub job: String,
-    /// Its parameters.
-    pub parameters: Vec<(String, Value)>,
+    /// Its parameters, and the units in which they are shown.
+    pub parameters: Vec<(String, Value, DisplayUnit)>,
     /// Value of the measure, SI.
     pub value: f64,
+    /// Unit in which the measure is shown.
+    pub shown: DisplayUnit,
     /// Number of other jobs with the same value, up to rounding.
     pub others: usize,
 }
@@ -88,7 +88,7 @@ impl Answer {
             trust::is_trusted(table, *row) && (deployed || !judged)
         };
         let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
-        answer.fastest = extreme(table, &best, ColumnId::T90ZRim, |value, best| value < best);
+        answer.fastest = extreme(table, &best, HEADLINE[0], |value, best| value < best);
         answer.hardest = extreme(table, &rows, ColumnId::PeakVz, |value, best| value > best);
         answer.most_energy =
             extreme(table, &rows, ColumnId::PeakKineticEnergy, |value, best| value > best);
@@ -120,9 +120,10 @@ fn extreme(
     Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),
         parameters: parameters
-            .map(|column| (column.name.clone(), column.cells[row].clone()))
+            .map(|column| (column.name.clone(), column.cells[row].clone(), column.shown.clone()))
             .collect(),
         value,
+        shown: column.shown.clone(),
         others,
     })
 }

@@ -6,7 +6,14 @@ use super::*;
 use crate::study::Zipped;
 
 fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column { name: name.to_owned(), cell_type, unit: String::new(), meaning: String::new(), cells }
+    Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: String::new(),
+        shown: crate::input::units::DisplayUnit::si(""),
+        meaning: String::new(),
+        cells,
+    }
 }
 
 /// A table of parameters `a`, `b` and a measure.

@@ -5,6 +5,7 @@ use serde_json::{Map, json};
 use super::sets;
 use crate::analysis::answer::{Answer, Effect, Extreme, Extremes, Trust};
 use crate::input::value::json_value;
+use crate::job::row::HEADLINE;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
@@ -12,7 +13,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "question": answer.question,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
-        "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
+        "fastest": extreme_json(answer.fastest.as_ref(), HEADLINE[0].name()),
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
         "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),
@@ -30,7 +31,7 @@ fn extreme_json(
     let extreme = extreme?;
     let parameters = extreme.parameters.iter();
     let parameters: Map<_, _> =
-        parameters.map(|(name, value)| (name.clone(), json_value(value))).collect();
+        parameters.map(|(name, value, _)| (name.clone(), json_value(value))).collect();
     let mut keys = Map::new();
     keys.insert("job".to_owned(), extreme.job.as_str().into());
     keys.insert("parameters".to_owned(), parameters.into());

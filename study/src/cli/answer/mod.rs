@@ -9,9 +9,11 @@ use billow_solver::output::measures::Verdict;
 
 use super::best::{self, MAX_LINE_WIDTH, MAX_VALUES};
 use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Effects, Extreme, HEADLINE, Trust};
-use crate::input::value::{Value, brief_number, short_number};
+use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Trust};
+use crate::input::units::{self, Dimension, DisplayUnit};
+use crate::input::value::{Value, brief_number};
 use crate::job::Status;
+use crate::job::row::{ColumnId, HEADLINE};
 
 mod json;
 
@@ -29,7 +31,7 @@ const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
-        writeln!(out, "{}", answer.question)?;
+        writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
     }
     writeln!(out, "  deployed {}", deployed(answer))?;
     print_extremes(answer, out)?;
@@ -52,7 +54,8 @@ fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
     if !effects.effects.is_empty() {
         writeln!(
             out,
-            "  medians  t_90_z_rim (s), peak_vz (m/s) per value, all other parameters being equal"
+            "  medians  {} per value, all other parameters being equal",
+            HEADLINE.map(|measure| headline(effects, measure)).join(", ")
         )?;
     }
     let names = effects.effects.iter().map(|effect| name(effect).chars().count());
@@ -74,21 +77,29 @@ fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
+/// A headline measure with the unit of its medians.
+fn headline(effects: &Effects, measure: ColumnId) -> String {
+    let measures = effects.effects.iter().flat_map(|effect| &effect.measures);
+    let shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
+    let si = DisplayUnit::si(measure.column().unit);
+    shown.last().unwrap_or(&si).label(measure.name())
+}
+
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(fastest) = &answer.fastest {
-        let value = format!("t_90_z_rim {} s", brief_number(fastest.value));
+        let value = format!("{} {}", HEADLINE[0].name(), fastest.shown.brief(fastest.value));
         writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
     }
-    let Some(hardest) = &answer.hardest else { return Ok(()) };
-    let mut value = format!("peak_vz {} m/s", brief_number(hardest.value));
-    let energy = answer.most_energy.as_ref();
-    if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
-        let _ = write!(value, ", peak_kinetic_energy {} J", brief_number(same.value));
+    let Some(energy) = &answer.most_energy else { return Ok(()) };
+    let mut value = format!("peak_kinetic_energy {}", energy.shown.brief(energy.value));
+    let speed = answer.hardest.as_ref();
+    if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
+        let _ = write!(value, ", peak_vz {}", same.shown.brief(same.value));
     }
-    writeln!(out, "  hardest  {value}: {}", job_text(hardest))?;
-    if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
-        let value = format!("peak_kinetic_energy {} J", brief_number(other.value));
+    writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
+    if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
+        let value = format!("peak_vz {} (noisy)", other.shown.brief(other.value));
         writeln!(out, "           {value}: {}", job_text(other))?;
     }
     Ok(())
@@ -106,10 +117,22 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     if let Some(effect) = effect.or(answer.effects.effects.first())
         && let Some(base) = effect.values.first()
     {
-        let base = shell_word(base);
+        let base = match base {
+            Value::Number(number) => shell_word(&Value::Text(exact(effect, *number))),
+            other => shell_word(other),
+        };
         writeln!(out, "           billow compare {root} --by {} --base {base}", effect.parameter)?;
     }
     Ok(())
+}
+
+/// A value of a parameter with its unit, if the text gives the number to the last bit; in SI otherwise.
+fn exact(effect: &Effect, si: f64) -> String {
+    let unit = &effect.shown;
+    let text = format!("{} {}", unit.number(si), unit.symbol());
+    let dimension = Dimension::ALL.into_iter().find(|known| known.si() == effect.unit);
+    let read = dimension.and_then(|dimension| units::parse(&text, dimension).ok());
+    if read == Some(si) && unit.symbol() != effect.unit { text } else { si.to_string() }
 }
 
 /// A value as one word of a shell command.
@@ -150,16 +173,13 @@ fn job_text(extreme: &Extreme) -> String {
     let parameters: Vec<String> = extreme
         .parameters
         .iter()
-        .map(|(name, value)| match value {
-            Value::Number(number) => format!("{name}={}", short_number(*number)),
-            other => format!("{name}={other}"),
-        })
+        .map(|(name, value, unit)| format!("{name}={}", unit.quantity(value)))
         .collect();
     let others = match extreme.others {
         0 => String::new(),
         others => format!(" (and {} with the same value)", count(others, "job")),
     };
-    format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(" "))
+    format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(", "))
 }
 
 /// The audit of all done jobs.
@@ -192,18 +212,15 @@ fn audit(trust: &Trust) -> String {
 
 /// A parameter with its unit, indented.
 fn name(effect: &Effect) -> String {
-    match effect.unit.as_str() {
-        "" | "1" => format!("    {}", effect.parameter),
-        unit => format!("    {} ({unit})", effect.parameter),
-    }
+    format!("    {}", effect.shown.label(&effect.parameter))
 }
 
 /// One parameter: its values with both medians, on as many lines as needed.
 fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     let listed = effect.values.len() <= MAX_VALUES;
     let median = |measure, index: usize| {
-        let effect = effect.measures.iter().find(|effect| effect.measure == measure);
-        effect.and_then(|effect| effect.medians[index])
+        let effect = effect.measures.iter().find(|effect| effect.measure == measure)?;
+        effect.medians[index].map(|median| effect.shown.number(median))
     };
     let mut parts: Vec<String> = effect
         .values
@@ -213,7 +230,7 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
         .map(|(index, value)| {
             let medians = HEADLINE
                 .map(|measure| median(measure, index).map_or_else(|| "-".to_owned(), brief_number));
-            format!("{}: {}", best::value_text(value, ""), medians.join(", "))
+            format!("{}: {}", effect.shown.text(value), medians.join(", "))
         })
         .collect();
     if !listed {

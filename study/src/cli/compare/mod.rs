@@ -2,20 +2,20 @@
 
 use std::io::Write;
 
-use super::options::{OutputOptions, QuietOption, SetOption};
-use super::print::print_rows;
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
+use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, filtered, find, folder};
 use super::{Format, changes, output_error};
 use crate::analysis::compare::{
     self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, measures_with,
 };
-use crate::input::keys;
-use crate::input::units::{self, Dimension};
+use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
@@ -23,7 +23,7 @@ use crate::store::table::{Column, Table};
 mod notes;
 
 /// Measures that a table compares by default.
-const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim", "peak_vz"];
+const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
 
 /// Arguments of `billow compare`.
 #[derive(Debug, clap::Args)]
@@ -36,8 +36,8 @@ pub struct Args {
     /// The value that the other values are compared with; with its unit, as in "1 g/s".
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub base: String,
-    /// Measures, comma-separated [default: `t_90_z_rim,peak_vz`; for csv and json all measures for
-    /// which smaller or larger is better].
+    /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy`; for csv and
+    /// json all measures for which smaller or larger is better].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub measures: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and M >= 3`.
@@ -50,6 +50,8 @@ pub struct Args {
     /// Print only the summary: one row per value and measure.
     #[arg(long)]
     pub summary: bool,
+    #[command(flatten)]
+    units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
     #[command(flatten)]
@@ -89,7 +91,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &args.set.set)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     changes::note(&stored.results, args.study.study.as_deref(), &args.set.set)?;
-    let table = stored.table();
+    let table = args.units.show(stored.table(), stored.study.display_units())?;
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let rows = filtered(&table, args.condition.as_deref())?;
@@ -123,7 +125,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 fn parameter<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {
     let names = || table.parameters().map(|column| column.name.as_str());
     table.parameters().find(|column| column.name == name).ok_or_else(|| {
-        let near = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let near = did_you_mean(name, names());
         let mut allowed = names().collect::<Vec<_>>().join(", ");
         if allowed.is_empty() {
             "none: the study varies no parameter".clone_into(&mut allowed);
@@ -146,11 +148,10 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
             })
     });
     found.cloned().ok_or_else(|| {
-        let unit = if matches!(by.unit.as_str(), "" | "1") { "" } else { &by.unit };
-        let values: Vec<String> =
-            values.iter().map(|value| format!("{value} {unit}").trim_end().to_owned()).collect();
+        let values: Vec<String> = values.iter().map(|value| by.shown.quantity(value)).collect();
         let problem = format!("not a value of {} in this study", by.name);
-        Error::invalid_option("--base", text, problem, values.join(", "), "")
+        let near = did_you_mean(text, values.iter().map(String::as_str)).unwrap_or_default();
+        Error::invalid_option("--base", text, problem, values.join(", "), near)
     })
 }
 
@@ -200,19 +201,29 @@ impl Comparison<'_> {
             (true, false) => &["status"],
             (false, _) => &["job", "status", "verdict"],
         };
-        let mut columns: Vec<String> = self.sets.matched.clone();
-        columns.push(self.by.name.clone());
-        columns.extend(self.sets.carried.iter().cloned());
+        let parameters = self.sets.matched.iter().chain([&self.by.name]).chain(&self.sets.carried);
+        let mut columns: Vec<Heading> = parameters
+            .map(|name| {
+                let shown = self.table.column(name).map(|column| column.shown.clone());
+                Heading { name: name.clone(), unit: shown.unwrap_or_else(|| DisplayUnit::si("")) }
+            })
+            .collect();
         let sides = |name: &&str| [format!("base_{name}"), format!("other_{name}")];
-        columns.extend(outcome.iter().flat_map(sides));
+        columns.extend(outcome.iter().flat_map(sides).map(Heading::plain));
         for measure in &self.measures {
-            let figures = Self::figures(measure, brief);
-            columns
-                .extend(figures.iter().map(|figure| format!("{}_{figure}", measure.column.name)));
+            let shown = &measure.column.shown;
+            columns.extend(Self::figures(measure, brief).iter().map(|figure| Heading {
+                name: format!("{}_{figure}", measure.column.name),
+                unit: match *figure {
+                    "base" | "other" => shown.clone(),
+                    "difference" => shown.of_difference(),
+                    _ => DisplayUnit::si(""),
+                },
+            }));
         }
         let rows: Vec<Vec<Value>> =
             self.pairs.iter().map(|pair| self.row(*pair, outcome, brief)).collect();
-        print_rows(&columns, &rows, format, out)
+        print_quantities(&columns, &rows, format, out)
     }
 
     /// The figures of a measure. A table has the ratio, or the difference of a signed measure.
@@ -264,25 +275,39 @@ impl Comparison<'_> {
         } else {
             &[]
         };
-        let columns: Vec<&str> = [self.by.name.as_str(), "measure", "pairs"]
-            .into_iter()
+        let by = Heading { name: self.by.name.clone(), unit: self.by.shown.clone() };
+        let others = ["measure", "pairs"].into_iter();
+        let others = others
             .chain(outcomes.iter().map(|(name, _)| *name))
             .chain(["median_ratio", "least_ratio", "largest_ratio"])
-            .chain(differences.iter().copied())
-            .collect();
+            .chain(differences.iter().copied());
+        let columns: Vec<Heading> = [by].into_iter().chain(others.map(Heading::plain)).collect();
+        // Rows of the differences have the units of different measures, so a cell says its own.
+        let in_unit = |measure: &str, value: f64| {
+            let shown = self.measures.iter().find(|known| known.column.name == measure);
+            let unit = shown.map(|known| known.column.shown.of_difference());
+            match unit.filter(|_| format == Format::Table) {
+                Some(unit) => Value::Text(unit.brief(value)),
+                None => Value::Number(value),
+            }
+        };
         let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
         let row = |tally: &Tally| {
             let mut row = vec![tally.value.clone(), Value::Text(tally.measure.clone())];
             row.push(number(tally.pairs()));
             row.extend(outcomes.iter().map(|(_, outcome)| number(tally.count(*outcome))));
-            for spread in [tally.ratio, tally.difference].into_iter().take(1 + differences.len()) {
-                row.extend(spread.map_or([const { Value::Null }; 3], |spread| {
-                    [spread.median, spread.least, spread.largest].map(Value::Number)
+            row.extend(tally.ratio.map_or([const { Value::Null }; 3], |spread| {
+                [spread.median, spread.least, spread.largest].map(Value::Number)
+            }));
+            if with_differences {
+                row.extend(tally.difference.map_or([const { Value::Null }; 3], |spread| {
+                    [spread.median, spread.least, spread.largest]
+                        .map(|value| in_unit(&tally.measure, value))
                 }));
             }
             row
         };
         let rows: Vec<Vec<Value>> = tallies.iter().map(row).collect();
-        print_rows(&columns, &rows, format, out)
+        print_quantities(&columns, &rows, format, out)
     }
 }

@@ -7,18 +7,14 @@ use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
 use crate::cli::best;
 use crate::cli::print::count;
 use crate::input::value::Value;
-use crate::job;
 use crate::job::row::BetterSide;
 
 impl Comparison<'_> {
     /// Prints, on stderr, which value is the base, which ratios are better, and what is not compared.
     pub(super) fn print_notes(&self, base: &Value, alone: &[usize]) {
         let by = &self.by.name;
-        let unit = match base {
-            Value::Number(_) if self.by.unit != "1" => format!(" {}", self.by.unit),
-            _ => String::new(),
-        };
-        let mut text = format!("base: {by} = {base}{unit}; ratio: other / base");
+        let base = self.by.shown.quantity(base);
+        let mut text = format!("base: {by} = {base}; ratio: other / base");
         for (noun, side) in [("smaller", BetterSide::Smaller), ("larger", BetterSide::Larger)] {
             let measures = self.measures.iter().filter(|measure| measure.side() == side);
             let names: Vec<&str> = measures.map(|measure| measure.column.name.as_str()).collect();
@@ -63,7 +59,12 @@ impl Comparison<'_> {
         const MAX_SHOWN: usize = 3;
         let label = |row: &usize| {
             let parameters = self.table.parameters();
-            job::label(&parameters.map(|c| (c.name.clone(), c.cells[*row].clone())).collect())
+            let texts: Vec<String> = parameters
+                .map(|column| {
+                    format!("{}={}", column.name, column.shown.quantity(&column.cells[*row]))
+                })
+                .collect();
+            texts.join(", ")
         };
         let mut labels: Vec<String> = rows.iter().take(MAX_SHOWN).map(label).collect();
         if rows.len() > MAX_SHOWN {

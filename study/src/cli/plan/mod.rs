@@ -9,11 +9,12 @@ mod lengths;
 
 use forecast::forecast;
 
-use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption};
-use super::print::{self, print_rows};
+use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
+use super::print::{self, Heading, print_quantities, print_rows};
 use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
-use crate::input::value::{Value, short_number};
+use crate::input::units::{DisplayUnit, DisplayUnits};
+use crate::input::value::Value;
 use crate::job::Parameters;
 use crate::job::point::Point;
 use crate::platform::error::Result;
@@ -31,6 +32,8 @@ pub struct Args {
     pub study: PathBuf,
     #[command(flatten)]
     results: ResultsOption,
+    #[command(flatten)]
+    units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
     /// Print only the numbers of points and jobs.
@@ -54,16 +57,17 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if args.summary {
         return print_summary(&counts, format, out);
     }
-    let names = study.parameter_names();
-    let rows: Vec<Vec<Value>> =
-        generation.points.iter().map(|point| row(point, format == Format::Table)).collect();
-    print_rows(&columns(&names), &rows, format, out)?;
+    let units = args.units.apply(study.display_units(), &|name| si_unit(&study, name))?;
+    let rows: Vec<Vec<Value>> = generation
+        .points
+        .iter()
+        .map(|point| row(point, format == Format::Table, &|name| units.of(name, study.unit(name))))
+        .collect();
+    print_quantities(&headings(&study, &units), &rows, format, out)?;
     if !args.quiet.quiet {
-        if format == Format::Table {
-            eprintln!("units: {}", units(&study));
-        }
         eprintln!("{}: {}", study.name, summary(&counts));
         print_progress_and_forecast(args, &study, &generation)?;
+        notes::print_warnings(&study);
         notes::print(&study);
     }
     Ok(())
@@ -102,34 +106,37 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
 
 /// Quantities that the fold design gives. A parameter of the same name keeps its column; the solved value
 /// then stands in a column `NAME_resolved`.
-const SOLVED: [&str; 4] = ["phi", "half_angle", "top_radius", "height"];
+const SOLVED: [(&str, &str); 4] =
+    [("phi", "rad"), ("half_angle", "rad"), ("top_radius", "m"), ("height", "m")];
 
-/// Units of the printed columns.
-fn units(study: &Study) -> String {
+/// SI unit of a parameter or of a quantity of the fold; `None` for another name.
+fn si_unit(study: &Study, name: &str) -> Option<String> {
+    let solved = SOLVED.iter().find(|(solved, _)| *solved == name).map(|(_, unit)| *unit);
+    let is_parameter = study.parameter_names().iter().any(|parameter| parameter == name);
+    let unit = if is_parameter { Some(study.unit(name)) } else { solved };
+    unit.map(str::to_owned)
+}
+
+/// The columns, each with the unit in which it is shown.
+fn headings(study: &Study, units: &DisplayUnits) -> Vec<Heading> {
     let parameters = study.parameter_names();
-    let given = parameters.iter().map(|name| (name.as_str(), study.unit(name)));
-    let solved = [("phi", "rad"), ("half_angle", "rad"), ("top_radius", "m"), ("height", "m")];
-    let units: Vec<String> = given
-        .chain(solved.into_iter().filter(|(name, _)| !parameters.iter().any(|given| given == name)))
-        .filter(|(_, unit)| !matches!(*unit, "" | "1"))
-        .map(|(name, unit)| format!("{name} {unit}"))
-        .collect();
-    units.join(", ")
-}
-
-fn columns(parameters: &[String]) -> Vec<String> {
-    let mut columns = vec!["job".to_owned()];
-    columns.extend(parameters.iter().cloned());
-    columns.push("status".to_owned());
-    columns.extend(SOLVED.iter().map(|name| {
+    let mut headings = vec![Heading::plain("job")];
+    headings.extend(
+        parameters
+            .iter()
+            .map(|name| Heading { name: name.clone(), unit: units.of(name, study.unit(name)) }),
+    );
+    headings.push(Heading::plain("status"));
+    headings.extend(SOLVED.iter().map(|(name, si)| {
         let is_parameter = parameters.iter().any(|parameter| parameter == name);
-        if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() }
+        let shown = if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() };
+        Heading { name: shown, unit: units.of(name, si) }
     }));
-    columns.extend(["reason", "nearest", "note"].map(str::to_owned));
-    columns
+    headings.extend(["reason", "nearest", "note"].map(Heading::plain));
+    headings
 }
 
-fn row(point: &Point, short: bool) -> Vec<Value> {
+fn row(point: &Point, short: bool, unit: &dyn Fn(&str) -> DisplayUnit) -> Vec<Value> {
     let id = if short { point.job.id.short() } else { point.job.id.as_str() };
     let mut row = vec![Value::Text(id.to_owned())];
     row.extend(point.job.parameters.iter().map(|(_, value)| value.clone()));
@@ -150,7 +157,11 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
             });
         }
     }
-    row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(&point.merged)) });
+    row.push(if point.merged.is_empty() {
+        Value::Null
+    } else {
+        Value::Text(note(&point.merged, unit))
+    });
     row
 }
 
@@ -162,7 +173,7 @@ fn solved(point: &Point) -> [Value; SOLVED.len()] {
 }
 
 /// The points that are the same job as this one: the first three, and the number of the others.
-fn note(merged: &[Parameters]) -> String {
+fn note(merged: &[Parameters], unit: &dyn Fn(&str) -> DisplayUnit) -> String {
     const MAX_SHOWN: usize = 3;
     let mut texts: Vec<String> = merged
         .iter()
@@ -170,10 +181,7 @@ fn note(merged: &[Parameters]) -> String {
         .map(|parameters| {
             let values: Vec<String> = parameters
                 .iter()
-                .map(|(name, value)| match value {
-                    Value::Number(number) => format!("{name} = {}", short_number(*number)),
-                    other => format!("{name} = {other}"),
-                })
+                .map(|(name, value)| format!("{name} = {}", unit(name).quantity(value)))
                 .collect();
             if values.is_empty() { "the same point".to_owned() } else { values.join(", ") }
         })

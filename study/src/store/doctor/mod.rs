@@ -128,7 +128,8 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
     }
     health.records = journal.records.len();
     if let (Some(study), Some(points)) = (study, points) {
-        let stored = Stored { results: results.clone(), study, journal, points };
+        let units = study.display_units().clone();
+        let stored = Stored { results: results.clone(), study, units, journal, points };
         check_table(&stored, &mut health);
     }
     health.findings.sort_by_key(|finding| !finding.fault);

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
 
+use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
@@ -39,6 +40,8 @@ pub struct Column {
     pub cell_type: CellType,
     /// SI unit; "1" for a dimensionless number, empty for text or an unknown unit.
     pub unit: String,
+    /// Unit in which its cells are shown; they are SI.
+    pub shown: DisplayUnit,
     /// Meaning, one line.
     pub meaning: String,
     /// One value per row.
@@ -57,6 +60,7 @@ impl Table {
             name: "job".to_owned(),
             cell_type: CellType::Text,
             unit: String::new(),
+            shown: DisplayUnit::si(""),
             meaning: "job id: hash of all that decides the result".to_owned(),
             cells: points
                 .iter()
@@ -76,12 +80,22 @@ impl Table {
                 name: format!("{}{}", column.name, if shadowed { RESOLVED } else { "" }),
                 cell_type: column.cell_type,
                 unit: column.unit.to_owned(),
+                shown: DisplayUnit::si(column.unit),
                 meaning: column.meaning.to_owned(),
                 cells: rows.iter().map(|row| row.get(column.id).clone()).collect(),
             });
         }
         columns.push(same_job::column(points));
         Self { columns }
+    }
+
+    /// The same table, shown in these units. Its cells stay SI.
+    #[must_use]
+    pub fn shown_in(mut self, units: &DisplayUnits) -> Self {
+        for column in &mut self.columns {
+            column.shown = units.of(&column.name, &column.unit);
+        }
+        self
     }
 
     /// Number of rows.
@@ -148,10 +162,12 @@ fn parameter_columns(points: &[PointRow<'_>], unit: &dyn Fn(&str) -> String) -> 
             })
             .collect();
         let cell_type = common_type(&cells);
+        let unit = unit(name);
         Column {
             name: (*name).to_owned(),
             cell_type,
-            unit: unit(name),
+            shown: DisplayUnit::si(&unit),
+            unit,
             meaning: "parameter of the study".to_owned(),
             cells: cells.into_iter().map(|cell| convert(cell_type, cell)).collect(),
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Column, Table};
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Parameters;
 use crate::job::point::{self, Point};
@@ -44,6 +45,7 @@ pub(super) fn column(rows: &[PointRow<'_>]) -> Column {
         name: SAME_JOB_AS.to_owned(),
         cell_type: CellType::Text,
         unit: String::new(),
+        shown: DisplayUnit::si(""),
         meaning: SAME_JOB_AS_MEANING.to_owned(),
         cells,
     }
