@@ -51,7 +51,7 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
     } else {
         results.read_table()?
     };
-    changes::note(&results, given, set)?;
+    changes::note(&results, given.study.as_deref(), set)?;
     changes::note_other_physics(&table);
     let display = match given.study.as_deref().filter(|path| path.is_file()) {
         Some(path) => Study::load(path, set)?.display_units().clone(),

@@ -331,6 +331,9 @@ pub(crate) const GRID_MEANINGS: &[(&str, &str)] = &[
     ),
     ("grid.zip", "Groups of keys that vary together: lists of equal length."),
     ("grid.points", "Single points, after the product."),
-    ("grid.filter", "Condition a point must meet, as in \"feasible and M >= 3\"."),
+    (
+        "grid.filter",
+        "Condition that a point of the product must meet, as in \"feasible and M >= 3\".",
+    ),
     ("strategies.<name>.inflow", "Inflow windows; overlapping ones add up."),
 ];
