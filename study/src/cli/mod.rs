@@ -36,6 +36,7 @@ mod schema;
 mod show;
 mod solve;
 mod status;
+mod study_keys;
 mod table;
 mod target;
 pub mod validate;
