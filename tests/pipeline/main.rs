@@ -28,4 +28,5 @@ mod solve;
 mod status_why_show;
 mod study_files;
 mod support;
+mod units;
 mod validate;

@@ -150,11 +150,13 @@ fn windows(
 /// The key, value and problem of a window that starts or ends after the run.
 fn beyond_the_end(from: f64, to: f64, end_time: f64) -> Option<(&'static str, f64, String)> {
     if from >= end_time {
-        let problem = format!("is after solver.end_time ({end_time} s): the window is ignored");
+        let problem =
+            format!("is after solver.end_time ({} s): the window is ignored", shown(end_time));
         return Some(("from", from, problem));
     }
-    let problem =
-        || format!("is after solver.end_time ({end_time} s): the part after it is ignored");
+    let problem = || {
+        format!("is after solver.end_time ({} s): the part after it is ignored", shown(end_time))
+    };
     (to > end_time).then(|| ("to", to, problem()))
 }
 
