@@ -187,9 +187,9 @@ fn shipped_studies_and_scenes_give_no_warning() {
     let folder = TestFolder::new(&study());
     let mut files: Vec<String> = Vec::new();
     for entry in fs::read_dir(format!("{root}/studies")).unwrap() {
-        let path = entry.unwrap().path().display().to_string();
-        if path.ends_with(".json") {
-            files.push(path);
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "json") {
+            files.push(path.display().to_string());
         }
     }
     let readme = fs::read_to_string(format!("{root}/README.md")).unwrap();

@@ -239,7 +239,7 @@ fn print_history(
         })
         .collect();
     let units = args.units.apply(units, &|name| {
-        let known = all_names.iter().any(|known| *known == name);
+        let known = all_names.contains(&name);
         known.then(|| si_of_column(name).to_owned())
     })?;
     let headings: Vec<Heading> = columns

@@ -127,7 +127,11 @@ fn windows(
         let to = to.unwrap_or(end_time.max(from));
         if to < from || (to <= from && window.given("to").is_some()) {
             let problem = "the window ends before it begins";
-            return Err(window.error("to", problem, format!("above its `from`, {from} s")));
+            return Err(window.error(
+                "to",
+                problem,
+                format!("above its `from`, {} s", shown(from)),
+            ));
         }
         if let Some((key, value, problem)) = beyond_the_end(from, to, end_time) {
             let next = "change it, or raise solver.end_time".to_owned();
