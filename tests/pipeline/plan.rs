@@ -291,12 +291,25 @@ fn overrides_come_before_expansion() {
     assert_eq!(scene.film.thickness, 12.7e-6);
     assert!(scene.gas.species.gas_constant > 2000.0);
 
+    // One value in place of an axis; one value as an axis; a list as an axis.
+    let generation = plan(&study, &["N=7"]);
+    assert_eq!(generation.points.len(), 1);
+    assert_eq!(generation.points[0].job.scene.design.panels, 7);
+    assert_eq!(column(&plan(&study, &["grid.N=7"]), "N"), integers(&[7]));
+    let generation = plan(&study, &["M=[2, 4]", "N=7"]);
+    assert_eq!(column(&generation, "M"), integers(&[2, 4]));
+    let zipped = with_grid(json!({"zip": [{"N": [5, 6], "M": [3, 4]}]}));
+    let error = try_study(&zipped, &["N=7"]).unwrap_err().to_string();
+    assert!(error.contains("varies this key together with others (zip)"), "{error}");
+
     for (set, problem) in [
         ("film.thickness=thick", "--set film.thickness=thick: film.thickness = \"thick\""),
-        ("N=7", "the grid varies this key"),
         ("nonsense", "has no `=`"),
         ("film.thicknes=1", "did you mean thickness?"),
-        ("=1", "names no place"),
+        ("film.thickness=[1, 2", "this [ is not closed"),
+        ("thiknes=1", "did you mean thickness?"),
+        ("desing.N=6", "did you mean design.N?"),
+        ("=1", "has no key"),
         ("grid.filter=N >", "something is missing here"),
         ("supports[3]=1", "names no place"),
     ] {

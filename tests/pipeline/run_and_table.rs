@@ -118,7 +118,7 @@ fn invalid_columns_conditions_and_folders_give_exit_code_2() {
         (&["table", "--results", "empty"], "no table here"),
         (&["run", "grid.json", "--threads", "0"], "zero threads cannot run a job"),
         (&["run", "missing.json"], "missing.json"),
-        (&["completions", "cobol"], "possible values"),
+        (&["completions", "cobol"], "allowed: bash, elvish, fish"),
     ] {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));

@@ -10,11 +10,11 @@ use serde_json::{Map, json};
 
 use super::best::{self, MAX_LINE_WIDTH, MAX_VALUES};
 use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Extremes, HEADLINE, Trust};
+use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Extremes, Trust};
 use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::Status;
-use crate::job::row::ColumnId;
+use crate::job::row::{ColumnId, HEADLINE};
 
 /// Characters before the text of a line: two spaces, the topic, a space.
 const TOPIC_WIDTH: usize = 11;
@@ -28,7 +28,7 @@ const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
-        writeln!(out, "{}", answer.question)?;
+        writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
     }
     writeln!(out, "  deployed {}", deployed(answer))?;
     print_extremes(answer, out)?;
@@ -85,18 +85,18 @@ fn headline(effects: &Effects, measure: ColumnId) -> String {
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(fastest) = &answer.fastest {
-        let value = format!("t_90_z_rim {}", fastest.shown.brief(fastest.value));
+        let value = format!("{} {}", HEADLINE[0].name(), fastest.shown.brief(fastest.value));
         writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
     }
-    let Some(hardest) = &answer.hardest else { return Ok(()) };
-    let mut value = format!("peak_vz {}", hardest.shown.brief(hardest.value));
-    let energy = answer.most_energy.as_ref();
-    if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
-        let _ = write!(value, ", peak_kinetic_energy {}", same.shown.brief(same.value));
+    let Some(energy) = &answer.most_energy else { return Ok(()) };
+    let mut value = format!("peak_kinetic_energy {}", energy.shown.brief(energy.value));
+    let speed = answer.hardest.as_ref();
+    if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
+        let _ = write!(value, ", peak_vz {}", same.shown.brief(same.value));
     }
-    writeln!(out, "  hardest  {value}: {}", job_text(hardest))?;
-    if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
-        let value = format!("peak_kinetic_energy {}", other.shown.brief(other.value));
+    writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
+    if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
+        let value = format!("peak_vz {} (noisy)", other.shown.brief(other.value));
         writeln!(out, "           {value}: {}", job_text(other))?;
     }
     Ok(())
@@ -265,7 +265,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "question": answer.question,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
-        "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
+        "fastest": extreme_json(answer.fastest.as_ref(), HEADLINE[0].name()),
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
         "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),

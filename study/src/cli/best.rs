@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::analysis::answer::{Effect, Effects, Extremes, HEADLINE, MeasureEffect};
+use crate::analysis::answer::{Effect, Effects, Extremes, MeasureEffect};
 use crate::analysis::compare::{Tolerance, ToleranceSource};
 use crate::input::value::{Value, brief_number};
+use crate::job::row::HEADLINE;
 use crate::platform::error::Result;
 use crate::store::results::Results;
 use crate::store::table::Table;

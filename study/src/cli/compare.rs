@@ -12,19 +12,19 @@ use crate::analysis::compare::{
     self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, ToleranceSource, measures_with,
     pairs_of_jobs,
 };
-use crate::input::keys;
 use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
 /// Measures that a table compares by default.
-const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim", "peak_vz"];
+const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
 
 /// Arguments of `billow compare`.
 #[derive(Debug, clap::Args)]
@@ -37,8 +37,8 @@ pub struct Args {
     /// The value that the other values are compared with; with its unit, as in "1 g/s".
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub base: String,
-    /// Measures, comma-separated [default: `t_90_z_rim,peak_vz`; for csv and json all measures for
-    /// which smaller or larger is better].
+    /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy`; for csv and
+    /// json all measures for which smaller or larger is better].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub measures: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and M >= 3`.
@@ -130,7 +130,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 fn parameter<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {
     let names = || table.parameters().map(|column| column.name.as_str());
     table.parameters().find(|column| column.name == name).ok_or_else(|| {
-        let near = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let near = did_you_mean(name, names());
         let mut allowed = names().collect::<Vec<_>>().join(", ");
         if allowed.is_empty() {
             "none: the study varies no parameter".clone_into(&mut allowed);
@@ -155,7 +155,8 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
     found.cloned().ok_or_else(|| {
         let values: Vec<String> = values.iter().map(|value| by.shown.quantity(value)).collect();
         let problem = format!("not a value of {} in this study", by.name);
-        Error::invalid_option("--base", text, problem, values.join(", "), "")
+        let near = did_you_mean(text, values.iter().map(String::as_str)).unwrap_or_default();
+        Error::invalid_option("--base", text, problem, values.join(", "), near)
     })
 }
 

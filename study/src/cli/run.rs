@@ -91,6 +91,11 @@ pub(super) fn run_study(
         unit.or(column.map(|column| column.unit)).map(str::to_owned)
     })?;
     let instruction_set = super::instruction_set::selected()?;
+    let threads = options.threads.count()?;
+    if !options.progress.quiet {
+        // Before the run: a reader may want to change the study.
+        notes::print(study);
+    }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
     let summary = runner::run(
@@ -104,19 +109,16 @@ pub(super) fn run_study(
                 references: References::known(results.references()),
             },
             results: results.clone(),
-            threads: options.threads.count()?,
+            threads,
             stop,
             rerun: again,
         },
-        progress::reporter(options.progress.loudness()).as_mut(),
+        progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
     let mut stored = Stored::read(results)?;
     stored.units = units;
     let answer = Answer::of(&stored);
     print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
-    if !options.progress.quiet {
-        notes::print(study);
-    }
     result(&summary, root)
 }
 

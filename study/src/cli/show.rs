@@ -16,6 +16,7 @@ use crate::job::row::{Cells, ColumnGroup};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::scene::summary;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::results::Results;
@@ -152,7 +153,8 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         let group_cells =
             cells.iter().filter(|(column, value)| column.group == group && **value != Value::Null);
         rows.extend(group_cells.map(|(column, value)| {
-            let (unit, meaning) = (text(column.unit), text(column.meaning));
+            let noisy = if column.id.is_noisy() { "noisy: " } else { "" };
+            let (unit, meaning) = (text(column.unit), text(&format!("{noisy}{}", column.meaning)));
             vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
@@ -265,7 +267,7 @@ fn find<'a>(all: &[(&'a str, &'a [f64])], name: &str) -> Result<(&'a str, &'a [f
     let names = || all.iter().map(|(name, _)| *name);
     let current = current_name("--columns", name);
     all.iter().find(|(known, _)| *known == current).copied().ok_or_else(|| {
-        let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let hint = did_you_mean(name, names());
         let allowed = names().collect::<Vec<_>>().join(", ");
         let problem = "no such column in this history";
         Error::invalid_option("--columns", name, problem, allowed, hint.unwrap_or_default())

@@ -15,6 +15,7 @@ use crate::job::Status as JobStatus;
 use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
+use crate::platform::quote;
 use crate::scene::summary;
 use crate::store::doctor::{self, Depth, Health};
 use crate::store::results::Results;
@@ -120,8 +121,8 @@ impl<'a> Status<'a> {
             "status": counts.status,
             "verdict": counts.verdict,
             "near_threshold": counts.near_threshold,
-            "wall_seconds": self.seconds,
-            "mean_wall_seconds": self.mean_seconds(),
+            "job_seconds": self.seconds,
+            "mean_job_seconds": self.mean_seconds(),
             "remaining_seconds": self.remaining_seconds(),
             "threads": self.threads,
             "broken": self.health.faults(),
@@ -140,7 +141,7 @@ impl<'a> Status<'a> {
         writeln!(out, "{}: {state}", self.stored.study.name).map_err(output_error)?;
         let mut lines: Vec<Line> = Vec::new();
         if !self.stored.study.question.is_empty() {
-            lines.push(("question", self.stored.study.question.clone()));
+            lines.push(("question", quote::printable(&self.stored.study.question)));
         }
         lines.extend(self.job_lines());
         lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
@@ -189,21 +190,27 @@ impl<'a> Status<'a> {
         lines
     }
 
-    /// Elapsed and remaining time.
+    /// Time of the finished jobs, and remaining time.
     fn time_lines(&self) -> Vec<Line> {
         let mut lines = Vec::new();
         if let Some(mean) = self.mean_seconds() {
-            let elapsed = duration(self.seconds);
-            lines.push((
-                "elapsed",
-                format!("{elapsed} on one core, mean {} per job", duration(mean)),
-            ));
+            // Jobs run side by side, in several runs: their sum is no time on a clock.
+            let text = format!(
+                "{} in all, the sum over {} of one thread each; mean {}",
+                duration(self.seconds),
+                count(self.timed, "job"),
+                duration(mean)
+            );
+            lines.push(("job time", text));
         }
         if self.counts.of(JobStatus::Pending) > 0 {
             let text = match self.remaining_seconds() {
                 Some(remaining) => {
                     let threads = count(self.threads, "thread");
-                    format!("about {} on {threads}, from this mean", duration(remaining))
+                    format!(
+                        "about {} on {threads} (--threads N for another number)",
+                        duration(remaining)
+                    )
                 }
                 None => "unknown: no job has run yet".to_owned(),
             };

@@ -12,15 +12,14 @@ use crate::job::row::{ColumnId, SAME_JOB_AS, current_column_name};
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
-/// Columns shown after the parameters by default, in this order, as far as they fit.
-const MAIN_COLUMNS: [ColumnId; 10] = [
+/// Columns shown after the parameters by default, in this order, as far as they fit. None is noisy.
+const MAIN_COLUMNS: [ColumnId; 9] = [
     ColumnId::Status,
     ColumnId::Verdict,
     ColumnId::T90ZRim,
-    ColumnId::PeakVz,
+    ColumnId::PeakKineticEnergy,
     ColumnId::FinalPressure,
     ColumnId::TDeployed,
-    ColumnId::PeakKineticEnergy,
     ColumnId::VolumeRatio,
     ColumnId::HeightRatio,
     ColumnId::Overshoot,
@@ -76,6 +75,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         .collect();
     print_quantities(&headings, &cells, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
+        if let Some(note) = noisy_note(&columns) {
+            eprintln!("{note}");
+        }
         if rows.is_empty() && args.condition.is_some() {
             eprintln!(
                 "billow: no row fulfils --where; a number without a unit is SI, a unit is written as in \
@@ -94,6 +96,19 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         best::print(&results, &table, &rows)?;
     }
     Ok(())
+}
+
+/// A note when noisy measures are among the printed columns.
+fn noisy_note(columns: &[&Column]) -> Option<String> {
+    let noisy: Vec<&str> = columns
+        .iter()
+        .map(|column| column.name.as_str())
+        .filter(|name| ColumnId::from_name(name).is_some_and(ColumnId::is_noisy))
+        .collect();
+    let measures = noisy.join(", ");
+    (!noisy.is_empty()).then(|| {
+        format!("note: noisy: {measures}; the seed alone changes them by more than 3 %, use several seeds")
+    })
 }
 
 /// A column as the head of a table has it.

@@ -11,5 +11,6 @@ pub(crate) mod settings;
 pub(crate) mod source;
 pub mod study_file;
 pub(crate) mod supports;
+pub mod syntax;
 pub mod units;
 pub mod value;

@@ -149,7 +149,7 @@ impl<'a> Stored<'a> {
         InputError {
             file: "job".to_owned(),
             key: String::new(),
-            value: prefix.to_owned(),
+            value: if prefix.is_empty() { "\"\"" } else { prefix }.to_owned(),
             problem: problem.to_owned(),
             allowed: if allowed.is_empty() {
                 "nothing: the study has no jobs".to_owned()

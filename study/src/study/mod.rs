@@ -10,6 +10,7 @@ mod base;
 mod expand;
 mod fold;
 mod grid;
+pub(crate) mod ground;
 mod limits;
 pub mod plan;
 mod point;
@@ -107,6 +108,7 @@ impl Study {
     ) -> Result<Self, InputError> {
         let tree = study_file::parse(text, file)?;
         Self::from_tree(tree, file, stem, sets, limits)
+            .map_err(|error| study_file::with_place(error, text, file))
     }
 
     /// Reads a study from the tree of its text.

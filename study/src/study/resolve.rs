@@ -4,9 +4,10 @@ use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{InflowWindow, ModelKind, Scene, Stepping};
 
 use super::base::Base;
+use super::ground;
 use super::schedule::Schedule;
 use super::strategy::{Strategy, Window};
-use crate::input::keys::draft::{Draft, SteppingDraft};
+use crate::input::keys::draft::{Draft, ResidualGas, SteppingDraft};
 use crate::input::keys::{KEYS, Key, named};
 use crate::input::settings::{check_sample_interval, species};
 use crate::input::source::{Source, shown};
@@ -41,7 +42,8 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
     let burst = (burst_mass(&draft), draft.inflow.burst_rate);
     let mut scene = draft.scene.clone();
     scene.gas.species = species(&draft.species, source)?;
-    scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft);
+    scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft, source)?;
+    ground::check_gas_inside(&scene.gas, source)?;
     scene.gas.windows = windows;
     scene.supports.clone_from(&point.supports);
     scene.release_time = strategy.release_time();
@@ -84,13 +86,17 @@ fn check_release(
 }
 
 /// Residual gas inside from the start, kg.
-fn stored_mass(draft: &Draft) -> f64 {
-    if draft.inflow.residual_stored { draft.inflow.residual_mass } else { 0.0 }
+fn stored_mass(draft: &Draft, source: &Source) -> Result<f64, InputError> {
+    Ok(match draft.inflow.residual {
+        ResidualGas::Burst => 0.0,
+        ResidualGas::Stored => draft.inflow.residual_mass,
+        ResidualGas::Ambient => ground::mass_at_ambient_pressure(draft, source)?,
+    })
 }
 
 /// Residual gas let in as a burst, kg.
 fn burst_mass(draft: &Draft) -> f64 {
-    if draft.inflow.residual_stored { 0.0 } else { draft.inflow.residual_mass }
+    if draft.inflow.residual == ResidualGas::Burst { draft.inflow.residual_mass } else { 0.0 }
 }
 
 /// Whether a model has a shape to keep.

@@ -9,7 +9,7 @@ use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::point::Point;
-use crate::job::row::{ColumnId, Counts};
+use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
@@ -19,9 +19,6 @@ mod trust;
 pub use effects::{Effect, Effects, Extremes, MeasureEffect};
 pub use trust::Trust;
 
-/// The headline measures, whose medians, best and worst values are given: speed of the deployment, impact.
-pub const HEADLINE: [ColumnId; 2] = [ColumnId::T90ZRim, ColumnId::PeakVz];
-
 /// The answer of a study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer {
@@ -29,7 +26,7 @@ pub struct Answer {
     pub question: String,
     /// Numbers of rows by how they ended.
     pub counts: Counts,
-    /// The trusted, deployed job with the smallest `t_90_z_rim`.
+    /// The trusted, deployed job with the smallest `t_90_z_rim_since_release`.
     pub fastest: Option<Extreme>,
     /// The done job with the largest `peak_vz`.
     pub hardest: Option<Extreme>,
@@ -89,7 +86,7 @@ impl Answer {
             trust::is_trusted(table, *row) && (deployed || !judged)
         };
         let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
-        answer.fastest = extreme(table, &best, ColumnId::T90ZRim, |value, best| value < best);
+        answer.fastest = extreme(table, &best, HEADLINE[0], |value, best| value < best);
         answer.hardest = extreme(table, &rows, ColumnId::PeakVz, |value, best| value > best);
         answer.most_energy =
             extreme(table, &rows, ColumnId::PeakKineticEnergy, |value, best| value > best);

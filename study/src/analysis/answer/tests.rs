@@ -42,8 +42,16 @@ fn table() -> Table {
                     )
                     .collect(),
             ),
-            column("t_90_z_rim", CellType::Number, numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.])),
-            column("peak_vz", CellType::Number, numbers(&[10., 20., 30., 40., 0., 5., 99., 5.])),
+            column(
+                "t_90_z_rim_since_release",
+                CellType::Number,
+                numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.]),
+            ),
+            column(
+                "peak_kinetic_energy",
+                CellType::Number,
+                numbers(&[10., 20., 30., 40., 0., 5., 99., 5.]),
+            ),
             column(
                 "ledger_residual",
                 CellType::Number,

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use super::draft::Draft;
-use super::nearest::nearest;
 use super::quantity::{Quantity, integer};
 use super::words::Word;
 use crate::input::study_file::Json;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
+use crate::platform::nearest::nearest;
 
 /// Puts the value of a key into its field of the draft.
 pub type Store = fn(&mut Draft, &Value);

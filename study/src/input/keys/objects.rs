@@ -168,8 +168,9 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
     (
         "mesh.closure",
         "Faces that close the volume without being film: names of groups or objects of positions, \
-         or an OBJ file of faces over its vertices. Default: none; with gas, a fan over each free \
-         edge loop closes an open film.",
+         or an OBJ file of faces over its vertices. A vertex of no film moves with the rim of its \
+         faces, which takes its load. Default: none; with gas, a fan over each free edge loop \
+         closes an open film.",
     ),
     ("supports[].nodes", "Vertices by number, 0 for the first of the file."),
     ("supports[].body", "A rigid plane of this mass that moves along its normal as a free body."),

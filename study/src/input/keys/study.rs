@@ -178,15 +178,15 @@ pub static KEYS: &[Key] = &[
         .to(|draft, value| draft.inflow.residual_mass = number(value))
         .study_only(),
     key("gas.residual_gas", KeyKind::Choice(&words(&RESIDUAL_GAS)), Word("burst"), "\"stored\"",
-        "How residual gas enters.")
-        .to(|draft, value| choose(&mut draft.inflow.residual_stored, &RESIDUAL_GAS, value))
+        "How residual gas enters. It is gas.species (nitrogen by default), also where it stands for air.")
+        .to(|draft, value| choose(&mut draft.inflow.residual, &RESIDUAL_GAS, value))
         .study_only(),
     key("gas.burst_rate", likely(from(Dimension::MassFlowRate, 1e-9, 100.0), 1e-9, MAX_PLAUSIBLE_FLOW_RATE), Number(0.005), "\"5 g/s\"",
         "Mass flow rate of a burst of residual gas.")
         .to(|draft, value| draft.inflow.burst_rate = number(value))
         .study_only(),
     key("gas.ambient_pressure", likely(from(Dimension::Pressure, 0.0, 1e7), 0.0, 1e6), Number(0.0), "\"1 atm\"",
-        "Pressure outside: 0 in orbit.")
+        "Pressure outside: 0 in orbit. Above 0 the stowed capsule must contain gas: residual_gas ambient.")
         .to(|draft, value| draft.scene.gas.ambient_pressure = number(value)),
     key("gas.heat_transfer",
         KeyKind::Quantity(Quantity {
@@ -200,7 +200,8 @@ pub static KEYS: &[Key] = &[
         Number(0.3), "\"0.3 W/(m2 K)\"", "Heat transfer coefficient between gas and film.")
         .to(|draft, value| draft.scene.gas.heat_transfer = heat_transfer(value)),
     key("gas.leak_area", likely(from(Dimension::Area, 0.0, 100.0), 0.0, 0.05), Number(0.0), "\"1 mm2\"",
-        "Area of the leak orifice.")
+        "Area of the leak orifice. It flows both ways: gas of the same species enters at film \
+          temperature where ambient_pressure is above the pressure inside.")
         .to(|draft, value| draft.scene.gas.leak_area = number(value)),
     key("gas.discharge_coefficient", FRACTION, Number(1.0), "0.62",
         "Discharge coefficient of the leak orifice.")

@@ -11,6 +11,7 @@ mod cell;
 mod columns;
 mod counts;
 mod job_end;
+mod noisy;
 pub mod reference;
 mod renamed;
 
@@ -18,6 +19,7 @@ pub use cell::Cell;
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 pub use counts::Counts;
 pub use job_end::JobEnd;
+pub use noisy::{HEADLINE, NOISY};
 pub use renamed::{
     RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, current_column_name, hashed_column_name, note,
 };

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use billow_solver::models::film::CONTACT_COLUMNS;
+use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
 use super::{
-    BetterSide, COLUMNS, CellType, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, SAME_JOB_AS,
+    BetterSide, COLUMNS, CellType, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, RowColumn, SAME_JOB_AS,
     SAME_JOB_AS_MEANING,
 };
 use crate::job::status::{RENAMED_STATUSES, Status};
@@ -33,9 +33,10 @@ fn table_columns(page: &mut String) {
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
          called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
          them. Any cell may be null. The column \"better\" says which side\n\
-         `billow compare` calls the better one; \"signed\" marks values that can be negative or zero,\n\
-         which are compared by difference and not by ratio.\n\n\
-         | name | type | unit | group | better | signed | meaning |\n\
+         `billow compare` calls the better one. Marks: a \"signed\" value can be negative or zero and is\n\
+         compared by difference, not by ratio; a \"noisy\" measure changes by more than 3 % with the seed,\n\
+         the time step, the numerical damping or the contact distance: compare it over several seeds.\n\n\
+         | name | type | unit | group | better | marks | meaning |\n\
          |---|---|---|---|---|---|---|\n",
     );
     for column in COLUMNS {
@@ -51,12 +52,19 @@ fn table_columns(page: &mut String) {
             column.cell_type.name(),
             column.unit,
             column.group.name(),
-            if column.signed { "signed" } else { "" },
+            marks(column),
             column.meaning
         );
     }
     let text = CellType::Text.name();
     let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");
+}
+
+/// What `billow compare` and a reader must know of a column: signed, noisy.
+fn marks(column: &RowColumn) -> String {
+    let marks = [(column.signed, "signed"), (column.id.is_noisy(), "noisy")];
+    let set: Vec<&str> = marks.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect();
+    set.join(", ")
 }
 
 fn statuses(page: &mut String) {
@@ -99,6 +107,8 @@ fn history_columns(page: &mut String) {
         page,
         "| `vz_centre` | m/s | film with rings | velocity of the top centre node along z |"
     );
+    let (name, unit, meaning) = FILM_STRESS_99;
+    let _ = writeln!(page, "| `{name}` | {unit} | film | {meaning} |");
     for (name, unit, meaning) in CONTACT_COLUMNS {
         let _ = writeln!(page, "| `{name}` | {unit} | film with contact | {meaning} |");
     }

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use billow_solver::geometry::field::Field;
+use billow_solver::mechanics::supports::Supports;
 use billow_solver::scene::film_scene::Filling;
+use billow_solver::scene::film_support::FilmSupport;
 use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 use nalgebra::Vector3;
 
@@ -21,6 +24,7 @@ pub(super) fn read(
     tree: &Json,
     draft: &Draft,
     shape: &mut Shape,
+    supports: &[FilmSupport],
     notes: &mut Vec<String>,
     source: &Source,
 ) -> Result<Filling, InputError> {
@@ -51,7 +55,7 @@ pub(super) fn read(
             "{\"pressure\": \"1 kPa\"}",
         ));
     }
-    close(shape, notes, source)?;
+    close(shape, supports, notes, source)?;
     let volume = check_outward(shape, source)?;
     let mut supply = GasSupply {
         species: species(&draft.species, source)?,
@@ -207,7 +211,12 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
 }
 
 /// Closes an open film by fans. Film that is open only because its seams are not joined is an error.
-fn close(shape: &mut Shape, notes: &mut Vec<String>, source: &Source) -> Result<(), InputError> {
+fn close(
+    shape: &mut Shape,
+    supports: &[FilmSupport],
+    notes: &mut Vec<String>,
+    source: &Source,
+) -> Result<(), InputError> {
     let loops = shape.shell.boundary();
     if loops.is_empty() {
         return Ok(());
@@ -241,11 +250,18 @@ fn close(shape: &mut Shape, notes: &mut Vec<String>, source: &Source) -> Result<
         }
     }
     let edges: usize = loops.iter().map(Vec::len).sum();
-    let tips = shape.shell.close();
+    let supports = Supports::new(supports, &Field::of(&shape.shell.positions));
+    let tips = shape.shell.close(|node| supports.projector(node as usize));
+    let walls = shape.shell.walls.len();
     notes.push(format!(
-        "the film is open: {} fan(s) over {edges} free edges close its volume (about the centre of a \
-         plane loop, else about the origin)",
+        "the film is open: {} fan(s) over {edges} free edges close its volume",
         tips.len()
     ));
+    if walls > 0 {
+        notes.push(format!(
+            "supports hold the edges of {walls} fan(s), which count as walls or symmetry planes: reactions \
+             leave out the pressure on them"
+        ));
+    }
     Ok(())
 }
