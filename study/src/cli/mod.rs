@@ -14,6 +14,8 @@ use crate::platform::output::Output;
 
 mod answer;
 pub mod bench;
+mod best;
+mod changes;
 mod chart;
 mod compare;
 mod completions;

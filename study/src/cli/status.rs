@@ -1,5 +1,6 @@
 //! `billow status`: shows the progress of a study.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::num::NonZero;
 
@@ -9,7 +10,7 @@ use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, print_rows};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
-use super::{Format, output_error};
+use super::{Format, changes, output_error};
 use crate::job::Status as JobStatus;
 use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
@@ -18,7 +19,7 @@ use crate::platform::quote;
 use crate::scene::summary;
 use crate::store::doctor::{self, Depth, Health};
 use crate::store::results::Results;
-use crate::store::stored::Stored;
+use crate::store::stored::{Stored, other_physics};
 
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]
@@ -85,6 +86,11 @@ impl<'a> Status<'a> {
         Self { stored, health, counts, seconds, timed, threads }
     }
 
+    /// Numbers of finished jobs of other versions of the physics, by version.
+    fn other_physics(&self) -> BTreeMap<i64, usize> {
+        other_physics(&self.stored.points, &self.stored.journal.records)
+    }
+
     /// Mean wall time of a job, s.
     fn mean_seconds(&self) -> Option<f64> {
         (self.timed > 0).then(|| self.seconds / self.timed as f64)
@@ -104,12 +110,13 @@ impl<'a> Status<'a> {
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
             "running": self.health.running,
-            "points": counts.rows(),
+            "points": stored.study.points().len(),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
             "pending": counts.of(JobStatus::Pending),
             "infeasible": counts.of(JobStatus::Infeasible),
+            "other_physics": self.other_physics(),
             "invalidated": stored.journal.invalidated.len(),
             "status": counts.status,
             "verdict": counts.verdict,
@@ -137,6 +144,7 @@ impl<'a> Status<'a> {
             lines.push(("question", quote::printable(&self.stored.study.question)));
         }
         lines.extend(self.job_lines());
+        lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
         lines.extend(self.time_lines());
         lines.push(("broken", self.broken()));
         lines.push(("results", self.stored.results.root().display().to_string()));
@@ -152,8 +160,13 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
+        let points = self.stored.study.points().len();
+        let duplicates = match points.saturating_sub(counts.rows()) {
+            0 => String::new(),
+            number => format!(", {}", count(number, "duplicate")),
+        };
         let mut lines =
-            vec![("points", format!("{}: {jobs}, {infeasible} infeasible", counts.rows()))];
+            vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
         let invalidated = match self.stored.journal.invalidated.len() {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::options::ResultsOption;
+use super::changes;
+use super::options::{ResultsOption, UnitsOption};
 use crate::input::expression::{Expression, Type, Variable};
 use crate::input::units::Dimension;
 use crate::input::value::Value;
@@ -38,11 +39,11 @@ pub struct Target {
 
 /// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
 /// stderr says when the given study file, with its overrides `set`, differs from the study of the
-/// results.
+/// results. The table is shown in the units of the given study file, or in those of the results.
 ///
 /// # Errors
-/// When there are no results, or their table cannot be read.
-pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
+/// When there are no results, or their table cannot be read; units that do not fit.
+pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, set)?);
     // A run that was stopped before it wrote its table has a plan and a journal.
     let table = if !results.table_path().exists() && results.owner()?.is_some() {
@@ -50,15 +51,13 @@ pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
     } else {
         results.read_table()?
     };
-    if let Some(path) = given.study.as_deref().filter(|path| path.is_file()) {
-        let study = Study::load(path, set)?;
-        if !results.holds(&study.name, &study.resolved())? {
-            eprintln!(
-                "billow: {} has changed since these rows were computed; `billow run` updates them",
-                path.display()
-            );
-        }
-    }
+    changes::note(&results, given, set)?;
+    changes::note_other_physics(&table);
+    let display = match given.study.as_deref().filter(|path| path.is_file()) {
+        Some(path) => Study::load(path, set)?.display_units().clone(),
+        None => results.display_units()?,
+    };
+    let table = units.show(table, &display)?;
     Ok(Target { results, table })
 }
 
@@ -274,7 +273,8 @@ fn variable_type(table: &Table, column: &Column) -> Type {
     }
 }
 
-/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given.
+/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given: every point of
+/// each job.
 ///
 /// # Errors
 /// A prefix of no job, or of several; the error gives the nearest ids.
@@ -289,14 +289,16 @@ pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
     for prefix in prefixes.iter().map(|prefix| prefix.trim()) {
         let found: Vec<usize> =
             (0..ids.len()).filter(|row| ids[*row].starts_with(prefix)).collect();
-        match found.as_slice() {
-            [row] if !rows.contains(row) => rows.push(*row),
-            [_] => {}
+        match table.one_row_per_job(&found).len() {
+            1 => {
+                let new: Vec<usize> = found.into_iter().filter(|row| !rows.contains(row)).collect();
+                rows.extend(new);
+            }
             several => {
-                let problem = if several.is_empty() {
+                let problem = if several == 0 {
                     "no job id starts with this".to_owned()
                 } else {
-                    format!("{} job ids start with this", several.len())
+                    format!("{several} job ids start with this")
                 };
                 let hint = "billow table --columns job,status lists them";
                 let allowed = nearest_ids(&ids, prefix);

@@ -4,6 +4,7 @@
 pub mod expression;
 pub mod keys;
 pub(crate) mod overrides;
+pub(crate) mod plausible;
 pub mod renamed;
 pub mod schema;
 pub(crate) mod settings;

@@ -140,8 +140,9 @@ impl SceneFile {
             Some(json) => mesh::read(json, reader)?,
             None => capsule::read(&draft, &reader.source)?,
         };
-        let filling = filling::read(tree, &draft, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &draft, &shape, &reader.source)?;
+        let filling =
+            filling::read(tree, &draft, &mut shape, &supports, &mut notes, &reader.source)?;
         conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
@@ -152,6 +153,9 @@ impl SceneFile {
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&draft, &reader.source)?;
         check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
+        if !statics {
+            outputs::check_samples(outputs.sample_interval, end_time, &reader.source);
+        }
         let contact = contact::read(tree, &draft, &reader.source)?;
         if contact.is_none() && !statics && shape.folded {
             notes
@@ -176,9 +180,11 @@ impl SceneFile {
             outputs,
             contact,
         };
+        mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &draft));
         let film = check_film(film, tree, &mut notes, &reader.source)?;
+        notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);
         Ok(Self {
             film,
