@@ -1,4 +1,4 @@
-//! Compliant film of revolution at strains of 5 to 70 %: a held disc, a frustum between rings, the
+//! Compliant film of revolution at stretches of 8 to 45 %: a held disc, a frustum between rings, the
 //! capsule with circular caps as a free body. The references are integrated along a meridian.
 
 use billow_solver::geometry::shapes::{capped_frustum, disc, disc_rim, revolved, ring_nodes};
