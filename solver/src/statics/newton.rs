@@ -252,6 +252,7 @@ impl<'a> NewtonSearch<'a> {
             self.system.unknowns.shift(&mut self.trial, step, fraction);
         }
         let Loaded { model, overpressure, gravity, instruction_set, .. } = *self.loaded;
+        model.closure_nodes.place(&mut self.trial);
         let _ = assemble_membrane(
             instruction_set,
             model,
@@ -333,14 +334,19 @@ impl<'a> NewtonSearch<'a> {
             });
             let estimate = settled.map(|shift| (self.step(), shift));
             if let Some((step, shift)) = estimate {
-                let step = self.system.unknowns.largest(&step);
-                let iteration =
-                    Iteration { index: self.iterations, residual, step, shift, fraction };
-                if step <= tolerances.step * size {
+                let displacement = self.system.unknowns.largest(&step);
+                let iteration = Iteration {
+                    index: self.iterations,
+                    residual,
+                    step: displacement,
+                    shift,
+                    fraction,
+                };
+                if displacement <= tolerances.step * size {
                     if observer(&iteration).is_break() {
                         return Err(self.failure(StaticFailureKind::Stopped));
                     }
-                    return Ok(self.found(residual, shift));
+                    return Ok(self.found(&step, residual, shift));
                 }
             }
             shift = self.factor(shift)?;
@@ -357,7 +363,7 @@ impl<'a> NewtonSearch<'a> {
                 && displacement <= tolerances.step * size
                 && shift <= MAX_SETTLED_SHIFT
             {
-                return Ok(self.found(residual, shift));
+                return Ok(self.found(&step, residual, shift));
             }
             if self.iterations >= tolerances.iterations {
                 return Err(self.failure(StaticFailureKind::IterationLimit));
@@ -366,6 +372,7 @@ impl<'a> NewtonSearch<'a> {
             let max_fraction = if displacement > max_step { max_step / displacement } else { 1.0 };
             fraction = self.line_search(&step, along, max_fraction);
             self.system.unknowns.shift(&mut self.positions, &step, fraction);
+            self.loaded.model.closure_nodes.place(&mut self.positions);
             self.iterations += 1;
             if fraction >= 0.5 {
                 shift = (shift * 0.1).max(MIN_SHIFT);
@@ -389,12 +396,22 @@ impl<'a> NewtonSearch<'a> {
         Ok(shift)
     }
 
-    fn found(&self, residual: f64, shift: f64) -> Equilibrium {
+    /// The equilibrium found, after a last full step, which is known already, if it lowers the residual:
+    /// the reactions of a vessel then balance to rounding.
+    fn found(&mut self, step: &[f64], residual: f64, shift: f64) -> Equilibrium {
+        self.evaluate(step, 1.0);
+        let mut last = self.residual();
+        if last < residual {
+            self.positions.clone_from(&self.trial);
+        } else {
+            self.evaluate(&[], 0.0);
+            last = residual;
+        }
         Equilibrium {
             positions: self.positions.clone(),
             forces: self.forces.clone(),
             iterations: self.iterations,
-            residual,
+            residual: last,
             shift,
         }
     }
