@@ -23,7 +23,8 @@ pub mod rig;
 mod row;
 mod table;
 
-pub mod contact_capsule;
+mod axisymmetric;
+mod contact_capsule;
 mod contact_impacts;
 mod contact_relaxed;
 pub mod contact_rig;
@@ -44,6 +45,7 @@ mod oscillation;
 mod piston_model;
 mod sphere_motion;
 mod static_airbag;
+mod static_compliant;
 mod static_discs;
 mod static_end_state;
 mod static_equilibrium;
