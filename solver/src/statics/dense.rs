@@ -330,11 +330,11 @@ fn solve_backward_kernel<L: Wide>(
 ) {
     let (columns, pivot_blocks) = (front.columns(), front.pivot_blocks());
     sums[..columns].fill(Lanes::default());
-    let (own, above) = panel.split_at(pivot_blocks * columns);
+    let (eliminated, above) = panel.split_at(pivot_blocks * columns);
     for (row, values) in above.chunks_exact(columns).zip(&values[pivot_blocks..]) {
         add_products::<L>(row, values, sums);
     }
-    for (block, row) in own.chunks_exact(columns).enumerate().rev() {
+    for (block, row) in eliminated.chunks_exact(columns).enumerate().rev() {
         let first = block * WIDTH;
         let values = &mut values[block].0;
         let diagonal = &row[first..columns.min(first + WIDTH)];

@@ -4,7 +4,7 @@
 //! K + diag(shift) = L Lᵀ
 //! ```
 //!
-//! Elimination of a front's own unknowns ([`super::plan`], [`super::dense`]) leaves a Schur complement,
+//! Elimination of a front ([`super::plan`], [`super::dense`]) leaves a Schur complement,
 //! which is added to the parent front (I. Duff, J. Reid, "The multifrontal solution of indefinite sparse
 //! symmetric linear systems", 1983). All additions have a fixed order.
 
@@ -116,8 +116,8 @@ impl Assembly<'_> {
             for (target, row) in targets.iter_mut().zip(rows) {
                 *target = self.front.panel_row(*row as usize);
             }
-            let (own, above) = columns.split_at(split);
-            add_block(self.panel, &targets, rows.len(), first, 0..split, own, |column| {
+            let (eliminated, above) = columns.split_at(split);
+            add_block(self.panel, &targets, rows.len(), first, 0..split, eliminated, |column| {
                 in_parent[column] as usize
             });
             for (target, row) in targets.iter_mut().zip(rows) {
@@ -273,9 +273,9 @@ fn gather(plan: &Plan, all: &[f64], values: &mut Vec<Lanes>) {
     let front = plan.front;
     values.clear();
     values.resize(front.pivot_blocks() + front.blocks_above(), Lanes::default());
-    let (own, above) = plan.unknowns.split_at(front.pivots);
+    let (eliminated, above) = plan.unknowns.split_at(front.pivots);
     let (low, high) = values.split_at_mut(front.pivot_blocks());
-    for (blocks, unknowns) in [(low, own), (high, above)] {
+    for (blocks, unknowns) in [(low, eliminated), (high, above)] {
         for (block, unknowns) in blocks.iter_mut().zip(unknowns.chunks(WIDTH)) {
             for (value, unknown) in block.0.iter_mut().zip(unknowns) {
                 *value = all[*unknown as usize];
@@ -287,9 +287,9 @@ fn gather(plan: &Plan, all: &[f64], values: &mut Vec<Lanes>) {
 /// Writes the values of the first `count` unknowns of a front.
 fn scatter(plan: &Plan, values: &[Lanes], count: usize, all: &mut [f64]) {
     let front = plan.front;
-    let (own, above) = plan.unknowns[..count].split_at(front.pivots.min(count));
+    let (eliminated, above) = plan.unknowns[..count].split_at(front.pivots.min(count));
     let (low, high) = values.split_at(front.pivot_blocks());
-    for (blocks, unknowns) in [(low, own), (high, above)] {
+    for (blocks, unknowns) in [(low, eliminated), (high, above)] {
         for (block, unknowns) in blocks.iter().zip(unknowns.chunks(WIDTH)) {
             for (value, unknown) in block.0.iter().zip(unknowns) {
                 all[*unknown as usize] = *value;
