@@ -23,7 +23,7 @@ fn study() -> Value {
 
 #[test]
 fn the_amplitude_of_the_imperfection_belongs_to_a_job_only_with_a_seed() {
-    for (seed, summary) in [(0, "1 job, 1 point merged"), (1, "2 jobs")] {
+    for (seed, summary) in [(0, "2 points: 1 job, 1 duplicate,"), (1, "2 points: 2 jobs,")] {
         let mut amplitudes = study();
         amplitudes["seed"] = json!(seed);
         amplitudes["grid"] = json!({"N": [6], "imperfection_amplitude": ["0.1 mm", "0.2 mm"]});

@@ -3,7 +3,8 @@
 use super::audit::Audit;
 use super::frames::Frames;
 use super::history::{History, Track};
-use super::measures::Measures;
+use super::measures::{self, Measures, Reference};
+use crate::scene::timeline::Timeline;
 
 /// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +32,14 @@ impl Deployment {
     pub fn followed(&self, name: &str) -> &[f64] {
         let track = self.tracks.iter().find(|track| track.name == name);
         track.map_or(&[], |track| track.values.as_slice())
+    }
+
+    /// Compares the run with the static equilibria of its design: adds the measures that need them.
+    pub fn judge(&mut self, reference: &Reference, timeline: &Timeline) {
+        let film_stress = self.measures.film_stress.unwrap_or(0.0);
+        let done = self.stop == Stop::Done;
+        self.measures =
+            measures::measure(&self.history, Some(reference), timeline, film_stress, done);
     }
 }
 

@@ -27,6 +27,7 @@ pub mod dense;
 pub mod factor;
 mod newton;
 pub mod order;
+pub mod plan;
 mod relaxation;
 pub mod tangent;
 pub mod unknowns;

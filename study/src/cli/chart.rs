@@ -3,11 +3,11 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::options::{OutputOptions, QuietOption, SetOption};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
-use super::{Format, output_error};
+use super::{Format, best, output_error};
 use crate::chart::standard::{self, ChartKind};
 use crate::chart::{Source, history, map, over};
 use crate::input::value::Value;
@@ -57,6 +57,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     set: SetOption,
     #[command(flatten)]
     output: OutputOptions,
@@ -74,7 +76,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if let Some(path) = &args.out {
         Picture::of(path)?;
     }
-    let Target { results, table } = target::open(&args.study, &args.set.set)?;
+    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
     let name = study_name(&results);
     let source = source(args, &name, &table)?;
     let standard = asked.is_none();
@@ -96,7 +98,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             Err(error) => return Err(error),
         }
     }
-    print(&written, args.output.format(), out)
+    print(&written, args.output.format(), out)?;
+    if !args.quiet.quiet && args.output.format() == Format::Table {
+        best::print(&results, &table, &source.rows)?;
+    }
+    Ok(())
 }
 
 /// The rows that `--jobs` or `--where` choose.
@@ -160,7 +166,11 @@ fn draw(
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
 ) -> Result<String> {
     match kind {
-        ChartKind::History(columns) => history::svg(source, columns, range, read),
+        ChartKind::History(columns) => {
+            // Points that are one job have one history.
+            let rows = source.table.one_row_per_job(&source.rows);
+            history::svg(&Source { rows, ..source.clone() }, columns, range, read)
+        }
         ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
         ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
     }

@@ -1,4 +1,5 @@
-//! Notes on the results of a study, on stderr: limits of the models, and keys that a model ignores.
+//! Warnings about the values of a study, and notes on its results, on stderr: limits of the models, and
+//! keys that a model ignores.
 
 use billow_solver::scene::ModelKind;
 
@@ -6,6 +7,13 @@ use crate::input::keys::{MODELS, Model};
 use crate::input::value::brief_number;
 use crate::study::Study;
 use crate::study::ground::pressure_below_ambient;
+
+/// Prints the warnings about values of the study: before anything runs.
+pub fn print_warnings(study: &Study) {
+    for line in study.warnings() {
+        eprintln!("{line}");
+    }
+}
 
 /// Prints the notes.
 pub fn print(study: &Study) {

@@ -5,11 +5,13 @@ use billow_solver::scene::{InflowWindow, ModelKind, Scene, Stepping};
 
 use super::base::Base;
 use super::ground;
+use super::schedule::Schedule;
 use super::strategy::{Strategy, Window};
 use crate::input::keys::draft::{Draft, ResidualGas, SteppingDraft};
 use crate::input::keys::{KEYS, Key, named};
 use crate::input::settings::{check_sample_interval, species};
 use crate::input::source::{Source, shown};
+use crate::input::value::Value;
 use crate::platform::error::InputError;
 
 /// The fold design of a point.
@@ -37,6 +39,7 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
     check_release(name, strategy, end_time, source)?;
     let windows = Windows { point, name, strategy, draft: &draft, source };
     let windows = windows.resolve()?;
+    let burst = (burst_mass(&draft), draft.inflow.burst_rate);
     let mut scene = draft.scene.clone();
     scene.gas.species = species(&draft.species, source)?;
     scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft, source)?;
@@ -53,7 +56,14 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
         // Without an imperfection its amplitude is not physics.
         scene.imperfection_amplitude = None;
     }
+    Schedule { point, scene: &scene, burst, source }.check();
     Ok(scene)
+}
+
+/// Whether a study has this number of shapes without asking for it.
+pub(super) fn is_default_frames(frames: u32) -> bool {
+    const FRAMES: &Key = named(KEYS, "outputs.frames");
+    FRAMES.default_value() == Value::Integer(i64::from(frames))
 }
 
 /// Refuses a capsule that is released after the end of its run.

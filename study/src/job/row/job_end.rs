@@ -58,6 +58,11 @@ impl<'a> JobEnd<'a> {
         measure(&self.deployment()?.measures)
     }
 
+    /// A time of a job that ran, counted from the release of the lid, s.
+    pub fn since_release(&self, time: fn(&Measures) -> Option<f64>) -> Option<f64> {
+        Some(self.measure(time)? - self.job.scene.release_time)
+    }
+
     /// The verdict of a job that ran.
     pub fn verdict(&self) -> Option<Verdict> {
         self.deployment()?.measures.verdict
@@ -111,7 +116,10 @@ impl<'a> JobEnd<'a> {
     /// Why there is no run, or no verdict.
     pub fn reason(&self) -> Option<String> {
         match self.outcome {
-            Outcome::Ran { note, .. } => note.clone(),
+            Outcome::Ran { deployment, .. } => {
+                let missing = deployment.measures.no_verdict.as_ref();
+                missing.map(|missing| format!("no verdict: {missing}"))
+            }
             Outcome::Refused(error) => Some(error.to_string()),
             Outcome::Panicked(message) => Some(message.clone()),
             Outcome::Cancelled => None,

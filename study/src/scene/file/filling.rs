@@ -13,6 +13,7 @@ use super::object::Object;
 use super::shape::Shape;
 use crate::input::keys::draft::Draft;
 use crate::input::keys::{KEYS, SCENE_WINDOW_KEYS, named};
+use crate::input::plausible::Implausible;
 use crate::input::settings::{list, missing_key, species};
 use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
@@ -149,6 +150,10 @@ fn windows(
             let problem = "the window ends before it begins";
             return Err(window.error("to", problem, format!("above its `from`, {from} s")));
         }
+        if let Some((key, value, problem)) = beyond_the_end(from, to, end_time) {
+            let next = "change it, or raise solver.end_time".to_owned();
+            source.warn(&format!("{path}.{key}"), &shown(value), Implausible { problem, next });
+        }
         let rate = window.needed(const { named(SCENE_WINDOW_KEYS, "mass_flow_rate") })?;
         let temperature = window.needed(const { named(SCENE_WINDOW_KEYS, "temperature") })?;
         windows.push(InflowWindow {
@@ -161,6 +166,17 @@ fn windows(
     windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
     windows.sort_by(|a, b| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to)));
     Ok(windows)
+}
+
+/// The key, value and problem of a window that starts or ends after the run.
+fn beyond_the_end(from: f64, to: f64, end_time: f64) -> Option<(&'static str, f64, String)> {
+    if from >= end_time {
+        let problem = format!("is after solver.end_time ({end_time} s): the window is ignored");
+        return Some(("from", from, problem));
+    }
+    let problem =
+        || format!("is after solver.end_time ({end_time} s): the part after it is ignored");
+    (to > end_time).then(|| ("to", to, problem()))
 }
 
 /// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
