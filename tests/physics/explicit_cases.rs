@@ -110,7 +110,7 @@ fn contact_that_attracts_film_is_unstable() {
     let scene = paper::capsule(3, 0.03);
     let contact = FilmContact { distance: Some(1e-3), ..FilmContact::default() };
     let set = InstructionSet::detect();
-    let mut run = FilmRun::from_scene(set, &scene, 0.45, Some(contact), None).unwrap();
+    let mut run = FilmRun::from_scene(set, &scene, 0.45, Some(contact)).unwrap();
     let Explicit { model, mut parameters, state, .. } = run.film;
     let contact = parameters.contact.as_mut().unwrap();
     contact.stiffness_per_mass = -contact.stiffness_per_mass;
