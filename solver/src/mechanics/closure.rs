@@ -5,12 +5,13 @@
 //! f_i += w_i (Σ f_a + (Σ f_a c_aᵀ) q_i) + ½ (x_next − x_previous) × Σ b_a f_a
 //! ```
 //!
-//! Symbols: x_a a vertex without film, x_i the rim of its patch (the connected closing faces of such vertices);
-//! w_i weights in proportion to the length of the rim at i, q_i the initial position of i from the mean m; c_a
-//! and b_a constants that place the vertex at its initial position. The patch therefore moves as the best affine
-//! map of its rim. The force f_a of the pressure on the vertex goes to the rim by the transpose of the same map:
-//! the nodal forces are the derivative of the volume, so energy, resultant and moment are exact. A vertex that
-//! supports hold in all three directions does not follow: it counts as rim, and its supports take its force.
+//! Symbols: `x_a` a vertex without film, `x_i` the rim of its patch (the connected closing faces of such
+//! vertices); `w_i` weights in proportion to the length of the rim at i, `q_i` the initial position of i from the
+//! mean m; `c_a` and `b_a` constants that place the vertex at its initial position. The patch therefore moves as
+//! the best affine map of its rim. The force `f_a` of the pressure on the vertex goes to the rim by the transpose
+//! of the same map: the nodal forces are the derivative of the volume, so energy, resultant and moment are exact.
+//! A vertex that supports hold in all three directions does not follow: it counts as rim, and its supports take
+//! its force.
 
 use std::collections::{BTreeMap, BTreeSet};
 
