@@ -97,7 +97,11 @@ const VESSELS: [(f64, f64); 4] = [(0.0, 0.0), (0.0, 0.05), (0.04, 0.0), (0.04, -
 fn supported(shell: &Shell, supports: &[FilmSupport]) -> (FilmModel, Field) {
     let positions = Field::of(&shell.positions);
     let supports = Supports::new(supports, &positions);
-    (FilmModel::supported(&Film::PAPER_ELASTIC, shell, &supports).unwrap(), positions)
+    (
+        FilmModel::supported(&Film::PAPER_ELASTIC, shell, |node| supports.hold_fully(node))
+            .unwrap(),
+        positions,
+    )
 }
 
 /// ∂V/∂x of every node.
@@ -307,10 +311,7 @@ fn a_vertex_without_a_rim_is_refused() {
     let mut shell = vessel(0.0, 0.0);
     let centre = shell.positions.len() as u32 - 1;
     shell.closure.retain(|face| !face.contains(&centre));
-    let positions = Field::of(&shell.positions);
     let error =
-        FilmModel::supported(&Film::PAPER_ELASTIC, &shell, &Supports::none(positions.len()))
-            .unwrap_err()
-            .to_string();
+        FilmModel::supported(&Film::PAPER_ELASTIC, &shell, |_| false).unwrap_err().to_string();
     assert!(error.contains("closing faces"), "{error}");
 }

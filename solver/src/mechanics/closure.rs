@@ -5,19 +5,18 @@
 //! f_i += w_i (Σ f_a + (Σ f_a c_aᵀ) q_i) + ½ (x_next − x_previous) × Σ b_a f_a
 //! ```
 //!
-//! Symbols: x_a a vertex without film, x_i the rim of its patch (the connected closing faces of such vertices);
-//! w_i weights in proportion to the length of the rim at i, q_i the initial position of i from the mean m; c_a
-//! and b_a constants that place the vertex at its initial position. The patch therefore moves as the best affine
-//! map of its rim. The force f_a of the pressure on the vertex goes to the rim by the transpose of the same map:
-//! the nodal forces are the derivative of the volume, so energy, resultant and moment are exact. A vertex that
-//! supports hold in all three directions does not follow: it counts as rim, and its supports take its force.
+//! Symbols: `x_a` a vertex without film, `x_i` the rim of its patch (the connected closing faces of such
+//! vertices); `w_i` weights in proportion to the length of the rim at i, `q_i` the initial position of i from the
+//! mean m; `c_a` and `b_a` constants that place the vertex at its initial position. The patch therefore moves as
+//! the best affine map of its rim. The force `f_a` of the pressure on the vertex goes to the rim by the transpose
+//! of the same map: the nodal forces are the derivative of the volume, so energy, resultant and moment are exact.
+//! A vertex that supports hold in all three directions does not follow: it counts as rim, and its supports take
+//! its force.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::forces::membrane::NodeForces;
-use super::supports::Supports;
 use crate::geometry::field::Field;
 use crate::geometry::shell::Shell;
 
@@ -39,6 +38,15 @@ const MAX_DISTANCE: f64 = 1e-9;
 pub struct ClosureError {
     /// Node.
     pub node: u32,
+}
+
+/// Sums of normals (m²), six times ∂V/∂x, at nodes.
+pub trait NormalSums {
+    /// The sum at a node, which becomes zero.
+    fn take_normal(&mut self, node: usize) -> Vector3<f64>;
+
+    /// Adds to the sum at a node.
+    fn add_normal(&mut self, node: usize, normal: Vector3<f64>);
 }
 
 /// All vertices of closing faces that follow a rim.
@@ -77,18 +85,16 @@ struct Follower {
 }
 
 impl ClosureNodes {
-    /// The vertices of a shell's closing faces that belong to no film, with these supports.
+    /// The vertices of a shell's closing faces that belong to no film. `held`: whether supports hold a node in all
+    /// three directions.
     ///
     /// # Errors
     /// [`ClosureError`] for a vertex that no rim places.
-    pub fn new(shell: &Shell, supports: &Supports) -> Result<Self, ClosureError> {
+    pub fn new(shell: &Shell, held: impl Fn(u32) -> bool) -> Result<Self, ClosureError> {
         let film: BTreeSet<u32> = shell.triangles.iter().flatten().copied().collect();
         let fixed: BTreeSet<u32> =
             shell.walls.iter().filter(|wall| wall.fixed).map(|wall| wall.apex).collect();
-        let follows = |node: u32| {
-            let held = supports.projector(node as usize) == Matrix3::zeros();
-            !film.contains(&node) && !fixed.contains(&node) && !held
-        };
+        let follows = |node: u32| !film.contains(&node) && !fixed.contains(&node) && !held(node);
         let patches = patches(&shell.closure, follows);
         let patches = patches.iter().map(|faces| Patch::new(shell, faces, follows));
         let on_wall = |face: &&[u32; 3]| shell.walls.iter().any(|wall| face.contains(&wall.apex));
@@ -114,7 +120,7 @@ impl ClosureNodes {
     }
 
     /// Moves ∂V/∂x of the vertices to the nodes of their rims. The vertices are at their places.
-    pub fn distribute(&self, positions: &Field, forces: &mut NodeForces) {
+    pub fn distribute(&self, positions: &Field, forces: &mut impl NormalSums) {
         for patch in &self.patches {
             let (mut sum, mut moment, mut along_normal) =
                 (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());

@@ -221,6 +221,11 @@ impl Supports {
         }
     }
 
+    /// Whether a node is held in all three directions.
+    pub fn hold_fully(&self, node: u32) -> bool {
+        self.projector(node as usize) == Matrix3::zeros()
+    }
+
     /// P of a node: projector onto its free directions.
     pub fn projector(&self, node: usize) -> Matrix3<f64> {
         match self.oblique.binary_search_by_key(&node, |(node, _)| *node as usize) {

@@ -116,7 +116,9 @@ pub fn solve_from(
     scene.shell.check()?;
     let start = Field::of(&scene.shell.positions);
     let supports = Supports::new(&scene.supports, &start);
-    let model = FilmModel::supported(&scene.film.elastic(), &scene.shell, &supports)?;
+    let model = FilmModel::supported(&scene.film.elastic(), &scene.shell, |node| {
+        supports.hold_fully(node)
+    })?;
     let loaded = Loaded {
         model: &model,
         supports: &supports,

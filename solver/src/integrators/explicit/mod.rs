@@ -271,7 +271,7 @@ impl Explicit {
         stopwatch.begins(Stage::Gas);
         self.add_plate_work(end);
         let volume = sums.six_volumes / 6.0;
-        self.check_finite(max_speed_squared.sqrt() * drift, volume)?;
+        self.check_motion(max_speed_squared.sqrt(), drift, volume)?;
         let works = &mut self.state.works;
         works.numerical_dissipation +=
             sums.numerical_dissipation * self.parameters.fault_factor(Term::NumericalWork);

@@ -59,15 +59,17 @@ impl Explicit {
             && interval.length > MAX_STEP_RATIO * self.stable_step()
     }
 
-    /// Checks a step whose largest displacement (m) and volume (m³) after it are these.
-    pub(super) fn check_finite(&self, displacement: f64, volume: f64) -> Result<(), Failure> {
-        if !moves_too_far(&self.model, displacement) && volume.is_finite() {
+    /// Checks a step of `length` (s) with this largest speed (m/s), and this volume (m³) after it.
+    pub(super) fn check_motion(&self, speed: f64, length: f64, volume: f64) -> Result<(), Failure> {
+        let problem = if moves_too_far(&self.model, speed * length) || !volume.is_finite() {
+            "farther than the size of the film in one step"
+        } else if speed > self.model.wave_speed() && !self.energy_has_source() {
+            "its energy came without a source"
+        } else {
             return Ok(());
-        }
+        };
         let (node, speed) = self.fastest_node();
-        let place = format!(
-            "node {node} moves at {speed:.3e} m/s: farther than the size of the film in one step"
-        );
+        let place = format!("node {node} moves at {speed:.3e} m/s: {problem}");
         Err(self.failure(FailureKind::Unstable, &place))
     }
 
@@ -77,6 +79,15 @@ impl Explicit {
         let fastest = (0..self.model.nodes())
             .fold(0, |fastest, node| if speed(node) <= speed(fastest) { fastest } else { node });
         (fastest, speed(fastest))
+    }
+
+    /// Whether the external works cover kinetic and elastic energy. Contact that gave energy is no source.
+    fn energy_has_source(&self) -> bool {
+        let ledger = self.ledger();
+        let works =
+            ledger.gas_work + ledger.ambient_work + ledger.gravity_work + ledger.support_work;
+        let excess = ledger.kinetic + ledger.strain - self.state.start_energy - works;
+        excess <= MAX_PARTIAL_DEFECT * (ledger.external() + self.state.start_energy)
     }
 
     /// Whether the energy ledger now closes to this fraction of the energy moved.

@@ -16,7 +16,6 @@ use crate::geometry::shell::Shell;
 use crate::mechanics::closure::{ClosureError, ClosureNodes};
 use crate::mechanics::material::Material;
 use crate::mechanics::material_loss::Creep;
-use crate::mechanics::supports::Supports;
 use crate::platform::fault_injection::{Fault, Term};
 use crate::platform::simd::{Column, Corners};
 use crate::scene::Film;
@@ -125,12 +124,16 @@ impl FilmModel {
         Self::build(film, nodes, triangles, reference, &[])
     }
 
-    /// The film of a shell with these supports, with its closing faces.
+    /// The film of a shell, with its closing faces. `held`: whether supports hold a node in all three directions.
     ///
     /// # Errors
     /// [`FilmError`].
-    pub fn supported(film: &Film, shell: &Shell, supports: &Supports) -> Result<Self, FilmError> {
-        let closure_nodes = ClosureNodes::new(shell, supports)?;
+    pub fn supported(
+        film: &Film,
+        shell: &Shell,
+        held: impl Fn(u32) -> bool,
+    ) -> Result<Self, FilmError> {
+        let closure_nodes = ClosureNodes::new(shell, held)?;
         Ok(Self { closure_nodes, ..Self::of_shell(film, shell)? })
     }
 

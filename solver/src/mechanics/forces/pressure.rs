@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 
 use super::membrane::NodeForces;
 use crate::geometry::field::Field;
+use crate::mechanics::closure::NormalSums as _;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::supports::Supports;
 

@@ -16,7 +16,7 @@
 //! equations are those of one-dimensional isentropic flow (any text on gas dynamics).
 //!
 //! - Without gas p = 0, and the temperature is reported as that of the film.
-//! - The leak flows both ways. Where p < `p_ambient`, ṁ_out is negative: the same equations with inside and
+//! - The leak flows both ways. Where p < `p_ambient`, `ṁ_out` is negative: the same equations with inside and
 //!   outside exchanged, for gas of the same species at film temperature outside.
 //! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat follows from the balance.
 //! - With h > 0 the gas approaches film temperature at the rate h A/(m cv), limited to 1/µs

@@ -175,7 +175,7 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
     scene.shell.check().map_err(|error| invalid("mesh", error.to_string()))?;
     let positions = Field::of(&scene.shell.positions);
     let supports = Supports::new(&scene.supports, &positions);
-    let model = FilmModel::supported(&scene.film, &scene.shell, &supports)
+    let model = FilmModel::supported(&scene.film, &scene.shell, |node| supports.hold_fully(node))
         .map_err(|error| invalid("mesh", error.to_string()))?;
     let (pressure_load, gas) = match &scene.filling {
         Filling::Pressure(pressure) => (PressureLoad::Overpressure(*pressure), GasState::default()),

@@ -64,6 +64,7 @@ pub(super) fn read(
     };
     let initial_temperature = initial_temperature(&supply, draft, source)?;
     supply.initial_mass = initial_mass(&supply, draft, volume, initial_temperature, source)?;
+    notes.extend(below_ambient(&supply, volume, initial_temperature));
     Ok(Filling::Gas { supply, initial_temperature })
 }
 
@@ -108,6 +109,22 @@ fn initial_mass(
         }
         (None, None) => Ok(0.0),
     }
+}
+
+/// Pressure of the gas at the start over the ambient pressure below which a note says so. Chosen as for a study.
+const MIN_PRESSURE_RATIO: f64 = 0.9;
+
+/// A note on gas that has less than ambient pressure at the start.
+fn below_ambient(supply: &GasSupply, volume: f64, temperature: f64) -> Option<String> {
+    let pressure = supply.initial_mass * supply.species.gas_constant * temperature / volume;
+    (pressure < MIN_PRESSURE_RATIO * supply.ambient_pressure).then(|| {
+        format!(
+            "the gas starts at {} Pa, below gas.ambient_pressure ({} Pa), which presses the film together; \
+             gas.initial_pressure sets it",
+            shown(pressure),
+            shown(supply.ambient_pressure)
+        )
+    })
 }
 
 /// Inflow windows in order of time, cut at the end of the run.

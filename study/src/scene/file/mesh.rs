@@ -192,7 +192,9 @@ pub(super) fn check_closure(
     source: &Source,
 ) -> std::result::Result<(), InputError> {
     let supports = Supports::new(&film.supports, &Field::of(&film.shell.positions));
-    let Err(error) = ClosureNodes::new(&film.shell, &supports) else { return Ok(()) };
+    let Err(error) = ClosureNodes::new(&film.shell, |node| supports.hold_fully(node)) else {
+        return Ok(());
+    };
     let vertex = numbering.vertex(error.node).map_or(0, |vertex| vertex + 1);
     let problem = format!(
         "OBJ vertex {vertex} (counted from 1) of its faces belongs to no film, and the rim of the faces does not \

@@ -13,6 +13,7 @@
 use nalgebra::Vector3;
 
 use crate::geometry::field::Field;
+use crate::mechanics::closure::NormalSums;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::material_loss::Creep;
 use crate::platform::simd::{InstructionSet, NodeSum};
@@ -115,21 +116,21 @@ impl NodeForces {
         self.sums[node].film[..3].copy_from_slice(force.as_slice());
     }
 
-    /// Adds the normal (m²) of a closing face to a node: a sixth of it to ∂V/∂x.
-    pub(crate) fn add_normal(&mut self, node: usize, normal: Vector3<f64>) {
-        for (sum, entry) in self.sums[node].normal.iter_mut().zip(&normal) {
-            *sum += entry;
-        }
+    /// Multiplies ∂V/∂x of a node by a factor.
+    pub(crate) fn scale_area(&mut self, node: usize, factor: f64) {
+        self.sums[node].normal.iter_mut().for_each(|entry| *entry *= factor);
     }
+}
 
-    /// Six times ∂V/∂x (m²) of a node, which becomes zero.
-    pub(crate) fn take_normal(&mut self, node: usize) -> Vector3<f64> {
+impl NormalSums for NodeForces {
+    fn take_normal(&mut self, node: usize) -> Vector3<f64> {
         let [x, y, z, _] = core::mem::take(&mut self.sums[node].normal);
         Vector3::new(x, y, z)
     }
 
-    /// Multiplies ∂V/∂x of a node by a factor.
-    pub(crate) fn scale_area(&mut self, node: usize, factor: f64) {
-        self.sums[node].normal.iter_mut().for_each(|entry| *entry *= factor);
+    fn add_normal(&mut self, node: usize, normal: Vector3<f64>) {
+        for (sum, entry) in self.sums[node].normal.iter_mut().zip(&normal) {
+            *sum += entry;
+        }
     }
 }
