@@ -79,7 +79,7 @@ fn only_done_jobs_enter_extremes_and_audit() {
     assert_eq!((fastest.job.as_str(), fastest.value), ("d", 3.0));
     let (name, value, _) = &fastest.parameters[0];
     assert_eq!((name.as_str(), value), ("flow", &Value::Number(2.0)));
-    assert_eq!(answer.hardest.unwrap().job, "d");
+    assert_eq!(answer.most_energy.unwrap().job, "d");
     let trust = answer.trust.unwrap();
     assert_eq!((trust.jobs, trust.ledger_residual, trust.passages), (6, 3e-9, None));
     assert_eq!(trust.numerically_damped, 1, "failed jobs do not count");
