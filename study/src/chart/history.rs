@@ -1,22 +1,32 @@
-//! Histories of several jobs in one figure: one panel per quantity, one line per job.
+//! Histories of several jobs in one figure: one line per job, one row of panels per quantity.
+
+use std::collections::BTreeMap;
 
 use billow_solver::output::history::COLUMNS;
 use billow_solver::output::measures::Verdict;
 
-use super::parameters::{self, Parameter};
-use super::{Source, invalid_option, outcome, title, unknown_name};
+use super::encoding::{Encoding, PREFERRED_LINES};
+use super::names::{self, Name};
+use super::parameters;
+use super::time_axis::TimeAxis;
+use super::{Source, invalid_option, outcome, unknown_name};
 use crate::input::value::Value;
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
+use crate::render::figure::style::{Fill, Series};
 use crate::render::figure::unit::Unit;
-use crate::render::figure::{Sheet, ticks};
+use crate::render::figure::{Sheet, columns as columns_of, ticks};
 use crate::store::history_file::StoredHistory;
 
-/// Most jobs in one figure. Chosen: more lines cannot be distinguished.
-const MAX_JOBS: usize = 20;
+/// Most jobs in one figure. Chosen: 12 panels with a few lines each.
+pub const MAX_JOBS: usize = 48;
+/// Most lines in a panel of a quantity that rings. Chosen: more cover each other.
+const MAX_RINGING_LINES: usize = 3;
+/// Number of turns, on average over the jobs, from which a quantity of both signs rings.
+const RINGING_TURNS: usize = 5;
 
 /// A job of the figure.
 struct Run {
@@ -41,21 +51,26 @@ impl Run {
     }
 }
 
-/// A quantity: name, SI unit, meaning.
+/// A quantity: symbol, SI unit, plain name.
 struct Quantity {
-    name: String,
+    symbol: String,
     unit: String,
-    meaning: String,
+    name: Name,
 }
 
-/// The time axis: its ends, s, and the unit in which it is shown.
-struct TimeAxis {
-    ends: [f64; 2],
+/// What the lines of a quantity share.
+struct Drawn<'a> {
+    quantity: &'a Quantity,
+    /// Unit of the values.
     unit: Unit,
+    /// Ends of the y axis.
+    range: [f64; 2],
+    time: &'a TimeAxis,
+    rings: bool,
 }
 
 /// Draws columns of histories over time. `range` gives the ends of the time axis, s, where they differ
-/// from the ends of the histories.
+/// from those of [`TimeAxis`].
 ///
 /// # Errors
 /// An unknown column, too many jobs, an empty range; the errors of `read`.
@@ -70,91 +85,92 @@ pub fn svg(
     let runs = runs(source, &stored, columns, read)?;
     let quantities: Vec<Quantity> =
         columns.iter().map(|name| quantity(name.trim(), &runs)).collect::<Result<_>>()?;
-    let time = time_axis(&runs, range)?;
-    let mut panels: Vec<Panel> =
-        quantities.iter().map(|quantity| panel(source, quantity, &runs, &time)).collect();
-    let title = match quantities.as_slice() {
-        [quantity] => title(&quantity.meaning, &quantity.name),
-        several => {
-            let names: Vec<&str> = several.iter().map(|quantity| quantity.name.as_str()).collect();
-            format!("Histories of {}", names.join(", "))
-        }
+    let histories: Vec<&StoredHistory> = runs.values().map(|run| &run.history).collect();
+    let time = TimeAxis::new(&histories, range)?;
+    let drawn: Vec<Drawn<'_>> =
+        quantities.iter().map(|quantity| drawn(quantity, &runs, &time)).collect();
+
+    let chosen = Source { rows: stored.clone(), ..source.clone() };
+    let (others, mut notes) = parameters::varying(source.table, &stored, &[]);
+    let asked = columns.join(",");
+    let encoding = |preferred: usize| {
+        Encoding::new(&chosen, others.clone(), &[], preferred, ("--history", &asked))
     };
-    // The title of the figure replaces that of a single panel.
-    if let [panel] = panels.as_mut_slice() {
-        panel.title.clear();
+    let rings = drawn.iter().any(|drawn| drawn.rings);
+    let encoding = if rings && drawn.len() == 1 {
+        encoding(MAX_RINGING_LINES).or_else(|_| encoding(PREFERRED_LINES))?
+    } else {
+        encoding(PREFERRED_LINES)?
+    };
+    let facets = &encoding.panels.panels;
+    let across = columns_of(facets.len());
+    let mut panels: Vec<Panel> = Vec::new();
+    for drawn in &drawn {
+        for (title, rows) in facets {
+            let mut panel = panel(source, drawn, rows, &runs, &encoding);
+            panel.title = names::capital(title);
+            panels.push(panel);
+        }
+        // The next quantity starts a row.
+        while quantities.len() > 1 && !panels.len().is_multiple_of(across) {
+            panels.push(Panel { blank: true, range: drawn.range, ..Panel::default() });
+        }
     }
-    let (parameters, notes) = parameters::varying(source.table, &stored, &[]);
-    let mut notes: Vec<String> = if parameters.is_empty() { Vec::new() } else { notes };
-    notes.extend(without_history(source));
+    let plain: Vec<&str> = quantities.iter().map(|quantity| quantity.name.plain.as_str()).collect();
+    if rings {
+        notes
+            .push("Shaded bands: the range of a line that turns too often to be drawn.".to_owned());
+    }
+    notes.extend(time.note.clone());
+    notes.extend(source.shared_job_note());
+    notes.extend(not_drawn(source, runs.len()));
     let plots = Plots {
         sheet: Sheet {
-            title,
+            title: source.title_or(&format!("{} over time", plain.join(", "))),
             subtitle: source.subtitle(),
-            legends: legends(source, &parameters, &runs),
+            legends: legends(source, &encoding, &runs),
             notes,
         },
         x: Axis {
-            label: time.unit.label("time"),
+            label: time.unit.label("Time t"),
             spread: Spread::Linear,
             range: time.ends.map(|end| time.unit.shown(end)),
             ticks: Vec::new(),
             names: false,
         },
         panels,
-        across: 1,
+        across,
     };
     Ok(plots.svg())
 }
 
-/// Reads the histories of these rows.
-fn runs(
-    source: &Source<'_>,
+/// Reads the histories of these rows, by job; a job with several rows has that of the first one.
+fn runs<'a>(
+    source: &Source<'a>,
     rows: &[usize],
     columns: &[String],
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
-) -> Result<Vec<Run>> {
-    if rows.len() > MAX_JOBS {
+) -> Result<BTreeMap<&'a str, Run>> {
+    let mut first: BTreeMap<&str, usize> = BTreeMap::new();
+    for row in rows {
+        first.entry(source.job(*row)).or_insert(*row);
+    }
+    if first.len() > MAX_JOBS {
         return Err(invalid_option(
             "--history",
             &columns.join(","),
-            format!("{} jobs in one figure", rows.len()),
+            format!("{} jobs in one figure", first.len()),
             format!("{MAX_JOBS} jobs at most"),
             "choose some with --jobs ID,ID or --where CONDITION",
         ));
     }
-    let mut runs = Vec::with_capacity(rows.len());
-    for row in rows {
-        if let Some(id) = job(source, *row) {
-            runs.push(Run { row: *row, history: read(&id)? });
+    let mut runs = BTreeMap::new();
+    for (job, row) in first {
+        if let Some(id) = JobId::from_digits(job) {
+            runs.insert(job, Run { row, history: read(&id)? });
         }
     }
     Ok(runs)
-}
-
-/// The time axis: from the first to the last time of all histories, or the ends that `range` gives.
-fn time_axis(runs: &[Run], range: [Option<f64>; 2]) -> Result<TimeAxis> {
-    let times = runs.iter().flat_map(Run::times);
-    let ends = times.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], time| {
-        [low.min(*time), high.max(*time)]
-    });
-    let mut ends = if runs.is_empty() { [0.0, 1.0] } else { ends };
-    for (end, given) in ends.iter_mut().zip(range) {
-        *end = given.unwrap_or(*end);
-    }
-    if ends[0].total_cmp(&ends[1]).is_ge() {
-        if range != [None, None] {
-            return Err(invalid_option(
-                "--from, --to",
-                &format!("{} s to {} s", ends[0], ends[1]),
-                "the time range is empty",
-                "--from TIME before --to TIME, both within the run",
-                "",
-            ));
-        }
-        ends[1] = ends[0] + 1.0;
-    }
-    Ok(TimeAxis { ends, unit: Unit::fit("s", ends) })
 }
 
 /// Whether the job of a row has a stored history.
@@ -163,136 +179,180 @@ pub fn has_history(source: &Source<'_>, row: usize) -> bool {
     hash.is_some_and(|column| matches!(column.cells[row], Value::Text(_)))
 }
 
-fn job(source: &Source<'_>, row: usize) -> Option<JobId> {
-    match source.table.column("job").map(|column| &column.cells[row]) {
-        Some(Value::Text(id)) => JobId::from_digits(id),
-        _ => None,
-    }
-}
-
 /// The quantity with that name: a column of the history, or an extra quantity of a job.
-fn quantity(name: &str, runs: &[Run]) -> Result<Quantity> {
+fn quantity(symbol: &str, runs: &BTreeMap<&str, Run>) -> Result<Quantity> {
     let shown = || COLUMNS.iter().filter(|column| column.name != "time");
-    if let Some(column) = shown().find(|column| column.name == name) {
-        return Ok(Quantity {
-            name: name.to_owned(),
-            unit: column.unit.to_owned(),
-            meaning: column.meaning.to_owned(),
-        });
+    let of = |unit: &str, meaning: &str| Quantity {
+        symbol: symbol.to_owned(),
+        unit: unit.to_owned(),
+        name: Name::of_history(symbol, meaning),
+    };
+    if let Some(column) = shown().find(|column| column.name == symbol) {
+        return Ok(of(column.unit, column.meaning));
     }
-    let found = runs.iter().find_map(|run| run.history.labels.get(name));
+    let found = runs.values().find_map(|run| run.history.labels.get(symbol));
     if let Some((unit, meaning)) = found {
-        return Ok(Quantity {
-            name: name.to_owned(),
-            unit: unit.clone(),
-            meaning: meaning.clone(),
-        });
+        return Ok(of(unit, meaning));
     }
     let mut known: Vec<&str> = shown().map(|column| column.name).collect();
-    for track in runs.iter().flat_map(|run| run.history.labels.keys()) {
+    for track in runs.values().flat_map(|run| run.history.labels.keys()) {
         if !known.contains(&track.as_str()) {
             known.push(track);
         }
     }
-    Err(unknown_name("--history", name, "no such history column", &known))
+    Err(unknown_name("--history", symbol, "no such history column", &known))
 }
 
-/// The panel of a quantity: one line per job.
-fn panel(source: &Source<'_>, quantity: &Quantity, runs: &[Run], time: &TimeAxis) -> Panel {
+/// Unit and axis of a quantity, and whether it rings, from its values within the time axis.
+fn drawn<'a>(quantity: &'a Quantity, runs: &BTreeMap<&str, Run>, time: &'a TimeAxis) -> Drawn<'a> {
     let [start, end] = time.ends;
     let inside = |run: &Run| -> Vec<f64> {
-        let pairs = run.times().iter().zip(run.values(&quantity.name));
-        pairs.filter(|(t, _)| (start..=end).contains(*t)).map(|(_, value)| *value).collect()
+        let pairs = run.times().iter().zip(run.values(&quantity.symbol));
+        let pairs = pairs.filter(|(t, _)| (start..=end).contains(*t));
+        pairs.map(|(_, value)| *value).filter(|value| value.is_finite()).collect()
     };
-    let values: Vec<f64> = runs.iter().flat_map(inside).filter(|value| value.is_finite()).collect();
-    let unit = Unit::fit(&quantity.unit, values.iter().copied());
-    let extent = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(unit.shown(*value)), high.max(unit.shown(*value))]
+    let values: Vec<Vec<f64>> = runs.values().map(inside).collect();
+    let all = || values.iter().flatten().copied();
+    let unit = Unit::fit(&quantity.unit, all());
+    let [low, high] = all().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
     });
-    let (low, high) =
-        if values.is_empty() { (0.0, 1.0) } else { ticks::padded(extent[0], extent[1]) };
-    let line = |(series, run): (usize, &Run)| {
-        let failed = outcome::has_failed(source, run.row);
-        history_line(series, run, quantity, &unit, time, failed)
+    let range = if low > high {
+        [0.0, 1.0]
+    } else {
+        ticks::padded(unit.shown(low), unit.shown(high)).into()
     };
+    let turns: usize = values.iter().map(|values| turns(values, 0.1 * (high - low))).sum();
+    let rings = -low > 0.2 * high && high > -0.2 * low && turns > RINGING_TURNS * runs.len();
+    Drawn { quantity, unit, range, time, rings }
+}
+
+/// How often values turn by at least `change`.
+fn turns(values: &[f64], change: f64) -> usize {
+    let mut count = 0;
+    let (mut low, mut high, mut rising) = (f64::INFINITY, f64::NEG_INFINITY, None);
+    for value in values {
+        (low, high) = (low.min(*value), high.max(*value));
+        let up = *value - low >= change && rising != Some(true);
+        let down = high - *value >= change && rising != Some(false);
+        if up || down {
+            count += usize::from(rising.is_some());
+            rising = Some(up);
+            (low, high) = (*value, *value);
+        }
+    }
+    count
+}
+
+/// The panel of a quantity: one line per job of these rows.
+fn panel(
+    source: &Source<'_>,
+    drawn: &Drawn<'_>,
+    rows: &[usize],
+    runs: &BTreeMap<&str, Run>,
+    encoding: &Encoding<'_>,
+) -> Panel {
+    let mut jobs: Vec<&str> = Vec::new();
+    let mut lines: Vec<(usize, Line)> = Vec::new();
+    for row in rows {
+        let job = source.job(*row);
+        // Points that are one job are one line.
+        if let Some(run) = runs.get(job).filter(|_| !jobs.contains(&job)) {
+            jobs.push(job);
+            let (index, series) = encoding.line(*row);
+            lines.push((index, history_line(source, series, run, drawn)));
+        }
+    }
+    lines.sort_by_key(|(index, _)| *index);
+    let empty = lines.iter().all(|(_, line)| line.pieces.is_empty());
     let message = if runs.is_empty() {
         "nothing to draw: none of these jobs has a history"
-    } else if values.is_empty() {
+    } else if empty {
         "nothing to draw: no value in this time range"
     } else {
         ""
     };
     Panel {
-        title: quantity.meaning.clone(),
-        label: unit.label(&quantity.name),
-        range: [low, high],
-        lines: runs.iter().enumerate().map(line).collect(),
-        lane: Vec::new(),
+        label: drawn.quantity.name.label(&drawn.unit),
+        range: drawn.range,
+        lines: lines.into_iter().map(|(_, line)| line).collect(),
         message: message.to_owned(),
+        ..Panel::default()
     }
 }
 
-/// The line of one job. Non-finite values interrupt it; a cross marks its last point if the job failed.
-fn history_line(
-    series: usize,
-    run: &Run,
-    quantity: &Quantity,
-    unit: &Unit,
-    time: &TimeAxis,
-    failed: bool,
-) -> Line {
+/// The line of one job. Non-finite values interrupt it. A cross marks its last point if the job failed, a
+/// marker its last visible point if the capsule did not deploy.
+fn history_line(source: &Source<'_>, series: Series, run: &Run, drawn: &Drawn<'_>) -> Line {
+    let Drawn { quantity, unit, time, rings, .. } = drawn;
     let [start, end] = time.ends.map(|end| time.unit.shown(end));
     let points: Vec<[f64; 2]> = run
         .times()
         .iter()
-        .zip(run.values(&quantity.name))
+        .zip(run.values(&quantity.symbol))
         .map(|(t, value)| [time.unit.shown(*t), unit.shown(*value)])
         .collect();
     let finite = |point: &[f64; 2]| point[1].is_finite();
-    let pieces: Vec<Vec<[f64; 2]>> = points
+    let visible = |point: &&[f64; 2]| (start..=end).contains(&point[0]);
+    let last = points.iter().rfind(|point| finite(point)).filter(visible).copied();
+    let crosses = last.filter(|_| outcome::has_failed(source, run.row)).into_iter().collect();
+    let marker = not_deployed(source, run.row);
+    let end = points.iter().rfind(|point| finite(point) && visible(point));
+    let marks = marker.and_then(|fill| end.map(|point| (*point, fill))).into_iter().collect();
+    // Of the points beyond the axis only the next ones are needed.
+    let first = points.partition_point(|point| point[0] < start).saturating_sub(1);
+    let past = (points.partition_point(|point| point[0] <= time.unit.shown(time.ends[1])) + 1)
+        .min(points.len());
+    let pieces: Vec<Vec<[f64; 2]>> = points[first.min(past)..past]
         .chunk_by(|a, b| finite(a) == finite(b))
         .filter(|piece| finite(&piece[0]))
         .map(<[_]>::to_vec)
         .collect();
-    let last = pieces.last().and_then(|piece| piece.last()).copied();
-    let visible = |point: &[f64; 2]| (start..=end).contains(&point[0]);
-    let crosses = last.filter(|point| failed && visible(point)).into_iter().collect();
-    Line { series, pieces, marks: Vec::new(), sparse_markers: true, crosses }
+    Line { series, pieces, marks, sparse_markers: true, crosses, rings: *rings }
 }
 
-fn legends(source: &Source<'_>, parameters: &[Parameter<'_>], runs: &[Run]) -> Vec<Legend> {
-    let entry = |(series, run): (usize, &Run)| {
-        let values: Vec<String> =
-            parameters.iter().map(|parameter| parameter.of_row(run.row)).collect();
-        let mut text = if values.is_empty() {
-            format!("job {}", run.history.job.short())
-        } else {
-            values.join(", ")
-        };
-        let status = outcome::status(source, run.row);
-        let verdict = outcome::verdict(source, run.row);
-        if status != Status::Done.name() {
-            text = format!("{text} ({status})");
-        } else if !verdict.is_empty() && verdict != Verdict::Deployed.name() {
-            text = format!("{text} ({verdict})");
+/// The marker at the end of a line: of a done job that is not deployed.
+fn not_deployed(source: &Source<'_>, row: usize) -> Option<Fill> {
+    let verdict = outcome::verdict(source, row).filter(|verdict| *verdict != Verdict::Deployed)?;
+    Some(outcome::fill(Some(verdict)))
+}
+
+/// The legends of the lines, and of the marks at their ends.
+fn legends(
+    source: &Source<'_>,
+    encoding: &Encoding<'_>,
+    runs: &BTreeMap<&str, Run>,
+) -> Vec<Legend> {
+    let mut legends = encoding.legends(false);
+    let mut ends: Vec<(Sample, String)> = Vec::new();
+    for verdict in [Verdict::Partial, Verdict::Stalled] {
+        let of_verdict = |run: &&Run| outcome::verdict(source, run.row) == Some(verdict);
+        let count = runs.values().filter(of_verdict).count();
+        if count > 0 {
+            let sample = Sample::Marker(outcome::fill(Some(verdict)));
+            ends.push((sample, format!("{} ({count})", verdict.name())));
         }
-        (Sample::Series(series), text)
-    };
-    let lines = Legend {
-        heading: parameters::heading(parameters),
-        entries: runs.iter().enumerate().map(entry).collect(),
-    };
-    let failed = runs.iter().any(|run| outcome::has_failed(source, run.row));
-    let crosses = if failed {
-        vec![(Sample::Cross, "end of a run that failed".to_owned())]
+    }
+    for status in Status::all().filter(|status| status.is_failure()) {
+        let of_status = |run: &&Run| source.table.status(run.row) == Some(status);
+        let count = runs.values().filter(of_status).count();
+        if count > 0 {
+            ends.push((Sample::Cross, format!("failed: {} ({count})", status.name())));
+        }
+    }
+    let deployed = |run: &&Run| outcome::verdict(source, run.row) == Some(Verdict::Deployed);
+    let deployed = runs.values().filter(deployed).count();
+    let heading = if deployed > 0 {
+        format!("Outcome, at the end of a line (number of jobs); no mark: deployed ({deployed})")
     } else {
-        Vec::new()
+        "Outcome, at the end of a line (number of jobs)".to_owned()
     };
-    vec![lines, Legend { heading: String::new(), entries: crosses }]
+    legends.push(Legend { heading, entries: ends });
+    legends
 }
 
-/// A note with the number of points without a history, by status.
-fn without_history(source: &Source<'_>) -> Option<String> {
+/// A note with the number of points without a line, by status.
+fn not_drawn(source: &Source<'_>, lines: usize) -> Option<String> {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for row in source.rows.iter().filter(|row| !has_history(source, **row)) {
         let status = outcome::status(source, *row);
@@ -302,5 +362,12 @@ fn without_history(source: &Source<'_>) -> Option<String> {
         }
     }
     let texts: Vec<String> = counts.iter().map(|(status, n)| format!("{n} {status}")).collect();
-    (!texts.is_empty()).then(|| format!("Without a history: {}.", texts.join(", ")))
+    let missing: usize = counts.iter().map(|(_, count)| count).sum();
+    let (points, noun) = (source.rows.len(), if lines == 1 { "line" } else { "lines" });
+    (missing > 0).then(|| {
+        format!(
+            "{lines} {noun} for {points} points; {missing} have no history: {}.",
+            texts.join(", ")
+        )
+    })
 }

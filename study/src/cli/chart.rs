@@ -1,5 +1,6 @@
 //! `billow chart`: draws charts of the results of a study, as SVG and PNG.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -16,6 +17,7 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::results::Results;
+use crate::store::stored::Stored;
 use crate::store::table::Table;
 
 /// Arguments of `billow chart`.
@@ -47,10 +49,13 @@ pub struct Args {
     /// Only rows for which this condition holds, as in `N == 6 and mass_flow_rate >= '2 g/s'`.
     #[arg(long = "where", value_name = "CONDITION", conflicts_with = "jobs")]
     pub condition: Option<String>,
+    /// Title of the chart [default: quantity and axes].
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
     /// Start of the time axis: s, or with a unit.
     #[arg(long, value_name = "TIME", requires = "history")]
     pub from: Option<String>,
-    /// End of the time axis: s, or with a unit.
+    /// End of the time axis: s, or with a unit [default: soon after the last film has settled].
     #[arg(long, value_name = "TIME", requires = "history")]
     pub to: Option<String>,
     /// File to write, .svg or .png [default: both, in the folder charts of the results].
@@ -76,7 +81,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     let Target { results, table } = target::open(&args.study, &args.set.set)?;
     let name = study_name(&results);
-    let source = source(args, &name, &table)?;
+    let points = every_point(&results, &table);
+    let source = source(args, &name, &table, points.as_ref().unwrap_or(&table))?;
     let standard = asked.is_none();
     let kinds = match asked {
         Some(kind) => vec![kind],
@@ -100,11 +106,14 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 }
 
 /// The rows that `--jobs` or `--where` choose.
-fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a>> {
+fn source<'a>(args: &Args, study: &'a str, table: &Table, points: &'a Table) -> Result<Source<'a>> {
     let rows = if args.jobs.is_empty() {
-        target::filtered(table, args.condition.as_deref())?
+        target::filtered(points, args.condition.as_deref())?
     } else {
-        target::jobs(table, &args.jobs)?
+        let ids = |table: &Table, row: usize| table.column("job").map(|job| job.cells[row].clone());
+        let chosen = target::jobs(table, &args.jobs)?;
+        let chosen: Vec<_> = chosen.into_iter().map(|row| ids(table, row)).collect();
+        (0..points.rows()).filter(|row| chosen.contains(&ids(points, *row))).collect()
     };
     if rows.is_empty() {
         let condition = args.condition.as_deref().unwrap_or("");
@@ -117,7 +126,22 @@ fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a
         (None, 0) => String::new(),
         (None, _) => "(chosen jobs)".to_owned(),
     };
-    Ok(Source { study, table, rows, choice })
+    let title = args.title.clone().unwrap_or_default();
+    Ok(Source { study, table: points, rows, choice, title })
+}
+
+/// The table with one row per point, also for points that are one job. `None` if the stored table has other
+/// jobs than the plan, as after a change of the program.
+fn every_point(results: &Results<'_>, table: &Table) -> Option<Table> {
+    if !results.owner().is_ok_and(|owner| owner.is_some()) {
+        return None;
+    }
+    let points = Stored::read(results.clone()).ok()?.table_of_all_points();
+    let jobs = |table: &Table| -> BTreeSet<String> {
+        let cells = table.column("job").into_iter().flat_map(|column| &column.cells);
+        cells.map(Value::to_string).collect()
+    };
+    (jobs(&points) == jobs(table)).then_some(points)
 }
 
 /// Name of the results folder; the whole path when it has no last part, as in ".".
@@ -177,14 +201,16 @@ fn kind(args: &Args) -> Result<Option<ChartKind>> {
         .as_deref()
         .map(|name| target::current_name("--measure", name.trim()).to_owned());
     let Some(measure) = measure else {
-        return match &args.out {
-            None => Ok(None),
-            Some(path) => Err(refused(
-                "--out",
-                &path.display().to_string(),
-                "one file for several charts",
-                "one chart: --history, --measure … --over, or --measure … --map",
-            )),
+        let one = "one chart: --history, --measure … --over, or --measure … --map";
+        return match (&args.out, &args.title) {
+            (None, None) => Ok(None),
+            (Some(path), _) => {
+                let path = path.display().to_string();
+                Err(refused("--out", &path, "one file for several charts", one))
+            }
+            (None, Some(title)) => {
+                Err(refused("--title", title, "one title for several charts", one))
+            }
         };
     };
     match (args.over.clone(), args.map.as_slice()) {
