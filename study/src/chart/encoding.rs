@@ -41,7 +41,7 @@ pub struct Encoding<'a> {
 impl<'a> Encoding<'a> {
     /// Divides parameters into lines and panels. With `by` these parameters give the lines; without it the
     /// first one gives colours, the next one dashes while at most `preferred` lines are in a panel, and the
-    /// others panels.
+    /// others panels. `points` are markers without lines, so that nothing has dashes.
     ///
     /// # Errors
     /// Too many lines or panels: `asked` is the option and its value.
@@ -50,14 +50,15 @@ impl<'a> Encoding<'a> {
         others: Vec<Parameter<'a>>,
         by: &[String],
         preferred: usize,
+        points: bool,
         asked: (&str, &str),
     ) -> Result<Self> {
         let encoding = |lines: Vec<Parameter<'a>>, panels: Vec<Parameter<'a>>| Self {
-            lines: Lines::new(lines, &source.rows),
+            lines: Lines::new(lines, &source.rows, points),
             panels: parameters::facets(panels, &source.rows),
         };
         let found = if by.is_empty() {
-            let first = divided(source, others.clone(), preferred);
+            let first = divided(source, others.clone(), if points { 0 } else { preferred });
             let found = encoding(first.0, first.1);
             if found.panels.panels.len() > MAX_PANELS {
                 let more = divided(source, others, MAX_LINES);
@@ -188,7 +189,7 @@ fn single(number: usize, count: usize) -> Series {
 }
 
 impl<'a> Lines<'a> {
-    fn new(parameters: Vec<Parameter<'a>>, rows: &[usize]) -> Self {
+    fn new(parameters: Vec<Parameter<'a>>, rows: &[usize], points: bool) -> Self {
         let values: Vec<Vec<Value>> = parameters.iter().map(|p| p.values(rows)).collect();
         match (parameters.as_slice(), values.as_slice()) {
             ([], _) => Self::One,
@@ -196,7 +197,7 @@ impl<'a> Lines<'a> {
                 Self::Single(parameter.clone(), values.clone())
             }
             ([first, second], [colours, dashes])
-                if colours.len() <= MAX_COLOURS && dashes.len() <= MAX_DASHES =>
+                if !points && colours.len() <= MAX_COLOURS && dashes.len() <= MAX_DASHES =>
             {
                 Self::Two([first.clone(), second.clone()], [colours.clone(), dashes.clone()])
             }

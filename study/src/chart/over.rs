@@ -31,7 +31,9 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     let measure = source.measure("--measure", measure)?;
     let x = Parameter::new(source.parameter("--over", over)?, &source.rows);
     let (others, mut notes) = parameters::varying(source.table, &source.rows, &[x.column]);
-    let encoding = Encoding::new(source, others, by, PREFERRED_LINES, ("--over", over))?;
+    let positions = Positions::new(&x, &source.rows);
+    let encoding =
+        Encoding::new(source, others, by, PREFERRED_LINES, positions.names, ("--over", over))?;
 
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
     let unit = Unit::fit(&measure.unit, values.clone());
@@ -45,7 +47,6 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     }
     notes.extend(source.shared_job_note());
     let name = Name::of_measure(&measure.name, &measure.meaning);
-    let positions = Positions::new(&x, &source.rows);
     let mut outcomes = Outcomes::new(source);
     let panels: Vec<Panel> = encoding
         .panels

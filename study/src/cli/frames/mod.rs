@@ -16,16 +16,18 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
-use crate::render::filmstrip::{Colour, Filmstrip};
+use crate::render::filmstrip::Filmstrip;
 use crate::render::projection::View;
 use crate::store::history_file::{self, StoredFrames};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 
 mod choose;
+mod colours;
 mod values;
 
 use choose::{by_displacement, nearest};
+use colours::colour;
 
 /// Arguments of `billow frames`.
 #[derive(Debug, clap::Args)]
@@ -219,54 +221,6 @@ fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
     };
     Picture::of(path)?;
     Ok(vec![path.clone()])
-}
-
-/// The meaning of the colours: the one asked for, or storeys if the film has some. A quantity that the file
-/// does not have gives one colour and a note.
-fn colour(
-    asked: Option<ColourArg>,
-    stored: &StoredFrames,
-    frames: &[Frame],
-) -> Result<(Colour, Vec<String>)> {
-    let capsule = stored.storeys().iter().any(|storey| *storey > 0);
-    let quantity = match asked {
-        Some(ColourArg::Stress) => values::stress(frames),
-        Some(ColourArg::Speed) => values::speed(frames, stored.triangles()),
-        _ => None,
-    };
-    let colour = match asked {
-        Some(ColourArg::Regime) => Colour::Regime,
-        Some(ColourArg::None) => Colour::Plain,
-        Some(ColourArg::Stress | ColourArg::Speed) => {
-            if let Some(quantity) = quantity {
-                Colour::Quantity(quantity)
-            } else {
-                let name = if asked == Some(ColourArg::Speed) { "speed" } else { "stress" };
-                let note = format!(
-                    "No {name}: the file has no {name} of the film, because an earlier version of billow \
-                     wrote it. Run its study or scene again with this version."
-                );
-                return Ok((Colour::Plain, vec![note]));
-            }
-        }
-        Some(ColourArg::Storey) if !capsule => {
-            return Err(refused(
-                "--colour",
-                "storey",
-                "this film is not a capsule and has no storeys",
-                "regime, stress, speed, none",
-            ));
-        }
-        Some(ColourArg::Storey) => Colour::Storey,
-        None => {
-            if capsule {
-                Colour::Storey
-            } else {
-                Colour::Plain
-            }
-        }
-    };
-    Ok((colour, Vec::new()))
 }
 
 fn view(text: &str) -> Result<View> {

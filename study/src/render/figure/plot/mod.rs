@@ -103,6 +103,8 @@ struct Layout {
     title: f64,
 }
 
+/// Note of a figure with a band.
+const BAND_NOTE: &str = "Shaded bands: the range of a line that turns too often to be drawn.";
 /// Distance of the lines of a label, in sizes of its letters.
 const LABEL_LINE: f64 = 1.3;
 /// Height of a line of a title, mm.
@@ -120,6 +122,7 @@ impl Plots {
         let mut page = Page::new();
         let mut y = self.sheet.head(&mut page);
         let layout = self.layout();
+        let mut bands = false;
         let last_row = self.panels.len().saturating_sub(self.across);
         for (row, panels) in self.panels.chunks(self.across.max(1)).enumerate() {
             y += layout.title;
@@ -142,7 +145,7 @@ impl Plots {
                     lane_rows: layout.lanes.get(row).copied().unwrap_or(0),
                     first: column == 0,
                 };
-                panel.draw(&mut page, &frame, &layout.titles[number]);
+                bands |= panel.draw(&mut page, &frame, &layout.titles[number]);
                 let below_is_blank =
                     self.panels.get(number + self.across).is_none_or(|panel| panel.blank);
                 if number >= last_row || below_is_blank {
@@ -159,7 +162,11 @@ impl Plots {
         let letters = Letters::new(MEDIUM).at(Anchor::Middle);
         page.text([0.5 * (left + right), y], &letters, &label);
         y += 0.5 * MEDIUM;
-        self.sheet.foot(page, y)
+        let mut sheet = self.sheet.clone();
+        if bands {
+            sheet.notes.insert(0, BAND_NOTE.to_owned());
+        }
+        sheet.foot(page, y)
     }
 
     fn layout(&self) -> Layout {

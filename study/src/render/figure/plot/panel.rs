@@ -50,8 +50,8 @@ impl Frame {
 }
 
 impl Panel {
-    /// Draws the panel, with the y axis if it is the first one of its row.
-    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) {
+    /// Draws the panel, with the y axis if it is the first one of its row. Returns whether it has a band.
+    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) -> bool {
         for (number, line) in title.iter().rev().enumerate() {
             let y = frame.top - 1.6 - number as f64 * TITLE_LINE;
             page.text([frame.left, y], &Letters::new(SMALL), &cut(line, SMALL, frame.width));
@@ -59,8 +59,9 @@ impl Panel {
         self.draw_grid(page, frame);
         let size = [frame.width, frame.height];
         page.clip([frame.left, frame.top], size);
+        let mut bands = false;
         for line in &self.lines {
-            draw_line(page, line, frame);
+            bands |= draw_line(page, line, frame);
         }
         page.unclip();
         page.frame([frame.left, frame.top], size, &AXIS);
@@ -70,6 +71,7 @@ impl Panel {
             lane::draw(page, &self.lane, area, &frame.x, frame.first);
         }
         self.draw_message(page, frame);
+        bands
     }
 
     /// Grid lines, and the y axis with its label.
@@ -144,8 +146,9 @@ impl Panel {
     }
 }
 
-/// Draws a line. Where one that rings turns too often to be read, it is a band.
-fn draw_line(page: &mut Page, line: &Line, frame: &Frame) {
+/// Draws a line. Where one that rings turns too often to be read, it is a band. Returns whether it has one.
+fn draw_line(page: &mut Page, line: &Line, frame: &Frame) -> bool {
+    let mut bands = false;
     let stroke = if line.rings { line.series.thin_line() } else { line.series.line() };
     for piece in &line.pieces {
         let positions: Vec<Position> = piece.iter().map(|point| frame.position(*point)).collect();
@@ -163,8 +166,10 @@ fn draw_line(page: &mut Page, line: &Line, frame: &Frame) {
                     let border = Stroke { dashes: &[], ..stroke };
                     page.polyline(&upper, &border);
                     page.polyline(&lower, &border);
+                    bands = true;
                 }
             }
         }
     }
+    bands
 }

@@ -145,6 +145,14 @@ fn quantities_units_legend_and_message_are_on_the_page() {
 }
 
 #[test]
+fn a_figure_with_a_band_says_what_it_is() {
+    let ys: Vec<f64> = (0..3000).map(|index| f64::from(index % 2)).collect();
+    let note = |figure: &Plots| check::figure(&figure.svg()).contains(&BAND_NOTE.to_owned());
+    assert!(note(&plots(axis(0.0, 1.0), &ys, 1, 1, 2)));
+    assert!(!note(&plots(axis(0.0, 1.0), &[0.0, 1.0], 1, 1, 2)));
+}
+
+#[test]
 fn long_names_stand_alternately_on_two_lines() {
     let mut x = axis(-0.5, 4.5);
     x.names = true;

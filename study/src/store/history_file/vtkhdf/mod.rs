@@ -29,9 +29,12 @@ use hdf5::file::LinkCreationOrder;
 use hdf5::types::FixedAscii;
 use hdf5::{Dataset, Extents, File, Group, H5Type};
 
+use self::fields::StoredFields;
 use super::sha256::Contents;
 use super::{DEFLATE_LEVEL, HDF5_LOCK, damaged, number_attribute};
 use crate::platform::error::Result;
+
+mod fields;
 
 /// Name of the group.
 const GROUP: &str = "VTKHDF";
@@ -62,29 +65,6 @@ fn regimes(frames: &Frames) -> impl Iterator<Item = u8> {
     frames.frames.iter().flat_map(|frame| &frame.regimes).map(|regime| code(*regime))
 }
 
-fn velocities(frames: &Frames) -> impl Iterator<Item = f32> {
-    frames.frames.iter().flat_map(|frame| frame.velocities.as_flattened()).copied()
-}
-
-fn stresses(frames: &Frames, which: usize) -> impl Iterator<Item = f32> {
-    frames.frames.iter().flat_map(|frame| &frame.stresses).map(move |stress| stress[which])
-}
-
-fn gaps(frames: &Frames) -> impl Iterator<Item = f32> {
-    frames.frames.iter().flat_map(|frame| &frame.gaps).copied()
-}
-
-/// Which fields the frames have: velocities, stresses, gaps.
-fn fields(frames: &Frames) -> [bool; 3] {
-    let first = frames.frames.first();
-    first.map_or([false; 3], |frame| {
-        [!frame.velocities.is_empty(), !frame.stresses.is_empty(), !frame.gaps.is_empty()]
-    })
-}
-
-/// Names of the datasets of the principal stresses.
-const STRESSES: [&str; 2] = ["principal_stress_1", "principal_stress_2"];
-
 /// Adds all values except the layout to a content hash, with the names of their datasets.
 pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
     let (count, elements) = (frames.frames.len(), frames.triangles.len());
@@ -98,33 +78,17 @@ pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
     let points = coordinates(frames).map(|coordinate| coordinate.to_bits().to_le_bytes());
     contents.add("VTKHDF/Points", 3 * count * nodes, points);
     contents.add("VTKHDF/CellData/regime", count * elements, regimes(frames).map(|code| [code]));
-    let [has_velocities, has_stresses, has_gaps] = fields(frames);
-    let bytes = |value: f32| value.to_bits().to_le_bytes();
-    if has_stresses {
-        for (which, name) in STRESSES.iter().enumerate() {
-            let name = format!("VTKHDF/CellData/{name}");
-            contents.add(&name, count * elements, stresses(frames, which).map(bytes));
-        }
-    }
-    if has_velocities {
-        let name = "VTKHDF/PointData/velocity";
-        contents.add(name, 3 * count * nodes, velocities(frames).map(bytes));
-    }
-    if has_gaps {
-        contents.add("VTKHDF/PointData/gap", count * nodes, gaps(frames).map(bytes));
-    }
+    fields::hash(frames, contents);
 }
 
 /// Writes the group.
 pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     let (count, elements) = (frames.frames.len(), frames.triangles.len());
     let nodes = frames.frames.first().map_or(0, |frame| frame.positions.len());
-    let present = fields(frames);
     let fits = |frame: &Frame| {
-        let lengths = [frame.velocities.len(), frame.stresses.len(), frame.gaps.len()];
-        let expected = [nodes, elements, nodes];
-        let fields = (0..3).all(|k| lengths[k] == if present[k] { expected[k] } else { 0 });
-        frame.positions.len() == nodes && frame.regimes.len() == elements && fields
+        frame.positions.len() == nodes
+            && frame.regimes.len() == elements
+            && fields::fit(frame, frames)
     };
     if frames.storeys.len() != elements || !frames.frames.iter().all(fits) {
         return Err("frames of different sizes".into());
@@ -167,30 +131,7 @@ pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     array(&offsets, "storey", count, None, &zeros)?;
     array(&offsets, "regime", count, None, &every(elements))?;
 
-    let [has_velocities, has_stresses, has_gaps] = present;
-    if has_stresses {
-        for (which, name) in STRESSES.iter().enumerate() {
-            let values: Vec<f32> = stresses(frames, which).collect();
-            array(&cells, name, values.len(), Some(&[elements]), &values)?;
-            array(&offsets, name, count, None, &every(elements))?;
-        }
-    }
-    if !has_velocities && !has_gaps {
-        return Ok(());
-    }
-    let points = create_group(&group, "PointData")?;
-    let offsets = create_group(&steps, "PointDataOffsets")?;
-    if has_velocities {
-        let values: Vec<f32> = velocities(frames).collect();
-        array(&points, "velocity", (count * nodes, 3), Some(&[nodes, 3]), &values)?;
-        array(&offsets, "velocity", count, None, &every(nodes))?;
-    }
-    if has_gaps {
-        let values: Vec<f32> = gaps(frames).collect();
-        array(&points, "gap", values.len(), Some(&[nodes]), &values)?;
-        array(&offsets, "gap", count, None, &every(nodes))?;
-    }
-    Ok(())
+    fields::write(frames, &group, [&cells, &steps, &offsets])
 }
 
 fn create_group(parent: &Group, name: &str) -> hdf5::Result<Group> {
@@ -224,9 +165,7 @@ pub struct StoredFrames {
     nodes: usize,
     points: Dataset,
     regimes: Dataset,
-    velocities: Option<Dataset>,
-    stresses: Option<[Dataset; 2]>,
-    gaps: Option<Dataset>,
+    fields: StoredFields,
 }
 
 /// Opens the group and reads everything except the frames; `None` for a file without the group.
@@ -261,21 +200,8 @@ pub(super) fn read(file: &File, path: &Path) -> hdf5::Result<Option<StoredFrames
     if !times.iter().all(|time| time.is_finite()) || !times.is_sorted() {
         return Err("frames out of order".into());
     }
-    let optional = |name: &str, shape: &[usize]| -> hdf5::Result<Option<Dataset>> {
-        let (parent, _) = name.split_once('/').unwrap_or_default();
-        if !group.link_exists(parent) || !group.link_exists(name) {
-            return Ok(None);
-        }
-        let dataset = group.dataset(name)?;
-        let fits = dataset.shape() == shape;
-        fits.then_some(Some(dataset)).ok_or_else(|| format!("{name} has another size").into())
-    };
-    let cells = count * triangles.len();
-    let [first, second] = STRESSES.map(|name| optional(&format!("CellData/{name}"), &[cells]));
     let stored = StoredFrames {
-        velocities: optional("PointData/velocity", &[count * nodes, 3])?,
-        stresses: first?.zip(second?).map(|(first, second)| [first, second]),
-        gaps: optional("PointData/gap", &[count * nodes])?,
+        fields: StoredFields::open(&group, count * nodes, count * triangles.len())?,
         path: path.to_owned(),
         triangles: triangles.to_vec(),
         storeys,
@@ -326,29 +252,7 @@ impl StoredFrames {
         let regime = |code: &u8| REGIMES.get(usize::from(*code)).copied();
         let regimes: Option<Vec<Regime>> = codes.iter().map(regime).collect();
         let regimes = regimes.ok_or_else(|| format!("frame {number} has unknown regimes"))?;
-        let (of_nodes, of_elements) =
-            (number * nodes..(number + 1) * nodes, number * elements..(number + 1) * elements);
-        let column = |dataset: &Dataset, range: &std::ops::Range<usize>| {
-            dataset.read_slice_1d::<f32, _>(range.clone()).map(|values| values.to_vec())
-        };
-        let velocities = match &self.velocities {
-            Some(dataset) => {
-                let values = dataset.read_slice_2d::<f32, _>((of_nodes.clone(), ..))?;
-                values.as_slice().unwrap_or_default().as_chunks::<3>().0.to_vec()
-            }
-            None => Vec::new(),
-        };
-        let stresses = match &self.stresses {
-            Some([first, second]) => {
-                let pairs = column(first, &of_elements)?.into_iter();
-                pairs.zip(column(second, &of_elements)?).map(|(a, b)| [a, b]).collect()
-            }
-            None => Vec::new(),
-        };
-        let gaps = match &self.gaps {
-            Some(dataset) => column(dataset, &of_nodes)?,
-            None => Vec::new(),
-        };
+        let (velocities, stresses, gaps) = self.fields.frame(number, nodes, elements)?;
         Ok(Frame { time, positions: points.to_vec(), regimes, velocities, stresses, gaps })
     }
 }

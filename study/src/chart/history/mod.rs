@@ -6,10 +6,10 @@ use billow_solver::output::history::COLUMNS;
 use billow_solver::output::measures::Verdict;
 
 use super::encoding::{Encoding, PREFERRED_LINES};
-use super::names::{self, Name};
+use super::names;
 use super::parameters;
 use super::time_axis::TimeAxis;
-use super::{Source, invalid_option, outcome, unknown_name};
+use super::{Source, invalid_option, outcome};
 use crate::input::value::Value;
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
@@ -17,17 +17,17 @@ use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::style::{Fill, Series};
-use crate::render::figure::unit::Unit;
-use crate::render::figure::{Sheet, columns as columns_of, ticks};
+use crate::render::figure::{Sheet, columns as columns_of};
 use crate::store::history_file::StoredHistory;
+
+mod quantity;
+
+use quantity::{Drawn, Quantity, drawn, quantity};
 
 /// Most jobs in one figure. Chosen: 12 panels with a few lines each.
 pub const MAX_JOBS: usize = 48;
 /// Most lines in a panel of a quantity that rings. Chosen: more cover each other.
 const MAX_RINGING_LINES: usize = 3;
-/// Number of turns, on average over the jobs, from which a quantity of both signs rings.
-const RINGING_TURNS: usize = 5;
-
 /// A job of the figure.
 struct Run {
     row: usize,
@@ -49,24 +49,6 @@ impl Run {
             None => &[],
         }
     }
-}
-
-/// A quantity: symbol, SI unit, plain name.
-struct Quantity {
-    symbol: String,
-    unit: String,
-    name: Name,
-}
-
-/// What the lines of a quantity share.
-struct Drawn<'a> {
-    quantity: &'a Quantity,
-    /// Unit of the values.
-    unit: Unit,
-    /// Ends of the y axis.
-    range: [f64; 2],
-    time: &'a TimeAxis,
-    rings: bool,
 }
 
 /// Draws columns of histories over time. `range` gives the ends of the time axis, s, where they differ
@@ -94,7 +76,7 @@ pub fn svg(
     let (others, mut notes) = parameters::varying(source.table, &stored, &[]);
     let asked = columns.join(",");
     let encoding = |preferred: usize| {
-        Encoding::new(&chosen, others.clone(), &[], preferred, ("--history", &asked))
+        Encoding::new(&chosen, others.clone(), &[], preferred, false, ("--history", &asked))
     };
     let rings = drawn.iter().any(|drawn| drawn.rings);
     let encoding = if rings && drawn.len() == 1 {
@@ -117,10 +99,6 @@ pub fn svg(
         }
     }
     let plain: Vec<&str> = quantities.iter().map(|quantity| quantity.name.plain.as_str()).collect();
-    if rings {
-        notes
-            .push("Shaded bands: the range of a line that turns too often to be drawn.".to_owned());
-    }
     notes.extend(time.note.clone());
     notes.extend(source.shared_job_note());
     notes.extend(not_drawn(source, runs.len()));
@@ -177,71 +155,6 @@ fn runs<'a>(
 pub fn has_history(source: &Source<'_>, row: usize) -> bool {
     let hash = source.table.column("content_hash");
     hash.is_some_and(|column| matches!(column.cells[row], Value::Text(_)))
-}
-
-/// The quantity with that name: a column of the history, or an extra quantity of a job.
-fn quantity(symbol: &str, runs: &BTreeMap<&str, Run>) -> Result<Quantity> {
-    let shown = || COLUMNS.iter().filter(|column| column.name != "time");
-    let of = |unit: &str, meaning: &str| Quantity {
-        symbol: symbol.to_owned(),
-        unit: unit.to_owned(),
-        name: Name::of_history(symbol, meaning),
-    };
-    if let Some(column) = shown().find(|column| column.name == symbol) {
-        return Ok(of(column.unit, column.meaning));
-    }
-    let found = runs.values().find_map(|run| run.history.labels.get(symbol));
-    if let Some((unit, meaning)) = found {
-        return Ok(of(unit, meaning));
-    }
-    let mut known: Vec<&str> = shown().map(|column| column.name).collect();
-    for track in runs.values().flat_map(|run| run.history.labels.keys()) {
-        if !known.contains(&track.as_str()) {
-            known.push(track);
-        }
-    }
-    Err(unknown_name("--history", symbol, "no such history column", &known))
-}
-
-/// Unit and axis of a quantity, and whether it rings, from its values within the time axis.
-fn drawn<'a>(quantity: &'a Quantity, runs: &BTreeMap<&str, Run>, time: &'a TimeAxis) -> Drawn<'a> {
-    let [start, end] = time.ends;
-    let inside = |run: &Run| -> Vec<f64> {
-        let pairs = run.times().iter().zip(run.values(&quantity.symbol));
-        let pairs = pairs.filter(|(t, _)| (start..=end).contains(*t));
-        pairs.map(|(_, value)| *value).filter(|value| value.is_finite()).collect()
-    };
-    let values: Vec<Vec<f64>> = runs.values().map(inside).collect();
-    let all = || values.iter().flatten().copied();
-    let unit = Unit::fit(&quantity.unit, all());
-    let [low, high] = all().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    });
-    let range = if low > high {
-        [0.0, 1.0]
-    } else {
-        ticks::padded(unit.shown(low), unit.shown(high)).into()
-    };
-    let turns: usize = values.iter().map(|values| turns(values, 0.1 * (high - low))).sum();
-    let rings = -low > 0.2 * high && high > -0.2 * low && turns > RINGING_TURNS * runs.len();
-    Drawn { quantity, unit, range, time, rings }
-}
-
-/// How often values turn by at least `change`.
-fn turns(values: &[f64], change: f64) -> usize {
-    let mut count = 0;
-    let (mut low, mut high, mut rising) = (f64::INFINITY, f64::NEG_INFINITY, None);
-    for value in values {
-        (low, high) = (low.min(*value), high.max(*value));
-        let up = *value - low >= change && rising != Some(true);
-        let down = high - *value >= change && rising != Some(false);
-        if up || down {
-            count += usize::from(rising.is_some());
-            rising = Some(up);
-            (low, high) = (*value, *value);
-        }
-    }
-    count
 }
 
 /// The panel of a quantity: one line per job of these rows.
