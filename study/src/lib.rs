@@ -27,6 +27,14 @@
 //! | [`input`] | keys, units, expressions, the JSON of a file |
 //! | [`platform`] | files, signals, errors |
 
+/// Prints a line on stderr, as the standard macro of this name does, which ends the program when stderr
+/// is closed or full. This one loses the line instead.
+macro_rules! eprintln {
+    ($($part:tt)*) => {
+        $crate::platform::output::message(format_args!($($part)*))
+    };
+}
+
 pub mod analysis;
 pub mod bench;
 pub mod cases;

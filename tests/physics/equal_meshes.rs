@@ -33,7 +33,7 @@ fn scenes(subdivisions: u32) -> [Scene; 2] {
 /// The stowed capsule of a scene with contact.
 fn with_contact(scene: &Scene) -> FilmRun {
     let contact = Some(FilmContact::of(&scene.contact));
-    FilmRun::from_scene(InstructionSet::detect(), scene, DEFAULT_CFL, contact, None).unwrap()
+    FilmRun::from_scene(InstructionSet::detect(), scene, DEFAULT_CFL, contact).unwrap()
 }
 
 fn contact_distance(scene: &Scene) -> f64 {

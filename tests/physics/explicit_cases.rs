@@ -77,6 +77,19 @@ fn failures_have_their_kind() {
     assert_eq!(failure.kind, FailureKind::Unstable, "{failure:?}");
     assert!(failure.place.starts_with("node ") && failure.time < 0.1, "{failure:?}");
 
+    // Soft film under a pressure far beyond its modulus stretches without end; its energy balances.
+    let soft = Film { youngs_modulus: 1e4, ..Film::PAPER_ELASTIC };
+    let mut film = at_rest(&piece, &soft, PressureLoad::Overpressure(50.0), GasState::default());
+    let failure = film.advance(10.0, &free()).unwrap_err();
+    assert_eq!(failure.kind, FailureKind::Overstretched, "{failure:?}");
+    assert!(failure.place.contains("times its length"), "{failure:?}");
+
+    // A node faster than the waves of its film is no failure.
+    let mut film = at_rest(&piece, &soft, PressureLoad::Overpressure(0.0), GasState::default());
+    let speed = 3.0 * film.model.wave_speed();
+    film.state.velocities = mapped(&piece, |_| Vector3::x() * speed);
+    film.advance(0.02, &free()).unwrap();
+
     // Thrown inward through itself, the sphere turns inside out.
     let mut film = at_rest(&piece, &Film::PAPER, PressureLoad::Gas(gas), GasState::default());
     film.state.velocities = mapped(&piece, |x| x * -400.0);

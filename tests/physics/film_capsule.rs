@@ -5,27 +5,13 @@ use std::time::Instant;
 use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::{self, static_states};
 use billow_solver::models::run::Unobserved;
-use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::{HeatTransfer, Scene, paper};
 
-/// A placeholder for the static states, which no assertion here reads.
-fn unused_reference() -> Reference {
-    Reference::new(vec![[1.0, 1.0, 1.0]])
-}
-
 fn run(scene: &Scene, cfl: f64) -> Deployment {
-    film::solve(
-        InstructionSet::detect(),
-        scene,
-        cfl,
-        None,
-        Some(unused_reference()),
-        &mut Unobserved,
-    )
-    .expect("a valid scene")
+    film::solve(InstructionSet::detect(), scene, cfl, None, &mut Unobserved).expect("a valid scene")
 }
 
 fn report(name: &str, deployment: &Deployment, wall: f64) {
@@ -189,7 +175,6 @@ fn a_cfl_number_out_of_range_is_refused() {
             &paper::capsule(2, 0.1),
             cfl,
             None,
-            Some(unused_reference()),
             &mut Unobserved,
         );
         assert!(matches!(refused, Err(SceneError::Invalid { key, .. }) if key == "cfl"));

@@ -10,6 +10,7 @@
 )]
 
 mod allocation;
+mod closures;
 mod conservation;
 mod contact_bits;
 mod equal_meshes;

@@ -5,7 +5,7 @@ use std::time::Instant;
 use billow_solver::geometry::fold::{FoldDesign, FoldPattern};
 use billow_solver::models::run::{Observer, Progress};
 use billow_solver::models::{self, piston::PistonRun};
-use billow_solver::output::measures::Verdict;
+use billow_solver::output::measures::{NoReference, Verdict};
 use billow_solver::output::outcome::{FailureKind, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
@@ -176,7 +176,7 @@ fn an_observer_can_stop_a_run() {
         }
     }
     let deployment =
-        models::solve(InstructionSet::detect(), &injected(), None, &mut Until(0.02)).unwrap();
+        models::solve(InstructionSet::detect(), &injected(), &mut Until(0.02)).unwrap();
     assert_eq!(deployment.stop, Stop::Cancelled);
     assert_eq!(*deployment.history.column("time").last().unwrap(), 0.02);
     assert_eq!(deployment.measures.verdict, None);
@@ -190,7 +190,6 @@ fn invalid_piston_scenes_name_their_key() {
         match models::solve(
             InstructionSet::detect(),
             &scene,
-            None,
             &mut billow_solver::models::run::Unobserved,
         ) {
             Err(SceneError::Invalid { key, problem }) => {
@@ -235,11 +234,17 @@ fn invalid_piston_scenes_name_their_key() {
 fn the_reference_height_rises_with_pressure() {
     use billow_solver::models::run::Model;
     let run = PistonRun::from_scene(&paper_scene()).unwrap();
-    let reference = run.reference().expect("a capsule has one");
-    let height = |pressure: f64| reference.at(pressure).1;
+    let reference = |pressure: f64| run.reference(pressure).expect("a capsule has one");
+    let height = |pressure: f64| reference(pressure).end.unwrap().height;
     assert!(height(1.0) > 1.0 && height(1000.0) > height(100.0));
     // z = H + p V_e/(H k), k about 2π E t r/H.
     assert!((height(1000.0) - 1.0 - 0.0026).abs() < 0.0006, "{}", height(1000.0));
+    // The design shape is the same at any final pressure, and there is one without any.
+    let design = reference(1000.0).design.unwrap();
+    assert_eq!(Ok(design), reference(-1.0).design);
+    assert!((design.overpressure - 1e-4 * 3.45e9 * 25.4e-6 / 0.4325).abs() < 1e-9);
+    let missing = reference(0.0).end.unwrap_err();
+    assert_eq!(missing, NoReference::NoOverpressure { overpressure: 0.0 });
 }
 
 /// Every feasible design of a folds grid has a stroke, and deploys on 5 g/s.
@@ -269,10 +274,10 @@ fn every_feasible_design_of_a_grid_deploys() {
 }
 
 #[test]
-fn a_model_without_stored_reference_refuses_to_compute_one() {
+fn a_model_with_equilibria_in_closed_form_has_no_ladder() {
     let scene = crate::rig::paper_scene();
     assert_eq!(models::reference_scene(&scene), None);
-    let refused = models::reference(InstructionSet::detect(), &scene, &mut || true);
+    let refused = models::ladder(InstructionSet::detect(), &scene, &[]);
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("solver.model") && message.contains("piston"), "{message}");
 }

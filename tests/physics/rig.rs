@@ -43,5 +43,5 @@ pub fn paper_scene() -> Scene {
 }
 
 pub fn run(scene: &Scene) -> Deployment {
-    models::solve(InstructionSet::detect(), scene, None, &mut Unobserved).expect("a valid scene")
+    models::solve(InstructionSet::detect(), scene, &mut Unobserved).expect("a valid scene")
 }

@@ -76,18 +76,105 @@ fn compare_pairs_rows_that_differ_in_one_parameter_only() {
 }
 
 #[test]
-fn a_job_shared_by_two_points_is_compared_at_both() {
+fn a_job_shared_by_two_points_has_both_rows() {
     // Without residual gas, burst and stored are the same job.
     let folder = TestFolder::new(&grid(&json!({
         "N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"],
         "residual_gas_mass": [0, "0.05 g"], "residual_gas": ["burst", "stored"]
     })));
-    folder.stdout(&["run", "grid.json", "-q"]);
-    assert_eq!(folder.rows("results/grid").len(), 3);
+    let said = folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(said.contains("deployed 3 of 3 jobs"), "counted once: {said}");
+    let rows = folder.rows("results/grid");
+    assert_eq!(rows.len(), 4, "one row per point");
+    assert_eq!(rows[0]["job"], rows[1]["job"]);
+    assert_eq!(rows[0]["same_job_as"], "residual_gas=stored");
+    assert_eq!(rows[1]["same_job_as"], "residual_gas=burst");
+    assert!(rows[2]["same_job_as"].is_null());
+    let found = folder.run(&["table", "--where", "residual_gas == 'stored'", "--columns", "job"]);
+    assert_eq!(String::from_utf8_lossy(&found.stdout).lines().count(), 3, "both points are found");
+    let short = &rows[0]["job"].as_str().unwrap()[..8];
+    let all = folder.run(&["table", "--columns", "job"]);
+    assert!(stderr(&all).contains("1 of these 4 rows are the same job as another row"));
+    let drawn = ["chart", "--jobs", short, "--measure", "peak_vz", "--over", "residual_gas"];
+    let chart = folder.stdout(&[&drawn[..], &["--out", "both.svg"]].concat());
+    assert!(chart.contains("both.svg"));
+    let svg = std::fs::read_to_string(folder.path().join("both.svg")).unwrap();
+    assert!(svg.contains("2 points") && svg.contains("stored"), "both points are drawn");
+    let histories = ["chart", "--history", "z_rim", "--jobs", short, "--out", "one.svg"];
+    folder.stdout(&histories);
+    let svg = std::fs::read_to_string(folder.path().join("one.svg")).unwrap();
+    assert!(svg.contains("1 point"), "one history per job");
     let pairs = json_of(&folder, &["compare", "--by", "residual_gas", "--base", "burst"]);
     assert_eq!(pairs.as_array().unwrap().len(), 2);
     assert_eq!(pairs[0]["base_job"], pairs[0]["other_job"]);
-    assert_eq!(pairs[0]["peak_vz_better"], "tie");
+    assert_eq!(pairs[0]["peak_vz_better"], "same_job");
+    let summary = [
+        "compare",
+        "--by",
+        "residual_gas",
+        "--base",
+        "burst",
+        "--summary",
+        "--measures",
+        "peak_vz",
+    ];
+    let summary = json_of(&folder, &summary);
+    assert_eq!((&summary[0]["pairs"], &summary[0]["same_job"]), (&json!(1), &json!(1)));
+}
+
+/// A grid of strategies and masses, and a single point outside it; `shared/repro/safety.json` in small.
+#[test]
+fn a_point_outside_the_grid_leaves_every_parameter_in_the_summary() {
+    let study = |points: Value| {
+        let mut study = grid(&json!({
+            "N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["5 g/s"],
+            "strategy": ["rapid", "preinflate", "residual"],
+            "residual_gas_mass": ["0.05 g", "0.1 g"], "points": points
+        }));
+        study["strategies"] = json!({
+            "rapid": {"inflow": [{"from": "0.05 s", "to": "0.4 s"}]},
+            "preinflate": {"preinflation_mass": "0.15 g", "inflow": [{"from": "0.25 s"}]},
+            "residual": {"inflow": []}
+        });
+        study
+    };
+    let point = json!([{"N": 6, "M": 3, "alpha1_over_phi": 1, "strategy": "direct",
+                        "mass_flow_rate": "5 g/s", "residual_gas_mass": 0}]);
+    let run = |points: Value| {
+        let folder = TestFolder::new(&study(points));
+        let said = folder.stdout(&["run", "grid.json", "-q"]);
+        (said, json_of(&folder, &["run", "grid.json", "-q"]), folder)
+    };
+    let (_, without, _) = run(json!([]));
+    let (said, with, folder) = run(point);
+    let effects = [&with, &without].map(|answer| answer["medians"].as_array().unwrap());
+    assert_eq!(effects.map(Vec::len), [2, 2]);
+    for (with, without) in effects[0].iter().zip(effects[1]) {
+        assert_eq!(with["parameter"], without["parameter"]);
+        assert_eq!(with["measures"], without["measures"], "{}", with["parameter"]);
+        assert_eq!(with["left_out"].as_array().unwrap().len(), 2, "one value, two measures");
+    }
+    assert!(
+        said.contains("left out strategy direct in t_90_z_rim, peak_vz: no job differs"),
+        "{said}"
+    );
+    assert!(said.contains("best     strategy: t_90_z_rim preinflate"), "{said}");
+    let strategy = &with["medians"][0];
+    assert_eq!((&strategy["parameter"], &strategy["sets"]), (&json!("strategy"), &json!(2)));
+    assert_eq!(strategy["measures"][0]["best"], json!(["preinflate"]));
+
+    for command in ["table", "chart"] {
+        let said = stderr(&folder.run(&[command, "grid.json"]));
+        assert!(said.contains("best: strategy: t_90_z_rim preinflate"), "{command}: {said}");
+        assert!(!stderr(&folder.run(&[command, "grid.json", "-q"])).contains("best:"));
+    }
+    let compared = ["compare", "grid.json", "--by", "strategy", "--base", "rapid"];
+    let said = stderr(&folder.run(&compared));
+    assert!(said.contains("tie: t_90_z_rim within 3 % (spread of the method)"), "{said}");
+    assert!(said.contains("1 row without a partner") && said.contains("strategy=direct"), "{said}");
+    let changed = folder.run(&[&compared[..], &["--set", "solver.end_time=0.5"]].concat());
+    let said = stderr(&changed);
+    assert!(said.contains("solver.end_time 0.6 → 0.5"), "{said}");
 }
 
 #[test]
@@ -96,7 +183,7 @@ fn a_run_ends_with_the_answer_to_its_question() {
     study["question"] = json!("Do more panels help?");
     let folder = TestFolder::new(&study);
     let said = folder.stdout(&["run", "grid.json", "-q"]);
-    assert!(said.lines().count() <= 25, "{said}");
+    assert!(said.lines().count() <= 32, "{said}");
     assert!(said.contains("\nDo more panels help?\n"), "{said}");
     assert!(said.contains("  deployed 16 of 16 jobs"), "{said}");
     assert!(said.contains("not counted by this model"), "{said}");
@@ -106,9 +193,9 @@ fn a_run_ends_with_the_answer_to_its_question() {
     let rows = folder.rows("results/grid");
     let of = |name: &str| rows.iter().filter_map(|row| row[name].as_f64()).collect::<Vec<_>>();
     let largest = of("peak_vz").into_iter().fold(0.0, f64::max);
-    let least = of("t_90_z_rim").into_iter().fold(f64::INFINITY, f64::min);
+    let least = of("t_90_z_rim_since_release").into_iter().fold(f64::INFINITY, f64::min);
     assert_eq!(answer["hardest"]["peak_vz"].as_f64(), Some(largest));
-    assert_eq!(answer["fastest"]["t_90_z_rim"].as_f64(), Some(least));
+    assert_eq!(answer["fastest"]["t_90_z_rim_since_release"].as_f64(), Some(least));
     let job = rows.iter().find(|row| row["job"] == answer["fastest"]["job"]).unwrap();
     assert_eq!(answer["fastest"]["parameters"]["alpha1_over_phi"], job["alpha1_over_phi"]);
     let residual = of("ledger_residual").into_iter().fold(0.0, f64::max);
@@ -123,9 +210,9 @@ fn a_run_ends_with_the_answer_to_its_question() {
         let mut speeds: Vec<f64> = rows
             .iter()
             .filter(|row| row["N"] == value["value"])
-            .filter_map(|row| row["peak_vz"].as_f64())
+            .filter_map(|row| row["peak_kinetic_energy"].as_f64())
             .collect();
         speeds.sort_by(f64::total_cmp);
-        assert_eq!(value["peak_vz"].as_f64(), Some(0.5 * speeds[3] + 0.5 * speeds[4]));
+        assert_eq!(value["peak_kinetic_energy"].as_f64(), Some(0.5 * speeds[3] + 0.5 * speeds[4]));
     }
 }

@@ -85,6 +85,7 @@ fn a_folded_capsule_reports_its_contact() {
         "contact_pairs",
         "broad_phase_rebuilds",
         "vz_centre",
+        "film_stress_99",
     ];
     for name in tracks {
         assert!(stored.tracks.contains_key(name), "{name}");

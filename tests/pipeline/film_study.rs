@@ -23,7 +23,7 @@ fn study() -> Value {
 
 #[test]
 fn the_amplitude_of_the_imperfection_belongs_to_a_job_only_with_a_seed() {
-    for (seed, summary) in [(0, "1 job, 1 point merged"), (1, "2 jobs")] {
+    for (seed, summary) in [(0, "2 points: 1 job, 1 duplicate,"), (1, "2 points: 2 jobs,")] {
         let mut amplitudes = study();
         amplitudes["seed"] = json!(seed);
         amplitudes["grid"] = json!({"N": [6], "imperfection_amplitude": ["0.1 mm", "0.2 mm"]});
@@ -53,6 +53,10 @@ fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
         assert!(row["verdict"].is_string() && row["reference_volume"].as_f64().unwrap() > 0.4);
         assert!(row["smallest_gap"].as_f64().unwrap() > 0.0, "{row}");
         assert!(row["interlayer_pressure"].as_f64().unwrap() >= 0.0, "{row}");
+        let [stress, robust] =
+            ["film_stress", "film_stress_99"].map(|name| row[name].as_f64().unwrap());
+        assert!(robust > 0.0 && robust <= stress, "{row}");
+        assert!((0.0..=0.03).contains(&row["t_film_stress_99"].as_f64().unwrap()), "{row}");
         let elements = 2 * row["N"].as_i64().unwrap() * 4 * 4;
         assert_eq!(row["elements"].as_i64(), Some(elements));
         // For film that never becomes quiescent, the forecast is the exact number of steps.

@@ -35,6 +35,25 @@ fn keys_are_found_by_name_and_by_meaning() {
     assert_eq!(scene.len(), entries(FileKind::Scene).len());
     assert!(scene.contains(&"supports[].move.rotation.angle".to_owned()));
 
+    // A name before a meaning; one letter is one key.
+    assert_eq!(listed(&["keys", "N", "--json"]), ["design.N"]);
+    assert_eq!(listed(&["keys", "m", "--json"]), ["design.M"]);
+    assert_eq!(listed(&["keys", "height", "--json"]), ["design.height"]);
+    let mass = listed(&["keys", "mass", "--json"]);
+    assert!(mass.iter().all(|key| key.contains("mass")), "{mass:?}");
+    // The new name of an old key; a column of the table.
+    assert_eq!(listed(&["keys", "viscosity", "--json"]), ["film.numerical_damping"]);
+    assert_eq!(listed(&["keys", "peak_vz", "--json"]), ["peak_vz"]);
+    for (word, note) in [
+        ("viscosity", "film.viscosity is now called film.numerical_damping; the next version"),
+        ("peak_vz", "peak_vz is a column of the table, not a key: billow table --columns peak_vz"),
+        ("height", "also in the meaning of design.fit"),
+    ] {
+        let error = String::from_utf8(billow(&["keys", word]).stderr).unwrap();
+        assert!(error.contains(note), "{error}");
+    }
+    assert!(stdout(&["keys", "peak_vz"]).starts_with("peak_vz (column of the table)\n"));
+
     let text = stdout(&["keys", "thickness"]);
     for part in
         ["film.thickness\n", "unit m", "default 2.54e-5", "from 1e-7 to 0.01 m", "Thickness."]

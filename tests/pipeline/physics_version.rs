@@ -34,7 +34,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
 
 /// The hash of a piston's whole history.
 fn piston(scene: &Scene) -> String {
-    let deployment = models::solve(InstructionSet::detect(), scene, None, &mut Unobserved)
+    let deployment = models::solve(InstructionSet::detect(), scene, &mut Unobserved)
         .expect("a scene that can be run");
     let columns = COLUMNS.iter().map(|column| deployment.history.column(column.name));
     hash(columns.flatten().copied())

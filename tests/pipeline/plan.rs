@@ -6,7 +6,7 @@ use std::time::Instant;
 use billow_study::input::value::Value;
 use billow_study::job::{JobId, Status};
 use billow_study::platform::error::InputError;
-use billow_study::study::plan::{FinishedRow, Generation, next_jobs};
+use billow_study::study::plan::{FinishedRow, Generation, PlanCounts, next_jobs};
 use billow_study::study::{Limits, Study};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
@@ -291,12 +291,25 @@ fn overrides_come_before_expansion() {
     assert_eq!(scene.film.thickness, 12.7e-6);
     assert!(scene.gas.species.gas_constant > 2000.0);
 
+    // One value in place of an axis; one value as an axis; a list as an axis.
+    let generation = plan(&study, &["N=7"]);
+    assert_eq!(generation.points.len(), 1);
+    assert_eq!(generation.points[0].job.scene.design.panels, 7);
+    assert_eq!(column(&plan(&study, &["grid.N=7"]), "N"), integers(&[7]));
+    let generation = plan(&study, &["M=[2, 4]", "N=7"]);
+    assert_eq!(column(&generation, "M"), integers(&[2, 4]));
+    let zipped = with_grid(json!({"zip": [{"N": [5, 6], "M": [3, 4]}]}));
+    let error = try_study(&zipped, &["N=7"]).unwrap_err().to_string();
+    assert!(error.contains("varies this key together with others (zip)"), "{error}");
+
     for (set, problem) in [
         ("film.thickness=thick", "--set film.thickness=thick: film.thickness = \"thick\""),
-        ("N=7", "the grid varies this key"),
         ("nonsense", "has no `=`"),
         ("film.thicknes=1", "did you mean thickness?"),
-        ("=1", "names no place"),
+        ("film.thickness=[1, 2", "this [ is not closed"),
+        ("thiknes=1", "did you mean thickness?"),
+        ("desing.N=6", "did you mean design.N?"),
+        ("=1", "has no key"),
         ("grid.filter=N >", "something is missing here"),
         ("supports[3]=1", "names no place"),
     ] {
@@ -311,6 +324,28 @@ fn duplicates_are_merged_with_a_note() {
     assert_eq!(column(&generation, "N"), integers(&[6, 5]));
     assert_eq!(generation.points[0].merged.len(), 2);
     assert_eq!(generation.points[0].merged[0], vec![("N".to_owned(), Value::Integer(6))]);
+}
+
+#[test]
+fn a_filter_keeps_single_points_and_every_point_is_counted() {
+    // N 6 and M 3 fold at both angles; the points repeat one of them, and leave the filter.
+    let json = with_grid(json!({
+        "N": [5, 6], "M": [3, 4], "filter": "N == 6 and M == 3",
+        "points": [{"N": 6, "M": 3}, {"N": 5, "M": 4}]
+    }));
+    let study = try_study(&json, &[]).unwrap();
+    let generation = next_jobs(&study, &[]).unwrap();
+    assert_eq!(column(&generation, "N"), integers(&[6, 5]), "the filter is for the product");
+    let counts = PlanCounts::of(&study, &generation);
+    assert_eq!((counts.points, counts.duplicates, counts.filtered), (3, 1, 3));
+    assert_eq!(counts.jobs + counts.infeasible, 2);
+
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("study.json"), json.to_string()).unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_billow"));
+    command.args(["plan", "study.json", "--summary", "--json"]).current_dir(folder.path());
+    let printed: Json = serde_json::from_slice(&command.output().unwrap().stdout).unwrap();
+    assert_eq!((&printed["points"], &printed["filtered"]), (&json!(3), &json!(3)));
 }
 
 #[test]

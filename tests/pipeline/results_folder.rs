@@ -3,8 +3,9 @@
 use std::fs;
 
 use billow_study::store::history_file;
+use serde_json::json;
 
-use crate::support::{TestFolder, small_grid, stderr};
+use crate::support::{TestFolder, grid, small_grid, stderr};
 
 fn finished_study() -> TestFolder {
     let folder = TestFolder::new(&small_grid());
@@ -100,4 +101,32 @@ fn a_folder_of_another_study_is_refused_and_a_larger_grid_continues() {
     fs::write(folder.path().join("grid.json"), study.to_string()).unwrap();
     let said = folder.stdout(&["run", "grid.json", "-q"]);
     assert!(said.starts_with("grid: 16 jobs run, 48 points\n"), "{said}");
+}
+
+#[test]
+fn a_run_with_another_set_says_what_changed_and_keeps_every_job() {
+    let folder = finished_study();
+    let said = folder.run(&["run", "grid.json", "--set", "solver.end_time=0.3"]);
+    let note = "last run for another form of this study (solver.end_time 0.6 → 0.3)";
+    assert!(stderr(&said).contains(note), "{}", stderr(&said));
+    let table = stderr(&folder.run(&["table", "grid.json"]));
+    assert!(table.contains("(solver.end_time 0.3 → 0.6)"), "{table}");
+    let same = folder.run(&["table", "grid.json", "--set", "solver.end_time=0.3"]);
+    assert!(!stderr(&same).contains("is not the study"), "{}", stderr(&same));
+    // Back to the first form: nothing is computed again.
+    assert!(folder.stdout(&["run", "grid.json", "-q"]).contains("nothing to run, all 16 jobs"));
+}
+
+#[test]
+fn a_study_of_infeasible_points_says_so() {
+    let study = grid(&json!({
+        "N": [5, 6], "M": [2], "alpha1_over_phi": [0.1], "mass_flow_rate": ["2 g/s"]
+    }));
+    let folder = TestFolder::new(&study);
+    let said = folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(said.contains("nothing to run, no fold pattern fits any of 2 points"), "{said}");
+    assert!(
+        said.contains("--columns job,reason,nearest") && !said.contains("all 0 jobs"),
+        "{said}"
+    );
 }

@@ -104,6 +104,23 @@ fn meshes_of_other_programs_are_read() {
     near(volume(&json!({"positions": "cube.obj", "reference": inline}), &[cube_file]), 1.0);
 }
 
+#[test]
+fn a_vertex_of_closure_that_no_rim_places_is_refused() {
+    let open = CUBE.lines().take(15).fold(String::new(), |text, line| text + line + "\n");
+    // Three of four faces about the centre: one edge is free.
+    let part = open.replace("v 9 9 9", "v 0.4 0.5 1") + "g lid\nf 5 6 9\nf 6 7 9\nf 7 8 9\n";
+    let whole = part.clone() + "f 8 5 9\n";
+    let scene =
+        cube(&json!({"positions": "cube.obj", "closure": "lid"}), &json!({"pressure": "0.1 Pa"}));
+    done(scene_folder(&scene, &[("cube.obj", &whole)]).path(), &["scene.json", "-q"], "");
+    let output = solve(scene_folder(&scene, &[("cube.obj", &part)]).path(), &["scene.json"], "");
+    let error = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    for needle in ["mesh.closure", "OBJ vertex 9", "belongs to no film", "fix xyz"] {
+        assert!(error.contains(needle), "{needle:?} not in {error}");
+    }
+}
+
 /// The cube with the opposite winding of every face.
 fn inward_cube() -> String {
     CUBE.lines()

@@ -25,7 +25,7 @@ fn status_counts_agree_with_the_table() {
     assert_eq!(status["running"], false);
     let rows = folder.rows("results/grid");
     let wall: f64 = rows.iter().filter_map(|row| row["wall_seconds"].as_f64()).sum();
-    assert!((status["wall_seconds"].as_f64().unwrap() - wall).abs() < 1e-9);
+    assert!((status["job_seconds"].as_f64().unwrap() - wall).abs() < 1e-9);
     assert!(folder.stdout(&["status", "grid.json"]).starts_with("grid: finished\n"));
 
     // An invalidated job is pending again; the remaining time is the mean time of the jobs that ran.
@@ -39,10 +39,11 @@ fn status_counts_agree_with_the_table() {
         (&status["done"], &status["pending"], &status["invalidated"]),
         (&json!(15), &json!(1), &json!(1))
     );
-    assert_eq!(status["remaining_seconds"], status["mean_wall_seconds"]);
+    assert_eq!(status["remaining_seconds"], status["mean_job_seconds"]);
     let said = folder.stdout(&["status"]);
     assert!(said.contains("15 done, 0 failed, 1 pending (1 invalidated)"), "{said}");
     assert!(said.contains("remaining about "), "{said}");
+    assert!(said.contains("job time") && said.contains("the sum over"), "{said}");
 }
 
 #[test]

@@ -150,5 +150,5 @@ fn schema_and_plan_print_json() {
         })
     };
     assert!(!feasible(6, 2) && feasible(6, 3) && feasible(6, 4));
-    assert!(String::from_utf8(stderr).unwrap().contains("78 jobs, 30 infeasible points"));
+    assert!(String::from_utf8(stderr).unwrap().contains("78 jobs, 0 duplicates, 30 infeasible"));
 }

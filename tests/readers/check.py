@@ -46,6 +46,7 @@ HISTORY_UNITS = {
 }
 # Further columns of film with contact.
 FILM_UNITS = {
+    "film_stress_99": "Pa",
     "vz_centre": "m/s",
     "interlayer_pressure": "Pa",
     "interlayer_pressure_mean": "Pa",

@@ -340,7 +340,7 @@ pub fn pseudo_random(count: usize, seed: u64) -> Vec<Vector3<f64>> {
 fn in_plane(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Shell {
     let flat = |node: u32| -> Vector2<f64> { positions[node as usize].xy() };
     let reference = triangles.iter().map(|t: &[u32; 3]| t.map(flat)).collect();
-    Shell { positions, triangles, reference, closure: Vec::new() }
+    Shell { positions, triangles, reference, closure: Vec::new(), walls: Vec::new() }
 }
 
 #[cfg(test)]

@@ -9,11 +9,12 @@
 //! behind a piston), or a fan of closing faces for each free boundary loop. The fan has its apex at the
 //! mean of the loop where the loop is in a plane that does not contain the origin, otherwise at the
 //! origin. The volume is then exact where the missing surface is plane, or consists of symmetry planes
-//! through the origin.
+//! through the origin. [`Shell::close`] knows the supports: a loop that they do not hold along the normals of
+//! its fan closes about its mean.
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use crate::geometry::mesh::Mesh;
 
@@ -28,6 +29,19 @@ pub struct Shell {
     pub reference: Vec<[Vector2<f64>; 3]>,
     /// Nodes of the closing faces; the pressure on a closing face acts on its nodes.
     pub closure: Vec<[u32; 3]>,
+    /// Fans of closing faces on walls.
+    pub walls: Vec<Wall>,
+}
+
+/// A fan of closing faces on a wall: supports hold its whole boundary loop along the normals of its faces. It
+/// is a symmetry plane, or a wall that the film is fixed to; the pressure on it does not act on the film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wall {
+    /// Node at the apex of the fan.
+    pub apex: u32,
+    /// Whether the apex is fixed in space: that of symmetry planes through the origin. Any other apex moves
+    /// with the loop.
+    pub fixed: bool,
 }
 
 /// Why nodes and faces do not form a shell.
@@ -57,12 +71,14 @@ pub enum ShellError {
 /// Largest distance from its plane, over its size, at which a loop counts as plane. Chosen: above
 /// rounding.
 const MAX_PLANE_DEVIATION: f64 = 1e-9;
+/// Largest free part of a unit normal that counts as held. Chosen: above rounding.
+const MAX_FREE_PART: f64 = 1e-9;
 
 impl Shell {
     /// Film that is free of stress in its initial shape: each element is its own flat reference.
     pub fn relaxed(positions: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Self {
         let reference = triangles.iter().map(|t| flat(t.map(|n| positions[n as usize]))).collect();
-        Self { positions, triangles, reference, closure: Vec::new() }
+        Self { positions, triangles, reference, closure: Vec::new(), walls: Vec::new() }
     }
 
     /// The film of a capsule.
@@ -72,6 +88,7 @@ impl Shell {
             triangles: mesh.triangles.clone(),
             reference: mesh.reference.clone(),
             closure: Vec::new(),
+            walls: Vec::new(),
         }
     }
 
@@ -144,11 +161,17 @@ impl Shell {
         self.boundary().is_empty()
     }
 
+    /// Mean position of nodes, m.
+    fn mean(&self, nodes: &[u32]) -> Vector3<f64> {
+        let positions = nodes.iter().map(|node| self.positions[*node as usize]);
+        positions.sum::<Vector3<f64>>() / nodes.len() as f64
+    }
+
     /// The apex (m) of the fan that closes each boundary loop, with the nodes of the loop.
     pub fn fans(&self) -> Vec<(Vector3<f64>, Vec<u32>)> {
         let apex = |nodes: &Vec<u32>| {
             let positions = || nodes.iter().map(|node| self.positions[*node as usize]);
-            let mean = positions().sum::<Vector3<f64>>() / nodes.len() as f64;
+            let mean = self.mean(nodes);
             let size = positions().map(|x| (x - mean).norm()).fold(0.0, f64::max);
             // Twice the vector area of the loop.
             let mut normal = Vector3::zeros();
@@ -168,17 +191,32 @@ impl Shell {
         self.boundary().into_iter().map(|nodes| (apex(&nodes), nodes)).collect()
     }
 
-    /// Closes every boundary loop by a fan of closing faces. Returns the new nodes at the apexes, which
-    /// have no mass and must be held.
+    /// Closes every boundary loop by a fan of closing faces. `free`: projector onto the free directions of a
+    /// node. Returns the new nodes at the apexes, which have no mass.
     ///
     /// # Panics
     /// At 2³² nodes.
-    pub fn close(&mut self) -> Vec<u32> {
+    pub fn close(&mut self, free: impl Fn(u32) -> Matrix3<f64>) -> Vec<u32> {
         let mut apexes = Vec::new();
         for (apex, nodes) in self.fans() {
+            let mean = self.mean(&nodes);
+            let moves = |node: u32, normal: Vector3<f64>| {
+                (free(node) * normal).norm() > MAX_FREE_PART * normal.norm()
+            };
+            let on_wall = (0..nodes.len()).all(|k| {
+                let edge = [nodes[k], nodes[(k + 1) % nodes.len()]];
+                let [a, b] = edge.map(|node| self.positions[node as usize] - apex);
+                let normal = a.cross(&b);
+                // Rounding gives a face without area a normal.
+                normal.norm() <= MAX_PLANE_DEVIATION * a.norm() * b.norm()
+                    || !edge.iter().any(|node| moves(*node, normal))
+            });
             let new_node = u32::try_from(self.positions.len()).expect("under 2^32 nodes");
-            self.positions.push(apex);
+            self.positions.push(if on_wall { apex } else { mean });
             apexes.push(new_node);
+            if on_wall {
+                self.walls.push(Wall { apex: new_node, fixed: apex != mean });
+            }
             for (k, node) in nodes.iter().enumerate() {
                 self.closure.push([*node, nodes[(k + 1) % nodes.len()], new_node]);
             }
@@ -233,7 +271,8 @@ mod tests {
             let start = shell.positions.clone();
             let volume = shell.volume(|node| start[node as usize]);
             assert!((volume - 1.0).abs() < 1e-15, "{volume}");
-            let apexes = shell.close();
+            let apexes = shell.close(|_| Matrix3::identity());
+            assert!(shell.walls.is_empty());
             assert_eq!(apexes.len(), if open.len() == 4 { 2 } else { 1 });
             assert!(shell.is_closed());
             shell.check().unwrap();

@@ -1,5 +1,6 @@
 //! Forces and energies of film and gas: material, material loss, membrane, pressure, gas, supports.
 
+pub mod closure;
 pub mod film_model;
 pub mod forces;
 pub mod gas;

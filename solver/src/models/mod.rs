@@ -3,12 +3,12 @@
 //! [`solve`] runs the model that a scene names. Each model is one entry of a table (`ModelEntry`);
 //! a model without an entry does not compile.
 //!
-//! The film model compares a run with static equilibria of the same mesh ([`reference()`]). It does not
-//! compute them in every run: [`reference_scene`] says which scene they belong to, so that runs of
-//! one design share them.
+//! A run of the film model is compared with static equilibria of the same mesh, after it ended
+//! ([`ladder`]). [`reference_scene`] says which scene they belong to, so that runs of one design share
+//! them.
 
+use crate::models::film::{Ladder, LadderState};
 use crate::models::run::Observer;
-use crate::output::measures::Reference;
 use crate::output::outcome::Deployment;
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
@@ -27,30 +27,21 @@ struct ModelEntry {
     check: fn(&Scene) -> Result<(), SceneError>,
     /// [`cost`].
     cost: fn(&Scene) -> Result<Cost, SceneError>,
-    /// Static reference; `None` for a model that computes its own in every run.
+    /// Static equilibria; `None` for a model that has them in closed form.
     reference: Option<ReferenceEntry>,
     /// [`solve`].
     solve: SolveFn,
 }
 
 /// A run of a scene: [`solve`].
-type SolveFn = fn(
-    InstructionSet,
-    &Scene,
-    Option<Reference>,
-    &mut dyn Observer,
-) -> Result<Deployment, SceneError>;
+type SolveFn = fn(InstructionSet, &Scene, &mut dyn Observer) -> Result<Deployment, SceneError>;
 
-/// A search for a static reference: [`reference()`].
-type ReferenceFn =
-    fn(InstructionSet, &Scene, &mut dyn FnMut() -> bool) -> Result<Reference, SceneError>;
-
-/// The static reference of a model.
+/// The static equilibria of a model.
 struct ReferenceEntry {
     /// [`reference_scene`].
     scene: fn(&Scene) -> Scene,
-    /// [`reference()`].
-    solve: ReferenceFn,
+    /// [`ladder`].
+    ladder: fn(InstructionSet, &Scene, &[LadderState]) -> Result<Ladder, SceneError>,
 }
 
 /// The entry of a model.
@@ -87,42 +78,41 @@ pub fn cost(scene: &Scene) -> Result<Cost, SceneError> {
     (entry(scene.solver.model).cost)(scene)
 }
 
-/// The scene whose [`reference()`] a run of this scene is compared with. Everything that does not
-/// affect static equilibria has its default, so equal references have equal scenes. `None` for a model
-/// that computes its own reference.
+/// The scene with whose [`ladder`] a run of this scene is compared. Everything that does not affect
+/// static equilibria has its default, so equal ladders have equal scenes. `None` for a model that has its
+/// equilibria in closed form.
 pub fn reference_scene(scene: &Scene) -> Option<Scene> {
     entry(scene.solver.model).reference.map(|reference| (reference.scene)(scene))
 }
 
-/// The static equilibria of a [`reference_scene`]. The search calls `continues` at every iteration
-/// and ends when it returns `false`.
+/// The static equilibria of a [`reference_scene`], computed as they are asked for; `known` are computed
+/// already.
 ///
 /// # Errors
-/// [`SceneError`] if the capsule cannot be built, has no such equilibrium, or its model has no
-/// reference; or if `continues` returned `false`.
-pub fn reference(
+/// [`SceneError`] if the design has no pattern, or its model has its equilibria in closed form.
+pub fn ladder(
     instruction_set: InstructionSet,
     scene: &Scene,
-    continues: &mut dyn FnMut() -> bool,
-) -> Result<Reference, SceneError> {
+    known: &[LadderState],
+) -> Result<Ladder, SceneError> {
     let ModelEntry { name, reference, .. } = entry(scene.solver.model);
     let Some(reference) = reference else {
-        let problem = format!("model `{name}` has no stored static reference; allowed: film");
+        let problem =
+            format!("model `{name}` has its static equilibria in closed form; allowed: film");
         return Err(SceneError::Invalid { key: "solver.model".to_owned(), problem });
     };
-    (reference.solve)(instruction_set, scene, continues)
+    (reference.ladder)(instruction_set, scene, known)
 }
 
-/// Runs a scene on the model it names and judges it against `reference`. Without a reference there
-/// is no verdict, unless the model computes its own. Every instruction set gives the same bits.
+/// Runs a scene on the model it names. A model with static equilibria in closed form judges its run; any
+/// other run is judged with [`Deployment::judge`]. Every instruction set gives the same bits.
 ///
 /// # Errors
 /// [`SceneError`] if the scene cannot be started.
 pub fn solve(
     instruction_set: InstructionSet,
     scene: &Scene,
-    reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    (entry(scene.solver.model).solve)(instruction_set, scene, reference, observer)
+    (entry(scene.solver.model).solve)(instruction_set, scene, observer)
 }

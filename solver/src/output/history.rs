@@ -141,7 +141,7 @@ columns! {
     "damping_work" ["J"] "energy dissipated by mass damping since time 0",
     "heat" ["J"] "heat from the film to the gas since time 0",
     "enthalpy_in" ["J"] "enthalpy let in since time 0",
-    "enthalpy_out" ["J"] "enthalpy leaked since time 0",
+    "enthalpy_out" ["J"] "enthalpy leaked since time 0, negative where gas entered through the leak",
     "ledger_residual" ["1"] "energy ledger residual: energy error over the energy moved so far",
     "gas_residual" ["1"] "gas balance residual: the larger relative error of mass and energy",
     "passages" ["1"] "passages of film through film counted so far",

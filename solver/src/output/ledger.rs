@@ -59,20 +59,25 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Energy stored in the film, J.
-    fn stored(&self) -> f64 {
+    /// Kinetic and stored energy now, J.
+    pub fn stored(&self) -> f64 {
         self.kinetic + self.strain + self.contact
     }
 
     /// Energy error since `start`, J: positive where energy appeared without a source, negative where it
     /// disappeared.
     pub fn defect(&self, start: &Self) -> f64 {
+        self.defect_since(start.stored())
+    }
+
+    /// [`Self::defect`] since a start with this kinetic and stored energy, J.
+    pub fn defect_since(&self, start: f64) -> f64 {
         let external = self.gas_work + self.ambient_work + self.gravity_work + self.support_work;
         let dissipated = self.material_loss
             + self.numerical_dissipation
             + self.contact_dissipation
             + self.damping_work;
-        (self.stored() - start.stored()) + dissipated - external
+        (self.stored() - start) + dissipated - external
     }
 
     /// Sum of the magnitudes of the external works, J.
@@ -96,7 +101,7 @@ pub struct GasBalance {
     pub internal_energy: f64,
     /// Mass let in since time 0, kg: the exact integral of the inflow schedule.
     pub mass_in: f64,
-    /// Mass leaked since time 0, kg.
+    /// Mass leaked since time 0, kg; negative where more entered through the leak.
     pub mass_out: f64,
     /// Enthalpy let in since time 0, J.
     pub enthalpy_in: f64,
@@ -123,12 +128,13 @@ impl GasBalance {
 
     /// Divisor of the mass error, kg.
     fn mass_moved(&self, start: &Self) -> f64 {
-        start.mass + self.mass_in
+        start.mass + self.mass_in + (-self.mass_out).max(0.0)
     }
 
     /// Divisor of the energy error, J.
     fn energy_moved(&self, start: &Self) -> f64 {
-        start.internal_energy + self.enthalpy_in + self.heat.abs() + self.gas_work.abs()
+        let entered = (-self.enthalpy_out).max(0.0);
+        start.internal_energy + self.enthalpy_in + entered + self.heat.abs() + self.gas_work.abs()
     }
 }
 

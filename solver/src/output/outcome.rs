@@ -3,7 +3,8 @@
 use super::audit::Audit;
 use super::frames::Frames;
 use super::history::{History, Track};
-use super::measures::Measures;
+use super::measures::{self, Measures, Reference};
+use crate::scene::timeline::Timeline;
 
 /// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,14 @@ impl Deployment {
         let track = self.tracks.iter().find(|track| track.name == name);
         track.map_or(&[], |track| track.values.as_slice())
     }
+
+    /// Compares the run with the static equilibria of its design: adds the measures that need them.
+    pub fn judge(&mut self, reference: &Reference, timeline: &Timeline) {
+        let film_stress = self.measures.film_stress.unwrap_or(0.0);
+        let done = self.stop == Stop::Done;
+        self.measures =
+            measures::measure(&self.history, Some(reference), timeline, film_stress, done);
+    }
 }
 
 /// How a run ended.
@@ -59,8 +68,10 @@ pub struct Failure {
 /// The kinds of failure a run can end in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FailureKind {
-    /// The state is not finite, or grows without bound.
+    /// A step was unstable: the state is not finite, or its energy grew without a source.
     Unstable,
+    /// The film is stretched beyond the validity of its material model; its energy balances.
+    Overstretched,
     /// The energy ledger residual is above its bound
     /// ([`MAX_LEDGER_RESIDUAL`](super::audit::MAX_LEDGER_RESIDUAL)).
     EnergyDrift,
@@ -74,8 +85,9 @@ pub enum FailureKind {
 
 impl FailureKind {
     /// Every kind, in the order of the documentation.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Unstable,
+        Self::Overstretched,
         Self::EnergyDrift,
         Self::InvertedVolume,
         Self::StepLimit,
@@ -86,6 +98,7 @@ impl FailureKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Unstable => "unstable",
+            Self::Overstretched => "overstretched",
             Self::EnergyDrift => "energy_drift",
             Self::InvertedVolume => "inverted_volume",
             Self::StepLimit => "step_limit",

@@ -8,7 +8,8 @@
 //!
 //! Slack or flat film of extent L converges fastest under a pressure p0 that makes it taut everywhere;
 //! the equilibrium then follows the pressure down to p. Film that starts full, near its shape, begins at
-//! a tenth of that pressure. At intermediate pressures film has a compression fraction `c_k` in proportion
+//! a tenth of that pressure. From there, and from a known equilibrium, the first attempt goes to a near p in
+//! one step; if it fails, pressures descend as above. At intermediate pressures film has a compression fraction `c_k` in proportion
 //! to the pressure, so that its shape hardly depends on it and each pressure needs few steps; the last
 //! step has the fraction of the film. Wrinkled film has many energy minima near each other. Descending
 //! pressures reach the minimum that continues the taut film, with its symmetry; a start at the final
@@ -17,8 +18,8 @@
 use nalgebra::Vector3;
 
 use super::newton::{
-    Equilibrium, IterationObserver, Loaded, StaticFailure, StaticFailureKind, Tolerances,
-    equilibrium, extent, tensile_stiffness,
+    Equilibrium, FIRST_SHIFT, IterationObserver, Loaded, NEAR_SHIFT, StaticFailure,
+    StaticFailureKind, System, Tolerances, equilibrium_of, extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
 use crate::geometry::field::Field;
@@ -44,6 +45,12 @@ const MIN_COMPRESSION: f64 = 1e-3;
 const MIN_COMPRESSION_LOAD: f64 = 8e-3;
 /// Upper bound of the ratio of two successive pressures. Chosen.
 const MAX_PRESSURE_RATIO: f64 = 4.0;
+/// Upper bound of the ratio of a known equilibrium's pressure to the pressure asked for in one step. Chosen.
+const MAX_DIRECT_RATIO: f64 = 12.0;
+/// Upper bound of the number of Newton steps of an attempt in one step. Chosen.
+const DIRECT_ITERATIONS: u32 = 40;
+/// Upper bound of the number of Newton steps of a whole search. Chosen.
+const SEARCH_ITERATIONS: u32 = 2000;
 /// Number of parts of the motion of held nodes, one attempt after the other. Chosen.
 const MOTION_PARTS: [u32; 3] = [1, 4, 16];
 /// Steps of the relaxation after a failure of Newton's method. Chosen.
@@ -68,13 +75,24 @@ pub fn settle(
     tolerances: &Tolerances,
     observer: IterationObserver<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
+    let mut continuation = Continuation {
+        loaded,
+        system: System::new(loaded, positions),
+        tolerances,
+        observer,
+        iterations: 0,
+    };
     let stages = stages(loaded, positions, from);
+    if let Some(first) = short_path(loaded, positions, from, stages[0]) {
+        match continuation.run_short(positions, first) {
+            Err(failure) if failure.kind != StaticFailureKind::Stopped => {}
+            ended => return ended,
+        }
+    }
     let moves = !loaded.supports.movers.is_empty();
     let attempts = if moves { &MOTION_PARTS[..] } else { &MOTION_PARTS[..1] };
     let mut last = None;
     for parts in attempts {
-        let mut continuation =
-            Continuation { loaded, tolerances, observer: &mut *observer, iterations: 0 };
         match continuation.run(positions, &stages, *parts) {
             Ok(found) => return Ok(found),
             Err(failure) if failure.kind == StaticFailureKind::Stopped => return Err(failure),
@@ -123,6 +141,24 @@ fn stages(loaded: &Loaded<'_>, positions: &Field, from: Option<f64>) -> Vec<Stag
     all
 }
 
+/// The loads before the last of a path in one step: the first stage, or none from a known equilibrium.
+/// `None` if the pressure is too far away, or the film neither known nor full.
+fn short_path(
+    loaded: &Loaded<'_>,
+    positions: &Field,
+    from: Option<f64>,
+    first: Stage,
+) -> Option<Option<Stage>> {
+    let near = |pressure: f64| pressure.abs() <= MAX_DIRECT_RATIO * loaded.overpressure.abs();
+    match from {
+        Some(from) => near(from).then_some(None),
+        None => {
+            let full = fullness(loaded.model, positions) > MIN_FULLNESS;
+            (full && near(first.overpressure)).then_some(Some(first))
+        }
+    }
+}
+
 /// V/A^(3/2), A the film's area free of stress.
 fn fullness(model: &FilmModel, positions: &Field) -> f64 {
     let area: f64 = (0..model.elements())
@@ -134,12 +170,36 @@ fn fullness(model: &FilmModel, positions: &Field) -> f64 {
 /// A continuation in progress.
 struct Continuation<'a, 'b> {
     loaded: &'a Loaded<'a>,
+    system: System,
     tolerances: &'a Tolerances,
     observer: IterationObserver<'b>,
     iterations: u32,
 }
 
 impl Continuation<'_, '_> {
+    /// Moves held nodes, then takes the first load, if any, and in one step the load asked for.
+    fn run_short(
+        &mut self,
+        positions: &Field,
+        first: Option<Stage>,
+    ) -> Result<Equilibrium, StaticFailure> {
+        let mut positions = positions.clone();
+        move_held(self.loaded.supports, &mut positions, 1.0);
+        if let Some(first) = first {
+            positions = self.approach(positions, first, FIRST_SHIFT)?;
+        }
+        let limit = self.tolerances.iterations.min(DIRECT_ITERATIONS);
+        let tolerances = Tolerances { iterations: limit, ..*self.tolerances };
+        let found = self.equilibrium(positions, self.final_load(), NEAR_SHIFT, &tolerances);
+        self.counted(found)
+    }
+
+    /// The load asked for.
+    fn final_load(&self) -> Stage {
+        let Loaded { model, overpressure, .. } = *self.loaded;
+        Stage { overpressure, compression: model.material.compression }
+    }
+
     /// Moves held nodes in `parts`, then follows the loads.
     fn run(
         &mut self,
@@ -151,20 +211,30 @@ impl Continuation<'_, '_> {
         for part in 1..=parts {
             move_held(self.loaded.supports, &mut positions, f64::from(part) / f64::from(parts));
             if part < parts {
-                positions = self.approach(positions, stages[0])?;
+                positions = self.approach(positions, stages[0], FIRST_SHIFT)?;
             }
         }
         let (last, before) = stages.split_last().expect("the load asked for");
+        let mut shift = FIRST_SHIFT;
         for stage in before {
-            positions = self.approach(positions, *stage)?;
+            positions = self.approach(positions, *stage, shift)?;
+            shift = NEAR_SHIFT;
         }
-        let found = match self.equilibrium(positions, *last, self.tolerances) {
+        let found = match self.equilibrium(positions, *last, shift, self.tolerances) {
             Err(failure) if !is_final(&failure) => match relaxed(self.loaded, &failure.positions) {
-                Some(positions) => self.equilibrium(positions, *last, self.tolerances),
+                Some(positions) => self.equilibrium(positions, *last, FIRST_SHIFT, self.tolerances),
                 None => Err(failure),
             },
             found => found,
         };
+        self.counted(found)
+    }
+
+    /// A result with the number of steps of the whole search.
+    fn counted(
+        &self,
+        found: Result<Equilibrium, StaticFailure>,
+    ) -> Result<Equilibrium, StaticFailure> {
         let iterations = self.iterations;
         match found {
             Ok(found) => Ok(Equilibrium { iterations, ..found }),
@@ -173,8 +243,13 @@ impl Continuation<'_, '_> {
     }
 
     /// Positions near the equilibrium of an intermediate load.
-    fn approach(&mut self, positions: Field, stage: Stage) -> Result<Field, StaticFailure> {
-        match self.equilibrium(positions, stage, &INTERMEDIATE) {
+    fn approach(
+        &mut self,
+        positions: Field,
+        stage: Stage,
+        shift: f64,
+    ) -> Result<Field, StaticFailure> {
+        match self.equilibrium(positions, stage, shift, &INTERMEDIATE) {
             Ok(found) => Ok(found.positions),
             Err(failure) if is_final(&failure) => Err(failure),
             Err(failure) => Ok(*failure.positions),
@@ -186,12 +261,23 @@ impl Continuation<'_, '_> {
         &mut self,
         positions: Field,
         stage: Stage,
+        shift: f64,
         tolerances: &Tolerances,
     ) -> Result<Equilibrium, StaticFailure> {
         let mut model = self.loaded.model.clone();
         model.material.compression = stage.compression;
         let loaded = Loaded { model: &model, overpressure: stage.overpressure, ..*self.loaded };
-        let found = equilibrium(&loaded, positions, tolerances, &mut *self.observer);
+        let remaining = SEARCH_ITERATIONS.saturating_sub(self.iterations);
+        let tolerances =
+            &Tolerances { iterations: tolerances.iterations.min(remaining), ..*tolerances };
+        let found = equilibrium_of(
+            &mut self.system,
+            &loaded,
+            positions,
+            shift,
+            tolerances,
+            &mut *self.observer,
+        );
         self.iterations += match &found {
             Ok(found) => found.iterations,
             Err(failure) => failure.iterations,

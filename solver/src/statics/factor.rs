@@ -4,181 +4,158 @@
 //! K + diag(shift) = L Lᵀ
 //! ```
 //!
-//! Each separator ([`super::order`]) is a front: a dense matrix of its own unknowns and of those unknowns
-//! above it that its faces touch. Elimination of its own unknowns leaves a Schur complement, which is
-//! added to the parent front (I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric
-//! linear systems", 1983). All additions have a fixed order.
+//! Elimination of a front's own unknowns ([`super::plan`], [`super::dense`]) leaves a Schur complement,
+//! which is added to the parent front (I. Duff, J. Reid, "The multifrontal solution of indefinite sparse
+//! symmetric linear systems", 1983). All additions have a fixed order.
 
-use nalgebra::Vector3;
-
-use super::dense::{Front, eliminate};
-use super::order::{Separator, dissect};
+use super::dense::{Front, clear, factor_panel, solve_backward, solve_forward, update_complement};
+use super::plan::{FaceEntries, FrontFace, Plan, plan};
 use super::tangent::Stiffness;
 use super::unknowns::Unknowns;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
-use crate::platform::simd::InstructionSet;
+use crate::platform::simd::{InstructionSet, Lanes, WIDTH};
 
 /// Lower bound of a pivot over its diagonal entry for the matrix to count as positive definite. Chosen:
 /// about fifty rounding errors of the entry.
 const MIN_PIVOT_RATIO: f64 = 1e-14;
 
-/// One unknown of a face: its index in the front, the corner it moves, and the direction.
-type FaceUnknown = (u32, usize, Vector3<f64>);
-
-/// A face of a front with its unknowns.
-type FrontFace = (usize, Vec<FaceUnknown>);
-
-/// The constant data of a front.
-#[derive(Debug, Clone, PartialEq)]
-struct Plan {
-    front: Front,
-    /// Its own unknowns, then those above it, both in the order of elimination.
-    unknowns: Vec<u32>,
-    /// Indices of the fronts whose Schur complements it receives.
-    children: Vec<usize>,
-    /// Position in the parent of each unknown above it.
-    in_parent: Vec<u32>,
-    /// Faces assembled into this front.
-    faces: Vec<FrontFace>,
-}
-
 /// The order of elimination of a film's unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Elimination {
     plans: Vec<Plan>,
+    /// Where the panel of each front begins in the factor, and its length in all.
+    starts: Vec<usize>,
     unknowns: usize,
 }
 
-/// The factor L.
-#[derive(Debug, Clone, PartialEq)]
+/// The factor L, and the memory that its computation needs. One serves any number of factorisations.
+#[derive(Debug, Clone, Default)]
 pub struct Factor {
-    columns: Vec<Vec<f64>>,
+    /// Panels of all fronts, one after the other.
+    panels: Vec<Lanes>,
+    /// Schur complements that their parents have not received yet.
+    complements: Vec<Vec<Lanes>>,
+    /// Memory of received complements.
+    spare: Vec<Vec<Lanes>>,
+    /// Diagonal of the assembled matrix without the shift.
+    diagonal: Vec<f64>,
+    /// Values of a front during a substitution.
+    values: Vec<Lanes>,
+    sums: Vec<Lanes>,
 }
 
-/// Where each unknown is eliminated.
-struct Schedule {
-    /// Unknowns of each separator, in the order of elimination.
-    of_separator: Vec<Vec<u32>>,
-    /// Separator of each unknown.
-    separator: Vec<usize>,
-    /// Rank of each unknown in the order of elimination.
-    rank: Vec<usize>,
+/// A front during assembly.
+struct Assembly<'a> {
+    front: Front,
+    panel: &'a mut [Lanes],
+    complement: &'a mut [Lanes],
 }
 
-impl Schedule {
-    /// Nodes in the order of the tree; the unknowns of rigid planes belong to its root.
-    fn new(tree: &[Separator], unknowns: &Unknowns) -> Self {
-        let root = tree.len() - 1;
-        let of_node = |node: &u32| unknowns.node_range[*node as usize].clone();
-        let mut of_separator: Vec<Vec<u32>> =
-            tree.iter().map(|set| set.nodes.iter().flat_map(of_node).collect()).collect();
-        let count = u32::try_from(unknowns.len()).expect("under 2^32");
-        of_separator[root].extend(unknowns.first_plane..count);
-        let mut separator = vec![root; unknowns.len()];
-        let mut rank = vec![0; unknowns.len()];
-        for (index, unknown) in of_separator.iter().flatten().enumerate() {
-            rank[*unknown as usize] = index;
+impl Assembly<'_> {
+    /// An entry of the lower triangle.
+    fn entry(&mut self, row: usize, column: usize) -> &mut f64 {
+        let pivots = self.front.pivots;
+        if column < pivots {
+            let (group, lane) = self.front.panel_entry(row, column);
+            &mut self.panel[group].0[lane]
+        } else {
+            let (start, lane) = Front::complement_row(row - pivots);
+            &mut self.complement[start + column - pivots].0[lane]
         }
-        for (index, unknowns) in of_separator.iter().enumerate() {
-            for unknown in unknowns {
-                separator[*unknown as usize] = index;
+    }
+
+    /// Adds the stiffness of a face, and its diagonal to `diagonal`.
+    fn add_face(
+        &mut self,
+        stiffness: &Stiffness,
+        face: &FrontFace,
+        unknowns: &[u32],
+        diagonal: &mut [f64],
+    ) {
+        match &face.entries {
+            FaceEntries::Components(entries) => {
+                for (index, (column, from)) in entries.iter().enumerate() {
+                    let (column, from) = (*column as usize, *from as usize);
+                    diagonal[unknowns[column] as usize] += stiffness[(from, from)];
+                    for (row, to) in &entries[index..] {
+                        *self.entry(*row as usize, column) += stiffness[(*to as usize, from)];
+                    }
+                }
+            }
+            FaceEntries::Oblique(entries) => {
+                for (column, corner, along) in entries {
+                    let forces = stiffness.fixed_view::<9, 3>(0, 3 * corner) * along;
+                    for (row, other, across) in entries {
+                        let force = forces.fixed_view::<3, 1>(3 * other, 0).dot(across);
+                        if row == column {
+                            // Two entries with the same unknown both count.
+                            diagonal[unknowns[*column as usize] as usize] += force;
+                        }
+                        if row >= column {
+                            *self.entry(*row as usize, *column as usize) += force;
+                        }
+                    }
+                }
             }
         }
-        Self { of_separator, separator, rank }
     }
 
-    /// Position of an unknown in a front: both are in the order of elimination.
-    fn position(&self, plan: &Plan, unknown: u32) -> u32 {
-        let position = plan
-            .unknowns
-            .binary_search_by_key(&self.rank[unknown as usize], |other| self.rank[*other as usize]);
-        u32::try_from(position.expect("an unknown of the front")).expect("under 2^32")
-    }
-}
-
-/// Nodes with unknowns that share a face with each node with unknowns, ascending.
-fn neighbours(model: &FilmModel, faces: &[[u32; 3]], free: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); model.nodes()];
-    for face in faces {
-        for node in face.iter().filter(|node| free(**node)) {
-            let others = face.iter().filter(|other| *other != node && free(**other));
-            neighbours[*node as usize].extend(others.copied());
+    /// Adds the Schur complement of a child, row block by row block.
+    fn add_child(&mut self, complement: &[Lanes], in_parent: &[u32]) {
+        let pivots = self.front.pivots;
+        // Child and parent have the same order: the first columns go to the panel, the others above.
+        let in_panel = in_parent.partition_point(|position| (*position as usize) < pivots);
+        let mut start = 0;
+        for (block, rows) in in_parent.chunks(WIDTH).enumerate() {
+            let first = block * WIDTH;
+            let columns = &complement[start..start + first + rows.len()];
+            start += first + WIDTH;
+            let split = in_panel.min(columns.len());
+            let mut targets = [(0, 0); WIDTH];
+            for (target, row) in targets.iter_mut().zip(rows) {
+                *target = self.front.panel_row(*row as usize);
+            }
+            let (own, above) = columns.split_at(split);
+            add_block(self.panel, &targets, rows.len(), first, 0..split, own, |column| {
+                in_parent[column] as usize
+            });
+            for (target, row) in targets.iter_mut().zip(rows) {
+                if let Some(above) = (*row as usize).checked_sub(pivots) {
+                    *target = Front::complement_row(above);
+                }
+            }
+            let columns = split..columns.len();
+            add_block(self.complement, &targets, rows.len(), first, columns, above, |column| {
+                in_parent[column] as usize - pivots
+            });
         }
     }
-    for nodes in &mut neighbours {
-        nodes.sort_unstable();
-        nodes.dedup();
-    }
-    neighbours
 }
 
-/// The unknowns that move a face; those of its first corner come first.
-fn unknowns_of_face(face: &[u32; 3], unknowns: &Unknowns) -> Vec<FaceUnknown> {
-    let corner = |(corner, node): (usize, &u32)| {
-        let of_node = unknowns.of_node[*node as usize].iter();
-        of_node.map(move |(unknown, direction)| (*unknown, corner, *direction))
-    };
-    face.iter().enumerate().flat_map(corner).collect()
-}
-
-/// Assigns each face to the first separator that eliminates one of its unknowns.
-fn faces_of_separators(
-    faces: &[[u32; 3]],
-    unknowns: &Unknowns,
-    schedule: &Schedule,
-) -> Vec<Vec<FrontFace>> {
-    let mut assigned: Vec<Vec<FrontFace>> = vec![Vec::new(); schedule.of_separator.len()];
-    for (index, face) in faces.iter().enumerate() {
-        let face_unknowns = unknowns_of_face(face, unknowns);
-        let separators =
-            face_unknowns.iter().map(|(unknown, ..)| schedule.separator[*unknown as usize]);
-        if let Some(first) = separators.min() {
-            assigned[first].push((index, face_unknowns));
+/// Adds the lower triangle of some columns of a row block. `targets` says where each row begins in `into`,
+/// `place` which column of it a column goes to.
+fn add_block(
+    into: &mut [Lanes],
+    targets: &[(usize, usize); WIDTH],
+    rows: usize,
+    first_row: usize,
+    columns: core::ops::Range<usize>,
+    block: &[Lanes],
+    place: impl Fn(usize) -> usize,
+) {
+    for (column, lanes) in columns.zip(block) {
+        let at = place(column);
+        if rows == WIDTH && column <= first_row {
+            for (value, (group, lane)) in lanes.0.iter().zip(targets) {
+                into[group + at].0[lane % WIDTH] += value;
+            }
+        } else {
+            let first = column.saturating_sub(first_row);
+            for (value, (group, lane)) in lanes.0[..rows].iter().zip(targets).skip(first) {
+                into[group + at].0[lane % WIDTH] += value;
+            }
         }
-    }
-    assigned
-}
-
-/// The fronts, children before parents. Positions in parents and fronts are not set yet.
-fn fronts(tree: Vec<Separator>, faces: Vec<Vec<FrontFace>>, schedule: &Schedule) -> Vec<Plan> {
-    let mut plans: Vec<Plan> = Vec::with_capacity(tree.len());
-    for (index, (separator, faces)) in tree.into_iter().zip(faces).enumerate() {
-        let from_children = separator.children.iter().flat_map(|child| {
-            let plan = &plans[*child];
-            plan.unknowns[plan.front.pivots..].iter().copied()
-        });
-        let from_faces = faces.iter().flat_map(|(_, of_face)| of_face.iter().map(|(u, ..)| *u));
-        let mut above: Vec<u32> = from_children
-            .chain(from_faces)
-            .filter(|unknown| schedule.separator[*unknown as usize] > index)
-            .collect();
-        above.sort_unstable_by_key(|unknown| schedule.rank[*unknown as usize]);
-        above.dedup();
-        let mut unknowns = schedule.of_separator[index].clone();
-        let pivots = unknowns.len();
-        unknowns.extend(above);
-        let front = Front { pivots, size: unknowns.len() };
-        let children = separator.children;
-        plans.push(Plan { front, unknowns, children, in_parent: Vec::new(), faces });
-    }
-    plans
-}
-
-/// Sets the positions of the children's unknowns, and of the unknowns of faces, in each front.
-fn locate(plans: &mut [Plan], schedule: &Schedule) {
-    for index in 0..plans.len() {
-        for child in plans[index].children.clone() {
-            let above = plans[child].unknowns[plans[child].front.pivots..].to_vec();
-            let parent = &plans[index];
-            plans[child].in_parent =
-                above.into_iter().map(|unknown| schedule.position(parent, unknown)).collect();
-        }
-        let mut faces = core::mem::take(&mut plans[index].faces);
-        for (unknown, ..) in faces.iter_mut().flat_map(|(_, of_face)| of_face) {
-            *unknown = schedule.position(&plans[index], *unknown);
-        }
-        plans[index].faces = faces;
     }
 }
 
@@ -188,138 +165,135 @@ impl Elimination {
     /// # Panics
     /// At 2³² unknowns.
     pub fn new(model: &FilmModel, unknowns: &Unknowns, positions: &Field) -> Self {
-        let faces: Vec<[u32; 3]> = model.triangles.iter().chain(&model.closure).copied().collect();
-        let free = |node: u32| !unknowns.node_range[node as usize].is_empty();
-        let neighbours = neighbours(model, &faces, free);
-        let nodes = (0_u32..).take(model.nodes()).filter(|node| free(*node)).collect();
-        let tree = dissect(nodes, &neighbours, positions);
-        let schedule = Schedule::new(&tree, unknowns);
-        let faces = faces_of_separators(&faces, unknowns, &schedule);
-        let mut plans = fronts(tree, faces, &schedule);
-        locate(&mut plans, &schedule);
-        Self { plans, unknowns: unknowns.len() }
-    }
-
-    /// Number of stored entries of L.
-    pub fn entries(&self) -> usize {
-        self.plans.iter().map(|plan| plan.front.pivots * plan.front.stride()).sum()
-    }
-
-    /// Diagonal of the stiffness matrix from the stiffness of each face, film first, N/m.
-    pub fn diagonal(&self, stiffness: &[Stiffness]) -> Vec<f64> {
-        let mut diagonal = vec![0.0; self.unknowns];
-        for plan in &self.plans {
-            for (face, unknowns) in &plan.faces {
-                for (local, corner, direction) in unknowns {
-                    let block = stiffness[*face].fixed_view::<3, 3>(3 * corner, 3 * corner);
-                    diagonal[plan.unknowns[*local as usize] as usize] +=
-                        direction.dot(&(block * direction));
-                }
-            }
+        let plans = plan(model, unknowns, positions);
+        let mut starts = vec![0];
+        let mut length = 0;
+        for plan in &plans {
+            length += plan.front.panel_length();
+            starts.push(length);
         }
-        diagonal
+        Self { plans, starts, unknowns: unknowns.len() }
     }
 
-    /// Factorises the stiffness of each face, film first, plus a shift of the diagonal (both N/m). `None` if
+    /// Factorises the stiffness of each face, film first, plus a shift of the diagonal (both N/m). `false` if
     /// the matrix is not positive definite.
     pub fn factor(
         &self,
         instruction_set: InstructionSet,
         stiffness: &[Stiffness],
         shift: &[f64],
-    ) -> Option<Factor> {
-        let diagonal = self.diagonal(stiffness);
-        let mut columns = Vec::with_capacity(self.plans.len());
-        let mut schur_complements: Vec<Vec<f64>> = vec![Vec::new(); self.plans.len()];
+        factor: &mut Factor,
+    ) -> bool {
+        let Factor { panels, complements, spare, diagonal, .. } = factor;
+        panels.resize(self.starts.last().copied().unwrap_or(0), Lanes::default());
+        spare.extend(complements.drain(..).filter(|memory| memory.capacity() > 0));
+        complements.resize(self.plans.len(), Vec::new());
+        diagonal.clear();
+        diagonal.resize(self.unknowns, 0.0);
+        let mut min_pivots = Vec::new();
         for (index, plan) in self.plans.iter().enumerate() {
-            let (front, stride) = (plan.front, plan.front.stride());
-            let mut matrix = vec![0.0; front.area()];
+            let front = plan.front;
+            let panel = &mut panels[self.starts[index]..self.starts[index + 1]];
+            let mut complement = spare.pop().unwrap_or_default();
+            let length = front.complement_length();
+            complement.resize(length.max(complement.len()), Lanes::default());
+            clear(instruction_set, &mut complement[..length]);
+            clear(instruction_set, panel);
+            let mut assembly = Assembly { front, panel, complement: &mut complement };
             let eliminated = &plan.unknowns[..front.pivots];
-            for (index, unknown) in eliminated.iter().enumerate() {
-                matrix[index * stride + index] = shift[*unknown as usize];
+            for (pivot, unknown) in eliminated.iter().enumerate() {
+                *assembly.entry(pivot, pivot) = shift[*unknown as usize];
             }
-            for (face, unknowns) in &plan.faces {
-                add_face(&mut matrix, stride, &stiffness[*face], unknowns);
+            for unused in front.pivots..front.columns() {
+                // Rows of unused columns lie in the last pivot block.
+                let group = unused / WIDTH * front.columns() + unused;
+                assembly.panel[group].0[unused % WIDTH] = 1.0;
+            }
+            for face in &plan.faces {
+                assembly.add_face(&stiffness[face.face], face, &plan.unknowns, diagonal);
             }
             for child in &plan.children {
-                let complement = core::mem::take(&mut schur_complements[*child]);
-                add_child(&mut matrix, stride, &complement, &self.plans[*child]);
+                let received = core::mem::take(&mut complements[*child]);
+                assembly.add_child(&received, &self.plans[*child].in_parent);
+                spare.push(received);
             }
-            let min_pivots: Vec<f64> = eliminated
-                .iter()
-                .map(|unknown| *unknown as usize)
-                .map(|unknown| MIN_PIVOT_RATIO * (diagonal[unknown].max(0.0) + shift[unknown]))
-                .collect();
-            if eliminate(instruction_set, &mut matrix, front, &min_pivots).is_some() {
-                return None;
+            min_pivots.clear();
+            min_pivots.extend(
+                eliminated
+                    .iter()
+                    .map(|unknown| *unknown as usize)
+                    .map(|unknown| MIN_PIVOT_RATIO * (diagonal[unknown].max(0.0) + shift[unknown])),
+            );
+            if factor_panel(instruction_set, panel, front, &min_pivots).is_some() {
+                spare.push(complement);
+                return false;
             }
-            schur_complements[index] = matrix.split_off(front.pivots * stride);
-            matrix.shrink_to_fit();
-            columns.push(matrix);
+            update_complement(instruction_set, panel, front, &mut complement);
+            complements[index] = complement;
         }
-        Some(Factor { columns })
+        true
     }
 
     /// Displacements (m) from forces (N), both along the unknowns: L Lᵀ x = f.
-    pub fn solve(&self, factor: &Factor, forces: &[f64]) -> Vec<f64> {
+    pub fn solve(
+        &self,
+        instruction_set: InstructionSet,
+        factor: &mut Factor,
+        forces: &[f64],
+    ) -> Vec<f64> {
         let mut all = forces.to_vec();
-        let mut local = Vec::new();
-        for (plan, columns) in self.plans.iter().zip(&factor.columns) {
-            local.clear();
-            local.extend(plan.unknowns.iter().map(|unknown| all[*unknown as usize]));
-            for (index, column) in columns.chunks_exact(plan.front.stride()).enumerate() {
-                let value = local[index] / column[index];
-                local[index] = value;
-                for (value_below, entry) in local[index + 1..].iter_mut().zip(&column[index + 1..])
-                {
-                    *value_below -= entry * value;
-                }
+        let Factor { panels, values, sums, .. } = factor;
+        for (plan, start) in self.plans.iter().zip(&self.starts) {
+            let front = plan.front;
+            if front.pivots == 0 {
+                continue;
             }
-            for (unknown, value) in plan.unknowns.iter().zip(&local) {
-                all[*unknown as usize] = *value;
-            }
+            gather(plan, &all, values);
+            let panel = &panels[*start..*start + front.panel_length()];
+            solve_forward(instruction_set, panel, front, values);
+            scatter(plan, values, front.size, &mut all);
         }
-        for (plan, columns) in self.plans.iter().zip(&factor.columns).rev() {
-            local.clear();
-            local.extend(plan.unknowns.iter().map(|unknown| all[*unknown as usize]));
-            for (index, column) in columns.chunks_exact(plan.front.stride()).enumerate().rev() {
-                let mut value = local[index];
-                for (value_below, entry) in local[index + 1..].iter().zip(&column[index + 1..]) {
-                    value -= entry * value_below;
-                }
-                local[index] = value / column[index];
+        for (plan, start) in self.plans.iter().zip(&self.starts).rev() {
+            let front = plan.front;
+            if front.pivots == 0 {
+                continue;
             }
-            for (unknown, value) in plan.unknowns[..plan.front.pivots].iter().zip(&local) {
-                all[*unknown as usize] = *value;
-            }
+            gather(plan, &all, values);
+            let panel = &panels[*start..*start + front.panel_length()];
+            sums.resize(front.columns().max(sums.len()), Lanes::default());
+            solve_backward(instruction_set, panel, front, values, sums);
+            scatter(plan, values, front.pivots, &mut all);
         }
         all
     }
 }
 
-/// Adds the stiffness of a face to the lower triangle of a front.
-fn add_face(matrix: &mut [f64], stride: usize, stiffness: &Stiffness, unknowns: &[FaceUnknown]) {
-    for (column, corner, along) in unknowns {
-        let forces = stiffness.fixed_view::<9, 3>(0, 3 * corner) * along;
-        for (row, other, across) in unknowns {
-            // Only the lower triangle. Two entries with the same unknown both count.
-            if row >= column {
-                let force = forces.fixed_view::<3, 1>(3 * other, 0).dot(across);
-                matrix[*column as usize * stride + *row as usize] += force;
+/// The values of a front's unknowns in the blocks of its panel's rows.
+fn gather(plan: &Plan, all: &[f64], values: &mut Vec<Lanes>) {
+    let front = plan.front;
+    values.clear();
+    values.resize(front.pivot_blocks() + front.blocks_above(), Lanes::default());
+    let (own, above) = plan.unknowns.split_at(front.pivots);
+    let (low, high) = values.split_at_mut(front.pivot_blocks());
+    for (blocks, unknowns) in [(low, own), (high, above)] {
+        for (block, unknowns) in blocks.iter_mut().zip(unknowns.chunks(WIDTH)) {
+            for (value, unknown) in block.0.iter_mut().zip(unknowns) {
+                *value = all[*unknown as usize];
             }
         }
     }
 }
 
-/// Adds the Schur complement of a child.
-fn add_child(matrix: &mut [f64], stride: usize, complement: &[f64], child: &Plan) {
-    let (pivots, child_stride) = (child.front.pivots, child.front.stride());
-    for (j, column) in child.in_parent.iter().enumerate() {
-        let from = &complement[j * child_stride + pivots..j * child_stride + child.front.size];
-        let into = &mut matrix[*column as usize * stride..(*column as usize + 1) * stride];
-        // Child and parent have the same order, so the lower triangle stays lower.
-        for (row, entry) in child.in_parent[j..].iter().zip(&from[j..]) {
-            into[*row as usize] += entry;
+/// Writes the values of the first `count` unknowns of a front.
+fn scatter(plan: &Plan, values: &[Lanes], count: usize, all: &mut [f64]) {
+    let front = plan.front;
+    let (own, above) = plan.unknowns[..count].split_at(front.pivots.min(count));
+    let (low, high) = values.split_at(front.pivot_blocks());
+    for (blocks, unknowns) in [(low, own), (high, above)] {
+        for (block, unknowns) in blocks.iter().zip(unknowns.chunks(WIDTH)) {
+            for (value, unknown) in block.0.iter().zip(unknowns) {
+                all[*unknown as usize] = *value;
+            }
         }
     }
 }

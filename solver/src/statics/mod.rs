@@ -27,6 +27,7 @@ pub mod dense;
 pub mod factor;
 mod newton;
 pub mod order;
+pub mod plan;
 mod relaxation;
 pub mod tangent;
 pub mod unknowns;
@@ -113,9 +114,9 @@ pub fn solve_from(
 ) -> Result<StaticSolution, StaticError> {
     let Filling::Pressure(overpressure) = scene.filling else { return Err(StaticError::Gas) };
     scene.shell.check()?;
-    let model = FilmModel::of_shell(&scene.film.elastic(), &scene.shell)?;
     let start = Field::of(&scene.shell.positions);
     let supports = Supports::new(&scene.supports, &start);
+    let model = FilmModel::supported(&scene.film.elastic(), &scene.shell, &supports)?;
     let loaded = Loaded {
         model: &model,
         supports: &supports,

@@ -77,22 +77,26 @@ pub struct Iteration {
 pub type IterationObserver<'a> = &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>;
 
 /// Why a search found no equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StaticFailureKind {
     /// It reached the limit of steps.
+    #[error("the search reached its limit of steps")]
     IterationLimit,
     /// No step lowers the residual, and the residual is not small.
+    #[error("no step lowers the residual")]
     Stalled,
     /// A force is not finite.
+    #[error("a force is not finite")]
     NotFinite,
     /// The observer ended the search.
+    #[error("the search was stopped")]
     Stopped,
 }
 
 /// A search that found no equilibrium.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "no static equilibrium ({kind:?}) after {iterations} Newton steps: residual {residual:e} of the load, \
+    "no static equilibrium found: {kind}, after {iterations} Newton steps, residual {residual:e} of the load, \
      largest at node {node}"
 )]
 pub struct StaticFailure {
@@ -125,8 +129,10 @@ pub struct Equilibrium {
 
 /// Lower bound of μ. It determines rigid motions and slack film. Chosen.
 const MIN_SHIFT: f64 = 1e-12;
-/// μ of the first step. Chosen.
-const FIRST_SHIFT: f64 = 1e-7;
+/// μ of the first step from any positions. Chosen.
+pub(super) const FIRST_SHIFT: f64 = 1e-7;
+/// μ of the first step from an equilibrium under another load. Chosen.
+pub(super) const NEAR_SHIFT: f64 = 1e-9;
 /// Upper bound of μ. With a larger one steps are too small to move anything. Chosen.
 const MAX_SHIFT: f64 = 1e4;
 /// Upper bound of μ at an equilibrium: with a larger μ a small step proves nothing. Chosen.
@@ -148,16 +154,70 @@ pub fn equilibrium(
     tolerances: &Tolerances,
     observer: IterationObserver<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
-    let unknowns = Unknowns::new(loaded.model, loaded.supports);
-    let elimination = Elimination::new(loaded.model, &unknowns, &positions);
-    let mut search = NewtonSearch::new(loaded, unknowns, positions);
-    search.run(&elimination, tolerances, observer)
+    let mut system = System::new(loaded, &positions);
+    equilibrium_of(&mut system, loaded, positions, FIRST_SHIFT, tolerances, observer)
+}
+
+/// [`equilibrium`] with a system of equations that serves several loads. `shift` is μ of the first step.
+pub(super) fn equilibrium_of(
+    system: &mut System,
+    loaded: &Loaded<'_>,
+    positions: Field,
+    shift: f64,
+    tolerances: &Tolerances,
+    observer: IterationObserver<'_>,
+) -> Result<Equilibrium, StaticFailure> {
+    NewtonSearch::new(loaded, system, positions).run(shift, tolerances, observer)
+}
+
+/// The linear system of the Newton steps of a film with its supports, and its memory.
+pub(super) struct System {
+    unknowns: Unknowns,
+    elimination: Elimination,
+    factor: Factor,
+    stiffness: Vec<Stiffness>,
+    shifts: Vec<f64>,
+}
+
+impl System {
+    /// The system of this film and these supports, whatever the load. The order of elimination depends on
+    /// the positions (m).
+    pub(super) fn new(loaded: &Loaded<'_>, positions: &Field) -> Self {
+        let unknowns = Unknowns::new(loaded.model, loaded.supports);
+        let elimination = Elimination::new(loaded.model, &unknowns, positions);
+        let (factor, stiffness, shifts) = (Factor::default(), Vec::new(), Vec::new());
+        Self { unknowns, elimination, factor, stiffness, shifts }
+    }
+
+    /// Computes the stiffness of every face at these positions (m), film first.
+    fn assemble(&mut self, loaded: &Loaded<'_>, positions: &Field) {
+        let Loaded { model, overpressure, .. } = *loaded;
+        let film = (0..model.elements()).map(|element| {
+            let mut stiffness = tangent::elastic(model, positions, element);
+            let face = model.triangles[element];
+            tangent::add_pressure(&mut stiffness, face, positions, overpressure);
+            stiffness
+        });
+        let closure =
+            model.closure.iter().map(|face| tangent::pressure(*face, positions, overpressure));
+        self.stiffness.clear();
+        self.stiffness.extend(film.chain(closure));
+    }
+
+    /// Factorises the stiffness with the shift μ ω² M (ω in rad/s). `false` if the matrix is not positive
+    /// definite.
+    fn factor(&mut self, instruction_set: InstructionSet, shift: f64, omega: f64) -> bool {
+        let factor = shift * omega * omega;
+        self.shifts.clear();
+        self.shifts.extend(self.unknowns.mass.iter().map(|mass| mass * factor));
+        self.elimination.factor(instruction_set, &self.stiffness, &self.shifts, &mut self.factor)
+    }
 }
 
 /// A search in progress.
 struct NewtonSearch<'a> {
     loaded: &'a Loaded<'a>,
-    unknowns: Unknowns,
+    system: &'a mut System,
     positions: Field,
     /// Scratch: trial positions, element histories, node forces.
     trial: Field,
@@ -170,11 +230,11 @@ struct NewtonSearch<'a> {
 }
 
 impl<'a> NewtonSearch<'a> {
-    fn new(loaded: &'a Loaded<'a>, unknowns: Unknowns, positions: Field) -> Self {
+    fn new(loaded: &'a Loaded<'a>, system: &'a mut System, positions: Field) -> Self {
         let model = loaded.model;
         Self {
             loaded,
-            unknowns,
+            system,
             trial: positions.clone(),
             positions,
             element_history: ElementHistory::zero(model),
@@ -189,9 +249,10 @@ impl<'a> NewtonSearch<'a> {
     fn evaluate(&mut self, step: &[f64], fraction: f64) {
         self.trial.clone_from(&self.positions);
         if !step.is_empty() {
-            self.unknowns.shift(&mut self.trial, step, fraction);
+            self.system.unknowns.shift(&mut self.trial, step, fraction);
         }
         let Loaded { model, overpressure, gravity, instruction_set, .. } = *self.loaded;
+        model.closure_nodes.place(&mut self.trial);
         let _ = assemble_membrane(
             instruction_set,
             model,
@@ -207,13 +268,13 @@ impl<'a> NewtonSearch<'a> {
                 + gravity * model.mass[node];
             self.forces.set(node, force);
         }
-        self.along = self.unknowns.gather(&self.forces);
+        self.along = self.system.unknowns.gather(&self.forces);
     }
 
     /// Norm of the load, N: pressure, weight, forces on planes and support forces.
     fn load(&self) -> f64 {
         let Loaded { model, overpressure, gravity, supports, .. } = *self.loaded;
-        let mut sum: f64 = self.unknowns.force.iter().map(|force| force * force).sum();
+        let mut sum: f64 = self.system.unknowns.force.iter().map(|force| force * force).sum();
         for node in 0..model.nodes() {
             let pressure = self.nodes.area(node) * overpressure;
             let force = self.forces.get(node);
@@ -232,23 +293,9 @@ impl<'a> NewtonSearch<'a> {
         if residual > 0.0 { residual / load } else { 0.0 }
     }
 
-    /// Stiffness of every face, film first.
-    fn stiffness(&self) -> Vec<Stiffness> {
-        let Loaded { model, overpressure, .. } = *self.loaded;
-        let film = (0..model.elements()).map(|element| {
-            tangent::elastic(model, &self.positions, element)
-                + tangent::pressure(model.triangles[element], &self.positions, overpressure)
-        });
-        let closure = model
-            .closure
-            .iter()
-            .map(|face| tangent::pressure(*face, &self.positions, overpressure));
-        film.chain(closure).collect()
-    }
-
     fn failure(&self, kind: StaticFailureKind) -> StaticFailure {
         let size = |node: usize| {
-            let moves = self.unknowns.of_node[node].iter();
+            let moves = self.system.unknowns.of_node[node].iter();
             let squares = moves.map(|(unknown, _)| self.along[*unknown as usize]);
             squares.map(|force| force * force).sum::<f64>()
         };
@@ -267,35 +314,46 @@ impl<'a> NewtonSearch<'a> {
 
     fn run(
         &mut self,
-        elimination: &Elimination,
+        first_shift: f64,
         tolerances: &Tolerances,
         observer: IterationObserver<'_>,
     ) -> Result<Equilibrium, StaticFailure> {
         let size = extent(&self.positions);
-        let omega = self.loaded.model.largest_frequency();
-        let mass: Vec<f64> = self.unknowns.mass.iter().map(|m| m * omega * omega).collect();
-        let (mut shift, mut fraction) = (FIRST_SHIFT, 0.0);
+        let (mut shift, mut fraction) = (first_shift, 0.0);
+        // μ of the factor in memory.
+        let mut factored: Option<f64> = None;
         self.evaluate(&[], 0.0);
         loop {
             let residual = self.residual();
             if !residual.is_finite() {
                 return Err(self.failure(StaticFailureKind::NotFinite));
             }
-            let stiffness = self.stiffness();
-            let factor = loop {
-                let shifts: Vec<f64> = mass.iter().map(|mass| mass * shift).collect();
-                if let Some(factor) =
-                    elimination.factor(self.loaded.instruction_set, &stiffness, &shifts)
-                {
-                    break factor;
+            // After a full step the factor before it estimates the next step well enough.
+            let settled = factored.filter(|shift| {
+                residual <= tolerances.residual && fraction >= 0.5 && *shift <= MAX_SETTLED_SHIFT
+            });
+            let estimate = settled.map(|shift| (self.step(), shift));
+            if let Some((step, shift)) = estimate {
+                let displacement = self.system.unknowns.largest(&step);
+                let iteration = Iteration {
+                    index: self.iterations,
+                    residual,
+                    step: displacement,
+                    shift,
+                    fraction,
+                };
+                if displacement <= tolerances.step * size {
+                    if observer(&iteration).is_break() {
+                        return Err(self.failure(StaticFailureKind::Stopped));
+                    }
+                    return Ok(self.found(&step, residual, shift));
                 }
-                shift *= 10.0;
-                if shift > MAX_SHIFT {
-                    return Err(self.failure(StaticFailureKind::Stalled));
-                }
-            };
-            let (step, along) = self.step(elimination, &factor);
-            let displacement = self.unknowns.largest(&step);
+            }
+            shift = self.factor(shift)?;
+            factored = Some(shift);
+            let step = self.step();
+            let along = dot(&step, &self.along);
+            let displacement = self.system.unknowns.largest(&step);
             let iteration =
                 Iteration { index: self.iterations, residual, step: displacement, shift, fraction };
             if observer(&iteration).is_break() {
@@ -305,13 +363,7 @@ impl<'a> NewtonSearch<'a> {
                 && displacement <= tolerances.step * size
                 && shift <= MAX_SETTLED_SHIFT
             {
-                return Ok(Equilibrium {
-                    positions: self.positions.clone(),
-                    forces: self.forces.clone(),
-                    iterations: self.iterations,
-                    residual,
-                    shift,
-                });
+                return Ok(self.found(&step, residual, shift));
             }
             if self.iterations >= tolerances.iterations {
                 return Err(self.failure(StaticFailureKind::IterationLimit));
@@ -319,7 +371,8 @@ impl<'a> NewtonSearch<'a> {
             let max_step = MAX_STEP * size;
             let max_fraction = if displacement > max_step { max_step / displacement } else { 1.0 };
             fraction = self.line_search(&step, along, max_fraction);
-            self.unknowns.shift(&mut self.positions, &step, fraction);
+            self.system.unknowns.shift(&mut self.positions, &step, fraction);
+            self.loaded.model.closure_nodes.place(&mut self.positions);
             self.iterations += 1;
             if fraction >= 0.5 {
                 shift = (shift * 0.1).max(MIN_SHIFT);
@@ -329,11 +382,44 @@ impl<'a> NewtonSearch<'a> {
         }
     }
 
-    /// The next step (m along the unknowns) and the work of the forces along it, J.
-    fn step(&self, elimination: &Elimination, factor: &Factor) -> (Vec<f64>, f64) {
-        let step = elimination.solve(factor, &self.along);
-        let work = dot(&step, &self.along);
-        (step, work)
+    /// Factorises the stiffness at the positions, with the smallest μ from `shift` on, in powers of ten,
+    /// that makes it positive definite. Returns that μ.
+    fn factor(&mut self, mut shift: f64) -> Result<f64, StaticFailure> {
+        let omega = self.loaded.model.largest_frequency();
+        self.system.assemble(self.loaded, &self.positions);
+        while !self.system.factor(self.loaded.instruction_set, shift, omega) {
+            shift *= 10.0;
+            if shift > MAX_SHIFT {
+                return Err(self.failure(StaticFailureKind::Stalled));
+            }
+        }
+        Ok(shift)
+    }
+
+    /// The equilibrium found, after a last full step, which is known already, if it lowers the residual:
+    /// the reactions of a vessel then balance to rounding.
+    fn found(&mut self, step: &[f64], residual: f64, shift: f64) -> Equilibrium {
+        self.evaluate(step, 1.0);
+        let mut last = self.residual();
+        if last < residual {
+            self.positions.clone_from(&self.trial);
+        } else {
+            self.evaluate(&[], 0.0);
+            last = residual;
+        }
+        Equilibrium {
+            positions: self.positions.clone(),
+            forces: self.forces.clone(),
+            iterations: self.iterations,
+            residual: last,
+            shift,
+        }
+    }
+
+    /// The step (m along the unknowns) by the factor in memory from the present forces.
+    fn step(&mut self) -> Vec<f64> {
+        let System { elimination, factor, .. } = &mut *self.system;
+        elimination.solve(self.loaded.instruction_set, factor, &self.along)
     }
 
     /// The fraction α of a step to take: at most a few times `max_fraction`. Leaves the forces at the new

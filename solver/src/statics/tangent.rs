@@ -58,14 +58,9 @@ pub fn elastic(model: &FilmModel, positions: &Field, element: usize) -> Stiffnes
     let stress = model.material.stress(strain).tensor;
     let tangent = material_tangent(&model.material, strain);
     let volume = model.volume[element];
-    let (f, g) = (gradient.column(0), gradient.column(1));
-    let strain_matrices = slopes.map(|slope| {
-        Matrix3::from_rows(&[
-            (f * slope.x).transpose(),
-            (g * slope.y).transpose(),
-            (f * slope.y + g * slope.x).transpose(),
-        ])
-    });
+    // Strain of a displacement u of corner i: `slopes[i]` (u·f, u·g), f and g the columns of the gradient.
+    let strain_matrices =
+        slopes.map(|slope| Matrix3x2::new(slope.x, 0.0, 0.0, slope.y, slope.y, slope.x));
     let mut stiffness = Stiffness::zeros();
     for i in 0..3 {
         let left = strain_matrices[i].transpose() * tangent * volume;
@@ -73,7 +68,11 @@ pub fn elastic(model: &FilmModel, positions: &Field, element: usize) -> Stiffnes
             let (s, r) = (slopes[i], slopes[j]);
             let initial_stress =
                 stress.xx * s.x * r.x + stress.yy * s.y * r.y + stress.xy * (s.x * r.y + s.y * r.x);
-            let block = left * strain_matrices[j] + Matrix3::identity() * (initial_stress * volume);
+            let core = left * strain_matrices[j];
+            let mut block = gradient * core * gradient.transpose();
+            for axis in 0..3 {
+                block[(axis, axis)] += initial_stress * volume;
+            }
             stiffness.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&block);
             if i != j {
                 stiffness.fixed_view_mut::<3, 3>(3 * j, 3 * i).copy_from(&block.transpose());
@@ -85,19 +84,25 @@ pub fn elastic(model: &FilmModel, positions: &Field, element: usize) -> Stiffnes
 
 /// Stiffness of a pressure (Pa) on a face at these positions (m), N/m.
 pub fn pressure(face: [u32; 3], positions: &Field, pressure: f64) -> Stiffness {
-    let [a, b, c] = face.map(|node| positions.get(node as usize));
-    let edges = [c - b, a - c, b - a];
     let mut stiffness = Stiffness::zeros();
-    for i in 0..3 {
-        for j in 0..3 {
-            let block = cross(edges[i] - edges[j]) * (pressure / 12.0);
-            stiffness.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&block);
-        }
-    }
+    add_pressure(&mut stiffness, face, positions, pressure);
     stiffness
 }
 
-/// The matrix of the cross product v×.
-fn cross(v: Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+/// Adds the stiffness of a pressure (Pa) on a face at these positions (m).
+pub fn add_pressure(stiffness: &mut Stiffness, face: [u32; 3], positions: &Field, pressure: f64) {
+    let [a, b, c] = face.map(|node| positions.get(node as usize));
+    let edges = [c - b, a - c, b - a];
+    for i in 0..3 {
+        for j in 0..i {
+            // The matrix of the cross product v×; the block across the diagonal is its transpose.
+            let v = (edges[i] - edges[j]) * (pressure / 12.0);
+            for (row, column, entry) in [(0, 1, -v.z), (0, 2, v.y), (1, 2, -v.x)] {
+                stiffness[(3 * i + row, 3 * j + column)] += entry;
+                stiffness[(3 * i + column, 3 * j + row)] -= entry;
+                stiffness[(3 * j + column, 3 * i + row)] += entry;
+                stiffness[(3 * j + row, 3 * i + column)] -= entry;
+            }
+        }
+    }
 }

@@ -6,7 +6,7 @@
 //! r_k = Σ_i d_ik·f_i          + the constant force of a plane
 //! ```
 //!
-//! A node without mass (the apex of closing faces) counts as held, as in a run.
+//! A node without mass (a vertex of closing faces) has no unknowns: it is held, or follows a rim.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -10,7 +10,6 @@ use billow_solver::geometry::fold::Chirality;
 use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{self, Unobserved};
-use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::FilmContact;
@@ -28,9 +27,7 @@ use super::{Outcome, Rig, Row};
 /// # Errors
 /// What is invalid in the scene.
 pub fn stowed(rig: &Rig, scene: &Scene, contact: FilmContact) -> Result<FilmRun, String> {
-    // No row here uses static states.
-    let unused = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    FilmRun::from_scene(rig.instruction_set, scene, DEFAULT_CFL, Some(contact), Some(unused))
+    FilmRun::from_scene(rig.instruction_set, scene, DEFAULT_CFL, Some(contact))
         .map_err(|e| e.to_string())
 }
 

@@ -109,10 +109,20 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
     Ok(judged)
 }
 
+/// A bag of film without compressive stiffness: [`squeezed`].
+pub fn squeezed_bag(rig: &Rig) -> Outcome {
+    squeezed(rig, &[0.0])
+}
+
+/// Bags of film with compressive stiffness: [`squeezed`].
+pub fn squeezed_bag_stiff(rig: &Rig) -> Outcome {
+    squeezed(rig, &[0.1, 1.0])
+}
+
 /// A slack, dented bag with a little gas between plates that close to a tenth of its height, so that
 /// its walls fold. The dented shape is half the stress-free size: film with compressive stiffness
 /// springs out of it at some hundred m/s. For such film, only passages and intersections are judged.
-pub fn squeezed_bag(rig: &Rig) -> Outcome {
+fn squeezed(rig: &Rig, compressions: &[f64]) -> Outcome {
     let (radius, closed) = (0.2, 0.03);
     let share = number("squeezed_bag/height");
     let dented = |x: Vector3<f64>| {
@@ -133,7 +143,7 @@ pub fn squeezed_bag(rig: &Rig) -> Outcome {
         z().fold(f64::NEG_INFINITY, f64::max) - z().fold(f64::INFINITY, f64::min)
     };
     let mut judged = Vec::new();
-    for compression in [0.0, 0.1, 1.0] {
+    for &compression in compressions {
         let supply = GasSupply { initial_mass: 2e-7, ..nitrogen_supply() };
         let plates = vec![half(1.0), half(-1.0)];
         let scene = FilmScene {

@@ -14,7 +14,7 @@ use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::contact_rig::{monitored_contact, plate, run_recorded};
 use super::reference::{number, rows};
@@ -42,7 +42,7 @@ fn width(radius: f64) -> f64 {
 /// The slice about z between two plates that close to `gap` (m) between the films.
 fn slice(radius: f64, gap: f64) -> FilmScene {
     let mut shell: Shell = tube(AROUND, 1, radius, width(radius));
-    let tips = shell.close();
+    let tips = shell.close(|_| Matrix3::identity());
     let volume = shell.volume(|node| shell.positions[node as usize]);
     let nitrogen = nitrogen_supply();
     let initial_mass = PRESSURE * volume / (nitrogen.species.gas_constant * TEMPERATURE);

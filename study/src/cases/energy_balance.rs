@@ -10,7 +10,6 @@ use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::ledger::{GasBalance, gas_residuals, residuals};
-use billow_solver::output::measures::Reference;
 use billow_solver::output::outcome::Stop;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::inflow::Inflow;
@@ -27,9 +26,7 @@ use super::{Outcome, Rig, Row};
 /// The paper's capsule, deployed without contact for 0.3 s.
 pub(super) fn capsule_ledger(rig: &Rig) -> Outcome {
     let scene = paper::capsule(5, 0.3);
-    // No row here uses static states.
-    let unused = Reference::new(vec![[1.0, 1.0, 1.0]]);
-    let mut run = FilmRun::from_scene(rig.instruction_set, &scene, DEFAULT_CFL, None, Some(unused))
+    let mut run = FilmRun::from_scene(rig.instruction_set, &scene, DEFAULT_CFL, None)
         .map_err(|e| e.to_string())?;
     run.film = rig.faulty(run.film);
     let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);

@@ -17,6 +17,7 @@ use std::time::Instant;
 
 use rayon::ThreadPool;
 
+pub mod costs;
 pub mod reference;
 pub mod rig;
 mod row;

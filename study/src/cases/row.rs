@@ -52,7 +52,7 @@ impl Row {
         let quantity = quantity.to_owned();
         // NaN does not pass.
         let pass = error <= band && value.is_finite();
-        let note = if pass { String::new() } else { "out of band".to_owned() };
+        let note = if pass { String::new() } else { "out of tolerance".to_owned() };
         Self { quantity, value, reference, error, band, order: None, pass, note }
     }
 

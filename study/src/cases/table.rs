@@ -238,6 +238,11 @@ pub const CASES: &[Case] = &[
         "a closed bag squeezed to a tenth of its height: no passage",
         contact_impacts::squeezed_bag,
     ),
+    long(
+        "squeezed_bag_stiff",
+        "the same bag with compressive stiffness, a tenth of the tensile one and equal: no passage",
+        contact_impacts::squeezed_bag_stiff,
+    ),
     quick(
         "dropped_sheet",
         "a crumpled sheet thrown on a floor: no passage",

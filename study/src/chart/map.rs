@@ -10,7 +10,6 @@ use crate::platform::error::{Error, Result};
 use crate::render::figure::Sheet;
 use crate::render::figure::legend::Sample;
 use crate::render::figure::map::{Cell, Maps, Panel, SAME_JOB};
-use crate::render::figure::unit::Unit;
 use crate::store::table::Column;
 
 /// Most panels in one figure. Chosen: more do not fit on a page.
@@ -69,7 +68,7 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
     }
     let [x, y] = [Axis::new(x, &source.rows)?, Axis::new(y, &source.rows)?];
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
-    let unit = Unit::fit(&measure.unit, values.clone());
+    let unit = parameters::shown_unit(measure, values.clone());
     let range = values.fold(None, |range: Option<[f64; 2]>, value| {
         let value = unit.shown(value);
         Some(range.map_or([value, value], |[low, high]| [low.min(value), high.max(value)]))

@@ -13,7 +13,6 @@ use crate::render::figure::plot::lane::Mark;
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::style::Series;
-use crate::render::figure::unit::Unit;
 use crate::render::figure::{Sheet, columns, ticks};
 use crate::store::table::Column;
 
@@ -36,7 +35,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
         Encoding::new(source, others, by, PREFERRED_LINES, positions.names, ("--over", over))?;
 
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
-    let unit = Unit::fit(&measure.unit, values.clone());
+    let unit = parameters::shown_unit(measure, values.clone());
     let extent = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(unit.shown(value)), high.max(unit.shown(value))]
     });

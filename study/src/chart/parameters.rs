@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::names::{self, Name};
 use super::number;
 use crate::analysis::compare::{self, canonical};
+use crate::input::units::DisplayUnit;
 use crate::input::value::{Value, short_number};
 use crate::job::row::CellType;
 use crate::render::figure::ticks::minus;
@@ -27,7 +28,7 @@ impl<'a> Parameter<'a> {
     /// The parameter of a column; its unit fits the values of these rows.
     pub fn new(column: &'a Column, rows: &[usize]) -> Self {
         let values = || rows.iter().filter_map(|row| number(&column.cells[*row]));
-        let unit = Unit::fit(&column.unit, values());
+        let unit = shown_unit(column, values());
         let digits = digits(&values().map(|si| unit.shown(si)).collect::<Vec<_>>());
         Self { column, unit, digits }
     }
@@ -112,6 +113,16 @@ impl<'a> Parameter<'a> {
     /// Whether it has a unit.
     pub fn is_quantity(&self) -> bool {
         !matches!(self.column.unit.as_str(), "" | "1")
+    }
+}
+
+/// The unit of a parameter or measure in a chart: the one that the study writes, else the readable one for
+/// these values.
+pub fn shown_unit(column: &Column, values: impl IntoIterator<Item = f64>) -> Unit {
+    if column.shown == DisplayUnit::si(&column.unit) {
+        Unit::fit(&column.unit, values)
+    } else {
+        Unit::written(&column.shown)
     }
 }
 

@@ -41,15 +41,8 @@ impl ChartKind {
 pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
     let mut kinds = Vec::new();
     let mut notes = Vec::new();
-    let mut jobs: Vec<&str> = source
-        .rows
-        .iter()
-        .filter(|row| has_history(source, **row))
-        .map(|row| source.job(*row))
-        .collect();
-    jobs.sort_unstable();
-    jobs.dedup();
-    let stored = jobs.len();
+    let jobs = source.table.one_row_per_job(&source.rows);
+    let stored = jobs.iter().filter(|row| has_history(source, **row)).count();
     if stored > MAX_JOBS {
         notes.push(format!(
             "no histories: {stored} jobs are too many for one figure ({MAX_JOBS} at most); choose \

@@ -261,6 +261,20 @@ fn points_that_are_one_job_are_shown_and_named() {
 }
 
 #[test]
+fn a_chart_has_the_units_of_the_study() {
+    let mut table = mixed();
+    for (name, unit, si) in [("mass_flow_rate", "kg/h", "kg/s"), ("peak_vz", "km/h", "m/s")] {
+        let column = table.columns.iter_mut().find(|column| column.name == name).unwrap();
+        column.shown = crate::input::units::DisplayUnit::new(unit, si).unwrap();
+    }
+    let texts =
+        check::figure(&over::svg(&source(&table), "peak_vz", "mass_flow_rate", &[]).unwrap());
+    for text in ["Mass flow rate (kg/h)", "3.6", "Peak velocity of the top ring peak_vz (km/h)"] {
+        assert!(contains(&texts, text), "{text}: {texts:?}");
+    }
+}
+
+#[test]
 fn a_title_can_be_given_and_fixed_parameters_are_named() {
     let table = mixed();
     let rows = (0..table.rows()).filter(|row| row % 2 == 0).collect();

@@ -8,13 +8,16 @@ use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::Verdict;
 use serde_json::{Map, json};
 
+use super::best::{self, MAX_LINE_WIDTH, MAX_VALUES};
 use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Extreme, MEDIANS, Trust};
-use crate::input::value::{Value, brief_number, json_value, short_number};
+use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Extremes, Trust};
+use crate::input::units::{self, Dimension, DisplayUnit};
+use crate::input::value::{Value, brief_number, json_value};
 use crate::job::Status;
+use crate::job::row::{ColumnId, HEADLINE};
 
-/// Most characters in a line of medians.
-const MAX_LINE_WIDTH: usize = 120;
+/// Characters before the text of a line: two spaces, the topic, a space.
+const TOPIC_WIDTH: usize = 11;
 
 /// Film stress over Young's modulus above which a note asks for a missing unit. Chosen: no film is linear
 /// up to there, and short peaks of film that is pulled taut reach half of it.
@@ -25,7 +28,7 @@ const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
-        writeln!(out, "{}", answer.question)?;
+        writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
     }
     writeln!(out, "  deployed {}", deployed(answer))?;
     print_extremes(answer, out)?;
@@ -40,37 +43,60 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             brief_number(100.0 * answer.largest_strain)
         )?;
     }
-    if !answer.effects.is_empty() {
+    print_effects(&answer.effects, out)
+}
+
+/// The medians of each parameter, its best and worst values, and what is not compared.
+fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
+    if !effects.effects.is_empty() {
         writeln!(
             out,
-            "  medians  t_90_z_rim (s), peak_vz (m/s) per value, all other parameters being equal"
+            "  medians  {} per value, all other parameters being equal",
+            HEADLINE.map(|measure| headline(effects, measure)).join(", ")
         )?;
     }
-    let names = answer.effects.iter().map(|effect| name(effect).chars().count());
+    let names = effects.effects.iter().map(|effect| name(effect).chars().count());
     let indent = names.max().unwrap_or(0);
-    for effect in &answer.effects {
+    for effect in &effects.effects {
         for line in lines(effect, indent) {
             writeln!(out, "{line}")?;
+        }
+    }
+    for (topic, texts) in [("best", best::lines(effects)), ("left out", best::left_out(effects))] {
+        let mut topic = topic;
+        for text in &texts {
+            for line in best::wrapped(text, TOPIC_WIDTH) {
+                writeln!(out, "  {topic:<8} {line}")?;
+                topic = "";
+            }
         }
     }
     Ok(())
 }
 
+/// A headline measure with the unit of its medians.
+fn headline(effects: &Effects, measure: ColumnId) -> String {
+    let measures = effects.effects.iter().flat_map(|effect| &effect.measures);
+    let shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
+    let si = DisplayUnit::si(measure.column().unit);
+    shown.last().unwrap_or(&si).label(measure.name())
+}
+
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(fastest) = &answer.fastest {
-        let value = format!("t_90_z_rim {} s", brief_number(fastest.value));
+        let value = format!("{} {}", HEADLINE[0].name(), fastest.shown.brief(fastest.value));
         writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
     }
-    let Some(hardest) = &answer.hardest else { return Ok(()) };
-    let mut value = format!("peak_vz {} m/s", brief_number(hardest.value));
-    let energy = answer.most_energy.as_ref();
-    if let Some(same) = energy.filter(|energy| energy.job == hardest.job) {
-        let _ = write!(value, ", peak_kinetic_energy {} J", brief_number(same.value));
+    let Some(energy) = &answer.most_energy else { return Ok(()) };
+    let mut value = format!("peak_kinetic_energy {}", energy.shown.brief(energy.value));
+    let speed = answer.hardest.as_ref();
+    if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
+        let _ = write!(value, ", peak_vz {}", same.shown.brief(same.value));
     }
-    writeln!(out, "  hardest  {value}: {}", job_text(hardest))?;
-    if let Some(other) = energy.filter(|energy| energy.job != hardest.job) {
-        let value = format!("peak_kinetic_energy {} J", brief_number(other.value));
+    writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
+    if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
+        let value = format!("peak_vz {} (noisy)", other.shown.brief(other.value));
         writeln!(out, "           {value}: {}", job_text(other))?;
     }
     Ok(())
@@ -83,15 +109,27 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     writeln!(out, "           billow chart {root}")?;
     // Compare a named choice (a strategy) first, then a quantity with a unit.
     let first_with =
-        |unit: fn(&str) -> bool| answer.effects.iter().find(|effect| unit(&effect.unit));
+        |unit: fn(&str) -> bool| answer.effects.effects.iter().find(|effect| unit(&effect.unit));
     let effect = first_with(str::is_empty).or_else(|| first_with(|unit| unit != "1"));
-    if let Some(effect) = effect.or(answer.effects.first())
-        && let Some((base, _)) = effect.values.first()
+    if let Some(effect) = effect.or(answer.effects.effects.first())
+        && let Some(base) = effect.values.first()
     {
-        let base = shell_word(base);
+        let base = match base {
+            Value::Number(number) => shell_word(&Value::Text(exact(effect, *number))),
+            other => shell_word(other),
+        };
         writeln!(out, "           billow compare {root} --by {} --base {base}", effect.parameter)?;
     }
     Ok(())
+}
+
+/// A value of a parameter with its unit, if the text gives the number to the last bit; in SI otherwise.
+fn exact(effect: &Effect, si: f64) -> String {
+    let unit = &effect.shown;
+    let text = format!("{} {}", unit.number(si), unit.symbol());
+    let dimension = Dimension::ALL.into_iter().find(|known| known.si() == effect.unit);
+    let read = dimension.and_then(|dimension| units::parse(&text, dimension).ok());
+    if read == Some(si) && unit.symbol() != effect.unit { text } else { si.to_string() }
 }
 
 /// A value as one word of a shell command.
@@ -106,12 +144,11 @@ pub fn shell_word(value: &Value) -> String {
 
 fn deployed(answer: &Answer) -> String {
     let counts = &answer.counts;
-    let with = |verdict: Verdict| counts.verdict.get(verdict.name()).copied().unwrap_or(0);
     let jobs = counts.jobs();
-    let mut text = format!("{} of {}", with(Verdict::Deployed), count(jobs, "job"));
+    let mut text = format!("{} of {}", counts.with(Verdict::Deployed), count(jobs, "job"));
     for (number, noun) in [
-        (with(Verdict::Partial), Verdict::Partial.name()),
-        (with(Verdict::Stalled), Verdict::Stalled.name()),
+        (counts.with(Verdict::Partial), Verdict::Partial.name()),
+        (counts.with(Verdict::Stalled), Verdict::Stalled.name()),
         (counts.failed(), "failed"),
         (counts.of(Status::Pending), Status::Pending.name()),
     ] {
@@ -133,16 +170,13 @@ fn job_text(extreme: &Extreme) -> String {
     let parameters: Vec<String> = extreme
         .parameters
         .iter()
-        .map(|(name, value)| match value {
-            Value::Number(number) => format!("{name}={}", short_number(*number)),
-            other => format!("{name}={other}"),
-        })
+        .map(|(name, value, unit)| format!("{name}={}", unit.quantity(value)))
         .collect();
     let others = match extreme.others {
         0 => String::new(),
         others => format!(" (and {} with the same value)", count(others, "job")),
     };
-    format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(" "))
+    format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(", "))
 }
 
 /// The audit of all done jobs.
@@ -175,32 +209,38 @@ fn audit(trust: &Trust) -> String {
 
 /// A parameter with its unit, indented.
 fn name(effect: &Effect) -> String {
-    match effect.unit.as_str() {
-        "" | "1" => format!("    {}", effect.parameter),
-        unit => format!("    {} ({unit})", effect.parameter),
-    }
+    format!("    {}", effect.shown.label(&effect.parameter))
 }
 
 /// One parameter: its values with both medians, on as many lines as needed.
 fn lines(effect: &Effect, indent: usize) -> Vec<String> {
+    let listed = effect.values.len() <= MAX_VALUES;
+    let median = |measure, index: usize| {
+        let effect = effect.measures.iter().find(|effect| effect.measure == measure)?;
+        effect.medians[index].map(|median| effect.shown.number(median))
+    };
     let mut parts: Vec<String> = effect
         .values
         .iter()
-        .map(|(value, medians)| {
-            let value = match value {
-                Value::Number(number) => short_number(*number),
-                other => other.to_string(),
-            };
-            let medians = medians.map(|median| median.map_or_else(|| "-".to_owned(), brief_number));
-            format!("{value}: {}", medians.join(", "))
+        .enumerate()
+        .filter(|(index, _)| listed && HEADLINE.iter().any(|id| median(*id, *index).is_some()))
+        .map(|(index, value)| {
+            let medians = HEADLINE
+                .map(|measure| median(measure, index).map_or_else(|| "-".to_owned(), brief_number));
+            format!("{}: {}", effect.shown.text(value), medians.join(", "))
         })
         .collect();
+    if !listed {
+        let values = effect.values.len();
+        let name = &effect.parameter;
+        parts.push(format!("{values} values: billow chart --measure peak_vz --over {name}"));
+    }
     let with = if effect.carried.is_empty() {
         String::new()
     } else {
         format!(", {} with it", effect.carried.join(", "))
     };
-    parts.push(format!("({}{with})", count(effect.sets, "set")));
+    parts.push(format!("({}{with})", count(sets(effect), "set")));
     let mut lines = vec![format!("{:<indent$}", name(effect))];
     for part in parts {
         let length = lines.last().map_or(0, |line| line.chars().count());
@@ -214,17 +254,25 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
     lines
 }
 
+/// Number of sets of the measure with the most.
+fn sets(effect: &Effect) -> usize {
+    effect.measures.iter().map(|measure| measure.sets).max().unwrap_or(0)
+}
+
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
     json!({
         "question": answer.question,
         "jobs": answer.counts.jobs(),
         "near_threshold": answer.counts.near_threshold,
-        "fastest": extreme_json(answer.fastest.as_ref(), "t_90_z_rim"),
+        "fastest": extreme_json(answer.fastest.as_ref(), HEADLINE[0].name()),
         "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
         "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
         "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),
-        "medians": answer.effects.iter().map(effect_json).collect::<Vec<_>>(),
+        "medians": answer.effects.effects.iter().map(effect_json).collect::<Vec<_>>(),
+        "not_compared": answer.effects.not_compared.iter()
+            .map(|(parameter, reason)| json!({"parameter": parameter, "reason": reason}))
+            .collect::<Vec<_>>(),
     })
 }
 
@@ -235,7 +283,7 @@ fn extreme_json(
     let extreme = extreme?;
     let parameters = extreme.parameters.iter();
     let parameters: Map<_, _> =
-        parameters.map(|(name, value)| (name.clone(), json_value(value))).collect();
+        parameters.map(|(name, value, _)| (name.clone(), json_value(value))).collect();
     let mut keys = Map::new();
     keys.insert("job".to_owned(), extreme.job.as_str().into());
     keys.insert("parameters".to_owned(), parameters.into());
@@ -258,19 +306,50 @@ fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
 }
 
 fn effect_json(effect: &Effect) -> serde_json::Value {
-    let values = effect.values.iter().map(|(value, medians)| {
+    let values = effect.values.iter().enumerate().map(|(index, value)| {
         let mut keys = Map::new();
         keys.insert("value".to_owned(), json_value(value));
-        for (measure, median) in MEDIANS.iter().zip(medians) {
-            keys.insert(measure.name().to_owned(), json!(median));
+        for measure in &effect.measures {
+            keys.insert(measure.measure.name().to_owned(), json!(measure.medians[index]));
         }
+        let (deployed, jobs) = effect.deployed[index];
+        keys.insert("deployed".to_owned(), deployed.into());
+        keys.insert("jobs".to_owned(), jobs.into());
         serde_json::Value::from(keys)
+    });
+    let listed = |indices: &[usize]| -> Vec<serde_json::Value> {
+        indices.iter().map(|index| json_value(&effect.values[*index])).collect()
+    };
+    let measures = effect.measures.iter().map(|measure| {
+        let mut keys = json!({
+            "measure": measure.measure.name(),
+            "sets": measure.sets,
+            "tolerance": measure.tolerance.limit,
+            "equal": measure.extremes == Extremes::Equal,
+        });
+        match &measure.extremes {
+            Extremes::Equal => {}
+            Extremes::Judged { best, worst } => {
+                keys["best"] = listed(best).into();
+                keys["worst"] = listed(worst).into();
+            }
+            Extremes::Range { lowest, highest } => {
+                keys["lowest"] = listed(lowest).into();
+                keys["highest"] = listed(highest).into();
+            }
+        }
+        keys
+    });
+    let left_out = effect.left_out.iter().map(|(value, measure, reason)| {
+        json!({"value": json_value(value), "measure": measure.name(), "reason": reason})
     });
     json!({
         "parameter": effect.parameter,
         "unit": effect.unit,
         "with_it": effect.carried,
-        "sets": effect.sets,
+        "sets": sets(effect),
         "values": values.collect::<Vec<_>>(),
+        "measures": measures.collect::<Vec<_>>(),
+        "left_out": left_out.collect::<Vec<_>>(),
     })
 }

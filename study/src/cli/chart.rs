@@ -1,14 +1,13 @@
 //! `billow chart`: draws charts of the results of a study, as SVG and PNG.
 
-use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 
-use super::options::{OutputOptions, QuietOption, SetOption};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
-use super::{Format, output_error};
+use super::{Format, best, output_error};
 use crate::chart::standard::{self, ChartKind};
 use crate::chart::{Source, history, map, over};
 use crate::input::value::Value;
@@ -17,7 +16,6 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::results::Results;
-use crate::store::stored::Stored;
 use crate::store::table::Table;
 
 /// Arguments of `billow chart`.
@@ -62,6 +60,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     set: SetOption,
     #[command(flatten)]
     output: OutputOptions,
@@ -79,10 +79,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if let Some(path) = &args.out {
         Picture::of(path)?;
     }
-    let Target { results, table } = target::open(&args.study, &args.set.set)?;
+    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
     let name = study_name(&results);
-    let points = every_point(&results, &table);
-    let source = source(args, &name, &table, points.as_ref().unwrap_or(&table))?;
+    let source = source(args, &name, &table)?;
     let standard = asked.is_none();
     let kinds = match asked {
         Some(kind) => vec![kind],
@@ -102,18 +101,19 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             Err(error) => return Err(error),
         }
     }
-    print(&written, args.output.format(), out)
+    print(&written, args.output.format(), out)?;
+    if !args.quiet.quiet && args.output.format() == Format::Table {
+        best::print(&results, &table, &source.rows)?;
+    }
+    Ok(())
 }
 
 /// The rows that `--jobs` or `--where` choose.
-fn source<'a>(args: &Args, study: &'a str, table: &Table, points: &'a Table) -> Result<Source<'a>> {
+fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a>> {
     let rows = if args.jobs.is_empty() {
-        target::filtered(points, args.condition.as_deref())?
+        target::filtered(table, args.condition.as_deref())?
     } else {
-        let ids = |table: &Table, row: usize| table.column("job").map(|job| job.cells[row].clone());
-        let chosen = target::jobs(table, &args.jobs)?;
-        let chosen: Vec<_> = chosen.into_iter().map(|row| ids(table, row)).collect();
-        (0..points.rows()).filter(|row| chosen.contains(&ids(points, *row))).collect()
+        target::jobs(table, &args.jobs)?
     };
     if rows.is_empty() {
         let condition = args.condition.as_deref().unwrap_or("");
@@ -127,21 +127,7 @@ fn source<'a>(args: &Args, study: &'a str, table: &Table, points: &'a Table) -> 
         (None, _) => "(chosen jobs)".to_owned(),
     };
     let title = args.title.clone().unwrap_or_default();
-    Ok(Source { study, table: points, rows, choice, title })
-}
-
-/// The table with one row per point, also for points that are one job. `None` if the stored table has other
-/// jobs than the plan, as after a change of the program.
-fn every_point(results: &Results<'_>, table: &Table) -> Option<Table> {
-    if !results.owner().is_ok_and(|owner| owner.is_some()) {
-        return None;
-    }
-    let points = Stored::read(results.clone()).ok()?.table_of_all_points();
-    let jobs = |table: &Table| -> BTreeSet<String> {
-        let cells = table.column("job").into_iter().flat_map(|column| &column.cells);
-        cells.map(Value::to_string).collect()
-    };
-    (jobs(&points) == jobs(table)).then_some(points)
+    Ok(Source { study, table, rows, choice, title })
 }
 
 /// Name of the results folder; the whole path when it has no last part, as in ".".

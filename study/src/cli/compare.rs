@@ -3,26 +3,28 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
-use super::options::{OutputOptions, QuietOption};
-use super::print::{count, print_rows};
+use super::best;
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
+use super::print::{Heading, count, print_quantities};
 use super::target::{StudyArgs, filtered, find, folder};
-use super::{Format, output_error};
+use super::{Format, changes, output_error};
 use crate::analysis::compare::{
-    self, Better, Compared, DEFAULT_TIE, Pair, Sets, Tally, measures_with,
+    self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, ToleranceSource, measures_with,
+    pairs_of_jobs,
 };
-use crate::input::keys;
-use crate::input::units::{self, Dimension};
+use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
 /// Measures that a table compares by default.
-const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim", "peak_vz"];
+const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
 
 /// Arguments of `billow compare`.
 #[derive(Debug, clap::Args)]
@@ -35,19 +37,24 @@ pub struct Args {
     /// The value that the other values are compared with; with its unit, as in "1 g/s".
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub base: String,
-    /// Measures, comma-separated [default: `t_90_z_rim,peak_vz`; for csv and json all measures for
-    /// which smaller or larger is better].
+    /// Measures, comma-separated [default: `t_90_z_rim_since_release,peak_kinetic_energy`; for csv and
+    /// json all measures for which smaller or larger is better].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub measures: Vec<String>,
     /// Only rows for which this condition holds, as in `N == 6 and M >= 3`.
     #[arg(long = "where", value_name = "CONDITION")]
     pub condition: Option<String>,
-    /// Relative difference up to which a pair is a tie, as in 1% [default: 1e-9, for rounding].
+    /// Relative difference up to which a pair is a tie, as in 1% [default: the larger spread of the
+    /// measure, by seed or by method; without either the values are lower or higher, not better].
     #[arg(long, value_name = "FRACTION")]
     pub tie: Option<String>,
     /// Print only the summary: one row per value and measure.
     #[arg(long)]
     pub summary: bool,
+    #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
+    set: SetOption,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -55,14 +62,16 @@ pub struct Args {
 }
 
 /// Outcomes of a pair: column, outcome, and whether a table always shows the column.
-const OUTCOMES: [(&str, Better, bool); 8] = [
+const OUTCOMES: [(&str, Better, bool); 10] = [
     ("other_better", Better::Other, true),
     ("base_better", Better::Base, true),
     ("ties", Better::Tie, true),
     ("only_other", Better::OnlyOther, false),
     ("only_base", Better::OnlyBase, false),
     ("neither", Better::Neither, false),
-    ("differ", Better::Differ, false),
+    ("other_lower", Better::Lower, false),
+    ("other_higher", Better::Higher, false),
+    ("same_job", Better::SameJob, false),
     ("pending", Better::Pending, false),
 ];
 
@@ -72,8 +81,7 @@ struct Comparison<'a> {
     by: &'a Column,
     sets: Sets,
     pairs: Vec<Pair>,
-    measures: Vec<&'a Column>,
-    tie: f64,
+    measures: Vec<Measure<'a>>,
 }
 
 /// Runs `billow compare`: one row per pair, then a summary with one row per value and measure.
@@ -81,18 +89,25 @@ struct Comparison<'a> {
 /// # Errors
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let root = folder(&args.study, &[])?;
+    let root = folder(&args.study, &args.set.set)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
-    let table = stored.table_of_all_points();
+    changes::note(&stored.results, &args.study, &args.set.set)?;
+    let table = args.units.show(stored.table(), stored.study.display_units())?;
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let rows = filtered(&table, args.condition.as_deref())?;
     let format = args.output.format();
-    let sets = Sets::new(&table, &rows, &by.name, &stored.study.zipped_with(&by.name));
+    let zipped = |name: &str| stored.study.zipped_with(name);
+    let sets = Sets::new(&table, &rows, &by.name, &zipped(&by.name));
     let (pairs, alone) = compare::pairs(&table, &sets, &by.name, &base);
-    let measures = measures(&table, &args.measures, format)?;
-    let tie = args.tie.as_deref().map_or(Ok(DEFAULT_TIE), fraction)?;
-    let comparison = Comparison { table: &table, by, sets, pairs, measures, tie };
+    let given = args.tie.as_deref().map(fraction).transpose()?.map(Tolerance::given);
+    let tolerance =
+        |column| given.unwrap_or_else(|| Tolerance::of(&table, &rows, column, &zipped("seed")));
+    let measures = measures(&table, &args.measures, format)?
+        .into_iter()
+        .map(|column| Measure { column, tolerance: tolerance(column) })
+        .collect();
+    let comparison = Comparison { table: &table, by, sets, pairs, measures };
     if !args.summary {
         comparison.print_pairs(format, out)?;
     }
@@ -111,7 +126,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 fn parameter<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {
     let names = || table.parameters().map(|column| column.name.as_str());
     table.parameters().find(|column| column.name == name).ok_or_else(|| {
-        let near = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let near = did_you_mean(name, names());
         let mut allowed = names().collect::<Vec<_>>().join(", ");
         if allowed.is_empty() {
             "none: the study varies no parameter".clone_into(&mut allowed);
@@ -134,11 +149,10 @@ fn base(stored: &Stored<'_>, by: &Column, text: &str) -> Result<Value> {
             })
     });
     found.cloned().ok_or_else(|| {
-        let unit = if matches!(by.unit.as_str(), "" | "1") { "" } else { &by.unit };
-        let values: Vec<String> =
-            values.iter().map(|value| format!("{value} {unit}").trim_end().to_owned()).collect();
+        let values: Vec<String> = values.iter().map(|value| by.shown.quantity(value)).collect();
         let problem = format!("not a value of {} in this study", by.name);
-        Error::invalid_option("--base", text, problem, values.join(", "), "")
+        let near = did_you_mean(text, values.iter().map(String::as_str)).unwrap_or_default();
+        Error::invalid_option("--base", text, problem, values.join(", "), near)
     })
 }
 
@@ -188,22 +202,38 @@ impl Comparison<'_> {
             (true, false) => &["status"],
             (false, _) => &["job", "status", "verdict"],
         };
-        let figures: &[&str] = if brief {
-            &["base", "other", "ratio", "better"]
-        } else {
-            &["base", "other", "difference", "ratio", "better"]
-        };
-        let mut columns: Vec<String> = self.sets.matched.clone();
-        columns.push(self.by.name.clone());
-        columns.extend(self.sets.carried.iter().cloned());
+        let parameters = self.sets.matched.iter().chain([&self.by.name]).chain(&self.sets.carried);
+        let mut columns: Vec<Heading> = parameters
+            .map(|name| {
+                let shown = self.table.column(name).map(|column| column.shown.clone());
+                Heading { name: name.clone(), unit: shown.unwrap_or_else(|| DisplayUnit::si("")) }
+            })
+            .collect();
         let sides = |name: &&str| [format!("base_{name}"), format!("other_{name}")];
-        columns.extend(outcome.iter().flat_map(sides));
+        columns.extend(outcome.iter().flat_map(sides).map(Heading::plain));
         for measure in &self.measures {
-            columns.extend(figures.iter().map(|figure| format!("{}_{figure}", measure.name)));
+            let shown = &measure.column.shown;
+            columns.extend(Self::figures(measure, brief).iter().map(|figure| Heading {
+                name: format!("{}_{figure}", measure.column.name),
+                unit: match *figure {
+                    "base" | "other" => shown.clone(),
+                    "difference" => shown.of_difference(),
+                    _ => DisplayUnit::si(""),
+                },
+            }));
         }
         let rows: Vec<Vec<Value>> =
             self.pairs.iter().map(|pair| self.row(*pair, outcome, brief)).collect();
-        print_rows(&columns, &rows, format, out)
+        print_quantities(&columns, &rows, format, out)
+    }
+
+    /// The figures of a measure. A table has the ratio, or the difference of a signed measure.
+    fn figures(measure: &Measure<'_>, brief: bool) -> &'static [&'static str] {
+        match (brief, measure.is_signed()) {
+            (true, false) => &["base", "other", "ratio", "better"],
+            (true, true) => &["base", "other", "difference", "better"],
+            (false, _) => &["base", "other", "difference", "ratio", "better"],
+        }
     }
 
     fn row(&self, pair: Pair, outcome: &[&str], brief: bool) -> Vec<Value> {
@@ -217,70 +247,131 @@ impl Comparison<'_> {
         }
         let number = |number: Option<f64>| number.map_or(Value::Null, Value::Number);
         for measure in &self.measures {
-            let compared = compare::compared(self.table, pair, measure, self.tie);
-            row.extend([number(compared.base), number(compared.other)]);
-            if !brief {
-                row.push(number(Compared::difference(&compared)));
-            }
-            row.extend([number(compared.ratio()), Value::Text(compared.better.name().to_owned())]);
+            let compared = compare::compared(self.table, pair, measure);
+            row.extend(Self::figures(measure, brief).iter().map(|figure| match *figure {
+                "base" => number(compared.base),
+                "other" => number(compared.other),
+                "difference" => number(Compared::difference(&compared)),
+                "ratio" => number(compared.ratio()),
+                _ => Value::Text(compared.better.name().to_owned()),
+            }));
         }
         row
     }
 
     /// Prints one row per value and measure. A table has no columns for outcomes that no pair has.
     fn print_tallies(&self, format: Format, out: &mut dyn Write) -> Result<()> {
-        let tallies =
-            compare::tallies(self.table, &self.pairs, &self.by.name, &self.measures, self.tie);
+        let tallies = compare::tallies(self.table, &self.pairs, &self.by.name, &self.measures);
         let occurs = |outcome| tallies.iter().any(|tally| tally.count(outcome) > 0);
         let outcomes: Vec<(&str, Better)> = OUTCOMES
             .into_iter()
             .filter(|(_, outcome, always)| *always || format != Format::Table || occurs(*outcome))
             .map(|(name, outcome, _)| (name, outcome))
             .collect();
-        let columns: Vec<&str> = [self.by.name.as_str(), "measure", "pairs"]
-            .into_iter()
+        // A table shows differences only where a measure has no ratio.
+        let with_differences =
+            format != Format::Table || self.measures.iter().any(Measure::is_signed);
+        let differences: &[&str] = if with_differences {
+            &["median_difference", "least_difference", "largest_difference"]
+        } else {
+            &[]
+        };
+        let by = Heading { name: self.by.name.clone(), unit: self.by.shown.clone() };
+        let others = ["measure", "pairs"].into_iter();
+        let others = others
             .chain(outcomes.iter().map(|(name, _)| *name))
             .chain(["median_ratio", "least_ratio", "largest_ratio"])
-            .collect();
+            .chain(differences.iter().copied());
+        let columns: Vec<Heading> = [by].into_iter().chain(others.map(Heading::plain)).collect();
+        // Rows of the differences have the units of different measures, so a cell says its own.
+        let in_unit = |measure: &str, value: f64| {
+            let shown = self.measures.iter().find(|known| known.column.name == measure);
+            let unit = shown.map(|known| known.column.shown.of_difference());
+            match unit.filter(|_| format == Format::Table) {
+                Some(unit) => Value::Text(unit.brief(value)),
+                None => Value::Number(value),
+            }
+        };
         let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
         let row = |tally: &Tally| {
             let mut row = vec![tally.value.clone(), Value::Text(tally.measure.clone())];
             row.push(number(tally.pairs()));
             row.extend(outcomes.iter().map(|(_, outcome)| number(tally.count(*outcome))));
-            row.extend(tally.ratio.map_or([const { Value::Null }; 3], |ratio| {
-                [ratio.median, ratio.least, ratio.largest].map(Value::Number)
+            row.extend(tally.ratio.map_or([const { Value::Null }; 3], |spread| {
+                [spread.median, spread.least, spread.largest].map(Value::Number)
             }));
+            if with_differences {
+                row.extend(tally.difference.map_or([const { Value::Null }; 3], |spread| {
+                    [spread.median, spread.least, spread.largest]
+                        .map(|value| in_unit(&tally.measure, value))
+                }));
+            }
             row
         };
         let rows: Vec<Vec<Value>> = tallies.iter().map(row).collect();
-        print_rows(&columns, &rows, format, out)
+        print_quantities(&columns, &rows, format, out)
     }
 
     /// Prints, on stderr, which value is the base, which ratios are better, and what is not compared.
     fn print_notes(&self, base: &Value, alone: &[usize]) {
         let by = &self.by.name;
-        let unit = match base {
-            Value::Number(_) if self.by.unit != "1" => format!(" {}", self.by.unit),
-            _ => String::new(),
-        };
-        let mut text = format!("base: {by} = {base}{unit}; ratio: other / base");
+        let base = self.by.shown.quantity(base);
+        let mut text = format!("base: {by} = {base}; ratio: other / base");
         for (noun, side) in [("smaller", BetterSide::Smaller), ("larger", BetterSide::Larger)] {
-            let list = measures_with(side);
-            let measures = self.measures.iter().map(|measure| measure.name.as_str());
-            let names: Vec<&str> = measures.filter(|name| list.contains(name)).collect();
+            let measures = self.measures.iter().filter(|measure| measure.side() == side);
+            let names: Vec<&str> = measures.map(|measure| measure.column.name.as_str()).collect();
             if !names.is_empty() {
                 let _ = write!(text, "; better: {noun} {}", names.join(", "));
             }
         }
         eprintln!("{text}");
+        let ties = self.measures.iter().map(|measure| {
+            let source = match measure.tolerance.source {
+                ToleranceSource::Given => "--tie",
+                ToleranceSource::Seeds => "spread over the seeds",
+                ToleranceSource::Method => "spread of the method",
+                ToleranceSource::Unknown => "spread not known: lower or higher, not better",
+            };
+            let limit = best::limit(&measure.tolerance);
+            format!("{} within {limit} ({source})", measure.column.name)
+        });
+        eprintln!("tie: {}", ties.collect::<Vec<_>>().join(", "));
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");
         }
-        if !alone.is_empty() {
+        let jobs = pairs_of_jobs(self.table, &self.pairs).len();
+        if jobs < self.pairs.len() {
             eprintln!(
-                "note: {} without a partner that has the same other parameters",
-                count(alone.len(), "row")
+                "note: {} of points are {} of jobs; the summary counts each of these once",
+                count(self.pairs.len(), "pair"),
+                count(jobs, "pair")
             );
         }
+        if !alone.is_empty() {
+            eprintln!(
+                "note: {} without a partner that has the same other parameters: {}",
+                count(alone.len(), "row"),
+                self.labels(alone)
+            );
+        }
+    }
+
+    /// Parameters of some rows, of the first three at most.
+    fn labels(&self, rows: &[usize]) -> String {
+        const MAX_SHOWN: usize = 3;
+        let label = |row: &usize| {
+            let parameters = self.table.parameters();
+            let texts: Vec<String> = parameters
+                .map(|column| {
+                    format!("{}={}", column.name, column.shown.quantity(&column.cells[*row]))
+                })
+                .collect();
+            texts.join(", ")
+        };
+        let mut labels: Vec<String> = rows.iter().take(MAX_SHOWN).map(label).collect();
+        if rows.len() > MAX_SHOWN {
+            labels.push(format!("and {} more", rows.len() - MAX_SHOWN));
+        }
+        labels.join("; ")
     }
 }

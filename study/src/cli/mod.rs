@@ -10,9 +10,12 @@ use clap::{Parser, Subcommand};
 
 use crate::platform::error::{Error, Result};
 use crate::platform::exit_code::{EXIT_CODES, Exit};
+use crate::platform::output::Output;
 
 mod answer;
 pub mod bench;
+mod best;
+mod changes;
 mod chart;
 mod compare;
 mod completions;
@@ -36,6 +39,7 @@ mod solve;
 mod status;
 mod table;
 mod target;
+mod usage;
 pub mod validate;
 mod why;
 
@@ -99,25 +103,23 @@ pub enum Command {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(error) => {
-            // --help and --version are answers; every other clap error is invalid input.
-            let exit = if error.use_stderr() { Exit::InvalidInput } else { Exit::Success };
-            let _ = error.print();
-            return exit.into();
+    let mut out = io::BufWriter::new(Output::new(io::stdout().lock()));
+    let result = command(&mut out).and_then(|()| out.flush().map_err(output_error));
+    let Err(error) = result else { return Exit::Success.into() };
+    // The reader still gets what was printed before the error.
+    let _ = out.flush();
+    eprintln!("billow: {error}");
+    error.exit().into()
+}
+
+/// Runs the command of the command line.
+fn command(out: &mut dyn Write) -> Result<()> {
+    match Cli::try_parse() {
+        Ok(cli) => dispatch(&cli.command, out),
+        Err(error) if !error.use_stderr() => {
+            write!(out, "{}", error.render()).map_err(output_error)
         }
-    };
-    let mut out = io::BufWriter::new(io::stdout().lock());
-    let result = dispatch(&cli.command, &mut out).and_then(|()| out.flush().map_err(output_error));
-    match result {
-        Ok(()) | Err(Error::OutputClosed) => Exit::Success.into(),
-        Err(error) => {
-            // The reader still gets what was printed before the error.
-            let _ = out.flush();
-            eprintln!("billow: {error}");
-            error.exit().into()
-        }
+        Err(error) => Err(usage::error(&error)),
     }
 }
 
@@ -153,13 +155,9 @@ fn exit_codes_help() -> String {
     text
 }
 
-/// The error of a failed write to stdout; [`Error::OutputClosed`] when the reader closed it
-/// (`billow … | head`).
+/// The error of a failed write to stdout. A reader that closes it is no error: [`Output`].
 #[expect(clippy::needless_pass_by_value, reason = "the signature that map_err takes")]
 pub fn output_error(error: io::Error) -> Error {
-    if error.kind() == io::ErrorKind::BrokenPipe {
-        Error::OutputClosed
-    } else {
-        Error::Disk { path: PathBuf::from("stdout"), problem: error.to_string() }
-    }
+    let next = "the output is not complete; free some space, or write it to another file";
+    Error::Disk { path: PathBuf::from("stdout"), problem: format!("{error}\n  next: {next}") }
 }

@@ -1,9 +1,19 @@
-//! Notes on the results of a study, on stderr: limits of the models, and keys that a model ignores.
+//! Warnings about the values of a study, and notes on its results, on stderr: limits of the models, and
+//! keys that a model ignores.
 
 use billow_solver::scene::ModelKind;
 
 use crate::input::keys::{MODELS, Model};
+use crate::input::value::brief_number;
 use crate::study::Study;
+use crate::study::ground::pressure_below_ambient;
+
+/// Prints the warnings about values of the study: before anything runs.
+pub fn print_warnings(study: &Study) {
+    for line in study.warnings() {
+        eprintln!("{line}");
+    }
+}
 
 /// Prints the notes.
 pub fn print(study: &Study) {
@@ -26,6 +36,7 @@ fn lines(study: &Study) -> Vec<String> {
             study.points().len()
         ));
     }
+    lines.extend(below_ambient(study));
     lines.extend(
         MODELS.iter().filter(|model| has(model.kind)).filter_map(|model| ignored(study, model)),
     );
@@ -49,6 +60,21 @@ fn lines(study: &Study) -> Vec<String> {
         }
     }
     lines
+}
+
+/// A note on capsules whose gas has less than ambient pressure at the start.
+fn below_ambient(study: &Study) -> Option<String> {
+    let below = study.points().iter().filter_map(|point| pressure_below_ambient(&point.scene));
+    let (count, smallest) =
+        below.fold((0, f64::INFINITY), |(count, least), p| (count + 1, f64::min(least, p)));
+    (count > 0).then(|| {
+        format!(
+            "note: {count} of {} points start with gas at {} Pa or more, below gas.ambient_pressure, which presses \
+             the capsule together; residual_gas ambient fills the folds at ambient pressure",
+            study.points().len(),
+            brief_number(smallest)
+        )
+    })
 }
 
 fn ignored(study: &Study, model: &Model) -> Option<String> {

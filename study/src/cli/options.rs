@@ -6,8 +6,11 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
+use crate::input::keys;
+use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::platform::error::{Error, Result};
 use crate::run::progress::Loudness;
+use crate::store::table::Table;
 
 /// Heading of the shared options in `--help`.
 pub const HEADING: &str = "Global options";
@@ -60,10 +63,63 @@ impl ThreadsOption {
 /// Overrides of the study or scene file.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct SetOption {
-    /// Override a key of the study or scene file, for example --set film.thickness="30 um"; can be
+    /// Override a key of the study or scene file, for example --set film.thickness="30 um"; a value or a
+    /// list for a key of the grid, as in --set N=6 or --set 'N=[5, 6]', replaces its axis; can be
     /// repeated.
     #[arg(long, value_name = "KEY=VALUE", help_heading = HEADING)]
     pub set: Vec<String>,
+}
+
+/// Units in which quantities are shown. Outputs for programs, csv and json, are SI.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct UnitsOption {
+    /// Show every quantity in SI [default: parameters in the units of the study file].
+    #[arg(long, help_heading = HEADING)]
+    pub si: bool,
+    /// Show these parameters and columns in these units, comma-separated, for example --units
+    /// "`t_90_z_rim=ms,mass_flow_rate=kg/h`".
+    #[arg(long, value_name = "NAME=UNIT", value_delimiter = ',', help_heading = HEADING)]
+    pub units: Vec<String>,
+}
+
+impl UnitsOption {
+    /// The units of the study with the options applied. `si` gives the SI unit of a name that is shown.
+    ///
+    /// # Errors
+    /// A name without a unit, an unknown name, a unit of another dimension.
+    pub fn apply(
+        &self,
+        study: &DisplayUnits,
+        si: &dyn Fn(&str) -> Option<String>,
+    ) -> Result<DisplayUnits> {
+        let mut units = if self.si { DisplayUnits::si() } else { study.clone() };
+        for text in &self.units {
+            let refuse = |problem: String| {
+                let allowed = "NAME=UNIT, as in t_90_z_rim=ms";
+                let hint = "billow table --columns all lists the columns";
+                Error::invalid_option("--units", text, problem, allowed, hint)
+            };
+            let (name, symbol) =
+                text.split_once('=').ok_or_else(|| refuse("has no `=`".to_owned()))?;
+            let name = name.trim();
+            let name = keys::find(name).map_or(name, |index| keys::short_name(index));
+            let si =
+                si(name).ok_or_else(|| refuse("names no parameter and no column".to_owned()))?;
+            DisplayUnit::new(symbol, &si).map_err(refuse)?;
+            units.set(name, symbol);
+        }
+        Ok(units)
+    }
+
+    /// The table, shown in the units of the study with the options applied.
+    ///
+    /// # Errors
+    /// As [`Self::apply`].
+    pub fn show(&self, table: Table, study: &DisplayUnits) -> Result<Table> {
+        let units =
+            self.apply(study, &|name| table.column(name).map(|column| column.unit.clone()))?;
+        Ok(table.shown_in(&units))
+    }
 }
 
 /// Format of the output.

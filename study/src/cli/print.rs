@@ -4,8 +4,62 @@
 use std::io::{self, IsTerminal, Write};
 
 use super::{Format, output_error};
-use crate::input::value::{Value, brief_number, json_value, short_number};
+use crate::input::units::DisplayUnit;
+use crate::input::value::{Value, brief_number, json_value};
 use crate::platform::error::Result;
+
+/// A column of a list: its name, and the unit in which a table shows its numbers.
+pub struct Heading {
+    /// Name.
+    pub name: String,
+    /// Unit of its cells in a table.
+    pub unit: DisplayUnit,
+}
+
+impl Heading {
+    /// A column without a unit, or one whose cells say it themselves.
+    pub fn plain(name: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: DisplayUnit::si("") }
+    }
+
+    /// Characters that the column needs for its header.
+    pub fn width(&self) -> usize {
+        self.name.chars().count().max(self.symbol().chars().count())
+    }
+
+    /// The unit as the second line of the header has it; empty without a unit.
+    fn symbol(&self) -> String {
+        match self.unit.symbol() {
+            "" => String::new(),
+            symbol => format!("({symbol})"),
+        }
+    }
+}
+
+/// Prints rows of SI values under their columns. A table shows them in the unit of each column, which
+/// stands below its name; csv and json are SI, as [`print_rows`].
+///
+/// # Errors
+/// When the output cannot be written.
+pub fn print_quantities(
+    headings: &[Heading],
+    rows: &[Vec<Value>],
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let names: Vec<&str> = headings.iter().map(|heading| heading.name.as_str()).collect();
+    if format != Format::Table {
+        return print_rows(&names, rows, format, out);
+    }
+    let shown: Vec<Vec<Value>> = rows
+        .iter()
+        .map(|row| {
+            row.iter().zip(headings).map(|(cell, heading)| heading.unit.value(cell)).collect()
+        })
+        .collect();
+    let units: Vec<String> = headings.iter().map(Heading::symbol).collect();
+    aligned(&names, &units, &shown, bold_headers(), out).map_err(output_error)
+}
 
 /// Prints rows under their columns.
 ///
@@ -28,7 +82,7 @@ pub fn print_rows<C: AsRef<str>>(
 ) -> Result<()> {
     let columns: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
     let written = match format {
-        Format::Table => aligned(&columns, rows, bold_headers(), out),
+        Format::Table => aligned(&columns, &[], rows, bold_headers(), out),
         Format::Csv => csv(&columns, rows, out),
         Format::Json => json(&columns, rows, out),
     };
@@ -40,8 +94,10 @@ fn bold_headers() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
+/// `units` is the second line of the header, which is left out when it is empty.
 fn aligned(
     columns: &[&str],
+    units: &[String],
     rows: &[Vec<Value>],
     bold: bool,
     out: &mut dyn Write,
@@ -57,7 +113,8 @@ fn aligned(
         .enumerate()
         .map(|(index, name)| {
             let widest = cells.iter().map(|row| row[index].chars().count()).max().unwrap_or(0);
-            widest.max(name.chars().count())
+            let unit = units.get(index).map_or(0, |unit| unit.chars().count());
+            widest.max(name.chars().count()).max(unit)
         })
         .collect();
     // A column of numbers and its header are aligned to the right.
@@ -85,11 +142,16 @@ fn aligned(
         line.truncate(line.trim_end().len());
         line
     };
-    let header = line(&mut columns.iter().copied());
-    if bold {
-        writeln!(out, "\x1b[1m{header}\x1b[0m")?;
-    } else {
-        writeln!(out, "{header}")?;
+    let mut headers = vec![line(&mut columns.iter().copied())];
+    if units.iter().any(|unit| !unit.is_empty()) {
+        headers.push(line(&mut units.iter().map(String::as_str)));
+    }
+    for header in headers {
+        if bold {
+            writeln!(out, "\x1b[1m{header}\x1b[0m")?;
+        } else {
+            writeln!(out, "{header}")?;
+        }
     }
     for row in &cells {
         writeln!(out, "{}", line(&mut row.iter().map(String::as_str)))?;
@@ -101,11 +163,10 @@ fn aligned(
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
-        Value::Number(number) => short_number(*number),
         Value::Text(text) => {
             text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>()
         }
-        other => other.to_string(),
+        other => other.short(),
     }
 }
 
@@ -188,9 +249,22 @@ mod tests {
     #[test]
     fn columns_are_aligned() {
         let mut out = Vec::new();
-        aligned(&["N", "note", "x"], &rows(), false, &mut out).unwrap();
+        aligned(&["N", "note", "x"], &[], &rows(), false, &mut out).unwrap();
         let expected = " N  note      x\n 6  a, \"b\"  0.3\n12  -       NaN\n";
         assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_table_has_the_units_below_the_names() {
+        let mut headings = ["N", "note", "x"].map(Heading::plain);
+        headings[2].unit = DisplayUnit::new("ms", "s").unwrap();
+        let mut out = Vec::new();
+        print_quantities(&headings, &rows(), Format::Table, &mut out).unwrap();
+        let expected = " N  note       x\n            (ms)\n 6  a, \"b\"   300\n12  -        NaN\n";
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
+        let mut out = Vec::new();
+        print_quantities(&headings, &rows(), Format::Csv, &mut out).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap(), printed(Format::Csv), "csv is SI");
     }
 
     #[test]

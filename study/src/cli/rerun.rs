@@ -107,8 +107,12 @@ fn named(stored: &Stored<'_>, ids: &[String]) -> Result<BTreeSet<JobId>> {
 
 /// Jobs of the rows for which a condition holds; infeasible points have no job.
 fn matching(stored: &Stored<'_>, condition: &str) -> Result<BTreeSet<JobId>> {
-    let rows = filtered(&stored.table(), Some(condition))?;
-    let points = rows.into_iter().map(|row| &stored.points[row]);
+    let table = stored.table();
+    let rows = filtered(&table, Some(condition))?;
+    let ids = table.column("job").map(|column| &column.cells);
+    let chosen: BTreeSet<String> =
+        rows.into_iter().filter_map(|row| Some(ids?[row].to_string())).collect();
+    let points = stored.points.iter().filter(|point| chosen.contains(point.job.id.as_str()));
     let feasible = points.filter(|point| point.infeasible.is_none());
     Ok(feasible.map(|point| point.job.id.clone()).collect())
 }

@@ -4,13 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::options::{OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption};
+use super::options::{
+    OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
+};
 use super::print::count;
 use super::target::results_folder;
-use super::{Format, memory, notes, output_error};
+use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
 use crate::job::references::References;
+use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
@@ -18,7 +21,7 @@ use crate::platform::stop::Stop;
 use crate::run::progress;
 use crate::run::runner::{self, Run, Summary};
 use crate::store::results::Results;
-use crate::store::stored::Stored;
+use crate::store::stored::{Stored, other_physics};
 use crate::study::Study;
 use crate::study::plan;
 
@@ -39,6 +42,8 @@ pub struct Args {
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct RunOptions {
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     threads: ThreadsOption,
     #[command(flatten)]
     pub(super) output: OutputOptions,
@@ -55,6 +60,16 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     memory::check(&args.study.display().to_string(), &study)?;
     let root = results_folder(&args.results, &study);
+    if !args.options.progress.quiet {
+        notes::print_warnings(&study);
+        let results = Results::new(&Disk, &root);
+        changes::note_before_run(&results, &study)?;
+        let points = plan::next_jobs(&study, &[]).map(|plan| plan.points).unwrap_or_default();
+        let versions = other_physics(&points, &results.journal()?.records);
+        if let Some(note) = changes::other_physics(&versions) {
+            eprintln!("note: {note}");
+        }
+    }
     run_study(&study, &root, None, &args.options, out)
 }
 
@@ -69,7 +84,18 @@ pub(super) fn run_study(
     options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
+    let units = options.units.apply(study.display_units(), &|name| {
+        let is_parameter = study.parameter_names().iter().any(|parameter| parameter == name);
+        let column = COLUMNS.iter().find(|column| column.name == name);
+        let unit = is_parameter.then(|| study.unit(name));
+        unit.or(column.map(|column| column.unit)).map(str::to_owned)
+    })?;
     let instruction_set = super::instruction_set::selected()?;
+    let threads = options.threads.count()?;
+    if !options.progress.quiet {
+        // Before the run: a reader may want to change the study.
+        notes::print(study);
+    }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
     let summary = runner::run(
@@ -83,18 +109,16 @@ pub(super) fn run_study(
                 references: References::known(results.references()),
             },
             results: results.clone(),
-            threads: options.threads.count()?,
+            threads,
             stop,
             rerun: again,
         },
-        progress::reporter(options.progress.loudness()).as_mut(),
+        progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
-    let answer = Answer::of(&Stored::read(results)?);
-    print(&study.name, root, &summary, &answer, options.output.format(), out)
-        .map_err(output_error)?;
-    if !options.progress.quiet {
-        notes::print(study);
-    }
+    let mut stored = Stored::read(results)?;
+    stored.units = units;
+    let answer = Answer::of(&stored);
+    print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
     result(&summary, root)
 }
 
@@ -124,18 +148,20 @@ fn result(summary: &Summary, root: &Path) -> Result<()> {
 }
 
 fn print(
-    name: &str,
+    study: &Study,
     root: &Path,
     summary: &Summary,
     answer: &Answer,
     format: Format,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let counts = &summary.counts;
+    let (name, counts) = (&study.name, &summary.counts);
+    let points = count(study.points().len(), "point");
     if format == Format::Json {
         let mut json = serde_json::json!({
             "study": name,
             "results": root.display().to_string(),
+            "points": study.points().len(),
             "ran": summary.ran,
             "failed": counts.failed(),
             "status": counts.status,
@@ -150,11 +176,14 @@ fn print(
         }
         return writeln!(out, "{json}");
     }
-    if summary.ran == 0 && counts.of(Status::Pending) == 0 {
+    if counts.jobs() == 0 {
+        writeln!(out, "{name}: nothing to run, no fold pattern fits any of {points}")?;
+        let root = root.display();
+        writeln!(out, "  next     billow table {root} --columns job,reason,nearest")?;
+    } else if summary.ran == 0 && counts.of(Status::Pending) == 0 {
         writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
     } else {
-        let (ran, points) = (count(summary.ran, "job"), count(counts.rows(), "point"));
-        writeln!(out, "{name}: {ran} run, {points}")?;
+        writeln!(out, "{name}: {} run, {points}", count(summary.ran, "job"))?;
     }
     writeln!(out, "  status   {}", listed(&counts.status))?;
     if !counts.verdict.is_empty() {

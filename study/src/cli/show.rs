@@ -4,16 +4,18 @@ use std::io::Write;
 
 use billow_solver::output::history::COLUMNS;
 
-use super::options::{OutputOptions, QuietOption};
-use super::print::print_rows;
+use super::options::{OutputOptions, QuietOption, UnitsOption};
+use super::print::{Heading, print_quantities, print_rows};
 use super::target::{StudyArgs, current_name, folder_of_job};
 use super::{Format, output_error};
 use crate::input::keys::{self, KEYS};
+use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::row::{Cells, ColumnGroup};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
+use crate::platform::nearest::did_you_mean;
 use crate::scene::summary;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::results::Results;
@@ -58,6 +60,8 @@ pub struct Args {
     )]
     pub every: usize,
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
     quiet: QuietOption,
@@ -77,10 +81,39 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     if args.history {
         let history = history_of(&stored, &id)?;
-        return print_history(&history, args, out);
+        return print_history(&history, args, stored.study.display_units(), out);
     }
     let rows = rows(&stored, &id);
-    print_rows(&["group", "name", "value", "unit", "meaning"], &rows, args.output.format(), out)
+    let format = args.output.format();
+    let rows = if format == Format::Table { in_units(rows, args, &stored)? } else { rows };
+    print_rows(&["group", "name", "value", "unit", "meaning"], &rows, format, out)
+}
+
+/// The rows with their values in the units that a reader asks for.
+fn in_units(
+    mut rows: Vec<Vec<Value>>,
+    args: &Args,
+    stored: &Stored<'_>,
+) -> Result<Vec<Vec<Value>>> {
+    // Name, value and unit are the cells 1, 2 and 3; a scene names its keys by their paths.
+    let named = |row: &[Value]| {
+        let name = row[1].to_string();
+        keys::index(&name).map_or(name, |index| keys::short_name(index).to_owned())
+    };
+    let si = |name: &str| {
+        let row = rows.iter().find(|row| named(row) == name)?;
+        row.get(3).map(ToString::to_string)
+    };
+    let units = args.units.apply(stored.study.display_units(), &si)?;
+    for row in &mut rows {
+        let Some(Value::Text(si)) = row.get(3) else { continue };
+        let unit = units.of(&named(row), si);
+        if !si.is_empty() && unit != DisplayUnit::si(si) {
+            row[2] = unit.value(&row[2]);
+            row[3] = Value::Text(unit.symbol().to_owned());
+        }
+    }
+    Ok(rows)
 }
 
 fn history_of(stored: &Stored<'_>, id: &JobId) -> Result<StoredHistory> {
@@ -119,7 +152,8 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         let group_cells =
             cells.iter().filter(|(column, value)| column.group == group && **value != Value::Null);
         rows.extend(group_cells.map(|(column, value)| {
-            let (unit, meaning) = (text(column.unit), text(column.meaning));
+            let noisy = if column.id.is_noisy() { "noisy: " } else { "" };
+            let (unit, meaning) = (text(column.unit), text(&format!("{noisy}{}", column.meaning)));
             vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
@@ -155,11 +189,17 @@ fn unit(key_path: &str) -> &'static str {
     }
 }
 
-fn print_history(stored: &StoredHistory, args: &Args, out: &mut dyn Write) -> Result<()> {
+fn print_history(
+    stored: &StoredHistory,
+    args: &Args,
+    units: &DisplayUnits,
+    out: &mut dyn Write,
+) -> Result<()> {
     let format = args.output.format();
     let columns = stored.history.iter().map(|(column, values)| (column.name, values));
     let tracks = stored.tracks.iter().map(|(name, values)| (name.as_str(), values.as_slice()));
     let all: Vec<(&str, &[f64])> = columns.chain(tracks).collect();
+    let all_names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
     let every = args.every;
     if every == 0 {
         return Err(Error::invalid_option("--every", "0", "must be positive", "1 or more", ""));
@@ -182,24 +222,34 @@ fn print_history(stored: &StoredHistory, args: &Args, out: &mut dyn Write) -> Re
             columns.iter().map(value).collect()
         })
         .collect();
-    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    print_rows(&names, &rows, format, out)?;
+    let units = args.units.apply(units, &|name| {
+        let known = all_names.iter().any(|known| *known == name);
+        known.then(|| si_of_column(name).to_owned())
+    })?;
+    let headings: Vec<Heading> = columns
+        .iter()
+        .map(|(name, _)| Heading {
+            name: (*name).to_owned(),
+            unit: units.of(name, si_of_column(name)),
+        })
+        .collect();
+    print_quantities(&headings, &rows, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
-        let units: Vec<String> = COLUMNS
-            .iter()
-            .filter(|column| names.contains(&column.name) && column.unit != "1")
-            .map(|column| format!("{} {}", column.name, column.unit))
-            .collect();
-        eprintln!("units: {}; {} of {samples} samples", units.join(", "), rows.len());
+        eprintln!("{} of {samples} samples", rows.len());
     }
     Ok(())
+}
+
+/// SI unit of a column of a history; empty for a series whose unit is not stored.
+fn si_of_column(name: &str) -> &'static str {
+    COLUMNS.iter().find(|column| column.name == name).map_or("", |column| column.unit)
 }
 
 fn find<'a>(all: &[(&'a str, &'a [f64])], name: &str) -> Result<(&'a str, &'a [f64])> {
     let names = || all.iter().map(|(name, _)| *name);
     let current = current_name("--columns", name);
     all.iter().find(|(known, _)| *known == current).copied().ok_or_else(|| {
-        let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let hint = did_you_mean(name, names());
         let allowed = names().collect::<Vec<_>>().join(", ");
         let problem = "no such column in this history";
         Error::invalid_option("--columns", name, problem, allowed, hint.unwrap_or_default())

@@ -1,5 +1,6 @@
 //! `billow status`: shows the progress of a study.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::num::NonZero;
 
@@ -9,15 +10,16 @@ use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, print_rows};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
-use super::{Format, output_error};
+use super::{Format, changes, output_error};
 use crate::job::Status as JobStatus;
 use crate::job::row::{ColumnId, Counts};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
+use crate::platform::quote;
 use crate::scene::summary;
 use crate::store::doctor::{self, Depth, Health};
 use crate::store::results::Results;
-use crate::store::stored::Stored;
+use crate::store::stored::{Stored, other_physics};
 
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]
@@ -84,6 +86,11 @@ impl<'a> Status<'a> {
         Self { stored, health, counts, seconds, timed, threads }
     }
 
+    /// Numbers of finished jobs of other versions of the physics, by version.
+    fn other_physics(&self) -> BTreeMap<i64, usize> {
+        other_physics(&self.stored.points, &self.stored.journal.records)
+    }
+
     /// Mean wall time of a job, s.
     fn mean_seconds(&self) -> Option<f64> {
         (self.timed > 0).then(|| self.seconds / self.timed as f64)
@@ -103,18 +110,19 @@ impl<'a> Status<'a> {
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
             "running": self.health.running,
-            "points": counts.rows(),
+            "points": stored.study.points().len(),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
             "pending": counts.of(JobStatus::Pending),
             "infeasible": counts.of(JobStatus::Infeasible),
+            "other_physics": self.other_physics(),
             "invalidated": stored.journal.invalidated.len(),
             "status": counts.status,
             "verdict": counts.verdict,
             "near_threshold": counts.near_threshold,
-            "wall_seconds": self.seconds,
-            "mean_wall_seconds": self.mean_seconds(),
+            "job_seconds": self.seconds,
+            "mean_job_seconds": self.mean_seconds(),
             "remaining_seconds": self.remaining_seconds(),
             "threads": self.threads,
             "broken": self.health.faults(),
@@ -133,9 +141,10 @@ impl<'a> Status<'a> {
         writeln!(out, "{}: {state}", self.stored.study.name).map_err(output_error)?;
         let mut lines: Vec<Line> = Vec::new();
         if !self.stored.study.question.is_empty() {
-            lines.push(("question", self.stored.study.question.clone()));
+            lines.push(("question", quote::printable(&self.stored.study.question)));
         }
         lines.extend(self.job_lines());
+        lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
         lines.extend(self.time_lines());
         lines.push(("broken", self.broken()));
         lines.push(("results", self.stored.results.root().display().to_string()));
@@ -151,8 +160,13 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
+        let points = self.stored.study.points().len();
+        let duplicates = match points.saturating_sub(counts.rows()) {
+            0 => String::new(),
+            number => format!(", {}", count(number, "duplicate")),
+        };
         let mut lines =
-            vec![("points", format!("{}: {jobs}, {infeasible} infeasible", counts.rows()))];
+            vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
         let invalidated = match self.stored.journal.invalidated.len() {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),
@@ -176,21 +190,27 @@ impl<'a> Status<'a> {
         lines
     }
 
-    /// Elapsed and remaining time.
+    /// Time of the finished jobs, and remaining time.
     fn time_lines(&self) -> Vec<Line> {
         let mut lines = Vec::new();
         if let Some(mean) = self.mean_seconds() {
-            let elapsed = duration(self.seconds);
-            lines.push((
-                "elapsed",
-                format!("{elapsed} on one core, mean {} per job", duration(mean)),
-            ));
+            // Jobs run side by side, in several runs: their sum is no time on a clock.
+            let text = format!(
+                "{} in all, the sum over {} of one thread each; mean {}",
+                duration(self.seconds),
+                count(self.timed, "job"),
+                duration(mean)
+            );
+            lines.push(("job time", text));
         }
         if self.counts.of(JobStatus::Pending) > 0 {
             let text = match self.remaining_seconds() {
                 Some(remaining) => {
                     let threads = count(self.threads, "thread");
-                    format!("about {} on {threads}, from this mean", duration(remaining))
+                    format!(
+                        "about {} on {threads} (--threads N for another number)",
+                        duration(remaining)
+                    )
                 }
                 None => "unknown: no job has run yet".to_owned(),
             };

@@ -3,24 +3,23 @@
 use std::cmp::Ordering;
 use std::io::Write;
 
-use super::Format;
-use super::options::{OutputOptions, QuietOption, SetOption};
-use super::print::print_rows;
-use super::target::{self, StudyArgs, filtered, find};
-use crate::input::value::{Value, short_number};
-use crate::job::row::ColumnId;
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
+use super::print::{Heading, print_quantities};
+use super::target::{self, StudyArgs, Target, filtered, find};
+use super::{Format, best};
+use crate::input::value::Value;
+use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
-/// Columns shown after the parameters by default, in this order, as far as they fit.
-const MAIN_COLUMNS: [ColumnId; 10] = [
+/// Columns shown after the parameters by default, in this order, as far as they fit. None is noisy.
+const MAIN_COLUMNS: [ColumnId; 9] = [
     ColumnId::Status,
     ColumnId::Verdict,
     ColumnId::T90ZRim,
-    ColumnId::PeakVz,
+    ColumnId::PeakKineticEnergy,
     ColumnId::FinalPressure,
     ColumnId::TDeployed,
-    ColumnId::PeakKineticEnergy,
     ColumnId::VolumeRatio,
     ColumnId::HeightRatio,
     ColumnId::Overshoot,
@@ -45,6 +44,8 @@ pub struct Args {
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sort: Vec<String>,
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     set: SetOption,
     #[command(flatten)]
     output: OutputOptions,
@@ -57,38 +58,56 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let table = target::open(&args.study, &args.set.set)?.table;
+    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = args.output.format();
     let columns = chosen(&table, &args.columns, format)?;
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let headings: Vec<Heading> = columns.iter().map(|column| heading(column)).collect();
     let cells: Vec<Vec<Value>> = rows
         .iter()
         .map(|row| columns.iter().map(|column| shown(column, *row, format)).collect())
         .collect();
-    print_rows(&names, &cells, format, out)?;
+    print_quantities(&headings, &cells, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
+        if let Some(note) = noisy_note(&columns) {
+            eprintln!("{note}");
+        }
         if rows.is_empty() && args.condition.is_some() {
             eprintln!(
                 "billow: no row fulfils --where; a number without a unit is SI, a unit is written as in \
                  mass_flow_rate == '5 g/s'"
             );
         }
-        eprintln!("{}", legend(&columns, table.columns.len()));
+        eprintln!("{} of {} columns (--columns all)", columns.len(), table.columns.len());
+        let jobs = table.one_row_per_job(&rows).len();
+        if jobs < rows.len() {
+            eprintln!(
+                "note: {} of these {} rows are the same job as another row ({SAME_JOB_AS})",
+                rows.len() - jobs,
+                rows.len()
+            );
+        }
+        best::print(&results, &table, &rows)?;
     }
     Ok(())
 }
 
-/// Units of the printed columns, and the number of all columns.
-fn legend(shown: &[&Column], all: usize) -> String {
-    let units: Vec<String> = shown
+/// A note when noisy measures are among the printed columns.
+fn noisy_note(columns: &[&Column]) -> Option<String> {
+    let noisy: Vec<&str> = columns
         .iter()
-        .filter(|column| !matches!(column.unit.as_str(), "" | "1"))
-        .map(|column| format!("{} {}", column.name, column.unit))
+        .map(|column| column.name.as_str())
+        .filter(|name| ColumnId::from_name(name).is_some_and(ColumnId::is_noisy))
         .collect();
-    let units =
-        if units.is_empty() { String::new() } else { format!("units: {}; ", units.join(", ")) };
-    format!("{units}{} of {all} columns (--columns all)", shown.len())
+    let measures = noisy.join(", ");
+    (!noisy.is_empty()).then(|| {
+        format!("note: noisy: {measures}; the seed alone changes them by more than 3 %, use several seeds")
+    })
+}
+
+/// A column as the head of a table has it.
+fn heading(column: &Column) -> Heading {
+    Heading { name: column.name.clone(), unit: column.shown.clone() }
 }
 
 /// Rows in the order asked for; equal rows stay in plan order.
@@ -159,10 +178,10 @@ fn main_columns(table: &Table) -> Vec<&Column> {
 fn width(column: &Column) -> usize {
     let rows = 0..column.cells.len();
     let widest = rows.map(|row| match shown(column, row, Format::Table) {
-        Value::Number(number) => short_number(number).len(),
-        other => other.to_string().chars().count(),
+        Value::Null => 1,
+        value => column.shown.text(&value).chars().count(),
     });
-    widest.max().unwrap_or(0).max(column.name.chars().count())
+    widest.max().unwrap_or(0).max(heading(column).width())
 }
 
 /// A cell as printed: a table has short job ids.

@@ -1,17 +1,19 @@
 //! The results folder that a command reads, and the rows of its table.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::options::ResultsOption;
+use super::changes;
+use super::options::{ResultsOption, UnitsOption};
 use crate::input::expression::{Expression, Type, Variable};
-use crate::input::keys;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note};
-use crate::job::status::RENAMED_STATUSES;
+use crate::job::status::{RENAMED_STATUSES, Status};
 use crate::platform::error::{Error, InputError, Result};
-use crate::platform::files::{Disk, Files};
+use crate::platform::files::{self, Disk, Files};
+use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
@@ -37,11 +39,11 @@ pub struct Target {
 
 /// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
 /// stderr says when the given study file, with its overrides `set`, differs from the study of the
-/// results.
+/// results. The table is shown in the units of the given study file, or in those of the results.
 ///
 /// # Errors
-/// When there are no results, or their table cannot be read.
-pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
+/// When there are no results, or their table cannot be read; units that do not fit.
+pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, set)?);
     // A run that was stopped before it wrote its table has a plan and a journal.
     let table = if !results.table_path().exists() && results.owner()?.is_some() {
@@ -49,15 +51,13 @@ pub fn open(given: &StudyArgs, set: &[String]) -> Result<Target> {
     } else {
         results.read_table()?
     };
-    if let Some(path) = given.study.as_deref().filter(|path| path.is_file()) {
-        let study = Study::load(path, set)?;
-        if !results.holds(&study.name, &study.resolved())? {
-            eprintln!(
-                "billow: {} has changed since these rows were computed; `billow run` updates them",
-                path.display()
-            );
-        }
-    }
+    changes::note(&results, given, set)?;
+    changes::note_other_physics(&table);
+    let display = match given.study.as_deref().filter(|path| path.is_file()) {
+        Some(path) => Study::load(path, set)?.display_units().clone(),
+        None => results.display_units()?,
+    };
+    let table = units.show(table, &display)?;
     Ok(Target { results, table })
 }
 
@@ -73,16 +73,29 @@ pub fn folder(given: &StudyArgs, set: &[String]) -> Result<PathBuf> {
     let Some(study) = &given.study else { return only_folder() };
     let under_results = Path::new("results").join(study);
     if study.is_dir() {
-        Ok(study.clone())
+        let inside = results_in(study);
+        if inside.is_empty() || is_results(study) {
+            return Ok(study.clone());
+        }
+        let problem = "holds folders of results and is none itself";
+        let names: Vec<String> = inside.iter().map(|path| path.display().to_string()).collect();
+        let file = "results folder";
+        let value = study.display().to_string();
+        Err(Error::invalid_option(file, &value, problem, names.join(", "), "name one of these"))
     } else if !study.exists() && under_results.is_dir() {
         Ok(under_results)
     } else if !study.exists() {
+        let near = files::nearest_name(study).or_else(|| {
+            let near = PathBuf::from(files::nearest_name(&under_results)?);
+            Some(near.file_name()?.to_string_lossy().into_owned())
+        });
+        let near = near.map_or_else(String::new, |near| format!("did you mean {near}? Otherwise "));
         Err(Error::Disk {
             path: study.clone(),
-            problem:
-                "neither a study file nor a results folder\n  next: name a study file, or its \
-                      results folder"
-                    .to_owned(),
+            problem: format!(
+                "neither a study file nor a results folder\n  next: {near}name a study file, or its \
+                 results folder"
+            ),
         })
     } else {
         Ok(results_folder(&given.results, &Study::load(study, set)?))
@@ -113,17 +126,33 @@ pub fn folder_of_job(job: &str, given: &StudyArgs) -> Result<PathBuf> {
     folder(given, &[])
 }
 
+/// Whether a folder is that of a study's results.
+fn is_results(path: &Path) -> bool {
+    path.join("summary.parquet").is_file() || path.join("study.json").is_file()
+}
+
+/// The results folders in a folder.
+fn results_in(folder: &Path) -> Vec<PathBuf> {
+    let mut folders = Disk.list(folder).unwrap_or_default();
+    folders.retain(|path| is_results(path));
+    folders
+}
+
 fn only_folder() -> Result<PathBuf> {
     let results = Path::new("results");
-    let mut folders = Disk.list(results).unwrap_or_default();
-    folders
-        .retain(|path| path.join("summary.parquet").is_file() || path.join("study.json").is_file());
+    let folders = results_in(results);
     match folders.as_slice() {
         [only] => Ok(only.clone()),
         [] => {
             let problem = "no results under the current folder";
             let allowed = "a study file, or a results folder";
-            Err(Error::invalid_option("results", "", problem, allowed, "name one"))
+            Err(Error::invalid_option(
+                "results",
+                "",
+                problem,
+                allowed,
+                "run `billow run STUDY`, or name one",
+            ))
         }
         several => {
             let names: Vec<String> =
@@ -153,7 +182,7 @@ pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column
         return Ok(column);
     }
     table.column(current_name(option, name)).ok_or_else(|| {
-        let hint = keys::nearest(name, names()).map(|near| format!("did you mean {near}?"));
+        let hint = did_you_mean(name, names());
         let allowed = names().collect::<Vec<_>>().join(", ");
         Error::invalid_option(option, name, "no such column", allowed, hint.unwrap_or_default())
     })
@@ -169,7 +198,7 @@ pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
     let variables: Vec<Variable> = table
         .columns
         .iter()
-        .map(|column| Variable { name: column.name.clone(), kind: variable_type(column) })
+        .map(|column| Variable { name: column.name.clone(), kind: variable_type(table, column) })
         .collect();
     let condition = Expression::condition(text, &variables).map_err(|error| InputError {
         file: "--where".to_owned(),
@@ -221,9 +250,21 @@ fn with_current_names(text: &str, table: &Table) -> String {
 }
 
 /// The type of a column in an expression.
-fn variable_type(column: &Column) -> Type {
+fn variable_type(table: &Table, column: &Column) -> Type {
     match column.cell_type {
         CellType::Bool => Type::Bool,
+        // A parameter holds the words of its study; another text may be one that no row has yet.
+        CellType::Text if table.parameters().any(|known| known.name == column.name) => {
+            let texts = column.cells.iter().filter_map(|cell| match cell {
+                Value::Text(text) => Some(text.clone()),
+                _ => None,
+            });
+            let words: BTreeSet<String> = texts.collect();
+            Type::Text((!words.is_empty()).then(|| words.into_iter().collect()))
+        }
+        CellType::Text if column.name == "status" => {
+            Type::Text(Some(Status::all().map(|status| status.name().to_owned()).collect()))
+        }
         CellType::Text => Type::Text(None),
         CellType::Integer | CellType::Number => {
             let known = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
@@ -232,7 +273,8 @@ fn variable_type(column: &Column) -> Type {
     }
 }
 
-/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given.
+/// Rows of the jobs whose ids start with these prefixes (`--jobs`), in the order given: every point of
+/// each job.
 ///
 /// # Errors
 /// A prefix of no job, or of several; the error gives the nearest ids.
@@ -247,14 +289,16 @@ pub fn jobs(table: &Table, prefixes: &[String]) -> Result<Vec<usize>> {
     for prefix in prefixes.iter().map(|prefix| prefix.trim()) {
         let found: Vec<usize> =
             (0..ids.len()).filter(|row| ids[*row].starts_with(prefix)).collect();
-        match found.as_slice() {
-            [row] if !rows.contains(row) => rows.push(*row),
-            [_] => {}
+        match table.one_row_per_job(&found).len() {
+            1 => {
+                let new: Vec<usize> = found.into_iter().filter(|row| !rows.contains(row)).collect();
+                rows.extend(new);
+            }
             several => {
-                let problem = if several.is_empty() {
+                let problem = if several == 0 {
                     "no job id starts with this".to_owned()
                 } else {
-                    format!("{} job ids start with this", several.len())
+                    format!("{several} job ids start with this")
                 };
                 let hint = "billow table --columns job,status lists them";
                 let allowed = nearest_ids(&ids, prefix);

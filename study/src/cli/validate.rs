@@ -9,13 +9,13 @@ use std::time::Duration;
 use rayon::ThreadPool;
 
 use super::options::{OutputOptions, QuietOption, ThreadsOption};
-use super::print::print_rows;
+use super::print::{count, duration, print_rows};
 use super::{Format, instruction_set};
-use crate::cases::{self, CASES, Case, Judged, Rig, Tier};
-use crate::input::keys;
+use crate::cases::{self, CASES, Case, Judged, Rig, Tier, costs};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
+use crate::platform::nearest::did_you_mean;
 use crate::platform::stop::Stop;
 
 /// Interval at which a signal is checked for. Chosen: short for a user, long for a processor.
@@ -27,10 +27,10 @@ pub struct Args {
     /// Run only this case; can be repeated.
     #[arg(long = "case", value_name = "NAME")]
     pub cases: Vec<String>,
-    /// Skip the long cases.
+    /// Skip the long cases. The first line on stderr estimates the time.
     #[arg(long)]
     pub quick: bool,
-    /// List the cases and what each one compares; run nothing.
+    /// List the cases, about how long each takes and what it compares; run nothing.
     #[arg(long)]
     pub list: bool,
     #[command(flatten)]
@@ -65,7 +65,17 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let rig = Rig { instruction_set: instruction_set::selected()?, ..Rig::default() };
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let total = cases.len();
-    let mut judged = judge(args.threads.pool()?, cases.clone(), rig, &stop, &|number, judged| {
+    let pool = args.threads.pool()?;
+    if !args.quiet.quiet {
+        let threads = pool.current_num_threads();
+        eprintln!(
+            "billow: {}, about {} with {} on an idle machine",
+            count(total, "case"),
+            duration(costs::total_seconds(&cases, threads).ceil()),
+            count(threads, "thread")
+        );
+    }
+    let mut judged = judge(pool, cases.clone(), rig, &stop, &|number, judged| {
         if !args.quiet.quiet {
             let verdict = if judged.pass() { "in tolerance" } else { "OUT OF TOLERANCE" };
             let Judged { name, seconds, .. } = judged;
@@ -143,9 +153,8 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
     for name in names {
         if !CASES.iter().any(|case| case.name == name) {
             let known = || CASES.iter().map(|case| case.name);
-            let near = keys::nearest(name, known());
             let allowed = known().collect::<Vec<_>>().join(", ");
-            let hint = near.map(|near| format!("did you mean {near}?")).unwrap_or_default();
+            let hint = did_you_mean(name, known()).unwrap_or_default();
             return Err(Error::invalid_option("--case", name, "unknown case", allowed, hint));
         }
     }
@@ -158,9 +167,12 @@ fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {
     let tier = |case: &Case| if case.tier == Tier::Quick { "quick" } else { "long" };
     let rows: Vec<Vec<Value>> = cases
         .iter()
-        .map(|case| vec![text(case.name), text(tier(case)), text(case.compares)])
+        .map(|case| {
+            let seconds = Value::Number(costs::seconds(case));
+            vec![text(case.name), text(tier(case)), seconds, text(case.compares)]
+        })
         .collect();
-    print_rows(&["case", "tier", "compares"], &rows, format, out)
+    print_rows(&["case", "tier", "seconds", "compares"], &rows, format, out)
 }
 
 /// Prints one row per quantity of the cases. `seconds` is the time of the whole case.
@@ -202,7 +214,7 @@ pub fn print(judged: &[Judged], format: Format, out: &mut dyn Write) -> Result<(
         "reference",
         "error",
         "order",
-        "band",
+        "tolerance",
         "pass",
         "seconds",
         "note",

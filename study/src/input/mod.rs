@@ -4,11 +4,13 @@
 pub mod expression;
 pub mod keys;
 pub(crate) mod overrides;
+pub(crate) mod plausible;
 pub mod renamed;
 pub mod schema;
 pub(crate) mod settings;
 pub(crate) mod source;
 pub mod study_file;
 pub(crate) mod supports;
+pub mod syntax;
 pub mod units;
 pub mod value;

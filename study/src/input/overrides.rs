@@ -1,10 +1,20 @@
 //! `--set key=value`: overrides, written into the tree of the file before it is read.
+//!
+//! - `film.thickness=…`, or a last part that only one key has, as `thickness=…`, sets that key. In a
+//!   study whose grid varies the key it replaces the axis: the study then has this value alone.
+//! - `grid.N=[5, 6]` sets the axis of a key; `grid.N=6` is an axis of one value.
+//! - A list for a key that takes one value is an axis in a study: `N=[5, 6]` is `grid.N=[5, 6]`.
 
-use crate::input::keys::{self, Table};
+use crate::input::keys::{self, KeyKind, Table};
 use crate::input::renamed;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
 use crate::platform::error::InputError;
+use crate::platform::nearest::did_you_mean;
+use crate::platform::quote;
+
+/// Members of a grid that are not the axis of a key.
+const GRID_WORDS: [&str; 3] = ["zip", "points", "filter"];
 
 /// Gives the keys of a file their new names, then applies the overrides in order, and records their
 /// flags in `source`. Returns the notes about old names.
@@ -15,24 +25,84 @@ pub(crate) fn apply(
     source: &mut Source,
 ) -> Result<Vec<String>, InputError> {
     let mut notes = renamed::update(tree, source)?;
+    let mut given: Vec<Given> = Vec::new();
     for set in sets {
-        notes.extend(apply_one(tree, set, table, source)?);
+        let new = Given::apply(tree, set, table, source, &mut notes)?;
+        if let Some(other) = given.iter().find(|other| other.is_other_name_of(&new)) {
+            let mut error = refused(set, "gives one key by two names");
+            error.allowed = format!("--set {} alone", new.path);
+            error.hint = format!("remove {} or {}", flag(set), flag(&other.set));
+            return Err(error);
+        }
+        given.push(new);
     }
     // An override may give a whole object, with old names in it.
     notes.extend(renamed::update(tree, source)?);
     Ok(notes)
 }
 
-/// Applies one override.
-fn apply_one(
-    tree: &mut Json,
-    set: &str,
-    table: &Table,
-    source: &mut Source,
-) -> Result<Option<String>, InputError> {
-    let flag = format!("--set {set}");
-    let refuse = |problem: &str| InputError {
-        file: flag.clone(),
+/// One override that was applied.
+struct Given {
+    set: String,
+    path: String,
+    /// Whether it has the old name of its key.
+    old: bool,
+}
+
+impl Given {
+    fn is_other_name_of(&self, other: &Self) -> bool {
+        self.path == other.path && self.old != other.old
+    }
+
+    /// Applies one override.
+    fn apply(
+        tree: &mut Json,
+        set: &str,
+        table: &Table,
+        source: &mut Source,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, InputError> {
+        let Some((name, value)) = set.split_once('=') else {
+            return Err(refused(set, "has no `=`"));
+        };
+        let name = name.trim();
+        if name.is_empty() {
+            return Err(refused(set, "has no key before the `=`"));
+        }
+        let value = value_of(set, value)?;
+        let has_grid = table.structured.iter().any(|(path, _)| *path == "grid");
+        if !has_grid && (name == "grid" || name.starts_with("grid.")) {
+            let mut error = refused(set, "a scene has no grid");
+            "set the key itself, or use a study file with billow plan".clone_into(&mut error.hint);
+            return Err(error);
+        }
+        let axis = name.strip_prefix("grid.").filter(|_| has_grid);
+        let current = renamed::current(axis.unwrap_or(name));
+        let old = current.is_some();
+        if let Some(new) = &current {
+            notes.push(format!(
+                "{}: {} is now called {new}; the next version refuses the old name",
+                flag(set),
+                axis.unwrap_or(name)
+            ));
+        }
+        let name = current.as_deref().unwrap_or(axis.unwrap_or(name)).to_owned();
+        let path = match axis {
+            Some(_) => set_axis(tree, &name, value),
+            None => set_key(tree, &name, value, table, has_grid, set, notes)?,
+        };
+        source.sets.push((path.clone(), flag(set)));
+        Ok(Self { set: set.to_owned(), path, old })
+    }
+}
+
+fn flag(set: &str) -> String {
+    format!("--set {set}")
+}
+
+fn refused(set: &str, problem: &str) -> InputError {
+    InputError {
+        file: flag(set),
         key: String::new(),
         value: String::new(),
         problem: problem.to_owned(),
@@ -40,44 +110,99 @@ fn apply_one(
                   'grid.N=[5, 6]'"
             .to_owned(),
         hint: String::new(),
-    };
-    let Some((name, value)) = set.split_once('=') else {
-        return Err(refuse("has no `=`"));
-    };
-    let value =
-        study_file::parse(value, &flag).unwrap_or_else(|_| Json::Text(value.trim().to_owned()));
-    let name = name.trim();
-    let has_grid = table.structured.iter().any(|(path, _)| *path == "grid");
-    let axis = name.strip_prefix("grid.").filter(|_| has_grid);
-    let new = renamed::current(axis.unwrap_or(name));
-    let note =
-        new.as_ref().map(|new| format!("{flag}: {} is now called {new}", axis.unwrap_or(name)));
-    let name = new.as_deref().unwrap_or(axis.unwrap_or(name));
-    if axis.is_some() {
-        set_axis(tree, name, value);
-        source.sets.push((format!("grid.{name}"), flag));
-        return Ok(note);
     }
-    let path = table.find(name).map_or(name, |index| table.keys[index].path);
-    let mut target = &mut *tree;
-    for part in path.split('.') {
-        target = member(target, part).ok_or_else(|| refuse("names no place in the file"))?;
-    }
-    *target = value;
-    source.sets.push((path.to_owned(), flag));
-    Ok(note)
 }
 
-/// Sets an axis; it replaces an axis of the same key.
-fn set_axis(tree: &mut Json, axis: &str, value: Json) {
-    let Some(Json::Object(members)) = member(tree, "grid") else { return };
-    let same = |name: &str| {
-        name == axis || keys::find(axis).is_some_and(|index| keys::find(name) == Some(index))
-    };
-    match members.iter_mut().find(|(name, _)| same(name)) {
-        Some(member) => *member = (axis.to_owned(), value),
-        None => members.push((axis.to_owned(), value)),
+/// The value of an override: JSON; anything that is not JSON is a text, unless it begins as a list, an
+/// object or a text in quotes does.
+fn value_of(set: &str, value: &str) -> Result<Json, InputError> {
+    let value = value.trim();
+    match study_file::parse(value, "") {
+        Ok(json) => Ok(json),
+        Err(mut error) if value.starts_with(['[', '{', '"']) => {
+            error.file = flag(set);
+            "JSON, or a text without quotes".clone_into(&mut error.allowed);
+            Err(error)
+        }
+        Err(_) => Ok(Json::Text(value.to_owned())),
     }
+}
+
+/// Sets a key, or its axis where the value is a list for a key that takes one value. Returns the path.
+fn set_key(
+    tree: &mut Json,
+    name: &str,
+    value: Json,
+    table: &Table,
+    has_grid: bool,
+    set: &str,
+    notes: &mut Vec<String>,
+) -> Result<String, InputError> {
+    let key = table.find(name).map(|index| table.keys[index]);
+    let one_value = key.is_some_and(|key| key.varies() && !matches!(key.kind, KeyKind::Vector(_)));
+    if one_value && has_grid && matches!(value, Json::List(_)) {
+        return Ok(set_axis(tree, name, value));
+    }
+    let path = key.map_or(name, |key| key.path);
+    let first = path.split(['.', '[']).next().unwrap_or_default();
+    let known = table.children("");
+    if !known.contains(&first) {
+        let mut error =
+            refused(set, &format!("{} is not a key of {}", quote::echo(first), table.what));
+        let short = table.keys.iter().map(|key| key.leaf());
+        error.hint = did_you_mean(name, short.chain(table.keys.iter().map(|key| key.path)))
+            .or_else(|| did_you_mean(first, known.iter().copied()))
+            .unwrap_or_else(|| "billow keys lists every key".to_owned());
+        error.allowed = known.join(", ");
+        return Err(error);
+    }
+    if key.is_some() && has_grid && removes_axis(tree, path) {
+        notes.push(format!("{}: this value replaces the axis of {path} in the grid", flag(set)));
+    }
+    let mut target = &mut *tree;
+    for part in path.split('.') {
+        target = member(target, part).ok_or_else(|| {
+            let mut error = refused(set, "names no place in the file");
+            "an index counts from 0 and must exist, as in supports[0].fix"
+                .clone_into(&mut error.hint);
+            error
+        })?;
+    }
+    *target = value;
+    Ok(path.to_owned())
+}
+
+/// Whether two names stand for one key.
+fn same_key(name: &str, other: &str) -> bool {
+    name == other || keys::find(other).is_some_and(|index| keys::find(name) == Some(index))
+}
+
+/// Removes the axis of a key, which has one value now; returns whether there was one. An axis that is
+/// zipped with others stays: they have a value for each of its values.
+fn removes_axis(tree: &mut Json, path: &str) -> bool {
+    let Some(Json::Object(members)) = tree.get_mut("grid") else { return false };
+    let before = members.len();
+    members.retain(|(name, _)| GRID_WORDS.contains(&name.as_str()) || !same_key(name, path));
+    members.len() < before
+}
+
+/// Sets an axis; it replaces an axis of the same key. One value is a list of one.
+fn set_axis(tree: &mut Json, axis: &str, value: Json) -> String {
+    let value = match value {
+        one @ (Json::Integer(_) | Json::Number(_) | Json::Text(_) | Json::Bool(_))
+            if !GRID_WORDS.contains(&axis) =>
+        {
+            Json::List(vec![one])
+        }
+        other => other,
+    };
+    if let Some(Json::Object(members)) = member(tree, "grid") {
+        match members.iter_mut().find(|(name, _)| same_key(name, axis)) {
+            Some(member) => *member = (axis.to_owned(), value),
+            None => members.push((axis.to_owned(), value)),
+        }
+    }
+    format!("grid.{axis}")
 }
 
 /// The member of an object that one part of a path names; a new empty object where there is none.

@@ -6,6 +6,7 @@ use billow_solver::scene::Species;
 
 use crate::input::keys::draft::{Draft, SpeciesDraft};
 use crate::input::keys::{self, Default, KEYS, Key, Table, named};
+use crate::input::plausible;
 use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
 use crate::input::value::Value;
@@ -196,8 +197,23 @@ pub(crate) fn check_sample_interval(
     ))
 }
 
-/// Reads one value of a key; `path` is where the file gives it.
+/// Reads one value of a key; `path` is where the file gives it. A value that is not plausible is a
+/// warning of the source.
 pub(crate) fn read(
+    key: &Key,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Value, InputError> {
+    let value = read_silently(key, json, path, source)?;
+    if let Some(implausible) = plausible::check(key, json, &value) {
+        source.warn(path, &json.brief(), implausible);
+    }
+    Ok(value)
+}
+
+/// Reads one value of a key that no user wrote, as a value between the ends of a range.
+pub(crate) fn read_silently(
     key: &Key,
     json: &Json,
     path: &str,
@@ -205,7 +221,10 @@ pub(crate) fn read(
 ) -> Result<Value, InputError> {
     key.read(json).map_err(|refusal| {
         let mut error = source.error(path, &json.brief(), refusal.problem, refusal.allowed);
-        error.hint = format!("write it as in {}", key.sample());
+        error.hint = match plausible::meant(key, json) {
+            Some(text) => format!("if {text} is meant, write {text:?}"),
+            None => format!("write it as in {}", key.sample()),
+        };
         error
     })
 }

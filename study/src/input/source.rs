@@ -1,5 +1,9 @@
 //! Where a value comes from, for errors: the file, or a `--set` flag.
 
+use std::cell::RefCell;
+use std::fmt::Write as _;
+
+use crate::input::plausible::Implausible;
 use crate::platform::error::InputError;
 
 /// The file and the flags that give the values of a study or a scene.
@@ -9,11 +13,74 @@ pub(crate) struct Source {
     pub file: String,
     /// Dotted keys, and the flag that sets each.
     pub sets: Vec<(String, String)>,
+    /// Warnings about values, in the order of reading.
+    warnings: RefCell<Vec<Warning>>,
+}
+
+/// A warning about the values of one place: a key, or all values of an axis.
+#[derive(Debug, Clone)]
+struct Warning {
+    /// What the warning is about, without the number of a value in a list.
+    place: String,
+    /// What `more` counts: values of a list, or points.
+    noun: &'static str,
+    text: InputError,
+    /// Number of further ones with the same problem.
+    more: usize,
 }
 
 impl Source {
     pub fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), sets: Vec::new() }
+        Self { file: file.to_owned(), sets: Vec::new(), warnings: RefCell::default() }
+    }
+
+    /// Keeps a warning about a value that is read. Further values of a list are counted.
+    pub fn warn(&self, key: &str, value: &str, implausible: Implausible) {
+        let place = key.rsplit_once('[').filter(|(_, index)| index.ends_with(']'));
+        let place = place.map_or(key, |(place, _)| place);
+        // A list may have numbers with and without a unit.
+        let kind = if value.starts_with('"') { "with a unit" } else { "" };
+        self.keep(format!("{place} {kind}"), "value of this list", key, value, implausible);
+    }
+
+    /// Keeps a warning about a point of the study. Further points are counted.
+    pub fn warn_point(&self, key: &str, value: &str, implausible: Implausible) {
+        self.keep(format!("point {key}"), "point", key, value, implausible);
+    }
+
+    fn keep(
+        &self,
+        place: String,
+        noun: &'static str,
+        key: &str,
+        value: &str,
+        implausible: Implausible,
+    ) {
+        let mut warnings = self.warnings.borrow_mut();
+        if let Some(known) = warnings.iter_mut().find(|known| known.place == place) {
+            known.more += 1;
+            return;
+        }
+        let mut text = self.error(key, value, implausible.problem, "");
+        text.hint = implausible.next;
+        warnings.push(Warning { place, noun, text, more: 0 });
+    }
+
+    /// The warnings so far, one text each.
+    pub fn warnings(&self) -> Vec<String> {
+        let warnings = self.warnings.borrow();
+        let text = |warning: &Warning| {
+            let mut error = warning.text.clone();
+            if warning.more > 0 {
+                let noun = match warning.more {
+                    1 => warning.noun.to_owned(),
+                    _ => warning.noun.replacen("value", "values", 1).replacen("point", "points", 1),
+                };
+                let _ = write!(error.value, " (and {} more {noun})", warning.more);
+            }
+            format!("warning: {error}")
+        };
+        warnings.iter().map(text).collect()
     }
 
     /// An error about a key. It names the flag where a flag sets the key, the file otherwise.

@@ -10,6 +10,7 @@ use std::path::Path;
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 
+use crate::input::syntax::{self, place};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files;
 
@@ -225,30 +226,62 @@ impl<'de> Visitor<'de> for JsonVisitor {
 /// Reads JSON text.
 ///
 /// # Errors
-/// When the text is not JSON; the error names file, line and column, and the last key read.
+/// When the text is not JSON. The error names file, line and column, and the key; it shows the line with
+/// the place, and says what to do.
 pub fn parse(text: &str, file: &str) -> std::result::Result<Json, InputError> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let mut track = serde_path_to_error::Track::new();
     let read = Json::deserialize(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
     read.and_then(|json| reader.end().map(|()| json)).map_err(|error| {
-        let key = track.path().to_string();
-        let mut message = error.to_string();
-        if let Some(end) = message.rfind(" at line ") {
-            message.truncate(end);
-        }
-        let problem =
-            format!("invalid JSON: {message}, line {} column {}", error.line(), error.column());
+        let fault = syntax::fault(text).unwrap_or_else(|| {
+            let key = track.path().to_string();
+            let mut problem = error.to_string();
+            if let Some(end) = problem.rfind(" at line ") {
+                problem.truncate(end);
+            }
+            // A reader of bytes counts columns in bytes.
+            let lines = text.split_inclusive('\n').take(error.line().saturating_sub(1));
+            let offset = lines.map(str::len).sum::<usize>() + error.column().saturating_sub(1);
+            let key = if key == "." { String::new() } else { key };
+            syntax::Fault { offset, key, problem, hint: String::new() }
+        });
+        let (line, column) = place::line_and_column(text, fault.offset);
+        let excerpt = place::excerpt(text, fault.offset);
         InputError {
-            file: file.to_owned(),
-            key: if key == "." { String::new() } else { key },
+            file: format!("{file}:{line}:{column}"),
+            key: fault.key,
             value: String::new(),
-            problem,
+            problem: format!("invalid JSON: {}\n{excerpt}", fault.problem),
             allowed: "one JSON object (RFC 8259), each key once, numbers within ±1.8e308"
                 .to_owned(),
-            hint: String::new(),
+            hint: fault.hint,
         }
     })
 }
+
+/// The error of a value of a file, with the line and column of that value in the name of the file.
+pub(crate) fn with_place(mut error: InputError, text: &str, file: &str) -> InputError {
+    // A flag, and the text of another file, have no place in this one.
+    if error.file == file
+        && !error.key.is_empty()
+        && let Some(offset) = syntax::locate(text, &error.key)
+    {
+        let (line, column) = place::line_and_column(text, offset);
+        error.file = format!("{file}:{line}:{column}");
+    }
+    error
+}
+
+/// First bytes of files that are given by mistake, and what they are.
+const FOREIGN: &[(&[u8], &str)] = &[
+    (b"\x89HDF", "an HDF5 file (as the histories of results are)"),
+    (b"PAR1", "a Parquet file (as the table of results is)"),
+    (b"\x89PNG", "a PNG picture"),
+    (b"%PDF", "a PDF file"),
+    (b"PK\x03\x04", "a ZIP archive (office documents are such)"),
+    (b"\x1f\x8b", "a gzip archive"),
+    (b"\x7fELF", "a program"),
+];
 
 /// Reads text from bytes.
 ///
@@ -272,9 +305,23 @@ pub fn text_of<'a>(bytes: &'a [u8], file: &str) -> std::result::Result<&'a str, 
             "save it as plain UTF-8 (\"UTF-8 without BOM\")",
         ));
     }
+    if let Some((_, kind)) = FOREIGN.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Err(refuse(format!("is {kind}, not JSON"), "name a study file or a scene file"));
+    }
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        refuse(format!("is not UTF-8 from byte {} on", error.valid_up_to()), "")
+        let sound = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
+        let (line, column) = place::line_and_column(&sound, sound.len());
+        refuse(
+            format!(
+                "is not UTF-8 from byte {} on, line {line} column {column}",
+                error.valid_up_to()
+            ),
+            "save it as UTF-8",
+        )
     })?;
+    if text.contains('\0') {
+        return Err(refuse("is not text: it has NUL bytes".to_owned(), "save it as UTF-8"));
+    }
     if text.trim().is_empty() {
         return Err(refuse(
             "is empty".to_owned(),
@@ -293,11 +340,17 @@ pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
     let unreadable = |error: std::io::Error| {
         let next = match error.kind() {
             std::io::ErrorKind::NotFound | std::io::ErrorKind::IsADirectory => {
-                format!("\n  next: give the path of a {what}, as {example}")
+                let near = files::nearest_name(path)
+                    .map_or_else(String::new, |near| format!("did you mean {near}? Otherwise "));
+                format!("\n  next: {near}give the path of a {what}, as {example}")
             }
             _ => String::new(),
         };
-        disk(format!("cannot read the {what}: {error}{next}"))
+        let problem = match error.kind() {
+            std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+            _ => error.to_string(),
+        };
+        disk(format!("cannot read the {what}: {problem}{next}"))
     };
     files::read_at_most(path, MAX_FILE_SIZE).map_err(unreadable)?.ok_or_else(|| {
         disk(format!("is larger than {} MiB, the limit of a {what}", MAX_FILE_SIZE >> 20))
@@ -321,15 +374,19 @@ mod tests {
     #[test]
     fn errors_name_line_column_and_key() {
         for (text, key, problem) in [
-            ("{\"a\": {\"b\": 1,\n \"b\": 2}}", "a", "key \"b\" is given twice, line 2 column"),
-            ("{\"a\": 1e999}", "a", "number out of range, line 1"),
-            ("{\"a\": [1, 2", "a", "EOF while parsing"),
-            ("{} {}", "", "trailing characters, line 1 column 4"),
-            ("{\"a\": NaN}", "a", "expected"),
+            (
+                "{\"a\": {\"b\": 1,\n \"b\": 2}}",
+                "a",
+                "2:2: a: invalid JSON: key \"b\" is given twice",
+            ),
+            ("{\"a\": 1e999}", "a", "1:7: a: invalid JSON: number out of range"),
+            ("{\"a\": [1, 2", "", "1:7: invalid JSON: this [ is not closed"),
+            ("{} {}", "", "1:4: invalid JSON: trailing characters"),
+            ("{\"a\": NaN}", "a", "1:7: a: invalid JSON: expected a finite number"),
         ] {
             let error = parse(text, "f.json").unwrap_err();
             assert!(error.key.starts_with(key), "{text}: {error}");
-            assert!(error.problem.contains(problem), "{text}: {error}");
+            assert!(error.to_string().contains(&format!("f.json:{problem}")), "{text}: {error}");
         }
         let deep = "[".repeat(100_000);
         assert!(parse(&deep, "f").unwrap_err().problem.contains("recursion limit"));

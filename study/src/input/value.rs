@@ -29,6 +29,16 @@ impl fmt::Display for Value {
     }
 }
 
+impl Value {
+    /// Its text for a reader: a number has six significant digits.
+    pub fn short(&self) -> String {
+        match self {
+            Self::Number(number) => short_number(*number),
+            other => other.to_string(),
+        }
+    }
+}
+
 /// A value as JSON; a non-finite number is `null`.
 pub fn json_value(value: &Value) -> serde_json::Value {
     match value {

@@ -5,12 +5,14 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 use std::time::Instant;
 
+use billow_solver::models;
+use billow_solver::models::film::LadderState;
 use billow_solver::models::run::{Observer, Progress};
-use billow_solver::models::{self};
-use billow_solver::output::measures::Reference;
+use billow_solver::output::measures::{self, NoReference};
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
+use billow_solver::scene::timeline::Timeline;
 
 use crate::job::references::References;
 use crate::job::{Job, JobId};
@@ -22,8 +24,9 @@ pub trait Executor: Sync {
         1
     }
 
-    /// Static references computed since the last call, to be stored for later runs.
-    fn references(&self) -> Vec<(JobId, Reference)> {
+    /// Static equilibria of designs for which some were computed since the last call, to be stored for
+    /// later runs.
+    fn references(&self) -> Vec<(JobId, Vec<LadderState>)> {
         Vec::new()
     }
 
@@ -43,10 +46,8 @@ pub enum Outcome {
     Ran {
         /// The result.
         deployment: Box<Deployment>,
-        /// Wall time of the run without its static reference, s. It decides nothing.
+        /// Wall time of the run without its static equilibria, s. It decides nothing.
         seconds: f64,
-        /// Why there is no verdict, when the model needs a reference and has none.
-        note: Option<String>,
     },
     /// The model refused the scene.
     Refused(SceneError),
@@ -66,33 +67,60 @@ pub struct Solver {
 }
 
 impl Executor for Solver {
-    fn references(&self) -> Vec<(JobId, Reference)> {
+    fn references(&self) -> Vec<(JobId, Vec<LadderState>)> {
         self.references.take_new()
     }
 
     fn execute(&self, jobs: &[&Job], observer: &ProgressObserver<'_>) -> Vec<Outcome> {
         let run = |(index, job): (usize, &&Job)| {
-            let start = Progress {
-                time: 0.0,
-                end_time: job.scene.solver.end_time,
-                z_centre: job.scene.design.stowed_height,
-                pressure: 0.0,
-            };
-            let goes_on = &mut || observer(index, start);
-            let (reference, note) = self.references.of(self.instruction_set, &job.scene, goes_on);
             let start = Instant::now();
             let mut samples = JobObserver { index, observer };
-            match models::solve(self.instruction_set, &job.scene, reference, &mut samples) {
-                Ok(deployment) if deployment.stop == Stop::Cancelled => Outcome::Cancelled,
-                Ok(deployment) => Outcome::Ran {
-                    deployment: Box::new(deployment),
-                    seconds: start.elapsed().as_secs_f64(),
-                    note,
-                },
-                Err(error) => Outcome::Refused(error),
+            let mut deployment = match models::solve(self.instruction_set, &job.scene, &mut samples)
+            {
+                Ok(deployment) => deployment,
+                Err(error) => return Outcome::Refused(error),
+            };
+            let seconds = start.elapsed().as_secs_f64();
+            if deployment.stop == Stop::Cancelled
+                || self.judge(job, &mut deployment, &|progress| observer(index, progress))
+                    == Err(NoReference::Stopped)
+            {
+                return Outcome::Cancelled;
             }
+            Outcome::Ran { deployment: Box::new(deployment), seconds }
         };
         jobs.iter().enumerate().map(run).collect()
+    }
+}
+
+impl Solver {
+    /// Compares a run with the static equilibria of its design. A failed run has no final shape, and needs
+    /// the design shape only.
+    ///
+    /// # Errors
+    /// [`NoReference::Stopped`] if `observer` ended the search.
+    fn judge(
+        &self,
+        job: &Job,
+        deployment: &mut Deployment,
+        observer: &dyn Fn(Progress) -> bool,
+    ) -> Result<(), NoReference> {
+        let timeline = Timeline::new(&job.scene);
+        let ended = Progress {
+            time: job.scene.solver.end_time,
+            end_time: job.scene.solver.end_time,
+            z_centre: deployment.history.column("z_centre").last().copied().unwrap_or(0.0),
+            pressure: deployment.measures.final_pressure.unwrap_or(0.0),
+        };
+        let overpressure = measures::final_overpressure(&deployment.history, &timeline)
+            .filter(|_| deployment.stop == Stop::Done);
+        let continues = &mut || observer(ended);
+        let found =
+            self.references.of(self.instruction_set, &job.scene, overpressure, continues)?;
+        if let Some(reference) = found {
+            deployment.judge(&reference, &timeline);
+        }
+        Ok(())
     }
 }
 

@@ -12,7 +12,7 @@ pub type Parameters = Vec<(String, Value)>;
 /// Parameters as text: "N=5 M=2".
 pub fn label(parameters: &Parameters) -> String {
     let texts: Vec<String> =
-        parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        parameters.iter().map(|(name, value)| format!("{name}={}", value.short())).collect();
     texts.join(" ")
 }
 

@@ -1,70 +1,113 @@
-//! Static references that the verdicts of runs need: computed once per design, shared by its jobs.
+//! Static equilibria with which runs are compared: computed when a run needs them, shared by the jobs of
+//! one design.
 //!
-//! The id of a reference is the id of its [`billow_solver::models::reference_scene`]: the scene
-//! without everything that does not change the static states.
+//! The id of a design's equilibria is the id of its [`billow_solver::models::reference_scene`]: the scene
+//! without everything that does not change them.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use billow_solver::models;
-use billow_solver::output::measures::Reference;
+use billow_solver::models::film::{Ladder, LadderState};
+use billow_solver::output::measures::{NoReference, Reference};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::Scene;
 
 use crate::job::JobId;
 
-/// A reference, or the reason why there is none.
-type Computed = std::result::Result<Reference, String>;
-/// Computed by the first job that needs it; the other jobs wait.
-type Slot = Arc<OnceLock<Computed>>;
+/// Number of designs whose positions of nodes are kept. Chosen: about 1 MB each at 8 subdivisions.
+const MAX_DESIGNS_WITH_POSITIONS: usize = 8;
 
-/// References by the id of their scene.
+/// The equilibria of one design. One job computes at a time; the others wait.
+type Slot = Arc<Mutex<Option<Ladder>>>;
+
+/// Equilibria by the id of their scene.
 #[derive(Debug, Default)]
 pub struct References {
+    /// What earlier runs stored.
+    stored: BTreeMap<JobId, Vec<LadderState>>,
     slots: Mutex<BTreeMap<JobId, Slot>>,
-    new: Mutex<Vec<(JobId, Reference)>>,
+    /// Every state of the designs for which some were computed since the last [`Self::take_new`].
+    new: Mutex<BTreeMap<JobId, Vec<LadderState>>>,
+    /// Designs used last, the latest at the end.
+    recent: Mutex<VecDeque<JobId>>,
 }
 
 impl References {
-    /// Starts with references that earlier runs stored.
-    pub fn known(stored: impl IntoIterator<Item = (JobId, Reference)>) -> Self {
-        let slots =
-            stored.into_iter().map(|(id, reference)| (id, Arc::new(OnceLock::from(Ok(reference)))));
-        Self { slots: Mutex::new(slots.collect()), new: Mutex::default() }
+    /// Starts with equilibria that earlier runs stored.
+    pub fn known(stored: impl IntoIterator<Item = (JobId, Vec<LadderState>)>) -> Self {
+        Self { stored: stored.into_iter().collect(), ..Self::default() }
     }
 
-    /// The reference of a scene, `None` for a model that needs none, and the reason when a model
-    /// needs one and there is none. `goes_on` is called from time to time; when it returns `false`
-    /// the computation ends. The whole run is ending then, so the reference stays missing.
+    /// The reference of a run of this scene: its design shape and, with a final overpressure (Pa), its
+    /// shape there. `None` for a model that judges its own runs. `continues` is called from time to time;
+    /// when it returns `false` the search ends.
+    ///
+    /// # Errors
+    /// [`NoReference::Stopped`] if `continues` returned `false`. Other reasons are in the reference.
     pub fn of(
         &self,
         instruction_set: InstructionSet,
         scene: &Scene,
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> (Option<Reference>, Option<String>) {
-        let Some(scene) = models::reference_scene(scene) else { return (None, None) };
+        final_overpressure: Option<f64>,
+        continues: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Reference>, NoReference> {
+        let Some(scene) = models::reference_scene(scene) else { return Ok(None) };
         let id = JobId::of(&scene);
-        let slot = {
-            let mut slots = self.slots.lock().unwrap_or_else(PoisonError::into_inner);
-            Arc::clone(slots.entry(id.clone()).or_default())
-        };
-        let computed = slot.get_or_init(|| {
-            let computed = models::reference(instruction_set, &scene, goes_on)
-                .map_err(|error| error.to_string());
-            if let Ok(reference) = &computed {
-                let mut new = self.new.lock().unwrap_or_else(PoisonError::into_inner);
-                new.push((id, reference.clone()));
+        let slot = Arc::clone(locked(&self.slots).entry(id.clone()).or_default());
+        let mut slot = locked(&slot);
+        if slot.is_none() {
+            let known = self.stored.get(&id).map_or(&[][..], Vec::as_slice);
+            match models::ladder(instruction_set, &scene, known) {
+                Ok(ladder) => *slot = Some(ladder),
+                Err(error) => {
+                    let missing = NoReference::NoCapsule(error.to_string());
+                    return Ok(Some(Reference { design: Err(missing.clone()), end: Err(missing) }));
+                }
             }
-            computed
-        });
-        match computed {
-            Ok(reference) => (Some(reference.clone()), None),
-            Err(problem) => (None, Some(format!("no verdict: {problem}"))),
         }
+        let Some(ladder) = slot.as_mut() else { return Ok(None) };
+        let before = ladder.states().len();
+        let design = ladder.design(continues);
+        let end = match final_overpressure {
+            Some(overpressure) => ladder.at(overpressure, continues),
+            // The final shape of a run that failed is not used.
+            None => design.clone(),
+        };
+        let states = ladder.states();
+        if states.len() > before {
+            locked(&self.new).insert(id.clone(), states);
+        }
+        drop(slot);
+        self.forget_positions(id);
+        let stopped = [&design, &end].into_iter().any(|found| *found == Err(NoReference::Stopped));
+        if stopped { Err(NoReference::Stopped) } else { Ok(Some(Reference { design, end })) }
     }
 
-    /// References computed since the last call.
-    pub fn take_new(&self) -> Vec<(JobId, Reference)> {
-        core::mem::take(&mut self.new.lock().unwrap_or_else(PoisonError::into_inner))
+    /// Every equilibrium of the designs for which some were computed since the last call.
+    pub fn take_new(&self) -> Vec<(JobId, Vec<LadderState>)> {
+        core::mem::take(&mut *locked(&self.new)).into_iter().collect()
     }
+
+    /// Notes the use of a design and forgets the positions of the one not used for longest.
+    fn forget_positions(&self, id: JobId) {
+        let oldest = {
+            let mut recent = locked(&self.recent);
+            recent.retain(|other| *other != id);
+            recent.push_back(id);
+            if recent.len() > MAX_DESIGNS_WITH_POSITIONS { recent.pop_front() } else { None }
+        };
+        let Some(oldest) = oldest else { return };
+        let slot = locked(&self.slots).get(&oldest).map(Arc::clone);
+        if let Some(slot) = slot
+            && let Some(ladder) = locked(&slot).as_mut()
+        {
+            ladder.forget_positions();
+        }
+    }
+}
+
+/// The content of a mutex, also after a panic of another thread: a ladder is consistent at any time.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

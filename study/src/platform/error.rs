@@ -3,6 +3,15 @@
 use std::path::PathBuf;
 
 use crate::platform::exit_code::Exit;
+use crate::platform::quote;
+
+/// Characters of a file name or of an option in a message (chosen: a long path fits).
+const MAX_FILE: usize = 300;
+/// Characters of a key (chosen: the longest path of a key fits twice).
+const MAX_KEY: usize = 120;
+/// Characters of a line of a problem or of a next step (chosen: any sentence fits; a name of the user
+/// in it may be longer).
+const MAX_PROBLEM: usize = 600;
 
 /// Whatever ends a command early. Each variant has an [`Exit`].
 #[derive(Debug, thiserror::Error)]
@@ -11,7 +20,7 @@ pub enum Error {
     #[error("{0}")]
     Input(InputError),
     /// The disk, or a file on it, cannot be used: exit code 2.
-    #[error("{}: {problem}", path.display())]
+    #[error("{}: {}", quote::cut(&path.display().to_string(), MAX_FILE), quote::cut_lines(problem, MAX_PROBLEM))]
     Disk {
         /// File or folder.
         path: PathBuf,
@@ -34,9 +43,6 @@ pub enum Error {
         /// What is kept, and how to continue.
         next: String,
     },
-    /// The reader of the output closed it: no message, exit code 0.
-    #[error("output closed")]
-    OutputClosed,
 }
 
 /// An invalid value, key, file or option.
@@ -58,19 +64,21 @@ pub struct InputError {
 
 impl std::fmt::Display for InputError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.file)?;
+        let lines = |text: &str| quote::cut_lines(text, MAX_PROBLEM);
+        f.write_str(&quote::cut(&self.file, MAX_FILE))?;
         if !self.key.is_empty() {
-            write!(f, ": {}", self.key)?;
+            write!(f, ": {}", quote::cut(&self.key, MAX_KEY))?;
         }
         if !self.value.is_empty() {
-            write!(f, " = {}", self.value)?;
+            write!(f, " = {}", quote::echo(&self.value))?;
         }
-        write!(f, ": {}", self.problem)?;
+        write!(f, ": {}", lines(&self.problem))?;
         if !self.allowed.is_empty() {
-            write!(f, "\n  allowed: {}", self.allowed)?;
+            // A list of names, written by this program.
+            write!(f, "\n  allowed: {}", quote::printable(&self.allowed))?;
         }
         if !self.hint.is_empty() {
-            write!(f, "\n  next: {}", self.hint)?;
+            write!(f, "\n  next: {}", lines(&self.hint))?;
         }
         Ok(())
     }
@@ -89,7 +97,6 @@ impl Error {
             Self::Input(_) | Self::Disk { .. } => Exit::InvalidInput,
             Self::JobsFailed(_) => Exit::Failure,
             Self::Signal(signal) | Self::Interrupted { signal, .. } => Exit::Signal(*signal),
-            Self::OutputClosed => Exit::Success,
         }
     }
 

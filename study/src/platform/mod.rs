@@ -1,7 +1,10 @@
-//! The machine: files, signals, version of the program, errors.
+//! The machine: files, signals, output streams, version of the program, errors.
 
 pub mod error;
 pub mod exit_code;
 pub mod files;
+pub mod nearest;
+pub mod output;
 pub mod provenance;
+pub mod quote;
 pub mod stop;

@@ -179,7 +179,7 @@ impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
 
 /// The outcome of a job that ran, with seven samples.
 pub fn ran(number: u32) -> Outcome {
-    Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5, note: None }
+    Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5 }
 }
 
 impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {

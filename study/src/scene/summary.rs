@@ -19,6 +19,7 @@
 //! | `measures` | largest `peak_vz` of the top ring (m/s) with its time, `peak_kinetic_energy` (J) |
 //! | `energies` | kinetic, strain and (static) potential, J |
 //! | `film_stress` | largest principal second Piola-Kirchhoff stress over the run or in static equilibrium, Pa |
+//! | `film_stress_99` | over the samples of a run, the largest stress that 99 % of the film's area does not exceed, Pa |
 //! | `steps`, `end_time`, `elements`, `wall_seconds` | number of steps (static: Newton steps); time reached, s; number of elements; wall time, s |
 //!
 //! [`FailureKind`]: billow_solver::output::outcome::FailureKind
@@ -30,7 +31,7 @@ use billow_solver::integrators::explicit::PressureLoad;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::{resultants, thickness};
-use billow_solver::models::film::FilmRun;
+use billow_solver::models::film::{FILM_STRESS_99, FilmRun};
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::film_scene::Filling;
 use billow_solver::statics::StaticSolution;
@@ -168,6 +169,7 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
         },
         "energies": {"kinetic": ledger.kinetic, "strain": ledger.strain},
         "film_stress": explicit.state.film_stress,
+        "film_stress_99": deployment.followed(FILM_STRESS_99.0).iter().copied().fold(0.0, f64::max),
         "steps": explicit.state.steps,
         "end_time": explicit.state.time,
     });

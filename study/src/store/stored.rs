@@ -4,11 +4,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use crate::input::units::DisplayUnits;
+use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::point::Point;
-use crate::job::row::Cells;
+use crate::job::row::{Cells, ColumnId};
 use crate::job::{self, JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
+use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
@@ -24,6 +27,8 @@ pub struct Stored<'a> {
     pub results: Results<'a>,
     /// The study that the folder was last run for.
     pub study: Study,
+    /// The units in which its quantities are shown: those of the study.
+    pub units: DisplayUnits,
     /// Its journals.
     pub journal: Journal,
     /// Every point planned so far, in plan order.
@@ -57,7 +62,8 @@ impl<'a> Stored<'a> {
         let study = Study::load(&results.study_path(), &[])?;
         let (journal, faults) = journal::examine(results.files(), &results.journal_path())?;
         let points = planned(&study, &journal.records);
-        Ok((Self { results, study, journal, points }, faults))
+        let units = study.display_units().clone();
+        Ok((Self { results, study, units, journal, points }, faults))
     }
 
     /// The row of a point.
@@ -66,25 +72,16 @@ impl<'a> Stored<'a> {
             .unwrap_or_else(|| Cells::new(Status::Pending))
     }
 
-    /// The table, built from plan and journal.
+    /// The table, built from plan and journal: one row per point, also for points that share a job.
     pub fn table(&self) -> Table {
-        Table::build(&self.points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+        self.built(&self.points)
     }
 
-    /// The table with one row per point of the grid, also for points that share a job.
-    pub fn table_of_all_points(&self) -> Table {
-        let mut points = Vec::with_capacity(self.points.len());
-        let mut seen: BTreeSet<String> = BTreeSet::new();
-        for point in &self.points {
-            for parameters in [&point.job.parameters].into_iter().chain(&point.merged) {
-                if seen.insert(format!("{parameters:?}")) {
-                    let mut point = point.clone();
-                    point.job.parameters.clone_from(parameters);
-                    points.push(point);
-                }
-            }
-        }
-        Table::build(&points, &self.journal.records, &|name| self.study.unit(name).to_owned())
+    /// The table of these points, shown in the study's units.
+    fn built(&self, points: &[Point]) -> Table {
+        let unit = |name: &str| self.study.unit(name).to_owned();
+        let table = Table::build(points, &self.journal.records, &unit);
+        table.shown_in(&self.units)
     }
 
     /// The planned point of a job.
@@ -152,7 +149,7 @@ impl<'a> Stored<'a> {
         InputError {
             file: "job".to_owned(),
             key: String::new(),
-            value: prefix.to_owned(),
+            value: if prefix.is_empty() { "\"\"" } else { prefix }.to_owned(),
             problem: problem.to_owned(),
             allowed: if allowed.is_empty() {
                 "nothing: the study has no jobs".to_owned()
@@ -174,6 +171,21 @@ impl<'a> Stored<'a> {
     }
 }
 
+/// Numbers of finished jobs of other versions of the physics, by version. A planned job does not count,
+/// whatever version its record has.
+pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTreeMap<i64, usize> {
+    let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
+    let mut versions = BTreeMap::new();
+    for record in records.values().filter(|record| !planned.contains(&record.job)) {
+        if let Value::Integer(version) = record.cells.get(ColumnId::PhysicsVersion)
+            && *version != i64::from(PHYSICS_VERSION)
+        {
+            *versions.entry(*version).or_default() += 1;
+        }
+    }
+    versions
+}
+
 /// Every point that the study plans with these finished jobs: generation after generation, as in a
 /// run.
 pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
@@ -192,4 +204,27 @@ pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
         finished = points.iter().filter_map(row).collect();
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::fixture;
+
+    #[test]
+    fn unplanned_jobs_of_another_physics_version_are_counted() {
+        let all = fixture::generation(5).points;
+        let mut records = BTreeMap::new();
+        for (number, point) in all.iter().enumerate() {
+            let mut cells = Cells::new(Status::Done);
+            let version = i64::from(PHYSICS_VERSION) - i64::from(number != 4);
+            cells.set(ColumnId::PhysicsVersion, version);
+            let record = Record { job: point.job.id.clone(), cells, file_hash: None };
+            records.insert(record.job.clone(), record);
+        }
+        // Jobs 0 and 1 are planned, job 4 is of the version of today.
+        let old = i64::from(PHYSICS_VERSION) - 1;
+        assert_eq!(other_physics(&all[..2], &records), [(old, 2)].into());
+        assert!(other_physics(&all, &records).is_empty());
+    }
 }

@@ -76,12 +76,14 @@ impl Base {
         let near = keys::nearest(name, self.strategies.keys().map(String::as_str));
         let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
         let known: Vec<&str> = self.strategies.keys().map(String::as_str).collect();
-        Err(source.error(
+        let mut error = source.error(
             key,
             &Json::Text(name.to_owned()).brief(),
             format!("is not a strategy of this study{near}"),
             known.join(", "),
-        ))
+        );
+        "name one of these, or define it under strategies".clone_into(&mut error.hint);
+        Err(error)
     }
 
     /// Settings, strategies and supports, with every value they have.

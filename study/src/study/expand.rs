@@ -12,6 +12,7 @@ use super::grid::{Axis, Grid};
 use super::limits::Limits;
 use super::point::StudyPoint;
 use super::{resolve, variables};
+use crate::input::expression::Expression;
 use crate::input::keys::{self, KEYS};
 use crate::input::source::Source;
 use crate::input::value::{Value, json_value};
@@ -19,16 +20,17 @@ use crate::job::Parameters;
 use crate::job::point::Solved;
 use crate::platform::error::InputError;
 
-/// Every point of a study that the filter keeps, in plan order: the product, the first axis slowest,
-/// then the single points.
+/// The points of a study, in plan order, and how many points the filter removed: those of the product
+/// that it keeps, the first axis slowest, then the single points, which it does not concern.
 pub(super) fn points(
     base: &Base,
     grid: &Grid,
     source: &Source,
     limits: Limits,
-) -> Result<Vec<StudyPoint>, InputError> {
+) -> Result<(Vec<StudyPoint>, usize), InputError> {
     let (product, count) = count(grid, source, limits)?;
     let mut expansion = Expansion { base, grid, source, folds: HashMap::new(), points: vec![] };
+    let mut filtered = 0;
     for number in 0..product {
         let mut point = base.clone();
         let mut rest = number;
@@ -40,14 +42,14 @@ pub(super) fn points(
                 grid.columns[*column].target.set(&mut point, value.clone());
             }
         }
-        expansion.add(&point)?;
+        filtered += usize::from(!expansion.add(&point, grid.filter.as_ref())?);
     }
     for values in &grid.points {
         let mut point = base.clone();
         for (column, value) in values {
             grid.columns[*column].target.set(&mut point, value.clone());
         }
-        expansion.add(&point)?;
+        expansion.add(&point, None)?;
     }
     if expansion.points.is_empty() {
         let problem = format!("keeps none of the {count} points");
@@ -55,7 +57,7 @@ pub(super) fn points(
         let allowed = "a condition that at least one point meets";
         return Err(source.error("grid.filter", text, problem, allowed));
     }
-    Ok(expansion.points)
+    Ok((expansion.points, filtered))
 }
 
 /// Number of points of the product, and of all points before the filter.
@@ -91,17 +93,17 @@ struct Expansion<'a> {
 }
 
 impl Expansion<'_> {
-    /// Adds a point, unless the filter drops it.
-    fn add(&mut self, point: &Base) -> Result<(), InputError> {
+    /// Adds a point, unless the filter removes it; `false` for a removed point.
+    fn add(&mut self, point: &Base, filter: Option<&Expression>) -> Result<bool, InputError> {
         debug_assert_eq!(self.base.supports, point.supports, "supports are not an axis");
         let design = resolve::design(point, self.source);
         let design = design.map_err(|error| self.at_point(point, error))?;
         let fold = self.folds.entry(fold::design_key(&design));
         let fold = Rc::clone(fold.or_insert_with(|| Rc::new(fold::solve(&design))));
-        if let Some(filter) = &self.grid.filter
+        if let Some(filter) = filter
             && !filter.holds(&variables::values(&self.grid.columns, point, &fold))
         {
-            return Ok(());
+            return Ok(false);
         }
         let (infeasible, solved) = match &*fold {
             Fold::Solved(pattern) => (None, Some(Solved::of(pattern))),
@@ -119,7 +121,7 @@ impl Expansion<'_> {
             .map_err(|error| self.at_point(point, error))?;
         let parameters = self.parameters(point);
         self.points.push(StudyPoint { parameters, scene, infeasible, solved });
-        Ok(())
+        Ok(true)
     }
 
     /// The varied parameters of a point.
@@ -134,7 +136,7 @@ impl Expansion<'_> {
             let parameters: Vec<String> = self
                 .parameters(point)
                 .iter()
-                .map(|(name, value)| format!("{name} = {value}"))
+                .map(|(name, value)| format!("{name} = {}", value.short()))
                 .collect();
             error.hint = format!("this is the point {}", parameters.join(", "));
         }

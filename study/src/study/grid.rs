@@ -293,8 +293,8 @@ pub(super) fn refuse_varied(grid: &Grid, source: &Source) -> Result<(), InputErr
             return Err(source.error(
                 path,
                 "",
-                "the grid varies this key, so the override has no effect",
-                format!("--set 'grid.{name}=[…]'"),
+                "the grid varies this key together with others (zip), so the override has no effect",
+                format!("--set 'grid.zip=[{{\"{name}\": […], …}}]'"),
             ));
         }
     }

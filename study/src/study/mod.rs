@@ -10,13 +10,16 @@ mod base;
 mod expand;
 mod fold;
 mod grid;
+pub(crate) mod ground;
 mod limits;
 pub mod plan;
 mod point;
 mod range;
 mod resolve;
+mod schedule;
 mod strategy;
 mod target;
+mod units;
 mod variables;
 
 use std::path::Path;
@@ -25,12 +28,16 @@ use crate::input::keys::{KEYS, STUDY, position};
 use crate::input::overrides;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
+use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::platform::error::{InputError, Result as BillowResult};
 use base::Base;
 use grid::Grid;
 pub use limits::Limits;
 pub(crate) use point::StudyPoint;
+
+/// The key of the units in which quantities are shown. It changes no job.
+pub(crate) const UNITS: &str = "units";
 
 /// A validated study.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,9 +48,24 @@ pub struct Study {
     pub question: String,
     /// Keys that the file gives by an old name.
     renamed: Vec<String>,
+    /// Warnings about its values.
+    warnings: Vec<String>,
+    /// The units in which its quantities are shown.
+    units: DisplayUnits,
     base: Base,
     grid: Grid,
     points: Vec<StudyPoint>,
+    /// Number of points of the product that the filter removed.
+    filtered: usize,
+}
+
+/// A parameter that changes together with another one on an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zipped {
+    /// Its name.
+    pub name: String,
+    /// The steps of the axis: value of the other parameter, value of this one.
+    pub steps: Vec<(Value, Value)>,
 }
 
 impl Study {
@@ -75,6 +97,7 @@ impl Study {
     ) -> Result<Self, InputError> {
         let tree = study_file::parse(text, file)?;
         Self::from_tree(tree, file, stem, sets, limits)
+            .map_err(|error| study_file::with_place(error, text, file))
     }
 
     /// Reads a study from the tree of its text.
@@ -101,11 +124,13 @@ impl Study {
         let base = Base::read(&tree, &source)?;
         let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
         grid::refuse_varied(&grid, &source)?;
-        let points = expand::points(&base, &grid, &source, limits)?;
+        let units = units::read(&tree, &base, &source)?;
+        let (points, filtered) = expand::points(&base, &grid, &source, limits)?;
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
-        Ok(Self { name, question, renamed, base, grid, points })
+        let warnings = source.warnings();
+        Ok(Self { name, question, renamed, warnings, units, base, grid, points, filtered })
     }
 
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
@@ -119,13 +144,17 @@ impl Study {
     }
 
     /// Varied parameters on the same axis as this one, which change together with it.
-    pub fn zipped_with(&self, parameter: &str) -> Vec<String> {
-        let named = |column: &&usize| self.grid.columns[**column].name == parameter;
-        let axis =
-            self.grid.axes.iter().find(|axis| axis.columns.iter().any(|column| named(&column)));
-        let columns = axis.map(|axis| axis.columns.as_slice()).unwrap_or_default();
-        let others = columns.iter().filter(|column| !named(column));
-        others.map(|column| self.grid.columns[*column].name.clone()).collect()
+    pub fn zipped_with(&self, parameter: &str) -> Vec<Zipped> {
+        let named = |column: &usize| self.grid.columns[*column].name == parameter;
+        let axis = self.grid.axes.iter().find(|axis| axis.columns.iter().any(named));
+        let Some(axis) = axis else { return Vec::new() };
+        let by = axis.columns.iter().position(named).unwrap_or(0);
+        let others = axis.columns.iter().enumerate().filter(|(index, _)| *index != by);
+        let zipped = |(index, column): (usize, &usize)| Zipped {
+            name: self.grid.columns[*column].name.clone(),
+            steps: axis.rows.iter().map(|row| (row[by].clone(), row[index].clone())).collect(),
+        };
+        others.map(zipped).collect()
     }
 
     /// Reads a value of a varied parameter as a user writes it on a command line: a number (SI), a
@@ -152,6 +181,12 @@ impl Study {
         column.map_or("", |column| column.target.key().unit())
     }
 
+    /// The units in which its parameters and measures are shown: those that the file writes, or asks for
+    /// under `units`.
+    pub fn display_units(&self) -> &DisplayUnits {
+        &self.units
+    }
+
     /// The resolved study: units converted, defaults written out, axes as lists. It is a study file
     /// itself: read again, it plans the same jobs in the same order, with the same order of
     /// parameters.
@@ -159,42 +194,37 @@ impl Study {
         let mut json = self.base.to_json();
         json["name"] = self.name.as_str().into();
         let mut json = Json::from(json);
+        let units = self.units.iter();
+        let units: Vec<(String, Json)> =
+            units.map(|(name, symbol)| (name.to_owned(), Json::Text(symbol.to_owned()))).collect();
+        if !units.is_empty() {
+            json.set(UNITS, Json::Object(units));
+        }
         if !self.grid.is_empty() {
             json.set("grid", self.grid.resolved());
         }
         json
     }
 
-    /// What a reader of the plan must know: keys given by an old name, and inflow windows that are ignored.
-    pub(crate) fn notes(&self) -> Vec<String> {
-        self.renamed.iter().cloned().chain(self.late_windows()).collect()
+    /// Values that are probably mistaken: likely forgotten units, and times that do not fit the run.
+    pub(crate) fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
-    /// Inflow windows, or parts of them, that lie after the end of every run.
-    fn late_windows(&self) -> Vec<String> {
-        let ends = self.points.iter().map(|point| point.scene.solver.end_time);
-        let end = ends.fold(0.0, f64::max);
-        let late = |(name, strategy): (&String, &strategy::Strategy)| -> Vec<String> {
-            let note = |(index, window): (usize, strategy::Window)| {
-                let path = format!("strategies.{name}.inflow[{index}]");
-                if let Some(from) = window.from.filter(|from| *from >= end) {
-                    return Some(format!(
-                        "{path} begins at {from} s, after solver.end_time ({end} s): it is ignored"
-                    ));
-                }
-                let to = window.to.filter(|to| *to > end)?;
-                Some(format!(
-                    "{path} ends at {to} s: its part after solver.end_time ({end} s) is ignored"
-                ))
-            };
-            strategy.windows().enumerate().filter_map(note).collect()
-        };
-        self.base.strategies.iter().flat_map(late).collect()
+    /// What a reader of the plan must know: keys given by an old name.
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.renamed
     }
 
-    /// The points that the filter keeps, in plan order.
+    /// The points of the study, in plan order: those of the product that the filter keeps, and the single
+    /// points.
     pub(crate) fn points(&self) -> &[StudyPoint] {
         &self.points
+    }
+
+    /// Number of points of the product that the filter removed.
+    pub fn filtered(&self) -> usize {
+        self.filtered
     }
 }
 

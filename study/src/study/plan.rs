@@ -6,8 +6,10 @@
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
+use billow_solver::output::measures::Verdict;
+
 use crate::job::point::Point;
-use crate::job::row::{Cells, ColumnId};
+use crate::job::row::Cells;
 use crate::job::{Job, JobId, Status};
 use crate::study::Study;
 
@@ -27,15 +29,47 @@ pub struct FinishedRow {
     pub id: JobId,
     /// Its status, as in the table.
     pub status: Status,
-    /// Its verdict, as in the table.
-    pub verdict: Option<String>,
+    /// Its verdict.
+    pub verdict: Option<Verdict>,
 }
 
 impl FinishedRow {
     /// The row of a job that ended with these cells.
     pub fn of(id: &JobId, cells: &Cells) -> Self {
-        let verdict = Some(cells.text(ColumnId::Verdict)).filter(|text| !text.is_empty());
-        Self { id: id.clone(), status: cells.status(), verdict: verdict.map(str::to_owned) }
+        Self { id: id.clone(), status: cells.status(), verdict: cells.verdict() }
+    }
+}
+
+/// Numbers of points and jobs of a plan: points = jobs + duplicates + infeasible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PlanCounts {
+    /// Points of the study, without the filtered ones.
+    pub points: usize,
+    /// Different scenes to run.
+    pub jobs: usize,
+    /// Points whose job another point has already.
+    pub duplicates: usize,
+    /// Points without a fold pattern.
+    pub infeasible: usize,
+    /// Points of the product that the filter removed.
+    pub filtered: usize,
+}
+
+impl PlanCounts {
+    /// Counts the points of a study and of its generation.
+    pub fn of(study: &Study, generation: &Generation) -> Self {
+        let (infeasible, feasible): (Vec<&Point>, Vec<&Point>) =
+            generation.points.iter().partition(|point| point.infeasible.is_some());
+        let number = |points: &[&Point]| -> usize {
+            points.iter().map(|point| 1 + point.merged.len()).sum()
+        };
+        Self {
+            points: study.points().len(),
+            jobs: feasible.len(),
+            duplicates: number(&feasible) - feasible.len(),
+            infeasible: number(&infeasible),
+            filtered: study.filtered(),
+        }
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::limits::Limits;
 use crate::input::keys::{Key, KeyKind};
-use crate::input::settings::read;
+use crate::input::settings::{read, read_silently};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::units;
@@ -66,7 +66,7 @@ impl RangeInput<'_> {
         };
         let value = |(index, number)| {
             let path = format!("{} (value {})", self.path, index + 1);
-            read(self.key, &Json::Number(number), &path, self.source)
+            read_silently(self.key, &Json::Number(number), &path, self.source)
         };
         numbers.into_iter().enumerate().map(value).collect()
     }

@@ -4,11 +4,14 @@ use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{InflowWindow, ModelKind, Scene, Stepping};
 
 use super::base::Base;
+use super::ground;
+use super::schedule::Schedule;
 use super::strategy::{Strategy, Window};
-use crate::input::keys::draft::{Draft, SteppingDraft};
+use crate::input::keys::draft::{Draft, ResidualGas, SteppingDraft};
 use crate::input::keys::{KEYS, Key, named};
 use crate::input::settings::{check_sample_interval, species};
 use crate::input::source::{Source, shown};
+use crate::input::value::Value;
 use crate::platform::error::InputError;
 
 /// The fold design of a point.
@@ -36,9 +39,11 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
     check_release(name, strategy, end_time, source)?;
     let windows = Windows { point, name, strategy, draft: &draft, source };
     let windows = windows.resolve()?;
+    let burst = (burst_mass(&draft), draft.inflow.burst_rate);
     let mut scene = draft.scene.clone();
     scene.gas.species = species(&draft.species, source)?;
-    scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft);
+    scene.gas.initial_mass = strategy.preinflation_mass() + stored_mass(&draft, source)?;
+    ground::check_gas_inside(&scene.gas, source)?;
     scene.gas.windows = windows;
     scene.supports.clone_from(&point.supports);
     scene.release_time = strategy.release_time();
@@ -51,7 +56,14 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
         // Without an imperfection its amplitude is not physics.
         scene.imperfection_amplitude = None;
     }
+    Schedule { point, scene: &scene, burst, source }.check();
     Ok(scene)
+}
+
+/// Whether a study has this number of shapes without asking for it.
+pub(super) fn is_default_frames(frames: u32) -> bool {
+    const FRAMES: &Key = named(KEYS, "outputs.frames");
+    FRAMES.default_value() == Value::Integer(i64::from(frames))
 }
 
 /// Refuses a capsule that is released after the end of its run.
@@ -74,13 +86,17 @@ fn check_release(
 }
 
 /// Residual gas inside from the start, kg.
-fn stored_mass(draft: &Draft) -> f64 {
-    if draft.inflow.residual_stored { draft.inflow.residual_mass } else { 0.0 }
+fn stored_mass(draft: &Draft, source: &Source) -> Result<f64, InputError> {
+    Ok(match draft.inflow.residual {
+        ResidualGas::Burst => 0.0,
+        ResidualGas::Stored => draft.inflow.residual_mass,
+        ResidualGas::Ambient => ground::mass_at_ambient_pressure(draft, source)?,
+    })
 }
 
 /// Residual gas let in as a burst, kg.
 fn burst_mass(draft: &Draft) -> f64 {
-    if draft.inflow.residual_stored { 0.0 } else { draft.inflow.residual_mass }
+    if draft.inflow.residual == ResidualGas::Burst { draft.inflow.residual_mass } else { 0.0 }
 }
 
 /// Whether a model has a shape to keep.

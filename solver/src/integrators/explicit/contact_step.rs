@@ -1,5 +1,6 @@
 //! The part of a step that prevents passages of film through film and plates, and the monitor's part.
 
+use super::stability::moves_too_far;
 use super::update::largest_squared_speed;
 use super::{Explicit, State};
 use crate::collision::contact::candidates::CandidateList;
@@ -139,7 +140,7 @@ impl Explicit {
             CandidateList::build(contact_model, positions, state.path_length)
         });
         let speed = largest_speed(instruction_set, velocities);
-        if speed >= self.model.wave_speed() {
+        if moves_too_far(&self.model, speed * length) {
             // The step fails as unstable; candidates for such speeds would be meaningless.
             return Ok(());
         }

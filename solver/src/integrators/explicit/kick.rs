@@ -14,6 +14,7 @@ use super::Explicit;
 use super::update::{KickParameters, kick_nodes};
 use crate::geometry::field::Field;
 use crate::mechanics::forces::damping::kick_factors;
+use crate::mechanics::forces::membrane::NORMAL_TO_GRADIENT;
 use crate::mechanics::supports::{PrescribedNodes, RigidPlane};
 use crate::platform::fault_injection::Term;
 
@@ -202,12 +203,15 @@ impl Explicit {
     }
 
     /// Force of the film on a support that holds `nodes` along `held`, N, and its moment about the origin,
-    /// N m. Inertia is not included.
+    /// N m. Inertia is not included, nor is the pressure on closing faces on a wall.
     pub fn reaction(&self, nodes: &[u32], held: &Matrix3<f64>) -> [Vector3<f64>; 2] {
         let mut sum = [Vector3::zeros(); 2];
+        let on_walls = self.model.closure_nodes.on_walls(&self.state.positions);
         for node in nodes {
+            let wall = on_walls.get(node).map_or_else(Vector3::zeros, |normal| *normal);
             let node = *node as usize;
-            let force = held * self.force(node);
+            let on_wall = wall * (self.overpressure() * NORMAL_TO_GRADIENT);
+            let force = held * (self.force(node) - on_wall);
             sum[0] += force;
             sum[1] += self.state.positions.get(node).cross(&force);
         }

@@ -47,6 +47,7 @@ mod kick;
 mod parameters;
 mod quiescence;
 pub mod reference_step;
+mod stability;
 mod state;
 pub mod update;
 
@@ -71,6 +72,8 @@ pub struct Explicit {
     pub forces: NodeForces,
     /// Tunnelling monitor: counts passages of film through film. `None` without contact.
     pub monitor: Option<TunnellingMonitor>,
+    /// Largest principal stress now, Pa: a function of the state.
+    largest_stress: f64,
     /// Candidate pairs of contact: a function of the state, built at first use.
     candidates: Option<CandidateList>,
     /// Scratch: the velocities after a kick.
@@ -102,6 +105,7 @@ impl Explicit {
             PressureLoad::Overpressure(pressure) => pressure,
         };
         film.state.start_moment = film.first_moment().into();
+        film.state.start_energy = film.ledger().stored();
         film
     }
 
@@ -125,13 +129,22 @@ impl Explicit {
             let instruction_set = parameters.instruction_set;
             TunnellingMonitor::new(settings, mesh, positions, state.steps, instruction_set)
         });
-        Self { model, parameters, state, forces, monitor, candidates: None, next }
+        Self {
+            model,
+            parameters,
+            state,
+            forces,
+            monitor,
+            largest_stress: 0.0,
+            candidates: None,
+            next,
+        }
     }
 
     /// Advances to exactly `target` (s) under a phase.
     ///
     /// # Errors
-    /// [`Failure`]: `unstable`, `inverted_volume`, `step_limit` or `interpenetrated`.
+    /// [`Failure`]: `unstable`, `overstretched`, `inverted_volume`, `step_limit` or `interpenetrated`.
     pub fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
         self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
     }
@@ -185,7 +198,7 @@ impl Explicit {
             }
             self.state.time = end;
             self.state.steps += 1;
-            if self.activity_detected(&interval) {
+            if self.activity_detected(&interval) || self.step_too_long(&interval) {
                 let target = interval.target;
                 interval = self.replan_interval(target).ok_or_else(|| self.no_advance())?;
             }
@@ -216,7 +229,7 @@ impl Explicit {
             PressureLoad::Overpressure(_) => 0.0,
         };
         let factor = stable_share(self.parameters.numerical_damping) * 2.0;
-        let max_step = cfl * factor / (film * film + gas).sqrt();
+        let max_step = cfl * factor / (self.stretched_squared() + gas).sqrt();
         match self.parameters.contact.as_ref().filter(|_| contact_active) {
             // Contact bounds stability only: the CFL number already keeps the step well below it.
             Some(contact_model) => {
@@ -258,24 +271,21 @@ impl Explicit {
         stopwatch.begins(Stage::Gas);
         self.add_plate_work(end);
         let volume = sums.six_volumes / 6.0;
-        // Both checks fail for NaN.
-        let subsonic = max_speed_squared < self.model.wave_speed() * self.model.wave_speed();
-        if !subsonic || !volume.is_finite() {
-            return Err(self.unstable());
-        }
+        self.check_finite(max_speed_squared.sqrt() * drift, volume)?;
         let works = &mut self.state.works;
         works.numerical_dissipation +=
             sums.numerical_dissipation * self.parameters.fault_factor(Term::NumericalWork);
         works.material_loss += sums.material_loss;
         self.state.film_stress = self.state.film_stress.max(sums.largest_stress);
         if matches!(self.parameters.pressure_load, PressureLoad::Gas(_)) && volume <= 0.0 {
-            return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
+            return Err(self.inverted_volume());
         }
         self.step_gas(volume, length, inflow);
         stopwatch.begins(Stage::Update);
         self.half_step_works(length);
         self.state.last_step = length;
         stopwatch.begins(Stage::Audit);
+        self.check_stretch()?;
         self.monitor_step()
     }
 
@@ -349,6 +359,7 @@ impl Explicit {
         stopwatch.begins(Stage::Membrane);
         let (model, instruction_set) = (&self.model, self.parameters.instruction_set);
         let State { positions, element_history, .. } = &mut self.state;
+        model.closure_nodes.place(positions);
         let mut sums = assemble_membrane(
             instruction_set,
             model,
@@ -357,6 +368,7 @@ impl Explicit {
             element_history,
             &mut self.forces,
         );
+        self.largest_stress = sums.largest_stress;
         sums.six_volumes += add_closure(model, positions, &mut self.forces);
         if self.parameters.fault.is_some() {
             self.inject_fault(&mut sums);
@@ -379,17 +391,6 @@ impl Explicit {
             self.forces.scale_area(node, area);
         }
         sums.six_volumes *= self.parameters.fault_factor(Term::Volume);
-    }
-
-    fn unstable(&self) -> Failure {
-        let bound = self.model.wave_speed();
-        let subsonic = |node: &usize| self.state.velocities.get(*node).norm() < bound;
-        let node = (0..self.model.nodes()).find(|node| !subsonic(node));
-        let place = match node {
-            Some(node) => format!("node {node} is faster than the film's waves ({bound:.0} m/s)"),
-            None => "the volume is not finite".to_owned(),
-        };
-        self.failure(FailureKind::Unstable, &place)
     }
 
     fn failure(&self, kind: FailureKind, place: &str) -> Failure {

@@ -43,6 +43,8 @@ pub struct State {
     pub gas_balance: GasBalance,
     /// Σ m x at time 0, kg m.
     pub start_moment: [f64; 3],
+    /// Kinetic and stored energy at time 0, J.
+    pub start_energy: f64,
     /// Contact of film with film and with plates.
     pub contact_state: ContactState,
     /// Whether the film is quiescent, and since when.
@@ -142,6 +144,7 @@ impl State {
             works: Works::default(),
             gas_balance: GasBalance::default(),
             start_moment: [0.0; 3],
+            start_energy: 0.0,
             contact_state: ContactState::default(),
             quiescence: Quiescence::default(),
             step_interval: None,

@@ -13,8 +13,10 @@ use std::collections::BTreeSet;
 use nalgebra::Vector2;
 
 use crate::geometry::shell::Shell;
+use crate::mechanics::closure::{ClosureError, ClosureNodes};
 use crate::mechanics::material::Material;
 use crate::mechanics::material_loss::Creep;
+use crate::mechanics::supports::Supports;
 use crate::platform::fault_injection::{Fault, Term};
 use crate::platform::simd::{Column, Corners};
 use crate::scene::Film;
@@ -53,6 +55,9 @@ pub enum FilmError {
         /// Number of nodes.
         nodes: usize,
     },
+    /// The rim of closing faces does not place one of their vertices.
+    #[error(transparent)]
+    Closure(#[from] ClosureError),
 }
 
 /// The film as constant-strain triangles: constant data of a run.
@@ -86,6 +91,8 @@ pub struct FilmModel {
     pub constants: Vec<[ElementBlock; 2]>,
     /// Nodes of the faces that close the volume and are not film; number of closing faces × 3.
     pub closure: Vec<[u32; 3]>,
+    /// Vertices of those faces that belong to no film.
+    pub closure_nodes: ClosureNodes,
     /// Dm⁻¹ of each element, row by row, 1/m; 4 × `N_e`.
     pub inverse_shape: [Vec<f64>; 4],
     /// A t of each element, m³; `N_e`.
@@ -94,6 +101,8 @@ pub struct FilmModel {
     pub frequency: Vec<f64>,
     /// Largest entry of `frequency`, rad/s; kept because every step reads it.
     largest_frequency: f64,
+    /// Square root of the reference area of the film, m.
+    size: f64,
     /// `2ζ/ω_e` of each element, s; `N_e`.
     pub damping_time: Vec<f64>,
     /// m of each node, kg; `N_n`. Zero for a node of closing faces only.
@@ -116,7 +125,16 @@ impl FilmModel {
         Self::build(film, nodes, triangles, reference, &[])
     }
 
-    /// The film of a shell, with its closing faces.
+    /// The film of a shell with these supports, with its closing faces.
+    ///
+    /// # Errors
+    /// [`FilmError`].
+    pub fn supported(film: &Film, shell: &Shell, supports: &Supports) -> Result<Self, FilmError> {
+        let closure_nodes = ClosureNodes::new(shell, supports)?;
+        Ok(Self { closure_nodes, ..Self::of_shell(film, shell)? })
+    }
+
+    /// The film of a shell, with its closing faces. Their vertices without film are fixed in space.
     ///
     /// # Errors
     /// [`FilmError`].
@@ -144,10 +162,12 @@ impl FilmModel {
             corners: Corners::new(&[], nodes),
             constants: Vec::new(),
             closure: closure.to_vec(),
+            closure_nodes: ClosureNodes::default(),
             inverse_shape: core::array::from_fn(|_| Vec::with_capacity(triangles.len())),
             volume: Vec::with_capacity(triangles.len()),
             frequency: Vec::with_capacity(triangles.len()),
             largest_frequency: 0.0,
+            size: 0.0,
             damping_time: Vec::with_capacity(triangles.len()),
             mass: vec![0.0; nodes],
             inverse_mass: Column::default(),
@@ -178,6 +198,7 @@ impl FilmModel {
                 model.mass[*node as usize] += film.density * volume / 3.0;
             }
         }
+        model.size = (model.volume.iter().sum::<f64>() / film.thickness).sqrt();
         let closure_nodes: BTreeSet<u32> = closure.iter().flatten().copied().collect();
         let loose = (0_u32..)
             .zip(&model.mass)
@@ -220,6 +241,11 @@ impl FilmModel {
     /// (Rayleigh quotient: stiffness and mass of the film are sums over the elements).
     pub fn largest_frequency(&self) -> f64 {
         self.largest_frequency
+    }
+
+    /// Square root of the reference area of the film, m: the size of its motions.
+    pub fn size(&self) -> f64 {
+        self.size
     }
 
     /// Speed of a plane wave in the film, √(E/(ρ(1−ν²))), m/s.

@@ -32,8 +32,8 @@ pub fn volume(model: &FilmModel, positions: &Field) -> f64 {
     six / 6.0
 }
 
-/// Adds the normals of the closing faces to those of the film. Returns six times their part of the
-/// volume, m³.
+/// Adds the normals of the closing faces to those of the film; those of vertices without film go to their
+/// rims. Returns six times their part of the volume, m³.
 pub fn add_closure(model: &FilmModel, positions: &Field, forces: &mut NodeForces) -> f64 {
     let mut six = 0.0;
     for face in &model.closure {
@@ -44,6 +44,7 @@ pub fn add_closure(model: &FilmModel, positions: &Field, forces: &mut NodeForces
         }
         six += a.dot(&b.cross(&c));
     }
+    model.closure_nodes.distribute(positions, forces);
     six
 }
 

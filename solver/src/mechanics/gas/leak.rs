@@ -1,10 +1,11 @@
-//! Mass flow through the leak orifice: isentropic outflow, choked or subsonic.
+//! Mass flow through the leak orifice: isentropic, choked or subsonic, towards the lower pressure.
 //!
 //! ```text
 //! ṁ = C_d A √(p ρ) √γ (2/(γ+1))^((γ+1)/(2(γ−1)))          choked,   r ≤ (2/(γ+1))^(γ/(γ−1))
 //! ṁ = C_d A √(p ρ) √(2γ/(γ−1) (r^(2/γ) − r^((γ+1)/γ)))    subsonic, r = p_ambient/p < 1
 //! ```
 //!
+//! p and ρ are those of the side that the gas leaves. Air outside counts as the gas inside, at film temperature.
 //! This is the form of [`super`] with p √(1/(R T)) = √(p ρ), which is finite for T → 0.
 
 /// Leak orifice for one gas.
@@ -70,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_no_inflow_from_ambient() {
+    fn gas_leaves_the_side_of_the_higher_pressure() {
         let orifice = Orifice::new(1.4, 1e-4);
         assert_eq!(orifice.mass_flow(1e4, 0.1, 1e5), 0.0);
         assert_eq!(orifice.mass_flow(1e5, 1.2, 1e5), 0.0);

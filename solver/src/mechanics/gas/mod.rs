@@ -16,7 +16,8 @@
 //! equations are those of one-dimensional isentropic flow (any text on gas dynamics).
 //!
 //! - Without gas p = 0, and the temperature is reported as that of the film.
-//! - The leak is one-way: at p ≤ `p_ambient` nothing flows. Ambient air does not enter the capsule.
+//! - The leak flows both ways. Where p < `p_ambient`, ṁ_out is negative: the same equations with inside and
+//!   outside exchanged, for gas of the same species at film temperature outside.
 //! - [`HeatTransfer::Isothermal`] is exact: T = `T_film`, and the heat follows from the balance.
 //! - With h > 0 the gas approaches film temperature at the rate h A/(m cv), limited to 1/µs
 //!   (`MIN_EXCHANGE_TIME`). Without that limit a nearly empty volume would need ever smaller steps.
@@ -51,7 +52,7 @@ pub struct GasRates {
     pub mass: f64,
     /// dU/dt, W.
     pub internal_energy: f64,
-    /// `ṁ_out`, mass flow rate of the leak, kg/s.
+    /// `ṁ_out`, mass flow rate of the leak, kg/s; negative where gas enters from outside.
     pub mass_out: f64,
     /// `ṁ_in` cp `T_in`, enthalpy flow of the inflow, W.
     pub enthalpy_in: f64,
@@ -155,8 +156,15 @@ impl Gas {
         let temperature =
             if state.mass > 0.0 { self.temperature(state) } else { self.first_temperature(inflow) };
         let pressure = self.pressure(state, volume);
-        let mass_out = self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
-        let enthalpy_out = mass_out * self.cp * temperature;
+        let outflow = self.orifice.mass_flow(pressure, state.mass / volume, self.ambient_pressure);
+        let (mass_out, enthalpy_out) = if pressure < self.ambient_pressure {
+            // p = (cp − cv) ρ T outside.
+            let density = self.ambient_pressure / ((self.cp - self.cv) * self.film_temperature);
+            let back = self.orifice.mass_flow(self.ambient_pressure, density, pressure);
+            (-back, -back * self.cp * self.film_temperature)
+        } else {
+            (outflow, outflow * self.cp * temperature)
+        };
         let enthalpy_in = self.cp * inflow.temperature_flow;
         let work = pressure * volume_rate;
         let mass = inflow.mass_flow_rate - mass_out;
@@ -221,6 +229,37 @@ mod tests {
                 assert!(rates.internal_energy.is_finite() && rates.mass.is_finite(), "{state:?}");
             }
         }
+    }
+
+    #[test]
+    fn gas_enters_through_the_leak_from_a_higher_ambient_pressure() {
+        let supply = GasSupply {
+            ambient_pressure: 1e5,
+            leak_area: 1e-4,
+            discharge_coefficient: 1.0,
+            heat_transfer: HeatTransfer::Coefficient(0.0),
+            ..nitrogen_supply()
+        };
+        let gas = Gas::new(&supply, 293.0, 1.0);
+        let still = Inflow::default();
+        // Into a vacuum: choked, with the enthalpy of the gas outside.
+        let empty = gas.rates(GasState::default(), 0.01, 0.0, still);
+        let flux = (1e5 * 1e5 / (NITROGEN.gas_constant * 293.0)).sqrt();
+        let choked = 1e-4 * flux * 0.684_731_5;
+        assert!((-empty.mass_out / choked - 1.0).abs() < 1e-4, "{} {choked}", empty.mass_out);
+        assert_eq!(empty.enthalpy_out, empty.mass_out * NITROGEN.cp * 293.0);
+        // It fills the volume adiabatically to γ T, and then nothing flows.
+        let mut state = GasState::default();
+        let (mut entered, mut enthalpy) = (0.0, 0.0);
+        for _ in 0..20_000 {
+            let step = gas.step(state, 0.01, 0.01, 5e-5, still);
+            (entered, enthalpy) = (entered - step.mass_out, enthalpy - step.enthalpy_out);
+            state = step.state;
+        }
+        assert!((gas.pressure(state, 0.01) / 1e5 - 1.0).abs() < 1e-6);
+        assert!((gas.temperature(state) / (gas.gamma() * 293.0) - 1.0).abs() < 1e-6);
+        assert!((state.mass / entered - 1.0).abs() < 1e-12);
+        assert!((state.internal_energy / enthalpy - 1.0).abs() < 1e-12);
     }
 
     #[test]

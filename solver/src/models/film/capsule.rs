@@ -173,9 +173,10 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
     check_cfl(solver.cfl)?;
     let invalid = |key: &str, problem: String| SceneError::Invalid { key: key.to_owned(), problem };
     scene.shell.check().map_err(|error| invalid("mesh", error.to_string()))?;
-    let model = FilmModel::of_shell(&scene.film, &scene.shell)
-        .map_err(|error| invalid("mesh", error.to_string()))?;
     let positions = Field::of(&scene.shell.positions);
+    let supports = Supports::new(&scene.supports, &positions);
+    let model = FilmModel::supported(&scene.film, &scene.shell, &supports)
+        .map_err(|error| invalid("mesh", error.to_string()))?;
     let (pressure_load, gas) = match &scene.filling {
         Filling::Pressure(pressure) => (PressureLoad::Overpressure(*pressure), GasState::default()),
         Filling::Gas { supply, initial_temperature } => {
@@ -185,7 +186,7 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
     };
     let parameters = Parameters {
         pressure_load,
-        supports: Supports::new(&scene.supports, &positions),
+        supports,
         gravity: scene.gravity,
         numerical_damping: scene.film.numerical_damping,
         mass_damping: solver.mass_damping,

@@ -23,7 +23,6 @@ use crate::mechanics::forces::damping;
 use crate::models::run::{self, Model, Observer};
 use crate::output::frames::Frame;
 use crate::output::history::{Sample, Track};
-use crate::output::measures::Reference;
 use crate::output::outcome::{Deployment, Failure};
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
@@ -33,28 +32,26 @@ use crate::scene::{Scene, Stepping};
 
 pub mod capsule;
 mod imperfection;
+mod ladder;
 pub mod reference_gap;
 mod statics;
 mod tracks;
 
 pub use crate::statics::Relaxation;
-pub use statics::{
-    Erected, StaticState, erected, reference_scene, static_reference, static_reference_while,
-    static_states,
-};
-pub use tracks::CONTACT as CONTACT_COLUMNS;
+pub use ladder::{Ladder, LadderState};
+pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
+pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
 
 /// The entry in the table of models.
 pub(super) const ENTRY: ModelEntry = ModelEntry {
     name: "film",
     check,
     cost,
-    reference: Some(ReferenceEntry { scene: reference_scene, solve: static_reference_while }),
+    reference: Some(ReferenceEntry { scene: reference_scene, ladder: Ladder::new }),
     solve: solve_scene,
 };
 
-/// Runs a scene as film with this contact and CFL number, judged against `reference`
-/// ([`static_reference`], or a stored one of the same design, film and supports).
+/// Runs a scene as film with this contact and CFL number.
 ///
 /// # Errors
 /// [`SceneError`] if the scene cannot be started.
@@ -63,10 +60,9 @@ pub fn solve(
     scene: &Scene,
     cfl: f64,
     contact: Option<FilmContact>,
-    reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
-    let mut run = FilmRun::from_scene(instruction_set, scene, cfl, contact, reference)?;
+    let mut run = FilmRun::from_scene(instruction_set, scene, cfl, contact)?;
     Ok(run::run(&mut run, &Timeline::new(scene), observer))
 }
 
@@ -77,11 +73,10 @@ pub fn solve(
 pub fn solve_scene(
     instruction_set: InstructionSet,
     scene: &Scene,
-    reference: Option<Reference>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
     let contact = FilmContact::of(&scene.contact);
-    solve(instruction_set, scene, cfl_of(scene)?, Some(contact), reference, observer)
+    solve(instruction_set, scene, cfl_of(scene)?, Some(contact), observer)
 }
 
 /// Checks a scene for this model, as far as possible without its fold pattern.
@@ -131,7 +126,6 @@ pub struct FilmRun {
     /// The film.
     pub film: Explicit,
     rings: Option<Rings>,
-    reference: Option<Reference>,
     nodes: Vec<u32>,
     elements: Vec<u32>,
     /// Boundary loops of an open film, each with the apex (m) of the fan that closes it.
@@ -210,7 +204,7 @@ impl FilmRun {
         let (nodes, elements) = (scene.outputs.nodes.clone(), scene.outputs.elements.clone());
         let temperature = scene.film.temperature;
         let fans = scene.shell.fans();
-        Self { film, rings, reference: None, nodes, elements, fans, temperature }
+        Self { film, rings, nodes, elements, fans, temperature }
     }
 
     /// The capsule of a scene, stowed, at time 0, with this contact. Contact without a distance has the
@@ -223,14 +217,12 @@ impl FilmRun {
         scene: &Scene,
         cfl: f64,
         contact: Option<FilmContact>,
-        reference: Option<Reference>,
     ) -> Result<Self, SceneError> {
         let stowed = Shape::Stowed(scene.design.stowed_height);
         let (film, mesh) = capsule::film_scene(instruction_set, scene, stowed, cfl)?;
         let resolved = |contact| capsule::resolved_contact(contact, &scene.design);
         let film = FilmScene { contact: contact.map(resolved).transpose()?, ..film };
-        let run = Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))?;
-        Ok(Self { reference, ..run })
+        Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))
     }
 
     /// Force on the lid while packed, N.
@@ -318,10 +310,6 @@ impl Model for FilmRun {
             gas: film.gas_balance(),
             ..sample
         }
-    }
-
-    fn reference(&self) -> Option<Reference> {
-        self.reference.clone()
     }
 
     fn has_rings(&self) -> bool {

@@ -18,7 +18,6 @@ use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::strain_energy;
 use crate::mechanics::forces::pressure::volume;
 use crate::mechanics::supports::{PrescribedNodes, Supports};
-use crate::output::measures::{REFERENCE_PRESSURES, Reference};
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
 use crate::scene::film_scene::Filling;
@@ -100,6 +99,9 @@ pub fn erected(instruction_set: InstructionSet, scene: &Scene) -> Result<Erected
     Ok(Erected { model, supports, positions, mesh, equilibrium_at: None, instruction_set })
 }
 
+/// Tolerances of a capsule's equilibria. Chosen: volumes and heights err by less than 1e-6.
+const TOLERANCES: Tolerances = Tolerances { residual: 1e-5, step: 1e-6, iterations: 400 };
+
 /// A motion without translation: each node has its own displacement ([`Mover::beside`]).
 const UNIT_MOTION: Motion = Motion {
     from: 0.0,
@@ -110,6 +112,13 @@ const UNIT_MOTION: Motion = Motion {
 };
 
 impl Erected {
+    /// The same capsule in a known equilibrium: these positions (m), at this overpressure (Pa).
+    pub fn at_equilibrium(&self, positions: Field, overpressure: f64) -> Self {
+        // Held nodes are at their stowed positions.
+        let supports = Supports { movers: Vec::new(), ..self.supports.clone() };
+        Self { positions, supports, equilibrium_at: Some(overpressure), ..self.clone() }
+    }
+
     /// The static equilibrium of the capsule at this overpressure (Pa), searched from the positions now.
     /// Moves the nodes there.
     ///
@@ -138,13 +147,8 @@ impl Erected {
         let observer = &mut |_: &_| {
             if continues() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        let equilibrium = settle(
-            &loaded,
-            &self.positions,
-            self.equilibrium_at,
-            &Tolerances::default(),
-            observer,
-        )?;
+        let equilibrium =
+            settle(&loaded, &self.positions, self.equilibrium_at, &TOLERANCES, observer)?;
         self.positions.clone_from(&equilibrium.positions);
         // Held nodes are at their stowed positions.
         self.supports.movers.clear();
@@ -171,23 +175,12 @@ pub fn static_states(
     scene: &Scene,
     overpressures: &[f64],
 ) -> Result<Vec<StaticState>, SceneError> {
-    states_while(instruction_set, scene, overpressures, &mut || true)
-}
-
-fn states_while(
-    instruction_set: InstructionSet,
-    scene: &Scene,
-    overpressures: &[f64],
-    continues: &mut dyn FnMut() -> bool,
-) -> Result<Vec<StaticState>, SceneError> {
     let mut capsule = erected(instruction_set, scene)?;
     let no_equilibrium = |failure: StaticFailure| SceneError::Invalid {
         key: "design".to_owned(),
         problem: failure.to_string(),
     };
-    let mut settle =
-        |pressure: &f64| capsule.settle_while(*pressure, continues).map_err(no_equilibrium);
-    overpressures.iter().map(&mut settle).collect()
+    overpressures.iter().map(|p| capsule.settle(*p).map_err(no_equilibrium)).collect()
 }
 
 /// A scene in which everything that does not affect static equilibria has its default: gas, contact, lid,
@@ -220,31 +213,4 @@ pub fn reference_scene(scene: &Scene) -> Scene {
         seed: 0,
         imperfection_amplitude: None,
     }
-}
-
-/// The static reference of a scene's capsule: `V_ref` and `H_ref` at [`REFERENCE_PRESSURES`].
-///
-/// # Errors
-/// As [`static_states`].
-pub fn static_reference(
-    instruction_set: InstructionSet,
-    scene: &Scene,
-) -> Result<Reference, SceneError> {
-    static_reference_while(instruction_set, scene, &mut || true)
-}
-
-/// [`static_reference`]; calls `continues` at every iteration and ends when it returns `false`.
-///
-/// # Errors
-/// As [`static_states`], or if `continues` returned `false`.
-pub fn static_reference_while(
-    instruction_set: InstructionSet,
-    scene: &Scene,
-    continues: &mut dyn FnMut() -> bool,
-) -> Result<Reference, SceneError> {
-    let mut descending = REFERENCE_PRESSURES;
-    descending.reverse();
-    let mut states = states_while(instruction_set, scene, &descending, continues)?;
-    states.reverse();
-    Ok(Reference::new(states.iter().map(|s| [s.overpressure, s.volume, s.z_rim]).collect()))
 }

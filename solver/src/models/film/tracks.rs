@@ -1,10 +1,19 @@
 //! Tracks and frames of the film: followed nodes and elements, the top centre, contact, plates.
 
 use super::FilmRun;
-use crate::mechanics::forces::membrane::strain;
+use crate::mechanics::forces::membrane::{strain, stress_on_fraction};
 use crate::mechanics::resultants::resultants;
 use crate::output::frames::{Frame, rounded};
 use crate::output::history::Track;
+
+/// Name, unit and meaning of the track of film stress that one element does not decide.
+pub const FILM_STRESS_99: (&str, &str, &str) = (
+    "film_stress_99",
+    "Pa",
+    "stress that 99 % of the film's area does not exceed (largest principal second Piola-Kirchhoff stress)",
+);
+/// Fraction of the area that reaches [`FILM_STRESS_99`].
+const ABOVE_99: f64 = 0.01;
 
 /// Tracks of contact: name, unit, meaning.
 pub const CONTACT: [(&str, &str, &str); 7] = [
@@ -40,6 +49,8 @@ pub(super) fn names(run: &FilmRun) -> Vec<Track> {
         ["N1", "N2"].map(|name| track(format!("element_{element}_{name}"), "N/m", meaning))
     });
     let mut all: Vec<Track> = nodes.chain(elements).collect();
+    let (name, unit, meaning) = FILM_STRESS_99;
+    all.push(track(name.to_owned(), unit, meaning));
     if run.rings.is_some() {
         let meaning = "velocity of the top centre node along z";
         all.push(track("vz_centre".to_owned(), "m/s", meaning));
@@ -65,6 +76,7 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
     for element in &run.elements {
         values.extend(resultants(model, &state.positions, *element as usize).principal);
     }
+    values.push(stress_on_fraction(model, &state.element_history, ABOVE_99));
     if let Some(rings) = &run.rings {
         values.push(run.film.velocities().z[rings.top_centre as usize]);
     }

@@ -15,6 +15,8 @@
 
 use std::f64::consts::PI;
 
+use crate::output::measures::design_overpressure;
+
 /// Damping ratio of the end film on the piston's effective mass. Chosen: a piston has one motion, and the
 /// energy that leaves it when the film snaps taut goes into waves of the film, which it does not have. The
 /// ledger counts what the damper takes as material loss.
@@ -33,6 +35,8 @@ pub struct EndFilm {
     pub meridional_stress: f64,
     /// Hoop stress per overpressure, Pa/Pa.
     pub hoop_stress: f64,
+    /// Overpressure of the design shape, Pa.
+    pub design_overpressure: f64,
 }
 
 /// State of the end film.
@@ -67,6 +71,11 @@ impl EndFilm {
             damping: 2.0 * damping_ratio * (stiffness * mass).sqrt(),
             meridional_stress: 1.0 / (2.0 * PI * thickness * cos * bottom.min(top)),
             hoop_stress: bottom.max(top) / (thickness * cos),
+            design_overpressure: design_overpressure(
+                0.5 * (bottom + top),
+                youngs_modulus,
+                thickness,
+            ),
         }
     }
 
@@ -78,6 +87,7 @@ impl EndFilm {
             damping: 0.0,
             meridional_stress: 0.0,
             hoop_stress: 0.0,
+            design_overpressure: 0.0,
         }
     }
 

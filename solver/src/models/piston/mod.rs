@@ -43,13 +43,13 @@ pub use mass::MovingMass;
 pub use motion::{Motion, Piston, PistonRun, PistonState};
 pub use volume::{Stroke, VolumeLaw};
 
-/// The entry in the table of models. The piston has no vector code and computes its own reference.
+/// The entry in the table of models. The piston has no vector code, and static equilibria in closed form.
 pub(super) const ENTRY: ModelEntry = ModelEntry {
     name: "piston",
     check,
     cost: |_| Ok(Cost { elements: 0, steps: 0 }),
     reference: None,
-    solve: |_, scene, _, observer| solve(scene, observer),
+    solve: |_, scene, observer| solve(scene, observer),
 };
 
 /// Runs a scene as a piston.

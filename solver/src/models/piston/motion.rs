@@ -6,7 +6,7 @@ use crate::mechanics::gas::{Gas, GasState};
 use crate::models::run::Model;
 use crate::output::history::Sample;
 use crate::output::ledger::{GasBalance, Ledger};
-use crate::output::measures::{REFERENCE_PRESSURES, Reference};
+use crate::output::measures::{NoReference, Reference, StaticShape};
 use crate::output::outcome::{Failure, FailureKind};
 use crate::scene::timeline::Phase;
 
@@ -254,14 +254,22 @@ impl Model for PistonRun {
 
     /// z = H + p (dV/dz)/k: above H the volume is linear in z. Without gravity, so that a design has the
     /// same reference on the ground and in orbit.
-    fn reference(&self) -> Option<Reference> {
+    fn reference(&self, final_overpressure: f64) -> Option<Reference> {
         let end = &self.piston.end;
+        if end.stiffness == 0.0 {
+            return None;
+        }
         let slope = self.piston.volume.slope(end.free_length);
-        let state = |pressure: f64| {
-            let height = end.free_length + pressure * slope / end.stiffness;
-            [pressure, self.piston.volume.volume(height), height]
+        let shape = |overpressure: f64| {
+            let height = end.free_length + overpressure * slope / end.stiffness;
+            StaticShape { overpressure, volume: self.piston.volume.volume(height), height }
         };
-        Some(Reference::new(REFERENCE_PRESSURES.map(state).to_vec()))
+        let at_end = if final_overpressure > 0.0 {
+            Ok(shape(final_overpressure))
+        } else {
+            Err(NoReference::NoOverpressure { overpressure: final_overpressure })
+        };
+        Some(Reference { design: Ok(shape(end.design_overpressure)), end: at_end })
     }
 
     fn film_stress(&self) -> f64 {

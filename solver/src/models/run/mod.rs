@@ -39,8 +39,12 @@ pub trait Model {
     /// the run loop takes it from the inflow schedule.
     fn sample(&self, phase: &Phase) -> Sample;
 
-    /// The static reference. A film that is not a capsule has none, and so no verdict.
-    fn reference(&self) -> Option<Reference>;
+    /// The static equilibria with which a run of this final overpressure (Pa) is compared, for a model that
+    /// has them in closed form. A model without is judged after its run
+    /// ([`Deployment::judge`]).
+    fn reference(&self, _final_overpressure: f64) -> Option<Reference> {
+        None
+    }
 
     /// Whether it has a bottom and a top ring, so that its samples have ring heights.
     fn has_rings(&self) -> bool {
@@ -192,7 +196,9 @@ impl Run {
             Stop::Done | Stop::Failed(_) => {
                 let stress = model.film_stress();
                 let done = stop == Stop::Done;
-                measures::measure(&history, model.reference().as_ref(), timeline, stress, done)
+                let overpressure = measures::final_overpressure(&history, timeline);
+                let reference = overpressure.and_then(|pressure| model.reference(pressure));
+                measures::measure(&history, reference.as_ref(), timeline, stress, done)
             }
         };
         let mut tracks = model.tracks();

@@ -1,5 +1,6 @@
 use super::*;
 use crate::output::ledger::Ledger;
+use crate::output::measures::StaticShape;
 use crate::scene::InflowWindow;
 use crate::scene::Thresholds;
 use crate::scene::inflow::Schedule;
@@ -39,8 +40,9 @@ impl Model for Recorder {
         Sample { time, volume: 1.0, z_rim: 1.0, ledger, ..Sample::default() }
     }
 
-    fn reference(&self) -> Option<Reference> {
-        Some(Reference::new(vec![[1.0, 1.0, 1.0]]))
+    fn reference(&self, overpressure: f64) -> Option<Reference> {
+        let shape = StaticShape { overpressure, volume: 1.0, height: 1.0 };
+        Some(Reference::constant(shape))
     }
 
     fn film_stress(&self) -> f64 {

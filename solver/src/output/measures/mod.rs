@@ -1,7 +1,9 @@
 //! Measures: single numbers computed from a history, and the verdict.
 //!
-//! `V_ref` and `H_ref` are always those at the **final overpressure** (last p minus ambient pressure), both
-//! in the verdict and in the thresholds of times. Series are linear between samples.
+//! Two static equilibria of the design serve as reference ([`Reference`]). Ratios, verdict, overshoot and
+//! `t_deployed` use the one at the **final overpressure** of the run. The other times use the **design
+//! shape**, which depends on the design alone. Times above one half use smoothed series ([`smoothed`]).
+//! Series are linear between samples.
 
 use crate::output::history::History;
 use crate::scene::timeline::Timeline;
@@ -10,17 +12,19 @@ mod hold;
 mod rebound;
 mod reference;
 mod ringing;
+mod smoothed;
 mod verdict;
 
 use hold::first_hold;
 pub use rebound::first_rebound;
-pub use reference::{REFERENCE_PRESSURES, Reference};
+pub use reference::{
+    DESIGN_LOAD, NoReference, Reference, StaticShape, design_overpressure, final_overpressure,
+};
+use smoothed::Window;
 use verdict::LastTenth;
 
-/// Time for which a height or volume must stay above its threshold to count as reached, s. Chosen.
+/// Time for which a height or volume must stay above one half to count as reached, s. Chosen.
 const MIN_REACHED_TIME: f64 = 0.005;
-/// Time for which both thresholds of `deployed` must hold for `t_deployed`, s. Chosen.
-const MIN_DEPLOYED_TIME: f64 = 0.02;
 /// Time for which the kinetic energy must stay low for `t_settled`, s. Chosen.
 const MIN_SETTLED_TIME: f64 = 0.05;
 /// Upper bound of the kinetic energy of a settled film, as a fraction of its peak. Chosen.
@@ -44,23 +48,30 @@ pub struct Measures {
     pub verdict: Option<Verdict>,
     /// Whether a change of the ratios by less than the near-threshold margin would change the verdict.
     pub near_threshold: bool,
-    /// Mean V of the last tenth divided by `V_ref`.
+    /// Why a run that is done has no verdict.
+    pub no_verdict: Option<NoReference>,
+    /// Mean V of the last tenth divided by the static volume at the final overpressure.
     pub volume_ratio: Option<f64>,
-    /// Smallest `z_rim` of the last tenth divided by `H_ref`.
+    /// Smallest `z_rim` of the last tenth divided by the static height at the final overpressure.
     pub height_ratio: Option<f64>,
-    /// `V_ref`: static volume at the final overpressure, m³.
-    pub reference_volume: Option<f64>,
-    /// `H_ref`: static `z_rim` at the final overpressure, m.
-    pub reference_height: Option<f64>,
-    /// First time from which `z_rim` stays above 0.5 `H_ref` for 5 ms, s.
+    /// The static shape of the verdict.
+    pub reference: Option<StaticShape>,
+    /// Mean overpressure of the last tenth, Pa.
+    pub final_overpressure: Option<f64>,
+    /// Height of the design shape, m.
+    pub design_height: Option<f64>,
+    /// Volume of the design shape, m³.
+    pub design_volume: Option<f64>,
+    /// First time from which `z_rim` stays above half the design height for 5 ms, s.
     pub t_50_z_rim: Option<f64>,
-    /// The same for 0.9 `H_ref`, s.
+    /// First time at which the smoothed `z_rim` reaches nine tenths of the design height, s.
     pub t_90_z_rim: Option<f64>,
-    /// First time from which V stays above 0.5 `V_ref` for 5 ms, s.
+    /// First time from which V stays above half the design volume for 5 ms, s.
     pub t_50_volume: Option<f64>,
-    /// The same for 0.9 `V_ref`, s.
+    /// First time at which the smoothed V reaches nine tenths of the design volume, s.
     pub t_90_volume: Option<f64>,
-    /// First time from which both thresholds of `deployed` hold for 20 ms, s.
+    /// First time at which the smaller of V and `z_rim`, each over its threshold of `deployed` and then
+    /// smoothed, reaches 1, s.
     pub t_deployed: Option<f64>,
     /// Largest vz, m/s.
     pub peak_vz: Option<f64>,
@@ -72,7 +83,7 @@ pub struct Measures {
     pub first_peak_z_rim: Option<f64>,
     /// `z_rim` at the first minimum after its first peak, m.
     pub first_minimum_z_rim: Option<f64>,
-    /// Largest `z_rim` divided by `H_ref`, minus 1.
+    /// Largest `z_rim` divided by the static height at the final overpressure, minus 1.
     pub overshoot: Option<f64>,
     /// Root mean square of vz over 0.2 s after `t_deployed`, m/s.
     pub ringing_rms: Option<f64>,
@@ -96,6 +107,14 @@ pub struct Measures {
 }
 
 impl Verdict {
+    /// Every verdict.
+    pub const ALL: [Self; 3] = [Self::Deployed, Self::Partial, Self::Stalled];
+
+    /// The verdict with that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|verdict| verdict.name() == name)
+    }
+
     /// Name, as in the table's `verdict` column.
     pub fn name(self) -> &'static str {
         match self {
@@ -123,9 +142,7 @@ pub fn measure(
     let z_rim = column("z_rim");
     let (first_peak, first_minimum) = first_rebound(z_rim);
     let peak_kinetic = peak(kinetic);
-    let overpressure = final_pressure - timeline.ambient_pressure;
-    let judged =
-        reference.map(|reference| judge(history, reference.at(overpressure), timeline, done));
+    let judged = reference.map(|reference| judge(history, reference, timeline, done));
     Measures {
         peak_vz: peak_vz.map(|(_, value)| value),
         t_peak_vz: peak_vz.map(|(index, _)| time[index]),
@@ -136,6 +153,7 @@ pub fn measure(
         final_z_rim: last("z_rim"),
         final_volume: last("volume"),
         final_pressure: Some(final_pressure),
+        final_overpressure: final_overpressure(history, timeline),
         final_temperature: last("temperature"),
         film_stress: Some(film_stress),
         peak_lid_force: peak(column("lid_force")).map(|(_, value)| value),
@@ -143,34 +161,62 @@ pub fn measure(
     }
 }
 
-/// The measures that need `V_ref` and `H_ref`.
-fn judge(
+/// The measures that need a reference.
+fn judge(history: &History, reference: &Reference, timeline: &Timeline, done: bool) -> Measures {
+    let times = match reference.design {
+        Ok(design) => times(history, design, reference.end.as_ref().ok(), timeline),
+        Err(_) => Measures::default(),
+    };
+    if !done {
+        return times;
+    }
+    let end = match &reference.end {
+        Ok(end) => *end,
+        Err(missing) => return Measures { no_verdict: Some(missing.clone()), ..times },
+    };
+    let column = |name: &str| history.column(name);
+    let (volume, z_rim) = (column("volume"), column("z_rim"));
+    let tenth = LastTenth::new(column("time"), volume, z_rim, (end.volume, end.height));
+    let (verdict, near_threshold) = tenth.judge(&timeline.thresholds);
+    Measures {
+        verdict: Some(verdict),
+        near_threshold,
+        volume_ratio: Some(tenth.mean_volume),
+        height_ratio: Some(tenth.min_height),
+        reference: Some(end),
+        overshoot: peak(z_rim).map(|(_, value)| value / end.height - 1.0),
+        ..times
+    }
+}
+
+/// Times at which levels of the design shape are reached, and `t_deployed` with what follows it.
+fn times(
     history: &History,
-    (v_ref, h_ref): (f64, f64),
+    design: StaticShape,
+    end: Option<&StaticShape>,
     timeline: &Timeline,
-    done: bool,
 ) -> Measures {
     let column = |name: &str| history.column(name);
     let (time, volume, z_rim) = (column("time"), column("volume"), column("z_rim"));
-    let reached =
-        |values: &[f64], threshold: f64| first_hold(time, values, threshold, MIN_REACHED_TIME);
-    let t_deployed = deployed_since(time, volume, z_rim, timeline, (v_ref, h_ref));
+    let half = 0.5 * design.height;
+    let t_50_z_rim = first_hold(time, z_rim, half, MIN_REACHED_TIME);
+    let window = t_50_z_rim.map(|t_50| Window::of(time, z_rim, half, t_50));
+    let reached = |values: &[f64], level: f64| window?.first(time, values, level);
+    let t_deployed = end.and_then(|end| {
+        let v = end.volume * timeline.thresholds.deployed_volume;
+        let h = end.height * timeline.thresholds.deployed_height;
+        let smaller_ratio = volume.iter().zip(z_rim).map(|(volume, z)| (volume / v).min(z / h));
+        reached(&smaller_ratio.collect::<Vec<f64>>(), 1.0)
+    });
     let ringing = t_deployed.and_then(|start| ringing::ringing(time, column("vz"), start));
-    let judged = done.then(|| LastTenth::new(time, volume, z_rim, (v_ref, h_ref)));
-    let verdict = judged.map(|tenth| tenth.judge(&timeline.thresholds));
     Measures {
-        verdict: verdict.map(|(verdict, _)| verdict),
-        near_threshold: verdict.is_some_and(|(_, near)| near),
-        volume_ratio: judged.map(|tenth| tenth.mean_volume),
-        height_ratio: judged.map(|tenth| tenth.min_height),
-        reference_volume: Some(v_ref),
-        reference_height: Some(h_ref),
-        t_50_z_rim: reached(z_rim, 0.5 * h_ref),
-        t_90_z_rim: reached(z_rim, 0.9 * h_ref),
-        t_50_volume: reached(volume, 0.5 * v_ref),
-        t_90_volume: reached(volume, 0.9 * v_ref),
+        design_height: Some(design.height),
+        design_volume: Some(design.volume),
+        t_50_z_rim,
+        t_90_z_rim: reached(z_rim, 0.9 * design.height),
+        t_50_volume: first_hold(time, volume, 0.5 * design.volume, MIN_REACHED_TIME),
+        t_90_volume: reached(volume, 0.9 * design.volume),
         t_deployed,
-        overshoot: peak(z_rim).map(|(_, value)| value / h_ref - 1.0),
         ringing_rms: ringing.map(|(rms, _)| rms),
         ringing_frequency: ringing.and_then(|(_, line)| line),
         ..Measures::default()
@@ -184,21 +230,6 @@ fn peak(values: &[f64]) -> Option<(usize, f64)> {
         .copied()
         .enumerate()
         .reduce(|best, next| if next.1 > best.1 { next } else { best })
-}
-
-/// First time from which both thresholds of `deployed` hold, s.
-fn deployed_since(
-    time: &[f64],
-    volume: &[f64],
-    z_rim: &[f64],
-    timeline: &Timeline,
-    (v_ref, h_ref): (f64, f64),
-) -> Option<f64> {
-    let v = v_ref * timeline.thresholds.deployed_volume;
-    let h = h_ref * timeline.thresholds.deployed_height;
-    let smaller_ratio: Vec<f64> =
-        volume.iter().zip(z_rim).map(|(volume, z_rim)| (volume / v).min(z_rim / h)).collect();
-    first_hold(time, &smaller_ratio, 1.0, MIN_DEPLOYED_TIME)
 }
 
 /// First time after the peak from which the kinetic energy stays low, s; `None` if nothing moved.

@@ -1,48 +1,114 @@
-//! The static reference: static equilibria with which the verdict compares a deployment.
+//! The static reference: static equilibria of a design with which a deployment is compared.
+//!
+//! ```text
+//! design shape   at the overpressure p with p r/(E t) = 1e-4      levels of the times
+//! end shape      at the final overpressure: mean over the last tenth of the run      ratios, verdict
+//! ```
+//!
+//! Symbols: r mean radius of the rings, E Young's modulus, t thickness. The design shape is the same
+//! whatever gas a run gets, so equal motion has equal times. The end shape is that of the gas that the
+//! run really has, so film that stretches is compared with stretched film.
 
-/// Overpressures at which every model gives its static equilibrium, Pa.
-pub const REFERENCE_PRESSURES: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
+use crate::output::history::History;
+use crate::scene::timeline::Timeline;
 
-/// `V_ref(p)` and `H_ref(p)`: static equilibria of one design, film and supports; linear in log p between the
-/// tabulated pressures, constant outside them.
+/// p r/(E t) of the design shape. Chosen: film is taut and its strain is about 1e-4, so the shape hardly
+/// depends on the film.
+pub const DESIGN_LOAD: f64 = 1e-4;
+
+/// Overpressure of the design shape, Pa: from the mean radius (m), Young's modulus (Pa) and thickness (m).
+pub fn design_overpressure(mean_radius: f64, youngs_modulus: f64, thickness: f64) -> f64 {
+    DESIGN_LOAD * youngs_modulus * thickness / mean_radius
+}
+
+/// Volume and height of a static equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticShape {
+    /// Overpressure, Pa.
+    pub overpressure: f64,
+    /// Volume, m³.
+    pub volume: f64,
+    /// Mean height of the top ring, m.
+    pub height: f64,
+}
+
+/// Why there is no static equilibrium to compare a run with.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoReference {
+    /// The final overpressure is not positive.
+    #[error(
+        "the final overpressure is {overpressure} Pa, and film has a static equilibrium only above 0 Pa"
+    )]
+    NoOverpressure {
+        /// Mean overpressure of the last tenth, Pa.
+        overpressure: f64,
+    },
+    /// The search found no equilibrium.
+    #[error("no static equilibrium was found at {overpressure} Pa: {problem}")]
+    NoEquilibrium {
+        /// Overpressure, Pa.
+        overpressure: f64,
+        /// How the search ended.
+        problem: String,
+    },
+    /// The overpressure is beyond every film.
+    #[error(
+        "the final overpressure is {overpressure} Pa; static equilibria are searched up to {largest} Pa \
+         for this design"
+    )]
+    Overload {
+        /// Mean overpressure of the last tenth, Pa.
+        overpressure: f64,
+        /// Largest overpressure of a search, Pa.
+        largest: f64,
+    },
+    /// The capsule of the static equilibria cannot be built.
+    #[error("the capsule of the static equilibria cannot be built: {0}")]
+    NoCapsule(String),
+    /// The search was stopped: the whole run ends.
+    #[error("the search for a static equilibrium was stopped")]
+    Stopped,
+}
+
+/// What a run is compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// Overpressure, Pa, volume, m³, and mean height of the top ring, m; ascending pressure.
-    states: Vec<[f64; 3]>,
+    /// The design shape.
+    pub design: Result<StaticShape, NoReference>,
+    /// The shape at the final overpressure.
+    pub end: Result<StaticShape, NoReference>,
 }
 
 impl Reference {
-    /// A table of static equilibria: overpressure (Pa, positive, ascending), volume (m³), height (m).
-    ///
-    /// # Panics
-    /// Without a state, or if the pressures do not ascend: an error in the code of a model.
-    pub fn new(states: Vec<[f64; 3]>) -> Self {
-        let ascending = states.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-        assert!(ascending && states.first().is_some_and(|first| first[0] > 0.0), "{states:?}");
-        Self { states }
+    /// The same shape for times and ratios.
+    pub fn constant(shape: StaticShape) -> Self {
+        Self { design: Ok(shape), end: Ok(shape) }
     }
+}
 
-    /// The table: overpressure (Pa), volume (m³), height (m), ascending pressure.
-    pub fn states(&self) -> &[[f64; 3]] {
-        &self.states
-    }
+/// Final overpressure of a run, Pa: mean over its last tenth; `None` without samples.
+pub fn final_overpressure(history: &History, timeline: &Timeline) -> Option<f64> {
+    let (time, pressure) = (history.column("time"), history.column("pressure"));
+    let from = last_tenth(time)?;
+    Some(mean(&time[from..], &pressure[from..]) - timeline.ambient_pressure)
+}
 
-    /// Volume (m³) and height (m) at an overpressure (Pa). Below the lowest tabulated pressure, also at 0
-    /// and below, they are those of the lowest.
-    pub fn at(&self, overpressure: f64) -> (f64, f64) {
-        let above = self.states.iter().position(|state| state[0] >= overpressure);
-        let (low, high) = match above {
-            Some(0) => (0, 0),
-            Some(index) => (index - 1, index),
-            None => (self.states.len() - 1, self.states.len() - 1),
-        };
-        let ([p0, v0, h0], [p1, v1, h1]) = (self.states[low], self.states[high]);
-        if low == high {
-            return (v0, h0);
-        }
-        let fraction = libm::log(overpressure / p0) / libm::log(p1 / p0);
-        (v0 + fraction * (v1 - v0), h0 + fraction * (h1 - h0))
+/// Index of the first sample of the last tenth; `None` without samples.
+pub(super) fn last_tenth(time: &[f64]) -> Option<usize> {
+    let (first, last) = (time.first()?, time.last()?);
+    let start = last - 0.1 * (last - first) - 1e-12 * last;
+    Some(time.partition_point(|t| *t < start))
+}
+
+/// Mean over time of a series that is linear between samples. There is at least one sample.
+pub(super) fn mean(time: &[f64], values: &[f64]) -> f64 {
+    let span = time[time.len() - 1] - time[0];
+    if span <= 0.0 {
+        return values[values.len() - 1];
     }
+    let areas =
+        time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
+    areas.sum::<f64>() / span
 }
 
 #[cfg(test)]
@@ -50,20 +116,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_reference_is_linear_in_log_p_and_clamped() {
-        let table = Reference::new(vec![[1.0, 1.0, 10.0], [10.0, 2.0, 20.0], [100.0, 4.0, 25.0]]);
-        assert_eq!(table.at(0.0), (1.0, 10.0));
-        assert_eq!(table.at(-5.0), (1.0, 10.0));
-        assert_eq!(table.at(1.0), (1.0, 10.0));
-        assert_eq!(table.at(10.0), (2.0, 20.0));
-        assert_eq!(table.at(1e6), (4.0, 25.0));
-        let (volume, height) = table.at(1000.0_f64.sqrt());
-        assert!((volume - 3.0).abs() < 1e-14 && (height - 22.5).abs() < 1e-14);
+    #[expect(clippy::float_cmp, reason = "these values are exact")]
+    fn the_mean_is_weighted_by_time() {
+        assert!((mean(&[0.0, 1.0, 1.5], &[0.0, 2.0, 2.0]) - 2.0 / 1.5).abs() < 1e-15);
+        assert_eq!(mean(&[3.0], &[7.0]), 7.0);
+        assert_eq!(last_tenth(&[]), None);
+        let time: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
+        assert_eq!(last_tenth(&time), Some(90));
     }
 
     #[test]
-    #[should_panic(expected = "10.0")]
-    fn descending_pressures_are_refused() {
-        let _ = Reference::new(vec![[10.0, 1.0, 1.0], [1.0, 1.0, 1.0]]);
+    fn a_reason_names_the_overpressure() {
+        let text = NoReference::NoOverpressure { overpressure: -3.5 }.to_string();
+        assert!(text.contains("-3.5 Pa"), "{text}");
     }
 }

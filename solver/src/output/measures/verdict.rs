@@ -1,6 +1,6 @@
 //! The verdict: did the capsule deploy?
 //!
-//! It compares the last tenth of the run with `V_ref` and `H_ref` at the final overpressure, in this
+//! It compares the last tenth of the run with the static equilibrium at its mean overpressure, in this
 //! order:
 //!
 //! - deployed, if V and `z_rim` stay at or above their thresholds throughout;
@@ -11,25 +11,24 @@
 //! would change it.
 
 use super::Verdict;
+use super::reference::{last_tenth, mean};
 use crate::scene::Thresholds;
 
 /// The last tenth of a run, divided by its static reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LastTenth {
-    /// Mean V divided by `V_ref`.
+    /// Mean V divided by the static volume.
     pub(super) mean_volume: f64,
-    /// Smallest V divided by `V_ref`.
+    /// Smallest V divided by the static volume.
     pub(super) min_volume: f64,
-    /// Smallest `z_rim` divided by `H_ref`.
+    /// Smallest `z_rim` divided by the static height.
     pub(super) min_height: f64,
 }
 
 impl LastTenth {
     /// Of a run with at least one sample.
     pub(super) fn new(time: &[f64], volume: &[f64], height: &[f64], (v, h): (f64, f64)) -> Self {
-        let (first, last) = (time[0], time[time.len() - 1]);
-        let start = last - 0.1 * (last - first) - 1e-12 * last;
-        let from = time.partition_point(|t| *t < start);
+        let from = last_tenth(time).unwrap_or(0);
         let min = |values: &[f64]| values[from..].iter().copied().fold(f64::INFINITY, f64::min);
         Self {
             mean_volume: mean(&time[from..], &volume[from..]) / v,
@@ -53,17 +52,6 @@ impl LastTenth {
         };
         (verdict, margin < thresholds.near_threshold_margin)
     }
-}
-
-/// Mean over time of a series that is linear between samples.
-fn mean(time: &[f64], values: &[f64]) -> f64 {
-    let span = time[time.len() - 1] - time[0];
-    if span <= 0.0 {
-        return values[values.len() - 1];
-    }
-    let areas =
-        time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
-    areas.sum::<f64>() / span
 }
 
 #[cfg(test)]
@@ -112,11 +100,5 @@ mod tests {
         let tenth = LastTenth::new(&time, &dip, &volume, (2.0, 1.0));
         assert_eq!(tenth.min_volume, 0.0);
         assert!((tenth.mean_volume - 0.95).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_mean_is_weighted_by_time() {
-        assert!((mean(&[0.0, 1.0, 1.5], &[0.0, 2.0, 2.0]) - 2.0 / 1.5).abs() < 1e-15);
-        assert_eq!(mean(&[3.0], &[7.0]), 7.0);
     }
 }

@@ -2,9 +2,17 @@
 
 use super::*;
 use crate::job::row::CellType;
+use crate::store::table::Column;
 
 fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column { name: name.to_owned(), cell_type, unit: String::new(), meaning: String::new(), cells }
+    Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: String::new(),
+        shown: crate::input::units::DisplayUnit::si(""),
+        meaning: String::new(),
+        cells,
+    }
 }
 
 /// Two flows, two residual masses, one combination infeasible, one job failed.
@@ -34,8 +42,16 @@ fn table() -> Table {
                     )
                     .collect(),
             ),
-            column("t_90_z_rim", CellType::Number, numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.])),
-            column("peak_vz", CellType::Number, numbers(&[10., 20., 30., 40., 0., 5., 99., 5.])),
+            column(
+                "t_90_z_rim_since_release",
+                CellType::Number,
+                numbers(&[4., 2., 6., 3., 0., 9., 0.1, 9.]),
+            ),
+            column(
+                "peak_kinetic_energy",
+                CellType::Number,
+                numbers(&[10., 20., 30., 40., 0., 5., 99., 5.]),
+            ),
             column(
                 "ledger_residual",
                 CellType::Number,
@@ -59,26 +75,171 @@ fn only_done_jobs_enter_extremes_and_audit() {
     let verdicts = (counts.verdict["deployed"], counts.verdict["stalled"], counts.near_threshold);
     assert_eq!(verdicts, (4, 1, 1));
     let fastest = answer.fastest.unwrap();
-    assert_eq!((fastest.job.as_str(), fastest.value), ("b", 2.0));
-    assert_eq!(fastest.parameters[0], ("flow".to_owned(), Value::Number(2.0)));
+    // Job b is faster, but the numerics damped it.
+    assert_eq!((fastest.job.as_str(), fastest.value), ("d", 3.0));
+    let (name, value, _) = &fastest.parameters[0];
+    assert_eq!((name.as_str(), value), ("flow", &Value::Number(2.0)));
     assert_eq!(answer.hardest.unwrap().job, "d");
     let trust = answer.trust.unwrap();
     assert_eq!((trust.jobs, trust.ledger_residual, trust.passages), (6, 3e-9, None));
     assert_eq!(trust.numerically_damped, 1, "failed jobs do not count");
 }
 
+fn effects(table: &Table) -> Effects {
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    Effects::of(table, &rows, &HEADLINE, &|_| Vec::new())
+}
+
+fn effect<'a>(effects: &'a Effects, parameter: &str) -> &'a Effect {
+    effects.effects.iter().find(|effect| effect.parameter == parameter).unwrap()
+}
+
+/// Jobs `a`, `b`, … of parameters `strategy`, `mass`: done, deployed, with these measures.
+fn study(rows: &[(&str, f64, f64, f64)]) -> Table {
+    let text = |text: &str| Value::Text(text.to_owned());
+    let ids = (0..rows.len()).map(|row| text(&row.to_string())).collect();
+    let numbers = |of: fn(&(&str, f64, f64, f64)) -> f64| {
+        rows.iter().map(|row| Value::Number(of(row))).collect()
+    };
+    let all = |cell: Value| vec![cell; rows.len()];
+    Table {
+        columns: vec![
+            column("job", CellType::Text, ids),
+            column("strategy", CellType::Text, rows.iter().map(|row| text(row.0)).collect()),
+            column("mass", CellType::Number, numbers(|row| row.1)),
+            column("status", CellType::Text, all(text("done"))),
+            column("verdict", CellType::Text, all(text("deployed"))),
+            column("t_90_z_rim", CellType::Number, numbers(|row| row.2)),
+            column("peak_vz", CellType::Number, numbers(|row| row.3)),
+            column("passages", CellType::Integer, all(Value::Integer(0))),
+        ],
+    }
+}
+
 #[test]
 fn medians_are_taken_over_sets_in_which_every_value_is_done() {
-    let effects = effects(&table(), &|_| Vec::new());
-    let flow = effects.iter().find(|effect| effect.parameter == "flow").unwrap();
-    assert_eq!(flow.sets, 2, "mass 2 and 3 have no done job at flow 1");
+    let mut table = table();
+    let damped = table.columns.iter_mut().find(|c| c.name == "numerically_damped").unwrap();
+    damped.cells.fill(Value::Bool(false));
+    let effects = effects(&table);
+    let flow = effect(&effects, "flow");
+    assert_eq!(flow.measures[0].sets, 2, "mass 2 and 3 have no done job at flow 1");
+    let medians: Vec<_> = flow.measures.iter().map(|measure| measure.medians.clone()).collect();
+    assert_eq!(medians, [[Some(5.0), Some(2.5)], [Some(20.0), Some(30.0)]]);
+    let mass = effect(&effects, "mass");
+    assert_eq!((mass.measures[0].sets, mass.values.len()), (1, 4), "only flow 2 has all four");
+}
+
+#[test]
+fn one_point_outside_the_grid_removes_no_parameter() {
+    let grid = [
+        ("delayed", 1.0, 5.0, 10.0),
+        ("delayed", 2.0, 4.0, 12.0),
+        ("rapid", 1.0, 3.0, 20.0),
+        ("rapid", 2.0, 2.0, 22.0),
+    ];
+    let without = effects(&study(&grid));
+    let with = effects(&study(&[&grid[..], &[("direct", 0.0, 1.0, 30.0)]].concat()));
+    for parameter in ["strategy", "mass"] {
+        let (without, with) = (effect(&without, parameter), effect(&with, parameter));
+        for (without, with) in without.measures.iter().zip(&with.measures) {
+            assert_eq!((with.sets, &with.medians[..2]), (2, &without.medians[..]));
+            assert_eq!((with.medians.len(), with.medians[2]), (3, None));
+            assert_eq!(with.extremes, without.extremes);
+        }
+        let (value, measure, reason) = &with.left_out[0];
+        let outside = if parameter == "mass" { "0" } else { "direct" };
+        assert_eq!((value.to_string().as_str(), *measure), (outside, ColumnId::T90ZRim));
+        assert_eq!(*reason, format!("no job differs from it in {parameter} alone"));
+    }
+    // A parameter of which no two points differ alone is named.
+    let apart = effects(&study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 2.0, 4.0, 12.0)]));
+    assert!(apart.effects.is_empty());
+    let reasons: Vec<&str> = apart.not_compared.iter().map(|(_, why)| why.as_str()).collect();
     assert_eq!(
-        flow.values,
-        [
-            (Value::Number(1.0), [Some(5.0), Some(20.0)]),
-            (Value::Number(2.0), [Some(2.5), Some(30.0)])
-        ]
+        reasons,
+        ["no two points differ in strategy alone", "no two points differ in mass alone"]
     );
-    let mass = effects.iter().find(|effect| effect.parameter == "mass").unwrap();
-    assert_eq!((mass.sets, mass.values.len()), (1, 4), "only flow 2 has all four");
+}
+
+#[test]
+fn values_with_few_partners_leave_the_many_sets_of_the_others() {
+    let mut rows: Vec<(&str, f64, f64, f64)> = Vec::new();
+    for mass in 1..=9 {
+        for strategy in ["delayed", "rapid", "residual"] {
+            rows.push((strategy, f64::from(mass), 1.0, 1.0));
+        }
+    }
+    rows.push(("direct", 4.0, 1.0, 1.0));
+    let effects = effects(&study(&rows));
+    let strategy = effect(&effects, "strategy");
+    assert_eq!(strategy.measures[0].sets, 9);
+    assert_eq!(strategy.left_out[0].2, "it is in 1 of 9 sets");
+}
+
+#[test]
+fn a_best_value_deploys_and_is_trusted_in_every_job() {
+    let mut table = study(&[
+        ("delayed", 1.0, 5.0, 10.0),
+        ("delayed", 2.0, 4.0, 12.0),
+        ("rapid", 1.0, 3.0, 20.0),
+        ("rapid", 2.0, 2.0, 22.0),
+        ("residual", 1.0, 6.0, 5.0),
+        ("residual", 2.0, 6.0, 6.0),
+    ]);
+    let strategy_of = |table: &Table| effect(&effects(table), "strategy").clone();
+    let judged = |best: &[usize], worst: &[usize]| Extremes::Judged {
+        best: best.to_vec(),
+        worst: worst.to_vec(),
+    };
+    let all = strategy_of(&table);
+    assert_eq!(all.deployed, [(2, 2); 3]);
+    assert_eq!(all.measures[0].extremes, judged(&[1], &[2]));
+    assert_eq!(all.measures[1].extremes, judged(&[2], &[1]));
+
+    // One stalled job: its strategy is not the best by its low speed.
+    let verdict = table.columns.iter().position(|column| column.name == "verdict").unwrap();
+    table.columns[verdict].cells[4] = Value::Text("stalled".to_owned());
+    let stalled = strategy_of(&table);
+    assert_eq!(stalled.deployed[2], (1, 2));
+    assert_eq!(stalled.measures[1].extremes, judged(&[0], &[1]));
+
+    // Film passed through film: the job is no evidence, its set has one value less.
+    let passages = table.columns.iter().position(|column| column.name == "passages").unwrap();
+    table.columns[passages].cells[3] = Value::Integer(2);
+    let untrusted = strategy_of(&table);
+    assert_eq!((untrusted.measures[0].sets, untrusted.deployed[1]), (1, (1, 2)));
+    assert_eq!(untrusted.measures[0].extremes, judged(&[0], &[2]), "rapid is not the best");
+
+    // The others are equal, within 3 % and 5 %: all of them are worst.
+    let many = study(&[
+        ("delayed", 1.0, 5.0, 10.0),
+        ("rapid", 1.0, 9.0, 20.0),
+        ("residual", 1.0, 9.1, 20.1),
+    ]);
+    let many = strategy_of(&many);
+    assert_eq!(many.measures[0].extremes, judged(&[0], &[2, 1]));
+
+    // Within the spread of the measure there is no best.
+    let equal = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 1.0, 5.1, 10.4)]);
+    let equal = strategy_of(&equal);
+    assert!(equal.measures.iter().all(|measure| measure.extremes == Extremes::Equal));
+}
+
+#[test]
+fn a_set_of_jobs_counts_once_and_a_set_of_one_job_not_at_all() {
+    let mut table = study(&[
+        ("delayed", 1.0, 5.0, 10.0),
+        ("rapid", 1.0, 3.0, 20.0),
+        ("delayed", 2.0, 5.0, 10.0),
+        ("rapid", 2.0, 3.0, 20.0),
+    ]);
+    let jobs = ["x", "y", "x", "y"];
+    table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec();
+    let effects = effects(&table);
+    assert_eq!(effect(&effects, "strategy").measures[0].sets, 1);
+    assert_eq!(effect(&effects, "strategy").deployed, [(1, 1); 2]);
+    let (parameter, reason) = &effects.not_compared[0];
+    assert_eq!(parameter, "mass");
+    assert!(reason.starts_with("points that differ in mass alone are one job"), "{reason}");
 }

@@ -7,25 +7,27 @@
 //! (example: a strategy with its residual gas).
 //!
 //! ```text
-//! difference = other − base        ratio = other / base
-//! tie:  |other − base| ≤ tie · max(|base|, |other|)
+//! difference = other − base        ratio = other / base, unless the measure is signed
 //! ```
 //!
 //! Only done jobs have measures, and only when the measured event happened. A pair of which only one
 //! side has the measure is an outcome (`only_base`, `only_other`) and is never ignored. A pair with a
-//! pending job is `pending` and does not count.
+//! pending job is `pending` and does not count, nor does a pair of two points that are one job.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId};
 use crate::store::table::{Column, Table};
 
-/// Largest relative difference of a tie, unless the user gives another. Chosen: above rounding errors,
-/// far below any effect of interest.
-pub const DEFAULT_TIE: f64 = 1e-9;
+mod sets;
+mod tally;
+mod tolerance;
+
+pub use sets::{Pair, Sets, pairs};
+pub use tally::{Tally, pairs_of_jobs, tallies};
+pub use tolerance::{ROUNDING, Tolerance, ToleranceSource};
 
 /// Names of the measures of which that side is better, in the order of the table.
 pub fn measures_with(side: BetterSide) -> Vec<&'static str> {
@@ -54,83 +56,6 @@ pub fn values(column: &Column, rows: &[usize]) -> Vec<Value> {
     cells.filter(|value| known.insert(canonical(value))).cloned().collect()
 }
 
-/// Sets of rows that are equal in all parameters except one.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Sets {
-    /// The matched parameters.
-    pub matched: Vec<String>,
-    /// Parameters that change with the compared one and are not matched.
-    pub carried: Vec<String>,
-    /// Rows of each set, in table order; sets in the order of their first row.
-    pub sets: Vec<Vec<usize>>,
-}
-
-impl Sets {
-    /// Puts rows of a table into sets. `zipped` are the parameters on the axis of `by`.
-    pub fn new(table: &Table, rows: &[usize], by: &str, zipped: &[String]) -> Self {
-        let compared = table.parameters().find(|column| column.name == by);
-        let follows = |column: &Column| {
-            zipped.contains(&column.name)
-                && compared.is_some_and(|compared| is_function(column, compared))
-        };
-        let others = || table.parameters().filter(|column| column.name != by);
-        let matched: Vec<&Column> = others().filter(|column| !follows(column)).collect();
-        let mut set_of: BTreeMap<Vec<String>, usize> = BTreeMap::new();
-        let mut sets: Vec<Vec<usize>> = Vec::new();
-        for row in rows {
-            let key = matched.iter().map(|column| canonical(&column.cells[*row])).collect();
-            let index = *set_of.entry(key).or_insert(sets.len());
-            if index == sets.len() {
-                sets.push(Vec::new());
-            }
-            sets[index].push(*row);
-        }
-        Self {
-            matched: matched.iter().map(|column| column.name.clone()).collect(),
-            carried: others().filter(|column| follows(column)).map(|c| c.name.clone()).collect(),
-            sets,
-        }
-    }
-}
-
-/// Whether each value of `of` comes with a single value of `column`.
-fn is_function(column: &Column, of: &Column) -> bool {
-    let mut seen: BTreeMap<String, String> = BTreeMap::new();
-    column.cells.iter().zip(&of.cells).all(|(value, of)| {
-        let value = canonical(value);
-        *seen.entry(canonical(of)).or_insert_with(|| value.clone()) == value
-    })
-}
-
-/// Two rows of one set: positions in the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pair {
-    /// The row with the base value.
-    pub base: usize,
-    /// The row with another value.
-    pub other: usize,
-}
-
-/// The pairs of some sets, and the rows without a partner.
-pub fn pairs(table: &Table, sets: &Sets, by: &str, base: &Value) -> (Vec<Pair>, Vec<usize>) {
-    let Some(column) = table.column(by) else { return (Vec::new(), Vec::new()) };
-    let is_base = |row: &usize| canonical(&column.cells[*row]) == canonical(base);
-    let mut pairs = Vec::new();
-    let mut alone = Vec::new();
-    for set in &sets.sets {
-        let (bases, others): (Vec<usize>, Vec<usize>) = set.iter().copied().partition(is_base);
-        match (bases.split_first(), others.as_slice()) {
-            (Some((base, more)), [_, ..]) => {
-                pairs.extend(others.iter().map(|other| Pair { base: *base, other: *other }));
-                alone.extend(more);
-            }
-            _ => alone.extend(set),
-        }
-    }
-    alone.sort_unstable();
-    (pairs, alone)
-}
-
 /// Which job of a pair is better in a measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Better {
@@ -148,8 +73,12 @@ pub enum Better {
     Neither,
     /// A job has not ended yet.
     Pending,
-    /// The values differ, but neither side of this measure is better.
-    Differ,
+    /// Both points are one job.
+    SameJob,
+    /// The other value is lower, and it is not known or not defined whether that is better.
+    Lower,
+    /// The other value is higher, and it is not known or not defined whether that is better.
+    Higher,
 }
 
 impl Better {
@@ -163,7 +92,9 @@ impl Better {
             Self::OnlyOther => "only_other",
             Self::Neither => "neither",
             Self::Pending => "pending",
-            Self::Differ => "differ",
+            Self::SameJob => "same_job",
+            Self::Lower => "lower",
+            Self::Higher => "higher",
         }
     }
 
@@ -175,8 +106,31 @@ impl Better {
             Self::Other => Self::Base,
             Self::OnlyBase => Self::OnlyOther,
             Self::OnlyOther => Self::OnlyBase,
+            Self::Lower => Self::Higher,
+            Self::Higher => Self::Lower,
             same => same,
         }
+    }
+}
+
+/// A measure to compare, and up to which difference its values are equal.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure<'a> {
+    /// Its column.
+    pub column: &'a Column,
+    /// Its tolerance.
+    pub tolerance: Tolerance,
+}
+
+impl Measure<'_> {
+    /// Which of two values is better; neither while no spread is known.
+    pub fn side(&self) -> BetterSide {
+        if self.tolerance.judges() { better_side(&self.column.name) } else { BetterSide::Neither }
+    }
+
+    /// Whether the measure can be negative or zero, so that a ratio of two values means nothing.
+    pub fn is_signed(&self) -> bool {
+        ColumnId::from_name(&self.column.name).is_some_and(ColumnId::is_signed)
     }
 }
 
@@ -189,6 +143,8 @@ pub struct Compared {
     pub other: Option<f64>,
     /// Which job is better.
     pub better: Better,
+    /// Whether the measure is signed.
+    signed: bool,
 }
 
 impl Compared {
@@ -197,41 +153,48 @@ impl Compared {
         Some(self.other? - self.base?)
     }
 
-    /// Other over base; `None` for a base of zero.
+    /// Other over base; `None` for a base of zero and for a signed measure.
     pub fn ratio(&self) -> Option<f64> {
-        let base = self.base.filter(|base| *base != 0.0)?;
+        let base = self.base.filter(|base| *base != 0.0 && !self.signed)?;
         Some(self.other? / base)
     }
 }
 
-/// Compares one measure of a pair; `tie` is the largest relative difference of a tie.
-pub fn compared(table: &Table, pair: Pair, measure: &Column, tie: f64) -> Compared {
-    let base = measured(table, measure, pair.base);
-    let other = measured(table, measure, pair.other);
-    let pending =
-        [pair.base, pair.other].iter().any(|row| table.status(*row) == Some(Status::Pending));
+/// Compares one measure of a pair.
+pub fn compared(table: &Table, pair: Pair, measure: &Measure<'_>) -> Compared {
+    let [base, other] = [pair.base, pair.other].map(|row| measured(table, measure.column, row));
+    let has = |row: usize, status| table.status(row) == Some(status);
+    let pending = [pair.base, pair.other].iter().any(|row| has(*row, Status::Pending));
     let better = match (base, other) {
+        _ if same_job(table, pair) => Better::SameJob,
         _ if pending => Better::Pending,
         (None, None) => Better::Neither,
         (Some(_), None) => Better::OnlyBase,
         (None, Some(_)) => Better::OnlyOther,
-        (Some(base), Some(other)) => judge(&measure.name, base, other, tie),
+        (Some(base), Some(other)) => judge(measure, base, other),
     };
-    Compared { base, other, better }
+    Compared { base, other, better, signed: measure.is_signed() }
 }
 
-fn judge(measure: &str, base: f64, other: f64, tie: f64) -> Better {
-    // The difference of equal infinities is NaN.
-    let equal =
-        base.total_cmp(&other).is_eq() || (other - base).abs() <= tie * base.abs().max(other.abs());
-    let smaller = if base < other { Better::Base } else { Better::Other };
-    if equal {
+/// Whether both points of a pair are one job. Infeasible points have none.
+fn same_job(table: &Table, pair: Pair) -> bool {
+    let infeasible = table.status(pair.base) == Some(Status::Infeasible);
+    table
+        .column("job")
+        .is_some_and(|job| job.cells[pair.base] == job.cells[pair.other] && !infeasible)
+}
+
+fn judge(measure: &Measure<'_>, base: f64, other: f64) -> Better {
+    let base_is_smaller = base < other;
+    let smaller = if base_is_smaller { Better::Base } else { Better::Other };
+    if measure.tolerance.is_tie(base, other) {
         return Better::Tie;
     }
-    match better_side(measure) {
+    match measure.side() {
         BetterSide::Smaller => smaller,
         BetterSide::Larger => smaller.exchanged(),
-        BetterSide::Neither => Better::Differ,
+        BetterSide::Neither if base_is_smaller => Better::Higher,
+        BetterSide::Neither => Better::Lower,
     }
 }
 
@@ -250,65 +213,6 @@ pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
 /// Whether a column can be compared as a measure.
 pub fn is_measure(column: &Column) -> bool {
     matches!(column.cell_type, CellType::Number | CellType::Integer)
-}
-
-/// One measure over all pairs of the base with one other value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tally {
-    /// The other value.
-    pub value: Value,
-    /// The measure.
-    pub measure: String,
-    /// Number of pairs by name of [`Better`]; pending ones included.
-    pub counts: BTreeMap<&'static str, usize>,
-    /// Ratios of the pairs in which both jobs have the measure.
-    pub ratio: Option<Spread>,
-}
-
-impl Tally {
-    /// Number of pairs with this result.
-    pub fn count(&self, better: Better) -> usize {
-        self.counts.get(better.name()).copied().unwrap_or(0)
-    }
-
-    /// Number of pairs of which both jobs have ended.
-    pub fn pairs(&self) -> usize {
-        self.counts.values().sum::<usize>() - self.count(Better::Pending)
-    }
-}
-
-/// Counts pairs by other value and measure.
-pub fn tallies(
-    table: &Table,
-    pairs: &[Pair],
-    by: &str,
-    measures: &[&Column],
-    tie: f64,
-) -> Vec<Tally> {
-    let Some(column) = table.column(by) else { return Vec::new() };
-    let others: Vec<usize> = pairs.iter().map(|pair| pair.other).collect();
-    let mut tallies = Vec::new();
-    for value in values(column, &others) {
-        let of_value = |pair: &&Pair| canonical(&column.cells[pair.other]) == canonical(&value);
-        for measure in measures {
-            let compared: Vec<Compared> = pairs
-                .iter()
-                .filter(of_value)
-                .map(|pair| compared(table, *pair, measure, tie))
-                .collect();
-            let mut counts = BTreeMap::new();
-            for pair in &compared {
-                *counts.entry(pair.better.name()).or_default() += 1;
-            }
-            tallies.push(Tally {
-                value: value.clone(),
-                measure: measure.name.clone(),
-                counts,
-                ratio: Spread::of(compared.iter().filter_map(Compared::ratio)),
-            });
-        }
-    }
-    tallies
 }
 
 #[cfg(test)]

@@ -3,9 +3,17 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::study::Zipped;
 
 fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column { name: name.to_owned(), cell_type, unit: String::new(), meaning: String::new(), cells }
+    Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: String::new(),
+        shown: crate::input::units::DisplayUnit::si(""),
+        meaning: String::new(),
+        cells,
+    }
 }
 
 /// A table of parameters `a`, `b` and a measure.
@@ -13,7 +21,11 @@ fn table(rows: &[(i64, f64, &str, Option<f64>)]) -> Table {
     let text = |text: &str| Value::Text(text.to_owned());
     Table {
         columns: vec![
-            column("job", CellType::Text, rows.iter().map(|_| text("x")).collect()),
+            column(
+                "job",
+                CellType::Text,
+                (0..rows.len()).map(|row| text(&row.to_string())).collect(),
+            ),
             column("a", CellType::Integer, rows.iter().map(|row| Value::Integer(row.0)).collect()),
             column("b", CellType::Number, rows.iter().map(|row| Value::Number(row.1)).collect()),
             column("status", CellType::Text, rows.iter().map(|row| text(row.2)).collect()),
@@ -30,11 +42,14 @@ fn all(table: &Table) -> Vec<usize> {
     (0..table.rows()).collect()
 }
 
+fn given(table: &Table, tie: f64) -> Measure<'_> {
+    Measure { column: table.column("peak_vz").unwrap(), tolerance: Tolerance::given(tie) }
+}
+
 fn betters(table: &Table, base: i64, tie: f64) -> Vec<Better> {
     let sets = Sets::new(table, &all(table), "a", &[]);
     let (pairs, _) = pairs(table, &sets, "a", &Value::Integer(base));
-    let measure = table.column("peak_vz").unwrap();
-    pairs.iter().map(|pair| compared(table, *pair, measure, tie).better).collect()
+    pairs.iter().map(|pair| compared(table, *pair, &given(table, tie)).better).collect()
 }
 
 #[test]
@@ -52,7 +67,7 @@ fn every_outcome_is_given_and_none_is_ignored() {
         (9, 3.0, "done", Some(1.0)),
     ]);
     assert_eq!(
-        betters(&table, 1, DEFAULT_TIE),
+        betters(&table, 1, ROUNDING),
         [
             Better::Other,
             Better::Tie,
@@ -69,7 +84,7 @@ fn every_outcome_is_given_and_none_is_ignored() {
     assert_eq!(pairs(&table, &sets, "a", &Value::Integer(1)).1, [9], "no partner");
     let (pairs, _) = pairs(&table, &sets, "a", &Value::Number(1.0));
     assert_eq!(pairs.len(), 7, "1 is 1.0");
-    let tallies = tallies(&table, &pairs, "a", &[table.column("peak_vz").unwrap()], DEFAULT_TIE);
+    let tallies = tallies(&table, &pairs, "a", &[given(&table, ROUNDING)]);
     assert_eq!(tallies.len(), 5);
     assert_eq!((tallies[0].pairs(), tallies[0].count(Better::Other)), (2, 1));
     assert_eq!(tallies[0].ratio.unwrap().median.to_bits(), 0.5_f64.to_bits());
@@ -78,17 +93,94 @@ fn every_outcome_is_given_and_none_is_ignored() {
 
 #[test]
 fn the_better_side_is_that_of_the_column() {
-    assert_eq!(judge("height_ratio", 0.9, 1.0, DEFAULT_TIE), Better::Other);
-    assert_eq!(judge("t_90_z_rim", 0.9, 1.0, DEFAULT_TIE), Better::Base);
-    assert_eq!(judge("final_pressure", 0.9, 1.0, DEFAULT_TIE), Better::Differ);
-    assert_eq!(judge("overshoot", 0.0, -0.0, DEFAULT_TIE), Better::Tie);
+    let judged = |name: &str, tolerance: Tolerance, base: f64, other: f64| {
+        let column = column(name, CellType::Number, Vec::new());
+        judge(&Measure { column: &column, tolerance }, base, other)
+    };
+    let exact = Tolerance::given(ROUNDING);
+    assert_eq!(judged("height_ratio", exact, 0.9, 1.0), Better::Other);
+    assert_eq!(judged("t_90_z_rim", exact, 0.9, 1.0), Better::Base);
+    assert_eq!(judged("final_pressure", exact, 0.9, 1.0), Better::Higher);
+    assert_eq!(judged("overshoot", exact, 0.0, -0.0), Better::Tie);
+    let infinite = [f64::INFINITY; 2];
+    assert_eq!(judged("t_90_z_rim", exact, infinite[0], infinite[1]), Better::Tie);
+}
+
+#[test]
+fn a_default_tie_is_the_larger_of_the_spreads_of_seed_and_method() {
+    let mut table = table(&[
+        (1, 1.0, "done", Some(10.0)),
+        (2, 1.0, "done", Some(10.3)),
+        (1, 2.0, "done", Some(10.0)),
+        (2, 2.0, "done", Some(11.0)),
+        (3, 2.0, "pending", None),
+    ]);
+    let of =
+        |table: &Table| Tolerance::of(table, &all(table), table.column("peak_vz").unwrap(), &[]);
+    let limit = |tolerance: Tolerance| (tolerance.limit, tolerance.source);
+    assert_eq!(limit(of(&table)), (0.05, ToleranceSource::Method), "README: seeds differ by 5 %");
+    table.columns[1].name = "seed".to_owned();
+    assert_eq!(
+        limit(of(&table)),
+        (1.0 / 11.0, ToleranceSource::Seeds),
+        "the largest over the sets"
+    );
+    table.columns[4].cells[3] = Value::Number(10.1);
+    assert_eq!(limit(of(&table)), (0.05, ToleranceSource::Method));
+
+    // No spread is known: lower, not better.
+    table.columns[4].name = "ringing_rms".to_owned();
+    table.columns[1].name = "a".to_owned();
+    let column = table.column("ringing_rms").unwrap();
+    let measure = Measure { column, tolerance: Tolerance::of(&table, &all(&table), column, &[]) };
+    assert_eq!(compared(&table, Pair { base: 0, other: 1 }, &measure).better, Better::Higher);
+    assert_eq!(compared(&table, Pair { base: 1, other: 0 }, &measure).better, Better::Lower);
+}
+
+#[test]
+fn a_signed_measure_has_differences_and_no_ratio() {
+    let mut table = table(&[(1, 1.0, "done", Some(-0.01)), (2, 1.0, "done", Some(0.03))]);
+    table.columns[4].name = "overshoot".to_owned();
+    let measure =
+        Measure { column: table.column("overshoot").unwrap(), tolerance: Tolerance::given(0.0) };
+    let pair = Pair { base: 0, other: 1 };
+    let compared = compared(&table, pair, &measure);
+    assert_eq!((compared.ratio(), compared.difference()), (None, Some(0.04)));
+    let tally = &tallies(&table, &[pair], "a", &[measure])[0];
+    assert!(tally.ratio.is_none() && tally.difference.is_some());
+}
+
+#[test]
+fn two_pairs_of_the_same_jobs_count_once_and_one_job_is_no_pair() {
+    let mut table = table(&[
+        (1, 1.0, "done", Some(1.0)),
+        (2, 1.0, "done", Some(2.0)),
+        (1, 2.0, "done", Some(1.0)),
+        (2, 2.0, "done", Some(2.0)),
+        (1, 3.0, "done", Some(5.0)),
+        (2, 3.0, "done", Some(5.0)),
+    ]);
+    let jobs = ["x", "y", "x", "y", "z", "z"];
+    table.columns[0].cells = jobs.map(|job| Value::Text(job.to_owned())).to_vec();
+    assert_eq!(betters(&table, 1, 0.0), [Better::Base, Better::Base, Better::SameJob]);
+    let sets = Sets::new(&table, &all(&table), "a", &[]);
+    let (pairs, _) = pairs(&table, &sets, "a", &Value::Integer(1));
+    assert_eq!(pairs_of_jobs(&table, &pairs).len(), 2);
+    let tally = &tallies(&table, &pairs, "a", &[given(&table, 0.0)])[0];
+    let counts = (tally.pairs(), tally.count(Better::Base), tally.count(Better::SameJob));
+    assert_eq!(counts, (1, 1, 1));
 }
 
 #[test]
 fn a_function_of_the_compared_parameter_is_not_matched() {
+    let zipped = |steps: &[(i64, f64)]| {
+        let steps = steps.iter().map(|(a, b)| (Value::Integer(*a), Value::Number(*b))).collect();
+        [Zipped { name: "b".to_owned(), steps }]
+    };
     // b is 0 with a = 1 and 5 with a = 2: never equal, yet one pair.
     let followed = table(&[(1, 0.0, "done", Some(1.0)), (2, 5.0, "done", Some(2.0))]);
-    let sets = Sets::new(&followed, &[0, 1], "a", &["b".to_owned()]);
+    let axis = zipped(&[(1, 0.0), (2, 5.0)]);
+    let sets = Sets::new(&followed, &[0, 1], "a", &axis);
     assert_eq!((sets.carried, sets.sets.len()), (vec!["b".to_owned()], 1));
     // On another axis it is matched.
     assert_eq!(Sets::new(&followed, &[0, 1], "a", &[]).sets.len(), 2);
@@ -98,7 +190,11 @@ fn a_function_of_the_compared_parameter_is_not_matched() {
         (1, 5.0, "done", Some(1.0)),
         (2, 5.0, "done", Some(2.0)),
     ]);
-    assert!(Sets::new(&free, &[0, 1, 2], "a", &["b".to_owned()]).carried.is_empty());
+    let free_axis = zipped(&[(1, 0.0), (1, 5.0), (2, 5.0)]);
+    assert!(Sets::new(&free, &[0, 1, 2], "a", &free_axis).carried.is_empty());
+    // A single point that leaves the axis does not undo it: only that point is matched.
+    let sets = Sets::new(&free, &[0, 1, 2], "a", &axis);
+    assert_eq!(sets.sets, [vec![0, 2], vec![1]]);
 }
 
 /// Rows of an incomplete grid, with any outcome.
@@ -147,15 +243,14 @@ proptest! {
         let only: Vec<usize> =
             all(&table).into_iter().filter(|row| [first, second].contains(&rows[*row].0)).collect();
         let sets = Sets::new(&table, &only, "a", &[]);
-        let measure = table.column("peak_vz").unwrap();
         let (forward, alone) = pairs(&table, &sets, "a", &Value::Integer(first));
         let (backward, alone_backward) = pairs(&table, &sets, "a", &Value::Integer(second));
         prop_assert_eq!(alone, alone_backward);
         prop_assert_eq!(forward.len(), backward.len());
         for (forward, backward) in forward.iter().zip(&backward) {
             prop_assert_eq!((forward.base, forward.other), (backward.other, backward.base));
-            let forward = compared(&table, *forward, measure, 0.1);
-            let backward = compared(&table, *backward, measure, 0.1);
+            let forward = compared(&table, *forward, &given(&table, 0.1));
+            let backward = compared(&table, *backward, &given(&table, 0.1));
             prop_assert_eq!(forward.better.exchanged(), backward.better);
             prop_assert_eq!(forward.difference(), backward.difference().map(|x| -x));
         }
@@ -167,7 +262,7 @@ proptest! {
         let table = table(&rows);
         let sets = Sets::new(&table, &all(&table), "a", &[]);
         let (pairs, _) = pairs(&table, &sets, "a", &Value::Integer(0));
-        let tallies = tallies(&table, &pairs, "a", &[table.column("peak_vz").unwrap()], DEFAULT_TIE);
+        let tallies = tallies(&table, &pairs, "a", &[given(&table, ROUNDING)]);
         let counted: usize =
             tallies.iter().map(|tally| tally.pairs() + tally.count(Better::Pending)).sum();
         prop_assert_eq!(counted, pairs.len());

@@ -1,7 +1,6 @@
 //! `billow plan`: lists the jobs of a study.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -10,18 +9,20 @@ mod lengths;
 
 use forecast::forecast;
 
-use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption};
-use super::print::{self, print_rows};
+use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
+use super::print::{self, Heading, print_quantities, print_rows};
 use super::target::results_folder;
-use super::{Format, memory, notes};
-use crate::input::value::{Value, short_number};
+use super::{Format, changes, memory, notes, output_error};
+use crate::input::units::{DisplayUnit, DisplayUnits};
+use crate::input::value::Value;
 use crate::job::Parameters;
 use crate::job::point::Point;
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::store::results::Results;
+use crate::store::stored::other_physics;
 use crate::study::Study;
-use crate::study::plan::{Generation, next_jobs};
+use crate::study::plan::{Generation, PlanCounts, next_jobs};
 
 /// Arguments of `billow plan`.
 #[derive(Debug, clap::Args)]
@@ -32,7 +33,12 @@ pub struct Args {
     #[command(flatten)]
     results: ResultsOption,
     #[command(flatten)]
+    units: UnitsOption,
+    #[command(flatten)]
     set: SetOption,
+    /// Print only the numbers of points and jobs.
+    #[arg(long)]
+    summary: bool,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -47,16 +53,21 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
     let Some(generation) = next_jobs(&study, &[]) else { return Ok(()) };
     let format = args.output.format();
-    let names = study.parameter_names();
-    let rows: Vec<Vec<Value>> =
-        generation.points.iter().map(|point| row(point, format == Format::Table)).collect();
-    print_rows(&columns(&names), &rows, format, out)?;
+    let counts = PlanCounts::of(&study, &generation);
+    if args.summary {
+        return print_summary(&counts, format, out);
+    }
+    let units = args.units.apply(study.display_units(), &|name| si_unit(&study, name))?;
+    let rows: Vec<Vec<Value>> = generation
+        .points
+        .iter()
+        .map(|point| row(point, format == Format::Table, &|name| units.of(name, study.unit(name))))
+        .collect();
+    print_quantities(&headings(&study, &units), &rows, format, out)?;
     if !args.quiet.quiet {
-        if format == Format::Table {
-            eprintln!("units: {}", units(&study));
-        }
-        eprintln!("{}: {}", study.name, summary(&generation));
+        eprintln!("{}: {}", study.name, summary(&counts));
         print_progress_and_forecast(args, &study, &generation)?;
+        notes::print_warnings(&study);
         notes::print(&study);
     }
     Ok(())
@@ -76,6 +87,9 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
         let jobs = print::count(finished.len() + missing.len(), "job");
         eprintln!("{}: {} of {jobs} finished already", root.display(), finished.len());
     }
+    if let Some(note) = changes::other_physics(&other_physics(&generation.points, &records)) {
+        eprintln!("{}: {note}", root.display());
+    }
     if let Err(error) = memory::check(&args.study.display().to_string(), study) {
         eprintln!("{error}");
         return Ok(());
@@ -92,34 +106,37 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
 
 /// Quantities that the fold design gives. A parameter of the same name keeps its column; the solved value
 /// then stands in a column `NAME_resolved`.
-const SOLVED: [&str; 4] = ["phi", "half_angle", "top_radius", "height"];
+const SOLVED: [(&str, &str); 4] =
+    [("phi", "rad"), ("half_angle", "rad"), ("top_radius", "m"), ("height", "m")];
 
-/// Units of the printed columns.
-fn units(study: &Study) -> String {
+/// SI unit of a parameter or of a quantity of the fold; `None` for another name.
+fn si_unit(study: &Study, name: &str) -> Option<String> {
+    let solved = SOLVED.iter().find(|(solved, _)| *solved == name).map(|(_, unit)| *unit);
+    let is_parameter = study.parameter_names().iter().any(|parameter| parameter == name);
+    let unit = if is_parameter { Some(study.unit(name)) } else { solved };
+    unit.map(str::to_owned)
+}
+
+/// The columns, each with the unit in which it is shown.
+fn headings(study: &Study, units: &DisplayUnits) -> Vec<Heading> {
     let parameters = study.parameter_names();
-    let given = parameters.iter().map(|name| (name.as_str(), study.unit(name)));
-    let solved = [("phi", "rad"), ("half_angle", "rad"), ("top_radius", "m"), ("height", "m")];
-    let units: Vec<String> = given
-        .chain(solved.into_iter().filter(|(name, _)| !parameters.iter().any(|given| given == name)))
-        .filter(|(_, unit)| !matches!(*unit, "" | "1"))
-        .map(|(name, unit)| format!("{name} {unit}"))
-        .collect();
-    units.join(", ")
-}
-
-fn columns(parameters: &[String]) -> Vec<String> {
-    let mut columns = vec!["job".to_owned()];
-    columns.extend(parameters.iter().cloned());
-    columns.push("status".to_owned());
-    columns.extend(SOLVED.iter().map(|name| {
+    let mut headings = vec![Heading::plain("job")];
+    headings.extend(
+        parameters
+            .iter()
+            .map(|name| Heading { name: name.clone(), unit: units.of(name, study.unit(name)) }),
+    );
+    headings.push(Heading::plain("status"));
+    headings.extend(SOLVED.iter().map(|(name, si)| {
         let is_parameter = parameters.iter().any(|parameter| parameter == name);
-        if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() }
+        let shown = if is_parameter { format!("{name}_resolved") } else { (*name).to_owned() };
+        Heading { name: shown, unit: units.of(name, si) }
     }));
-    columns.extend(["reason", "nearest", "note"].map(str::to_owned));
-    columns
+    headings.extend(["reason", "nearest", "note"].map(Heading::plain));
+    headings
 }
 
-fn row(point: &Point, short: bool) -> Vec<Value> {
+fn row(point: &Point, short: bool, unit: &dyn Fn(&str) -> DisplayUnit) -> Vec<Value> {
     let id = if short { point.job.id.short() } else { point.job.id.as_str() };
     let mut row = vec![Value::Text(id.to_owned())];
     row.extend(point.job.parameters.iter().map(|(_, value)| value.clone()));
@@ -140,7 +157,11 @@ fn row(point: &Point, short: bool) -> Vec<Value> {
             });
         }
     }
-    row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(&point.merged)) });
+    row.push(if point.merged.is_empty() {
+        Value::Null
+    } else {
+        Value::Text(note(&point.merged, unit))
+    });
     row
 }
 
@@ -152,7 +173,7 @@ fn solved(point: &Point) -> [Value; SOLVED.len()] {
 }
 
 /// The points that are the same job as this one: the first three, and the number of the others.
-fn note(merged: &[Parameters]) -> String {
+fn note(merged: &[Parameters], unit: &dyn Fn(&str) -> DisplayUnit) -> String {
     const MAX_SHOWN: usize = 3;
     let mut texts: Vec<String> = merged
         .iter()
@@ -160,10 +181,7 @@ fn note(merged: &[Parameters]) -> String {
         .map(|parameters| {
             let values: Vec<String> = parameters
                 .iter()
-                .map(|(name, value)| match value {
-                    Value::Number(number) => format!("{name} = {}", short_number(*number)),
-                    other => format!("{name} = {other}"),
-                })
+                .map(|(name, value)| format!("{name} = {}", unit(name).quantity(value)))
                 .collect();
             if values.is_empty() { "the same point".to_owned() } else { values.join(", ") }
         })
@@ -174,19 +192,37 @@ fn note(merged: &[Parameters]) -> String {
     format!("same job as {}", texts.join("; "))
 }
 
-fn summary(generation: &Generation) -> String {
-    let count = |number: usize, singular: &str, plural: &str| {
-        format!("{number} {}", if number == 1 { singular } else { plural })
-    };
-    let points = &generation.points;
-    let infeasible = points.iter().filter(|point| point.infeasible.is_some()).count();
-    let merged: usize = points.iter().map(|point| point.merged.len()).sum();
-    let mut text = count(points.len() - infeasible, "job", "jobs");
-    if infeasible > 0 {
-        let _ = write!(text, ", {}", count(infeasible, "infeasible point", "infeasible points"));
+/// The numbers of points and jobs, as one line.
+fn summary(counts: &PlanCounts) -> String {
+    format!(
+        "{}: {}, {}, {} infeasible; {} filtered out",
+        print::count(counts.points, "point"),
+        print::count(counts.jobs, "job"),
+        print::count(counts.duplicates, "duplicate"),
+        counts.infeasible,
+        counts.filtered
+    )
+}
+
+/// The numbers of points and jobs, one row each; an object in JSON.
+fn print_summary(counts: &PlanCounts, format: Format, out: &mut dyn Write) -> Result<()> {
+    let numbers = [
+        ("points", counts.points),
+        ("jobs", counts.jobs),
+        ("duplicates", counts.duplicates),
+        ("infeasible", counts.infeasible),
+        ("filtered", counts.filtered),
+    ];
+    if format == Format::Json {
+        let object: serde_json::Map<_, _> =
+            numbers.map(|(name, number)| (name.to_owned(), number.into())).into_iter().collect();
+        return writeln!(out, "{}", serde_json::Value::from(object)).map_err(output_error);
     }
-    if merged > 0 {
-        let _ = write!(text, ", {}", count(merged, "point merged", "points merged"));
-    }
-    text
+    let rows = numbers.map(|(name, number)| {
+        vec![
+            Value::Text(name.to_owned()),
+            Value::Integer(i64::try_from(number).unwrap_or(i64::MAX)),
+        ]
+    });
+    print_rows(&["quantity", "number"], &rows, format, out)
 }

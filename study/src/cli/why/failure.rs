@@ -60,6 +60,9 @@ fn meaning(status: Status) -> &'static str {
         Status::Failed(FailureKind::Unstable) => {
             "the state became non-finite, or its energy grew without a source"
         }
+        Status::Failed(FailureKind::Overstretched) => {
+            "the film stretched beyond its material model (St. Venant-Kirchhoff, linear in Green strain)"
+        }
         Status::Failed(FailureKind::EnergyDrift) => {
             "the energy ledger did not balance, so the run has no valid result"
         }
@@ -93,7 +96,12 @@ fn next_step(status: Status, short_id: &str, root: &str) -> String {
             format!("{show}: see how the time advanced; then raise solver.step_limit")
         }
         Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {
-            format!("{show}; then a smaller step (billow schema: solver)")
+            format!("{show}; then a smaller step: billow keys cfl")
+        }
+        Status::Failed(FailureKind::Overstretched) => {
+            "check film.youngs_modulus, film.thickness and the gas (gas.mass_flow_rate, solver.end_time): \
+             pressure times radius over E t is the strain"
+                .to_owned()
         }
         _ => show,
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
-use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
+use billow_solver::output::audit::{MAX_LEDGER_RESIDUAL, MAX_NUMERICAL_FRACTION};
 use serde_json::{Map, json};
 
 use super::options::OutputOptions;
@@ -88,6 +88,7 @@ fn explanation(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Lin
         status => failure::explanation(cells, status, id.short(), &root.to_string()),
     };
     lines.extend(audit(cells));
+    lines.extend(damping(cells));
     if stored.point(id).is_none() {
         lines.push(("study", "this job is no longer in the study".to_owned()));
     }
@@ -142,6 +143,36 @@ fn audit(cells: &Cells) -> Vec<Line> {
         }
     };
     vec![("ledger", ledger), ("film", film)]
+}
+
+/// What the film's material and the method took of the work of the gas, where it matters.
+fn damping(cells: &Cells) -> Vec<Line> {
+    let large = |column| {
+        let fraction: Option<f64> = cells.number(column);
+        fraction.filter(|fraction| fraction.abs() > MAX_NUMERICAL_FRACTION)
+    };
+    let mut lines = Vec::new();
+    if let Some(fraction) = large(ColumnId::MaterialLossFraction) {
+        lines.push((
+            "damping",
+            format!(
+                "the film's material took {} of the work of the gas (material_loss_fraction): film.loss_factor",
+                percent(fraction)
+            ),
+        ));
+    }
+    if let Some(fraction) = large(ColumnId::NumericalFraction) {
+        let verb = if fraction > 0.0 { "took" } else { "added" };
+        lines.push((
+            "damping",
+            format!(
+                "the method {verb} {} of the work of the gas until the first peak (numerical_fraction): kinetic \
+                 energies and rebounds are wrong by about as much; a smaller solver.cfl, a finer mesh",
+                percent(fraction)
+            ),
+        ));
+    }
+    lines
 }
 
 /// A fraction as a percentage, without its sign.

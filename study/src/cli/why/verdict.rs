@@ -1,6 +1,6 @@
 //! The numbers behind a verdict: ratios of the last tenth of the run against their thresholds.
 
-use billow_solver::output::measures::{REFERENCE_PRESSURES, Verdict};
+use billow_solver::output::measures::Verdict;
 use serde_json::json;
 
 use super::{Line, percent};
@@ -32,7 +32,7 @@ impl Check {
 
 /// Whether the verdict is deployed.
 pub(super) fn is_deployed(cells: &Cells) -> bool {
-    cells.text(ColumnId::Verdict) == Verdict::Deployed.name()
+    cells.verdict() == Some(Verdict::Deployed)
 }
 
 /// Whether a small change of the ratios would change the verdict.
@@ -55,33 +55,35 @@ pub(super) fn checks(cells: &Cells) -> Vec<serde_json::Value> {
 /// The lines that explain a verdict.
 pub(super) fn explanation(cells: &Cells) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let verdict = cells.text(ColumnId::Verdict);
+    let verdict = cells.verdict();
     lines.extend(volume(cells, verdict).map(|text| ("volume", text)));
     lines.extend(height(cells).map(|text| ("height", text)));
     lines.extend(reference(cells).map(|text| ("reference", text)));
-    if verdict.is_empty() {
-        let text = "none: this design has no static states to compare with";
-        lines.push(("verdict", text.to_owned()));
+    if verdict.is_none() {
+        let reason = cells.text(ColumnId::Reason);
+        let reason = reason.strip_prefix("no verdict: ").unwrap_or(reason);
+        let text = if reason.is_empty() { "the run was not compared" } else { reason };
+        lines.push(("verdict", format!("none: {text}")));
     }
     lines.extend(near_threshold(cells).map(|text| ("near", text)));
     if let Some(time) = cells.number(ColumnId::TDeployed) {
         let since =
-            format!("both thresholds reached at {} s and kept for 20 ms", brief_number(time));
+            format!("smoothed volume and height at both thresholds at {} s", brief_number(time));
         let later = if is_deployed(cells) { "" } else { ", but not until the end" };
         lines.push(("deployed", format!("{since}{later}")));
     }
     lines
 }
 
-fn volume(cells: &Cells, verdict: &str) -> Option<String> {
+fn volume(cells: &Cells, verdict: Option<Verdict>) -> Option<String> {
     let deployed = Check::of(cells, CHECKS[0])?;
     let stalled = Check::of(cells, CHECKS[2])?;
     let mean = format!("volume_ratio {} (mean of the last tenth)", brief_number(deployed.value));
     let (least, low) = (deployed.threshold, stalled.threshold);
-    Some(if verdict == Verdict::Deployed.name() {
+    Some(if verdict == Some(Verdict::Deployed) {
         let margin = percent(deployed.margin);
         format!("{mean} ≥ {least}, at every sample of that tenth: deployed; {margin} above")
-    } else if verdict == Verdict::Stalled.name() {
+    } else if verdict == Some(Verdict::Stalled) {
         format!("{mean} < {low}: stalled; {} below", percent(stalled.margin))
     } else if deployed.margin >= 0.0 {
         format!("{mean} ≥ {least}, but not at every sample of that tenth: not deployed")
@@ -105,15 +107,26 @@ fn height(cells: &Cells) -> Option<String> {
     ))
 }
 
-/// A note when the final pressure is above the largest pressure of the static states.
+/// The static equilibrium that the run is compared with.
 fn reference(cells: &Cells) -> Option<String> {
-    let largest = REFERENCE_PRESSURES[REFERENCE_PRESSURES.len() - 1];
-    let pressure = cells.number(ColumnId::FinalPressure).filter(|pressure| *pressure > largest)?;
-    Some(format!(
-        "static states are computed up to {largest} Pa and taken as constant above; the final \
-         pressure is {} Pa",
-        brief_number(pressure)
-    ))
+    let number = |column| cells.number(column);
+    let reference = number(ColumnId::ReferenceOverpressure)?;
+    let (volume, height) = (number(ColumnId::ReferenceVolume)?, number(ColumnId::ReferenceHeight)?);
+    let shape = format!("{} m3 and {} m", brief_number(volume), brief_number(height));
+    let last = number(ColumnId::FinalOverpressure)?;
+    Some(if last < reference {
+        format!(
+            "static equilibrium at {} Pa, the lowest one computed: {shape}; the final overpressure is {} Pa, \
+             at which the shape is nearly the same",
+            brief_number(reference),
+            brief_number(last)
+        )
+    } else {
+        format!(
+            "static equilibrium at {} Pa, the mean overpressure of the last tenth: {shape}",
+            brief_number(reference)
+        )
+    })
 }
 
 fn near_threshold(cells: &Cells) -> Option<String> {

@@ -5,6 +5,7 @@ use super::tree::{
 };
 use crate::input::keys;
 use crate::input::units::{self, Powers};
+use crate::platform::quote;
 
 /// Checks a tree as a condition.
 pub(super) fn condition(
@@ -79,7 +80,7 @@ impl Checker<'_> {
             let names: Vec<&str> = self.variables.iter().map(|v| v.name.as_str()).collect();
             return Err(self.refuse(
                 tree,
-                format!("no variable is called {name}{near}"),
+                format!("no variable is called {}{near}", quote::echo(name)),
                 &format!("{}; a text is written in quotes", names.join(", ")),
             ));
         };

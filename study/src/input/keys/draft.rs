@@ -37,6 +37,18 @@ pub struct SpeciesDraft {
     pub cp: Option<f64>,
 }
 
+/// How residual gas enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ResidualGas {
+    /// Let in from release on.
+    #[default]
+    Burst,
+    /// Inside from the start.
+    Stored,
+    /// Inside from the start, at ambient pressure.
+    Ambient,
+}
+
 /// Inflow and residual gas of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct InflowDraft {
@@ -46,8 +58,8 @@ pub struct InflowDraft {
     pub temperature: f64,
     /// Residual gas, kg.
     pub residual_mass: f64,
-    /// Whether residual gas is inside from the start; a burst otherwise.
-    pub residual_stored: bool,
+    /// How residual gas enters.
+    pub residual: ResidualGas,
     /// Mass flow rate of a burst, kg/s.
     pub burst_rate: f64,
 }

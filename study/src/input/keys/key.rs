@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use super::draft::Draft;
-use super::nearest::nearest;
 use super::quantity::{Quantity, integer};
 use super::words::Word;
 use crate::input::study_file::Json;
 use crate::input::units::Dimension;
 use crate::input::value::Value;
+use crate::platform::nearest::nearest;
 
 /// Puts the value of a key into its field of the draft.
 pub type Store = fn(&mut Draft, &Value);
@@ -89,17 +89,33 @@ pub(super) const fn key(
 
 /// A quantity from `min` to `max`, both allowed.
 pub(super) const fn from(dimension: Dimension, min: f64, max: f64) -> KeyKind {
-    KeyKind::Quantity(Quantity { dimension, min, above: false, max, words: &[] })
+    KeyKind::Quantity(Quantity { dimension, min, above: false, max, plausible: None, words: &[] })
 }
 
 /// A quantity above `min`, up to and including `max`.
 pub(super) const fn above(dimension: Dimension, min: f64, max: f64) -> KeyKind {
-    KeyKind::Quantity(Quantity { dimension, min, above: true, max, words: &[] })
+    KeyKind::Quantity(Quantity { dimension, min, above: true, max, plausible: None, words: &[] })
 }
 
 /// Three quantities, each from −`max` to `max`.
 pub(super) const fn vector(dimension: Dimension, max: f64) -> KeyKind {
-    KeyKind::Vector(Quantity { dimension, min: -max, above: false, max, words: &[] })
+    KeyKind::Vector(Quantity {
+        dimension,
+        min: -max,
+        above: false,
+        max,
+        plausible: None,
+        words: &[],
+    })
+}
+
+/// The same quantity, with its plausible range.
+pub(super) const fn likely(kind: KeyKind, low: f64, high: f64) -> KeyKind {
+    let plausible = Some([low, high]);
+    match kind {
+        KeyKind::Quantity(quantity) => KeyKind::Quantity(Quantity { plausible, ..quantity }),
+        other => other,
+    }
 }
 
 /// Position of a key in a table. In a `const` block, a name that the table does not have is a compile

@@ -120,7 +120,11 @@ fn allowed_text(key: &Key) -> String {
     match key.kind {
         KeyKind::Quantity(quantity) => {
             let words = quantity.words.iter();
-            words.fold(quantity.range(), |text, (word, _)| format!("{text}, or {word}"))
+            let text = words.fold(quantity.range(), |text, (word, _)| format!("{text}, or {word}"));
+            match quantity.plausible_range() {
+                Some(plausible) => format!("{text}; plausible: {plausible}"),
+                None => text,
+            }
         }
         KeyKind::Integer(min, max) if min == max => min.to_string(),
         KeyKind::Integer(min, max) => format!("{min} to {max}"),
@@ -133,7 +137,8 @@ fn allowed_text(key: &Key) -> String {
 pub fn reference_page() -> String {
     let mut page = "# Keys\n\n\
         Every key of a study file and of a scene file. A number is SI; a text carries its unit, as \
-        in \"40 mm\". A unit of 1 is a pure number; no unit is a word, a text or an object. A default \
+        in \"40 mm\". A value outside the \
+        plausible range is used, with a warning that a unit may be missing. A unit of 1 is a pure number; no unit is a word, a text or an object. A default \
         in brackets says what happens without a value. This page is generated from the tables in \
         `study/src/input/keys`.\n"
         .to_owned();

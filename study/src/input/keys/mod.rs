@@ -5,7 +5,6 @@
 pub mod draft;
 mod key;
 pub mod listing;
-mod nearest;
 mod objects;
 mod quantity;
 mod scene;
@@ -13,8 +12,8 @@ mod study;
 mod table;
 mod words;
 
+pub use crate::platform::nearest::nearest;
 pub use key::{Default, Key, KeyKind, Refusal, named, position};
-pub use nearest::nearest;
 pub use objects::{
     BODY_KEYS, MESH_KEYS, MOVE_KEYS, OUTPUT_KEYS, PLATE_KEYS, ROTATION_KEYS, SCENE_WINDOW_KEYS,
     SPIN_KEYS, START_KEYS, SUPPORT_KEYS,

@@ -4,8 +4,8 @@
 //! a name without a row does not compile ([`super::key::named`]).
 
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{Key, KeyKind, above, from, key, same_text, vector};
-use super::study::{CLOCK, KELVIN};
+use super::key::{Key, KeyKind, above, from, key, likely, same_text, vector};
+use super::study::{CLOCK, FLOW_RATE, KELVIN, SAMPLE_INTERVAL};
 use super::words::{self, PROFILES, explained, plain, words};
 use crate::input::units::Dimension;
 
@@ -36,7 +36,7 @@ const SUPPORT_TARGETS: &[words::Word] = &[
 pub static SCENE_WINDOW_KEYS: &[Key] = &[
     key("from", CLOCK, Number(0.0), "\"0 s\"", "Start."),
     key("to", CLOCK, Absent("solver.end_time"), "\"0.3 s\"", "End."),
-    key("mass_flow_rate", from(Dimension::MassFlowRate, 0.0, 100.0), Required, "\"5 g/s\"",
+    key("mass_flow_rate", FLOW_RATE, Required, "\"5 g/s\"",
         "Mass flow rate."),
     key("temperature", KELVIN, Number(293.0), "\"293 K\"", "Temperature of the gas let in."),
 ];
@@ -49,7 +49,7 @@ pub static MESH_KEYS: &[Key] = &[
          counter-clockwise seen from outside; polygons are cut into fans."),
     key("scale", above(Dimension::Number, 0.0, 1e9), Number(1.0), "0.001",
         "Length of one unit of the OBJ files, m."),
-    key("weld", from(Dimension::Length, 0.0, 1.0), Absent("nothing is welded"), "\"1 um\"",
+    key("weld", likely(from(Dimension::Length, 0.0, 1.0), 0.0, 0.1), Absent("nothing is welded"), "\"1 um\"",
         "Vertices of positions within this distance become one node; 0 joins vertices that coincide."),
 ];
 
@@ -68,7 +68,7 @@ pub static SUPPORT_KEYS: &[Key] = &[
     key("point", POSITION, Absent("needed for plane"), "[0, 0, 0]", "A point on the plane."),
     key("normal", DIRECTION, Absent("needed for plane"), "[0, 0, 1]",
         "Normal of the plane, of any length."),
-    key("tolerance", from(Dimension::Length, 0.0, 1e3), Absent("a millionth of the film's size"),
+    key("tolerance", likely(from(Dimension::Length, 0.0, 1e3), 0.0, 1.0), Absent("a millionth of the film's size"),
         "\"1 mm\"", "Distance from the plane within which a node belongs to it."),
     key("fix", KeyKind::Text, Absent("needed; for plane, its normal component"), "\"xyz\"",
         "Displacement components it holds: letters of xyz, each once."),
@@ -87,11 +87,11 @@ pub static PLATE_KEYS: &[Key] = &[
 /// The keys of `body`: a rigid plane that moves along its normal.
 #[rustfmt::skip]
 pub static BODY_KEYS: &[Key] = &[
-    key("mass", from(Dimension::Mass, 0.0, 1e9), Required, "\"50 g\"",
+    key("mass", likely(from(Dimension::Mass, 0.0, 1e9), 1e-6, 1e4), Required, "\"50 g\"",
         "Mass of the plane, without the film attached to it."),
-    key("velocity", from(Dimension::Velocity, -1e5, 1e5), Number(0.0), "\"1 m/s\"",
+    key("velocity", likely(from(Dimension::Velocity, -1e5, 1e5), -1e3, 1e3), Number(0.0), "\"1 m/s\"",
         "Velocity along the normal at the start."),
-    key("force", from(Dimension::Force, -1e12, 1e12), Number(0.0), "\"-10 N\"",
+    key("force", likely(from(Dimension::Force, -1e12, 1e12), -1e6, 1e6), Number(0.0), "\"-10 N\"",
         "Constant force on it along the normal, weight included."),
 ];
 
@@ -110,7 +110,7 @@ pub static MOVE_KEYS: &[Key] = &[
 pub static ROTATION_KEYS: &[Key] = &[
     key("axis", DIRECTION, Required, "[0, 0, 1]", "Axis, of any length."),
     key("centre", POSITION, Absent("the origin"), "[0, 0, 0]", "A point on the axis."),
-    key("angle", from(Dimension::Angle, -1e4, 1e4), Required, "\"30 deg\"",
+    key("angle", likely(from(Dimension::Angle, -1e4, 1e4), -6.3, 6.3), Required, "\"30 deg\"",
         "Angle at the end, counter-clockwise seen against the axis."),
 ];
 
@@ -128,14 +128,14 @@ pub static START_KEYS: &[Key] = &[
 pub static SPIN_KEYS: &[Key] = &[
     key("axis", DIRECTION, Required, "[0, 0, 1]", "Axis, of any length."),
     key("centre", POSITION, Absent("the origin"), "[0, 0, 0]", "A point on the axis."),
-    key("rate", from(Dimension::AngularVelocity, -1e6, 1e6), Required, "\"10 rad/s\"",
+    key("rate", likely(from(Dimension::AngularVelocity, -1e6, 1e6), -1e3, 1e3), Required, "\"10 rad/s\"",
         "Angular velocity."),
 ];
 
 /// The keys of `outputs` that hold one value.
 #[rustfmt::skip]
 pub static OUTPUT_KEYS: &[Key] = &[
-    key("sample_interval", above(Dimension::Time, 0.0, 1e6), Number(0.001), "\"1 ms\"",
+    key("sample_interval", SAMPLE_INTERVAL, Number(0.001), "\"1 ms\"",
         "Time between samples of the history; at most a million samples in a run."),
     key("frames", KeyKind::Integer(0, 10_000), Integer(40), "40",
         "Number of shapes kept for --out, densest after the release; 0 for none."),
@@ -144,7 +144,7 @@ pub static OUTPUT_KEYS: &[Key] = &[
 /// `gravity`: one number along z, or three.
 #[rustfmt::skip]
 pub(crate) static GRAVITY: [Key; 2] = [
-    key("gravity", from(Dimension::Acceleration, -1000.0, 1000.0), Number(0.0), "\"-9.80665 m/s2\"",
+    key("gravity", likely(from(Dimension::Acceleration, -1000.0, 1000.0), -100.0, 100.0), Number(0.0), "\"-9.80665 m/s2\"",
         "Acceleration of gravity along z, upward: -9.80665 on the ground; or a list of three."),
     key("gravity", vector(Dimension::Acceleration, 1000.0), Absent("none"), "[0, 0, -9.80665]",
         "Acceleration of gravity."),
@@ -168,8 +168,9 @@ pub(crate) const OBJECT_MEANINGS: &[(&str, &str)] = &[
     (
         "mesh.closure",
         "Faces that close the volume without being film: names of groups or objects of positions, \
-         or an OBJ file of faces over its vertices. Default: none; with gas, a fan over each free \
-         edge loop closes an open film.",
+         or an OBJ file of faces over its vertices. A vertex of no film moves with the rim of its \
+         faces, which takes its load. Default: none; with gas, a fan over each free edge loop \
+         closes an open film.",
     ),
     ("supports[].nodes", "Vertices by number, 0 for the first of the file."),
     ("supports[].body", "A rigid plane of this mass that moves along its normal as a free body."),

@@ -17,6 +17,9 @@ pub struct Quantity {
     pub above: bool,
     /// Upper bound, SI; allowed.
     pub max: f64,
+    /// Range outside of which a unit is probably missing, SI; 0 is always plausible. `None` where no
+    /// range is.
+    pub plausible: Option<[f64; 2]>,
     /// Words that stand for a number.
     pub words: &'static [(&'static str, f64)],
 }
@@ -28,6 +31,18 @@ impl Quantity {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let from = if self.above { "above " } else { "from " };
         format!("{from}{} to {}{unit}", short_number(self.min), short_number(self.max))
+    }
+
+    /// The plausible range with its SI unit, as in "0 to 0.02 kg".
+    pub fn plausible_range(&self) -> Option<String> {
+        let [low, high] = self.plausible?.map(short_number);
+        Some(format!("{low} to {high} {}", self.dimension.si()))
+    }
+
+    /// Whether a number is in the plausible range.
+    pub fn is_plausible(&self, number: f64) -> bool {
+        let within = |[low, high]: [f64; 2]| (low..=high).contains(&number);
+        number == 0.0 || self.plausible.is_none_or(within)
     }
 
     /// What the quantity allows, in words.

@@ -2,8 +2,8 @@
 
 use super::draft::{choose, flag, number, optional};
 use super::key::Default::{Absent, Integer, Number, Word};
-use super::key::{Key, KeyKind, above, from, key};
-use super::study::{CLOCK, KELVIN};
+use super::key::{Key, KeyKind, above, from, key, likely};
+use super::study::{CLOCK, END_TIME, KELVIN};
 use super::words::{CAPS, SHAPES, pick, plain, words};
 use crate::input::units::Dimension;
 
@@ -59,14 +59,14 @@ pub(super) static SCENE_KEYS: &[Key] = &[
         "Shape of the capsule at the start.")
         .to(|draft, value| draft.film_scene.erected = pick(&SHAPES, value)),
 
-    key("gas.pressure", from(Dimension::Pressure, -1e9, 1e9), Absent("the gas decides"),
+    key("gas.pressure", likely(from(Dimension::Pressure, -1e9, 1e9), -1e7, 1e7), Absent("the gas decides"),
         "\"1 kPa\"", "A fixed overpressure that follows the surface, in place of a gas; the film may \
         be open.")
         .to(|draft, value| draft.film_scene.pressure = optional(value)),
-    key("gas.initial_mass", from(Dimension::Mass, 0.0, 1e6),
+    key("gas.initial_mass", likely(from(Dimension::Mass, 0.0, 1e6), 0.0, 0.1),
         Absent("that of initial_pressure, else none"), "\"0.05 g\"", "Gas inside at the start.")
         .to(|draft, value| draft.film_scene.initial_mass = optional(value)),
-    key("gas.initial_pressure", from(Dimension::Pressure, 0.0, 1e9),
+    key("gas.initial_pressure", likely(from(Dimension::Pressure, 0.0, 1e9), 0.0, 1e7),
         Absent("that of initial_mass"), "\"1 kPa\"",
         "Absolute pressure inside at the start, in place of initial_mass.")
         .to(|draft, value| draft.film_scene.initial_pressure = optional(value)),
@@ -77,18 +77,18 @@ pub(super) static SCENE_KEYS: &[Key] = &[
     key("contact.enabled", KeyKind::Flag, Absent("true; false where solver.static is true"), "true",
         "Whether contact keeps film from passing through film; without it, passages are not counted.")
         .to(|draft, value| draft.film_scene.contact = flag(value)),
-    key("contact.adhesion_range", above(Dimension::Length, 0.0, 0.1),
+    key("contact.adhesion_range", likely(above(Dimension::Length, 0.0, 0.1), 1e-6, 0.02),
         Absent("contact.distance"), "\"1 mm\"",
         "Range of adhesion beyond the contact distance.")
         .to(|draft, value| draft.film_scene.adhesion_range = optional(value)),
 
-    key("solver.end_time", above(Dimension::Time, 0.0, 1e6), Absent("needed unless static"),
+    key("solver.end_time", END_TIME, Absent("needed unless static"),
         "\"0.3 s\"", "Simulated time.")
         .to(|draft, value| draft.film_scene.end_time = optional(value)),
     key("solver.static", KeyKind::Flag, Absent("false"), "true",
         "Solve static equilibrium under gas.pressure instead of motion.")
         .to(|draft, value| draft.film_scene.statics = flag(value) == Some(true)),
-    key("solver.mass_damping", from(Dimension::Frequency, 0.0, 1e9), Number(0.0), "\"10 1/s\"",
+    key("solver.mass_damping", likely(from(Dimension::Frequency, 0.0, 1e9), 0.0, 1e6), Number(0.0), "\"10 1/s\"",
         "Mass damping c in m a = f - c m v.")
         .to(|draft, value| draft.film_scene.mass_damping = number(value)),
 ];

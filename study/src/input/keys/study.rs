@@ -1,7 +1,8 @@
 //! The keys of a study file. To add a key, add a row: reading, default, errors, `billow schema`,
 //! `billow keys` and docs/reference/keys.md follow from it.
 //!
-//! Ranges cover any plausible capsule, and catch millimetres given as metres.
+//! Ranges are hard limits. Within them, a plausible range (`likely`) says what an inflatable capsule has;
+//! chosen, generous. A value outside is used, with a warning that a unit may be missing.
 
 use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
 use billow_solver::integrators::explicit::DEFAULT_CFL;
@@ -9,7 +10,7 @@ use billow_solver::scene::paper::{LOSS_FACTOR, LOSS_FREQUENCY, NUMERICAL_DAMPING
 
 use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};
 use super::key::Default::{Absent, Integer, Number, Required, Word};
-use super::key::{Key, KeyKind, above, from, key};
+use super::key::{Key, KeyKind, above, from, key, likely};
 use super::quantity::Quantity;
 use super::words::{
     CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, SUPPORT_PLACES, pick, plain, words,
@@ -38,19 +39,39 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
          from release to the end.",
     ),
     ("grid", "What varies: every combination of the axes, the first varying slowest."),
+    (
+        "units",
+        "Units in which tables, charts and answers show keys and columns, as in {\"mass_flow_rate\": \
+         \"g/s\", \"t_90_z_rim\": \"ms\"}. Default: the unit that this file writes for the key, SI for a \
+         column. Stored numbers, csv and json are SI.",
+    ),
 ];
 
 /// Largest whole number that every JSON reader keeps exactly, 2^53 − 1.
 const MAX_EXACT_INTEGER: i64 = 9_007_199_254_740_991;
 
 /// A radius or height of a capsule, m.
-const RADIUS: KeyKind = above(Dimension::Length, 0.0, 100.0);
+const RADIUS: KeyKind = likely(above(Dimension::Length, 0.0, 100.0), 0.01, 20.0);
 /// A fraction above 0, up to 1.
 pub(super) const FRACTION: KeyKind = above(Dimension::Number, 0.0, 1.0);
 /// A temperature, K.
-pub(super) const KELVIN: KeyKind = from(Dimension::Temperature, 1.0, 5000.0);
+pub(super) const KELVIN: KeyKind = likely(from(Dimension::Temperature, 1.0, 5000.0), 50.0, 1500.0);
 /// A time since the start of the run, s.
-pub(super) const CLOCK: KeyKind = from(Dimension::Time, 0.0, 1e6);
+pub(super) const CLOCK: KeyKind = likely(from(Dimension::Time, 0.0, 1e6), 0.0, MAX_PLAUSIBLE_TIME);
+/// A simulated time, s.
+pub(super) const END_TIME: KeyKind =
+    likely(above(Dimension::Time, 0.0, 1e6), 1e-3, MAX_PLAUSIBLE_TIME);
+/// Time between samples, s.
+pub(super) const SAMPLE_INTERVAL: KeyKind = likely(above(Dimension::Time, 0.0, 1e6), 1e-6, 1.0);
+/// A mass flow rate, kg/s.
+pub(super) const FLOW_RATE: KeyKind =
+    likely(from(Dimension::MassFlowRate, 0.0, 100.0), 0.0, MAX_PLAUSIBLE_FLOW_RATE);
+/// A mass of gas in a folded capsule, kg.
+const GAS_MASS: KeyKind = likely(from(Dimension::Mass, 0.0, 10.0), 0.0, 0.02);
+/// Longest plausible run, s. Chosen: a deployment takes seconds, a slow one minutes.
+const MAX_PLAUSIBLE_TIME: f64 = 300.0;
+/// Largest plausible mass flow rate, kg/s. Chosen: it fills a capsule of 1 m3 in milliseconds.
+const MAX_PLAUSIBLE_FLOW_RATE: f64 = 0.5;
 
 /// Every key that holds one value.
 #[rustfmt::skip]
@@ -83,7 +104,7 @@ pub static KEYS: &[Key] = &[
     key("design.height", RADIUS, Absent("follows from the fit, where the fit allows"), "\"1 m\"",
         "Height of the erected cone, H: for cone and height, and nominal for angles.")
         .to(|draft, value| draft.scene.design.height = optional(value)),
-    key("design.half_angle", from(Dimension::Angle, -1.57, 1.57),
+    key("design.half_angle", likely(from(Dimension::Angle, -1.57, 1.57), -1.3, 1.3),
         Absent("follows from the fit, or from top_radius and height"), "\"7.7 deg\"",
         "Half top angle: for angles, in place of top_radius and height.")
         .to(|draft, value| draft.scene.design.half_angle = optional(value)),
@@ -91,7 +112,7 @@ pub static KEYS: &[Key] = &[
         Absent("follows from the fit, where the fit allows"), "1",
         "Ratio of the angles alpha1 and phi of a panel: for angles and height.")
         .to(|draft, value| draft.scene.design.alpha1_over_phi = optional(value)),
-    key("design.stowed_height", above(Dimension::Length, 0.0, 10.0), Number(0.04), "\"40 mm\"",
+    key("design.stowed_height", likely(above(Dimension::Length, 0.0, 10.0), 1e-3, 1.0), Number(0.04), "\"40 mm\"",
         "Height of the stowed stack.")
         .to(|draft, value| draft.scene.design.stowed_height = number(value)),
     key("design.subdivisions", KeyKind::Integer(1, 1000), Integer(8), "8",
@@ -105,16 +126,16 @@ pub static KEYS: &[Key] = &[
         .to(|draft, value| choose(&mut draft.scene.design.caps, &CAPS, value))
         .study_only(),
 
-    key("film.youngs_modulus", from(Dimension::Pressure, 1e3, 1e13), Number(3.45e9),
+    key("film.youngs_modulus", likely(from(Dimension::Pressure, 1e3, 1e13), 1e5, 1e12), Number(3.45e9),
         "\"3.45 GPa\"", "Young's modulus, E.")
         .to(|draft, value| draft.scene.film.youngs_modulus = number(value)),
     key("film.poisson_ratio", from(Dimension::Number, 0.0, 0.499), Number(0.3), "0.3",
         "Poisson's ratio.")
         .to(|draft, value| draft.scene.film.poisson_ratio = number(value)),
-    key("film.density", from(Dimension::Density, 1.0, 30_000.0), Number(1400.0),
+    key("film.density", likely(from(Dimension::Density, 1.0, 30_000.0), 100.0, 20_000.0), Number(1400.0),
         "\"1400 kg/m3\"", "Density.")
         .to(|draft, value| draft.scene.film.density = number(value)),
-    key("film.thickness", from(Dimension::Length, 1e-7, 0.01), Number(25.4e-6), "\"25.4 um\"",
+    key("film.thickness", likely(from(Dimension::Length, 1e-7, 0.01), 1e-6, 2e-3), Number(25.4e-6), "\"25.4 um\"",
         "Thickness.")
         .to(|draft, value| draft.scene.film.thickness = number(value)),
     key("film.compression", from(Dimension::Number, 0.0, 1.0), Number(0.0), "0",
@@ -123,7 +144,7 @@ pub static KEYS: &[Key] = &[
     key("film.loss_factor", from(Dimension::Number, 0.0, 0.5), Number(LOSS_FACTOR), "0.01",
         "Largest loss factor (tan delta) of the film's material. The default is assumed; polyimide: 0.003 to 0.03.")
         .to(|draft, value| draft.scene.film.loss_factor = number(value)),
-    key("film.loss_frequency", from(Dimension::Frequency, 0.1, 10_000.0), Number(LOSS_FREQUENCY),
+    key("film.loss_frequency", likely(from(Dimension::Frequency, 0.1, 10_000.0), 0.1, 10_000.0), Number(LOSS_FREQUENCY),
         "\"100 Hz\"", "Frequency of the largest loss factor; the loss falls above and below it.")
         .to(|draft, value| draft.scene.film.loss_frequency = number(value)),
     key("film.numerical_damping", from(Dimension::Number, 0.0, 1.0), Number(NUMERICAL_DAMPING),
@@ -136,14 +157,14 @@ pub static KEYS: &[Key] = &[
         "The gas: a name, or an object of gas_constant and cp.")
         .to(|draft, value| draft.species.named = pick(&SPECIES, value))
         .excludes(&["gas.species.gas_constant", "gas.species.cp"]),
-    key("gas.species.gas_constant", from(Dimension::SpecificHeat, 10.0, 10_000.0),
+    key("gas.species.gas_constant", likely(from(Dimension::SpecificHeat, 10.0, 10_000.0), 40.0, 4500.0),
         Absent("that of the named species"), "\"296.803052 J/(kg K)\"", "Specific gas constant, R.")
         .to(|draft, value| draft.species.gas_constant = optional(value)),
-    key("gas.species.cp", from(Dimension::SpecificHeat, 20.0, 50_000.0),
+    key("gas.species.cp", likely(from(Dimension::SpecificHeat, 20.0, 50_000.0), 100.0, 20_000.0),
         Absent("that of the named species"), "\"1038.81 J/(kg K)\"",
         "Specific heat at constant pressure; above the gas constant.")
         .to(|draft, value| draft.species.cp = optional(value)),
-    key("gas.mass_flow_rate", from(Dimension::MassFlowRate, 0.0, 100.0),
+    key("gas.mass_flow_rate", FLOW_RATE,
         Absent("needed where an inflow window gives none"), "\"5 g/s\"",
         "Mass flow rate of every inflow window that gives none.")
         .to(|draft, value| draft.inflow.mass_flow_rate = optional(value))
@@ -152,20 +173,20 @@ pub static KEYS: &[Key] = &[
         "Temperature of the gas let in.")
         .to(|draft, value| draft.inflow.temperature = number(value))
         .study_only(),
-    key("gas.residual_gas_mass", from(Dimension::Mass, 0.0, 10.0), Number(0.0), "\"0.05 g\"",
+    key("gas.residual_gas_mass", GAS_MASS, Number(0.0), "\"0.05 g\"",
         "Residual gas in the stowed capsule.")
         .to(|draft, value| draft.inflow.residual_mass = number(value))
         .study_only(),
     key("gas.residual_gas", KeyKind::Choice(&words(&RESIDUAL_GAS)), Word("burst"), "\"stored\"",
-        "How residual gas enters.")
-        .to(|draft, value| choose(&mut draft.inflow.residual_stored, &RESIDUAL_GAS, value))
+        "How residual gas enters. It is gas.species (nitrogen by default), also where it stands for air.")
+        .to(|draft, value| choose(&mut draft.inflow.residual, &RESIDUAL_GAS, value))
         .study_only(),
-    key("gas.burst_rate", from(Dimension::MassFlowRate, 1e-9, 100.0), Number(0.005), "\"5 g/s\"",
+    key("gas.burst_rate", likely(from(Dimension::MassFlowRate, 1e-9, 100.0), 1e-9, MAX_PLAUSIBLE_FLOW_RATE), Number(0.005), "\"5 g/s\"",
         "Mass flow rate of a burst of residual gas.")
         .to(|draft, value| draft.inflow.burst_rate = number(value))
         .study_only(),
-    key("gas.ambient_pressure", from(Dimension::Pressure, 0.0, 1e7), Number(0.0), "\"1 atm\"",
-        "Pressure outside: 0 in orbit.")
+    key("gas.ambient_pressure", likely(from(Dimension::Pressure, 0.0, 1e7), 0.0, 1e6), Number(0.0), "\"1 atm\"",
+        "Pressure outside: 0 in orbit. Above 0 the stowed capsule must contain gas: residual_gas ambient.")
         .to(|draft, value| draft.scene.gas.ambient_pressure = number(value)),
     key("gas.heat_transfer",
         KeyKind::Quantity(Quantity {
@@ -173,18 +194,20 @@ pub static KEYS: &[Key] = &[
             min: 0.0,
             above: false,
             max: 1e6,
+            plausible: Some([0.0, 1e4]),
             words: HEAT_TRANSFER_WORDS,
         }),
         Number(0.3), "\"0.3 W/(m2 K)\"", "Heat transfer coefficient between gas and film.")
         .to(|draft, value| draft.scene.gas.heat_transfer = heat_transfer(value)),
-    key("gas.leak_area", from(Dimension::Area, 0.0, 100.0), Number(0.0), "\"1 mm2\"",
-        "Area of the leak orifice.")
+    key("gas.leak_area", likely(from(Dimension::Area, 0.0, 100.0), 0.0, 0.05), Number(0.0), "\"1 mm2\"",
+        "Area of the leak orifice. It flows both ways: gas of the same species enters at film \
+          temperature where ambient_pressure is above the pressure inside.")
         .to(|draft, value| draft.scene.gas.leak_area = number(value)),
     key("gas.discharge_coefficient", FRACTION, Number(1.0), "0.62",
         "Discharge coefficient of the leak orifice.")
         .to(|draft, value| draft.scene.gas.discharge_coefficient = number(value)),
 
-    key("contact.distance", above(Dimension::Length, 0.0, 0.1),
+    key("contact.distance", likely(above(Dimension::Length, 0.0, 0.1), 1e-6, 0.02),
         Absent("0.4 of the design's reference gap; of a mesh, 0.4 of its smallest gap"), "\"0.6 mm\"",
         "Distance at which contact starts to push layers of film apart. The reference gap is the \
          smallest stowed gap of the design at 16 subdivisions; it does not depend on the mesh.")
@@ -192,11 +215,11 @@ pub static KEYS: &[Key] = &[
     key("contact.friction", from(Dimension::Number, 0.0, 10.0), Number(0.0), "0.2",
         "Coulomb friction coefficient.")
         .to(|draft, value| draft.scene.contact.friction = number(value)),
-    key("contact.adhesion", from(Dimension::Pressure, 0.0, 1e6), Number(0.0), "\"10 Pa\"",
+    key("contact.adhesion", likely(from(Dimension::Pressure, 0.0, 1e6), 0.0, 1e5), Number(0.0), "\"10 Pa\"",
         "Adhesive pull-off pressure.")
         .to(|draft, value| draft.scene.contact.adhesion = number(value)),
 
-    key("gravity", from(Dimension::Acceleration, -1000.0, 1000.0), Number(0.0),
+    key("gravity", likely(from(Dimension::Acceleration, -1000.0, 1000.0), -100.0, 100.0), Number(0.0),
         "\"-9.80665 m/s2\"",
         "Acceleration of gravity along the axis, upward: -9.80665 for a capsule that stands on the \
          ground.")
@@ -211,7 +234,7 @@ pub static KEYS: &[Key] = &[
         "Which model computes the job.")
         .to(|draft, value| choose(&mut draft.scene.solver.model, &MODEL_KINDS, value))
         .study_only(),
-    key("solver.end_time", above(Dimension::Time, 0.0, 1e6), Required, "\"0.5 s\"",
+    key("solver.end_time", END_TIME, Required, "\"0.5 s\"",
         "Simulated time.")
         .to(|draft, value| draft.scene.solver.end_time = number(value))
         .study_only(),
@@ -224,7 +247,7 @@ pub static KEYS: &[Key] = &[
         .to(|draft, value| draft.stepping.adaptive = optional(value))
         .excludes(&["solver.stepping.fixed"])
         .study_only(),
-    key("solver.stepping.fixed", above(Dimension::Time, 0.0, 1.0),
+    key("solver.stepping.fixed", likely(above(Dimension::Time, 0.0, 1.0), 1e-9, 0.01),
         Absent("the step is error-controlled"), "\"10 us\"", "A fixed step. Model piston only.")
         .to(|draft, value| draft.stepping.fixed = optional(value))
         .excludes(&["solver.stepping.adaptive"])
@@ -233,7 +256,7 @@ pub static KEYS: &[Key] = &[
         "Number of steps after which a run stops with the status step_limit.")
         .to(|draft, value| draft.scene.solver.step_limit = unsigned(value)),
 
-    key("outputs.sample_interval", above(Dimension::Time, 0.0, 1e6), Number(0.001), "\"1 ms\"",
+    key("outputs.sample_interval", SAMPLE_INTERVAL, Number(0.001), "\"1 ms\"",
         "Time between samples of the history; at most a million samples in a run.")
         .to(|draft, value| draft.scene.outputs.sample_interval = number(value))
         .study_only(),
@@ -262,7 +285,7 @@ pub static KEYS: &[Key] = &[
     key("seed", KeyKind::Integer(0, MAX_EXACT_INTEGER), Integer(0), "1",
         "Seed of the imperfection of the stowed shape. Models without one ignore it.")
         .to(|draft, value| draft.scene.seed = unsigned(value)),
-    key("imperfection_amplitude", above(Dimension::Length, 0.0, 0.1),
+    key("imperfection_amplitude", likely(above(Dimension::Length, 0.0, 0.1), 1e-9, 0.02),
         Absent("0.2 of the design's reference gap"), "\"0.15 mm\"",
         "Amplitude of the imperfection: its largest displacement, along z. Equal displacements on \
          every mesh of a design. Seed 0 has none.")
@@ -274,7 +297,7 @@ pub static KEYS: &[Key] = &[
 pub static STRATEGY_KEYS: &[Key] = &[
     key("release_time", CLOCK, Number(0.0), "\"1 s\"",
         "Time until which the lid holds the stowed capsule."),
-    key("preinflation_mass", from(Dimension::Mass, 0.0, 10.0), Number(0.0), "\"0.15 g\"",
+    key("preinflation_mass", GAS_MASS, Number(0.0), "\"0.15 g\"",
         "Gas inside from the start, at film temperature, in addition to residual gas."),
 ];
 
@@ -284,7 +307,7 @@ pub static WINDOW_KEYS: &[Key] = &[
     key("from", CLOCK, Absent("the release time"), "\"5 s\"", "Start, since the start of the run."),
     key("to", CLOCK, Absent("the end time of the run"), "\"12 s\"",
         "End, since the start of the run."),
-    key("mass_flow_rate", from(Dimension::MassFlowRate, 0.0, 100.0), Absent("gas.mass_flow_rate"),
+    key("mass_flow_rate", FLOW_RATE, Absent("gas.mass_flow_rate"),
         "\"1 g/s\"", "Mass flow rate."),
     key("temperature", KELVIN, Absent("gas.inflow_temperature"), "\"293 K\"",
         "Temperature of the gas let in."),

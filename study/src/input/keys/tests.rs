@@ -46,6 +46,30 @@ fn every_example_and_default_is_allowed() {
 }
 
 #[test]
+fn every_quantity_with_a_unit_has_a_plausible_range() {
+    for key in all_keys() {
+        let KeyKind::Quantity(quantity) = key.kind else { continue };
+        if quantity.dimension == crate::input::units::Dimension::Number {
+            continue;
+        }
+        let path = key.path;
+        let [low, high] = quantity.plausible.unwrap_or_else(|| panic!("{path} has none"));
+        assert!(quantity.min <= low && low < high && high <= quantity.max, "{path}");
+        for json in [
+            Some(parse(key.example, "example").unwrap()),
+            match key.default {
+                Default::Number(number) => Some(Json::Number(number)),
+                _ => None,
+            },
+        ] {
+            let value = json.and_then(|json| key.read(&json).ok());
+            let number = value.and_then(|value| quantity.number(&value)).unwrap_or(0.0);
+            assert!(quantity.is_plausible(number), "{path} = {number}");
+        }
+    }
+}
+
+#[test]
 fn every_value_arrives_in_the_draft() {
     for key in KEYS.iter().chain(&SCENE.keys.iter().map(|key| **key).collect::<Vec<_>>()) {
         // The reader of the file uses these by name; the caps of a study have one value.

@@ -5,6 +5,7 @@ use billow_solver::geometry::fold::{Caps, Chirality, Fit};
 use billow_solver::scene::motion::Profile;
 use billow_solver::scene::{ModelKind, Species, SupportLocation};
 
+use super::draft::ResidualGas;
 use crate::input::value::Value;
 
 /// One word that a key may hold.
@@ -144,10 +145,19 @@ pub(super) const CAPS: [Named<Caps>; 2] = [
 pub(super) const SHAPES: [Named<bool>; 2] =
     [word("stowed", false, "folded to its stack"), word("erected", true, "rolled onto its cone")];
 
-/// How residual gas enters: whether it is stored.
-pub(super) const RESIDUAL_GAS: [Named<bool>; 2] = [
-    word("burst", false, "let in at burst_rate from release on, at inflow temperature"),
-    word("stored", true, "inside from the start, at film temperature"),
+/// How residual gas enters.
+pub(super) const RESIDUAL_GAS: [Named<ResidualGas>; 3] = [
+    word(
+        "burst",
+        ResidualGas::Burst,
+        "let in at burst_rate from release on, at inflow temperature",
+    ),
+    word("stored", ResidualGas::Stored, "inside from the start, at film temperature"),
+    word(
+        "ambient",
+        ResidualGas::Ambient,
+        "inside from the start, at film temperature and ambient_pressure: the mass follows from the stowed volume",
+    ),
 ];
 
 /// How a prescribed motion grows.

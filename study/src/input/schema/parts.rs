@@ -168,6 +168,9 @@ pub(super) fn annotated(key: &Key, kind: Json) -> Json {
         let units = quantity.dimension.units();
         let _ =
             write!(description, " A number in {}, or with a unit: {}.", units[0], units.join(", "));
+        if let Some(plausible) = quantity.plausible_range() {
+            let _ = write!(description, " Plausible: {plausible}.");
+        }
     }
     schema.insert("description".to_owned(), json!(description));
     let default = key.default_value();

@@ -39,6 +39,15 @@ pub fn study_schema() -> Json {
     properties.insert("supports".to_owned(), supports(&mut definitions));
     properties.insert("strategies".to_owned(), strategies(&mut definitions));
     properties.insert("grid".to_owned(), grid(&mut definitions));
+    properties.insert(
+        "units".to_owned(),
+        json!({
+            "title": "units",
+            "description": STUDY.meaning("units"),
+            "type": "object",
+            "additionalProperties": {"type": "string", "minLength": 1},
+        }),
+    );
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "billow study",

@@ -14,9 +14,11 @@
 
 mod decimal;
 mod dimension;
+mod display;
 mod symbol;
 
 pub use dimension::{Dimension, Powers, describe};
+pub use display::{DisplayUnit, DisplayUnits, written_unit};
 
 /// Why a text is not a quantity of a dimension.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -24,6 +24,11 @@ impl Scale {
         })
     }
 
+    /// One over this unit; `None` on overflow.
+    pub fn inverse(&self) -> Option<Self> {
+        Self::ONE.times(self, -1)
+    }
+
     /// Multiplies by `other` to the power `power`; `None` on overflow.
     fn times(mut self, other: &Self, power: i32) -> Option<Self> {
         for (exponent, added) in self.powers.iter_mut().zip(other.powers) {

@@ -30,6 +30,9 @@ pub struct RowColumn {
     pub group: ColumnGroup,
     /// Which of two values is the better one.
     pub better: BetterSide,
+    /// Whether a value can be negative or zero: values are then compared by their difference, not by
+    /// their ratio.
+    pub signed: bool,
     /// Meaning, one line.
     pub meaning: &'static str,
     /// Takes the cell from a job that ended.
@@ -107,8 +110,18 @@ pub enum BetterSide {
     Neither,
 }
 
+/// Whether the word `Signed` stands in a row of the table.
+macro_rules! is_signed {
+    () => {
+        false
+    };
+    (Signed) => {
+        true
+    };
+}
+
 macro_rules! columns {
-    ($($id:ident $name:literal $type:ident [$unit:literal] $group:ident $better:ident
+    ($($id:ident $name:literal $type:ident [$unit:literal] $group:ident $better:ident $($signed:ident)?
        $meaning:literal $end:ident => $value:expr;)+) => {
         /// Identifies a column of [`COLUMNS`]. A wrong name does not compile.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,13 +137,14 @@ macro_rules! columns {
             unit: $unit,
             group: ColumnGroup::$group,
             better: BetterSide::$better,
+            signed: is_signed!($($signed)?),
             meaning: $meaning,
             take: |$end| Cell::from($value),
         }),+];
     };
 }
 
-// identifier, name, type, [unit], group, better side; meaning; how it is taken.
+// identifier, name, type, [unit], group, better side, whether it is signed; meaning; how it is taken.
 columns! {
     Status "status" Text [""] Outcome Neither
         "done, infeasible, pending, or how the job failed"
@@ -142,26 +156,41 @@ columns! {
         "whether a change of the ratios by less than near_threshold_margin would change the verdict"
         end => end.verdict().and_then(|_| end.deployment().map(|run| run.measures.near_threshold));
     VolumeRatio "volume_ratio" Number ["1"] Outcome Larger
-        "mean volume of the last tenth of the run over the static volume"
+        "mean volume of the last tenth of the run over reference_volume"
         end => end.measure(|measures| measures.volume_ratio);
     HeightRatio "height_ratio" Number ["1"] Outcome Larger
-        "least z_rim of the last tenth of the run over the static height"
+        "least z_rim of the last tenth of the run over reference_height"
         end => end.measure(|measures| measures.height_ratio);
     T50ZRim "t_50_z_rim" Number ["s"] Measures Smaller
-        "first time at half the static height that holds 5 ms"
+        "first time at half of design_height that holds 5 ms"
         end => end.measure(|measures| measures.t_50_z_rim);
     T90ZRim "t_90_z_rim" Number ["s"] Measures Smaller
-        "first time at nine tenths of the static height that holds 5 ms"
+        "first time at which the smoothed z_rim reaches nine tenths of design_height"
         end => end.measure(|measures| measures.t_90_z_rim);
     T50Volume "t_50_volume" Number ["s"] Measures Smaller
-        "first time at half the static volume that holds 5 ms"
+        "first time at half of design_volume that holds 5 ms"
         end => end.measure(|measures| measures.t_50_volume);
     T90Volume "t_90_volume" Number ["s"] Measures Smaller
-        "first time at nine tenths of the static volume that holds 5 ms"
+        "first time at which the smoothed volume reaches nine tenths of design_volume"
         end => end.measure(|measures| measures.t_90_volume);
     TDeployed "t_deployed" Number ["s"] Measures Smaller
-        "first time from which both deployed thresholds hold 20 ms"
+        "first time at which smoothed volume and z_rim are at both deployed thresholds"
         end => end.measure(|measures| measures.t_deployed);
+    T50ZRimSinceRelease "t_50_z_rim_since_release" Number ["s"] Measures Smaller
+        "t_50_z_rim minus the time at which the lid is released; equal to t_50_z_rim without a lid"
+        end => end.since_release(|measures| measures.t_50_z_rim);
+    T90ZRimSinceRelease "t_90_z_rim_since_release" Number ["s"] Measures Smaller
+        "t_90_z_rim minus the time at which the lid is released; equal to t_90_z_rim without a lid"
+        end => end.since_release(|measures| measures.t_90_z_rim);
+    T50VolumeSinceRelease "t_50_volume_since_release" Number ["s"] Measures Smaller
+        "t_50_volume minus the time at which the lid is released; equal to t_50_volume without a lid"
+        end => end.since_release(|measures| measures.t_50_volume);
+    T90VolumeSinceRelease "t_90_volume_since_release" Number ["s"] Measures Smaller
+        "t_90_volume minus the time at which the lid is released; equal to t_90_volume without a lid"
+        end => end.since_release(|measures| measures.t_90_volume);
+    TDeployedSinceRelease "t_deployed_since_release" Number ["s"] Measures Smaller
+        "t_deployed minus the time at which the lid is released; equal to t_deployed without a lid"
+        end => end.since_release(|measures| measures.t_deployed);
     PeakVz "peak_vz" Number ["m/s"] Measures Smaller
         "largest mean velocity of the top ring along z"
         end => end.measure(|measures| measures.peak_vz);
@@ -177,8 +206,8 @@ columns! {
     FirstMinimumZRim "first_minimum_z_rim" Number ["m"] Measures Neither
         "z_rim at the first minimum after its first peak"
         end => end.measure(|measures| measures.first_minimum_z_rim);
-    Overshoot "overshoot" Number ["1"] Measures Smaller
-        "largest z_rim over the static height, minus 1"
+    Overshoot "overshoot" Number ["1"] Measures Smaller Signed
+        "largest z_rim over reference_height, minus 1"
         end => end.measure(|measures| measures.overshoot);
     RingingRms "ringing_rms" Number ["m/s"] Measures Smaller
         "root mean square of vz over 0.2 s after t_deployed"
@@ -204,6 +233,12 @@ columns! {
     FilmStress "film_stress" Number ["Pa"] Measures Smaller
         "largest principal second Piola-Kirchhoff stress of the film"
         end => end.measure(|measures| measures.film_stress);
+    FilmStress99 "film_stress_99" Number ["Pa"] Measures Smaller
+        "largest value over the samples of the stress that 99 % of the film's area does not exceed"
+        end => end.film_stress_99().map(|[stress, _]| stress);
+    TFilmStress99 "t_film_stress_99" Number ["s"] Measures Neither
+        "time of film_stress_99"
+        end => end.film_stress_99().map(|[_, time]| time);
     PeakLidForce "peak_lid_force" Number ["N"] Measures Smaller
         "largest force on the packing lid"
         end => end.measure(|measures| measures.peak_lid_force);
@@ -231,18 +266,30 @@ columns! {
     MaterialLossFraction "material_loss_fraction" Number ["1"] Audit Neither
         "energy lost in the film's material over the work of the gas"
         end => end.audit(|audit| audit.material_loss_fraction);
-    NumericalFraction "numerical_fraction" Number ["1"] Audit Neither
+    NumericalFraction "numerical_fraction" Number ["1"] Audit Neither Signed
         "numerical dissipation over the work of the gas until the first peak of z_rim"
         end => end.audit(|audit| audit.numerical_fraction);
     NumericallyDamped "numerically_damped" Bool [""] Audit Neither
         "whether numerical_fraction is above 0.05: kinetic energies and rebounds are damped by the numerics"
         end => end.audit(billow_solver::output::audit::Audit::numerically_damped);
+    FinalOverpressure "final_overpressure" Number ["Pa"] Measures Neither
+        "mean of gas pressure minus ambient pressure over the last tenth of the run"
+        end => end.measure(|measures| measures.final_overpressure);
+    ReferenceOverpressure "reference_overpressure" Number ["Pa"] Outcome Neither
+        "overpressure of the static equilibrium of the verdict: final_overpressure, or the lowest one computed if that is higher"
+        end => end.measure(|measures| measures.reference.map(|shape| shape.overpressure));
     ReferenceVolume "reference_volume" Number ["m3"] Outcome Neither
-        "static volume at the final pressure"
-        end => end.measure(|measures| measures.reference_volume);
+        "volume of the static equilibrium at reference_overpressure"
+        end => end.measure(|measures| measures.reference.map(|shape| shape.volume));
     ReferenceHeight "reference_height" Number ["m"] Outcome Neither
-        "static z_rim at the final pressure"
-        end => end.measure(|measures| measures.reference_height);
+        "z_rim of the static equilibrium at reference_overpressure"
+        end => end.measure(|measures| measures.reference.map(|shape| shape.height));
+    DesignVolume "design_volume" Number ["m3"] Outcome Neither
+        "volume of the static equilibrium at p r/(E t) = 1e-4, r mean radius"
+        end => end.measure(|measures| measures.design_volume);
+    DesignHeight "design_height" Number ["m"] Outcome Neither
+        "z_rim of the static equilibrium at p r/(E t) = 1e-4, r mean radius"
+        end => end.measure(|measures| measures.design_height);
     DeployedVolumeThreshold "deployed_volume_threshold" Number ["1"] Outcome Neither
         "volume_ratio that a deployed run needs"
         end => end.threshold(|thresholds| thresholds.deployed_volume);
@@ -258,7 +305,7 @@ columns! {
     Phi "phi" Number ["rad"] Pattern Neither
         "angle KAD of the solved pattern"
         end => end.pattern(|pattern| pattern.angles.phi);
-    HalfAngle "half_angle" Number ["rad"] Pattern Neither
+    HalfAngle "half_angle" Number ["rad"] Pattern Neither Signed
         "half top angle of the solved pattern"
         end => end.pattern(|pattern| pattern.half_angle);
     TopRadius "top_radius" Number ["m"] Pattern Neither
@@ -319,6 +366,11 @@ impl ColumnId {
     /// Name in the table.
     pub fn name(self) -> &'static str {
         self.column().name
+    }
+
+    /// Whether its values can be negative or zero.
+    pub fn is_signed(self) -> bool {
+        self.column().signed
     }
 
     /// The column with that name. Old names are not known here: see

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use billow_solver::output::measures::Verdict;
+
 use super::{Cells, ColumnId};
 use crate::input::value::Value;
 use crate::job::Status;
@@ -18,11 +20,11 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Adds a row. `verdict` is empty for a row without one.
-    pub fn add(&mut self, status: Status, verdict: &str, near_threshold: bool) {
+    /// Adds a row.
+    pub fn add(&mut self, status: Status, verdict: Option<Verdict>, near_threshold: bool) {
         *self.status.entry(status.name().to_owned()).or_default() += 1;
-        if !verdict.is_empty() {
-            *self.verdict.entry(verdict.to_owned()).or_default() += 1;
+        if let Some(verdict) = verdict {
+            *self.verdict.entry(verdict.name().to_owned()).or_default() += 1;
         }
         self.near_threshold += usize::from(near_threshold);
     }
@@ -30,12 +32,17 @@ impl Counts {
     /// Adds the row with these cells.
     pub fn add_cells(&mut self, cells: &Cells) {
         let near_threshold = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
-        self.add(cells.status(), cells.text(ColumnId::Verdict), near_threshold);
+        self.add(cells.status(), cells.verdict(), near_threshold);
     }
 
     /// Number of rows with that status.
     pub fn of(&self, status: Status) -> usize {
         self.status.get(status.name()).copied().unwrap_or(0)
+    }
+
+    /// Number of rows with that verdict.
+    pub fn with(&self, verdict: Verdict) -> usize {
+        self.verdict.get(verdict.name()).copied().unwrap_or(0)
     }
 
     /// Number of rows.

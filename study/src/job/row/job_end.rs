@@ -1,7 +1,7 @@
 //! What the columns of a row are taken from: the job, how it ended, its fold pattern.
 
 use billow_solver::geometry::fold::{FoldError, FoldPattern};
-use billow_solver::models::film::CONTACT_COLUMNS;
+use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::audit::Audit;
 use billow_solver::output::measures::{Measures, Verdict};
 use billow_solver::output::outcome::{Deployment, Failure, Stop};
@@ -58,6 +58,11 @@ impl<'a> JobEnd<'a> {
         measure(&self.deployment()?.measures)
     }
 
+    /// A time of a job that ran, counted from the release of the lid, s.
+    pub fn since_release(&self, time: fn(&Measures) -> Option<f64>) -> Option<f64> {
+        Some(self.measure(time)? - self.job.scene.release_time)
+    }
+
     /// The verdict of a job that ran.
     pub fn verdict(&self) -> Option<Verdict> {
         self.deployment()?.measures.verdict
@@ -77,6 +82,16 @@ impl<'a> JobEnd<'a> {
         let known = CONTACT_COLUMNS.iter().any(|(name, ..)| *name == track);
         assert!(known, "contact has no column {track:?}");
         self.deployment()?.followed(track).iter().copied().reduce(pick)
+    }
+
+    /// Largest value of [`FILM_STRESS_99`] over the samples, Pa, and its first time, s; `None` for a model
+    /// without a mesh.
+    pub fn film_stress_99(&self) -> Option<[f64; 2]> {
+        let run = self.deployment()?;
+        let values = run.followed(FILM_STRESS_99.0);
+        let times = run.history.column("time");
+        let samples = values.iter().zip(times).map(|(value, time)| [*value, *time]);
+        samples.reduce(|largest, sample| if sample[0] > largest[0] { sample } else { largest })
     }
 
     /// A threshold of the verdict. A job that panicked shows none.
@@ -101,7 +116,10 @@ impl<'a> JobEnd<'a> {
     /// Why there is no run, or no verdict.
     pub fn reason(&self) -> Option<String> {
         match self.outcome {
-            Outcome::Ran { note, .. } => note.clone(),
+            Outcome::Ran { deployment, .. } => {
+                let missing = deployment.measures.no_verdict.as_ref();
+                missing.map(|missing| format!("no verdict: {missing}"))
+            }
             Outcome::Refused(error) => Some(error.to_string()),
             Outcome::Panicked(message) => Some(message.clone()),
             Outcome::Cancelled => None,

@@ -1,5 +1,7 @@
 //! One row of the summary table: what a job was, how it ended, what it measured, what it took.
 
+use billow_solver::output::measures::Verdict;
+
 use crate::input::value::Value;
 use crate::job::executor::Outcome;
 use crate::job::point::Infeasible;
@@ -9,6 +11,7 @@ mod cell;
 mod columns;
 mod counts;
 mod job_end;
+mod noisy;
 pub mod reference;
 mod renamed;
 
@@ -16,9 +19,16 @@ pub use cell::Cell;
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 pub use counts::Counts;
 pub use job_end::JobEnd;
+pub use noisy::{HEADLINE, NOISY};
 pub use renamed::{
     RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, current_column_name, hashed_column_name, note,
 };
+
+/// Name of the last column of the table, which lists the other points of a job.
+pub const SAME_JOB_AS: &str = "same_job_as";
+/// Meaning of that column, one line.
+pub const SAME_JOB_AS_MEANING: &str =
+    "other points of the study that are the same job: the parameters in which they differ";
 
 /// The cells of one row, in the order of [`COLUMNS`].
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +76,11 @@ impl Cells {
     /// The text of that column, empty for a cell without one.
     pub fn text(&self, column: ColumnId) -> &str {
         if let Value::Text(text) = self.get(column) { text } else { "" }
+    }
+
+    /// The verdict; `None` for a row without one.
+    pub fn verdict(&self) -> Option<Verdict> {
+        Verdict::from_name(self.text(ColumnId::Verdict))
     }
 
     /// Sets a cell. The status is set by [`Self::new`] alone.

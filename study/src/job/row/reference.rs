@@ -2,10 +2,13 @@
 
 use std::fmt::Write as _;
 
-use billow_solver::models::film::CONTACT_COLUMNS;
+use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
-use super::{BetterSide, COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS};
+use super::{
+    BetterSide, COLUMNS, CellType, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, RowColumn, SAME_JOB_AS,
+    SAME_JOB_AS_MEANING,
+};
 use crate::job::status::{RENAMED_STATUSES, Status};
 
 /// The text of the page, Markdown.
@@ -28,10 +31,13 @@ fn table_columns(page: &mut String) {
          `summary.parquet`, `billow table`, `billow show`, `billow chart --measure`.\n\n\
          The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
-         called `<name>_resolved`. Any cell may be null. The column \"better\" says which side\n\
-         `billow compare` calls the better one.\n\n\
-         | name | type | unit | group | better | meaning |\n\
-         |---|---|---|---|---|---|\n",
+         called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
+         them. Any cell may be null. The column \"better\" says which side\n\
+         `billow compare` calls the better one. Marks: a \"signed\" value can be negative or zero and is\n\
+         compared by difference, not by ratio; a \"noisy\" measure changes by more than 3 % with the seed,\n\
+         the time step, the numerical damping or the contact distance: compare it over several seeds.\n\n\
+         | name | type | unit | group | better | marks | meaning |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for column in COLUMNS {
         let better = match column.better {
@@ -41,14 +47,24 @@ fn table_columns(page: &mut String) {
         };
         let _ = writeln!(
             page,
-            "| `{}` | {} | {} | {} | {better} | {} |",
+            "| `{}` | {} | {} | {} | {better} | {} | {} |",
             column.name,
             column.cell_type.name(),
             column.unit,
             column.group.name(),
+            marks(column),
             column.meaning
         );
     }
+    let text = CellType::Text.name();
+    let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");
+}
+
+/// What `billow compare` and a reader must know of a column: signed, noisy.
+fn marks(column: &RowColumn) -> String {
+    let marks = [(column.signed, "signed"), (column.id.is_noisy(), "noisy")];
+    let set: Vec<&str> = marks.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect();
+    set.join(", ")
 }
 
 fn statuses(page: &mut String) {
@@ -91,6 +107,8 @@ fn history_columns(page: &mut String) {
         page,
         "| `vz_centre` | m/s | film with rings | velocity of the top centre node along z |"
     );
+    let (name, unit, meaning) = FILM_STRESS_99;
+    let _ = writeln!(page, "| `{name}` | {unit} | film | {meaning} |");
     for (name, unit, meaning) in CONTACT_COLUMNS {
         let _ = writeln!(page, "| `{name}` | {unit} | film with contact | {meaning} |");
     }

@@ -12,6 +12,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use crate::platform::error::Error;
+use crate::platform::nearest::nearest;
 
 mod atomic;
 mod disk;
@@ -101,6 +102,10 @@ pub struct Lock {
     _file: File,
 }
 
+/// Names of a folder that are compared with a mistyped one, at most (chosen: a folder of a million
+/// files delays no message).
+const MAX_NAMES: usize = 10_000;
+
 /// Reads a whole file that the user named; `None` when it is larger than `limit` bytes.
 ///
 /// # Errors
@@ -109,6 +114,23 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
+}
+
+/// The path in the same folder whose name is nearest to that of a path that does not exist; also with
+/// the ending `.json` added.
+pub fn nearest_name(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?;
+    let folder = path.parent()?;
+    let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries = fs::read_dir(listed).ok()?.take(MAX_NAMES).flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<String> = names.filter(|known| known != name).collect();
+    // The order of a folder is that of its disk.
+    names.sort();
+    let with_ending = format!("{name}.json");
+    let exact = names.iter().find(|known| **known == with_ending).map(String::as_str);
+    let near = exact.or_else(|| nearest(name, names.iter().map(String::as_str)))?;
+    Some(folder.join(near).display().to_string())
 }
 
 /// Checks that an output file can be written to that path, before a long run starts.
@@ -137,7 +159,7 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
              with --out"
         }
         io::ErrorKind::AlreadyExists => {
-            "\n  next: a file has the name of the folder; choose another with --results DIR or --out"
+            "\n  next: it is a file and not a folder; choose another with --results DIR or --out"
         }
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
             "\n  next: name a file in an existing folder"

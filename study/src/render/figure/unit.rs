@@ -1,5 +1,7 @@
 //! Readable units: values are SI in the program, but an axis shows 5 g/s, 32 ms and 1.2 kPa.
 
+use crate::input::units::DisplayUnit;
+
 /// The unit in which a column is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
@@ -7,6 +9,8 @@ pub struct Unit {
     pub symbol: String,
     /// Its size in the SI unit.
     size: f64,
+    /// The unit that the study writes, if it decides the number.
+    written: Option<DisplayUnit>,
 }
 
 /// A unit for an SI quantity: symbol, size, and the largest value, in this unit, from which it is used.
@@ -53,12 +57,17 @@ impl Unit {
             choices.iter().find(|(_, size, _)| size.total_cmp(&1.0).is_eq())
         };
         let (symbol, size, _) = chosen.unwrap_or(&choices[choices.len() - 1]);
-        Self { symbol: (*symbol).to_owned(), size: *size }
+        Self { symbol: (*symbol).to_owned(), size: *size, written: None }
+    }
+
+    /// The unit that a study writes.
+    pub fn written(unit: &DisplayUnit) -> Self {
+        Self { symbol: raised(unit.symbol()), size: 1.0, written: Some(unit.clone()) }
     }
 
     /// The SI unit itself.
     pub fn si(si: &str) -> Self {
-        Self { symbol: raised(if si == "1" { "" } else { si }), size: 1.0 }
+        Self { symbol: raised(if si == "1" { "" } else { si }), size: 1.0, written: None }
     }
 
     /// The unit for these values; non-finite values are ignored.
@@ -69,6 +78,9 @@ impl Unit {
 
     /// An SI value in this unit.
     pub fn shown(&self, si: f64) -> f64 {
+        if let Some(unit) = &self.written {
+            return unit.number(si);
+        }
         // Sizes below 1 are inexact powers of ten, but their reciprocals are exact.
         if self.size < 1e-2 && self.symbol != "°" {
             si * libm::round(1.0 / self.size)

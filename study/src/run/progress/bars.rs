@@ -1,10 +1,13 @@
-//! Progress bars on a terminal: one for the study, one for every running job.
+//! Progress bars on a terminal: one for the study, one for every running job. Every line is cut to the
+//! width of the terminal.
 
+use std::num::NonZero;
 use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{JobCounts, finished_line};
+use super::finished_line;
+use super::work::Work;
 use crate::run::event::{Event, Reporter};
 
 /// Steps of the bar of a job.
@@ -20,20 +23,24 @@ pub(super) struct Bars {
     pub(super) jobs: Vec<ProgressBar>,
     job_style: ProgressStyle,
     verbose: bool,
-    counts: JobCounts,
+    pub(super) work: Work,
 }
 
 impl Bars {
-    pub(super) fn new(target: ProgressDrawTarget, colour: bool, verbose: bool) -> Self {
+    pub(super) fn new(
+        target: ProgressDrawTarget,
+        colour: bool,
+        verbose: bool,
+        threads: Option<NonZero<usize>>,
+    ) -> Self {
         let (bar, job) = if colour {
-            ("{bar:30.cyan/blue}", "  {bar:12.green/black} {msg}")
+            ("{bar:12.cyan/blue}", "{bar:12.green/black} {wide_msg}")
         } else {
-            ("{bar:30}", "  {bar:12} {msg}")
+            ("{bar:12}", "{bar:12} {wide_msg}")
         };
-        let study =
-            format!("{bar} {{pos}}/{{len}} jobs  {{msg}}  {{elapsed}} elapsed, {{eta}} remaining");
         let all = MultiProgress::with_draw_target(target);
-        let bar = all.add(ProgressBar::new(0).with_style(style(&study)));
+        let study = style(&format!("{bar} {{elapsed}} elapsed, {{wide_msg}}"));
+        let bar = all.add(ProgressBar::new(0).with_style(study));
         bar.enable_steady_tick(REDRAW_INTERVAL);
         Self {
             all,
@@ -41,7 +48,7 @@ impl Bars {
             jobs: Vec::new(),
             job_style: style(job),
             verbose,
-            counts: JobCounts::default(),
+            work: Work::new(threads),
         }
     }
 
@@ -51,6 +58,26 @@ impl Bars {
             self.jobs.push(self.all.add(bar));
         }
         &self.jobs[thread]
+    }
+
+    /// Draws the running job of a thread; a thread without one has an empty line.
+    fn draw_job(&mut self, thread: usize) {
+        let job = self.work.running.get(&thread);
+        let (part, text) = job.map_or((0.0, String::new()), |job| (job.part(), job.text()));
+        let bar = self.job(thread);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 0 and JOB_STEPS"
+        )]
+        bar.set_position((part * JOB_STEPS as f64) as u64);
+        bar.set_message(text);
+    }
+
+    fn draw_study(&self) {
+        self.study.set_length(self.work.jobs as u64);
+        self.study.set_position(self.work.finished as u64);
+        self.study.set_message(self.work.summary());
     }
 
     fn line(&self, text: &str) {
@@ -66,40 +93,17 @@ fn style(template: &str) -> ProgressStyle {
 
 impl Reporter for Bars {
     fn event(&mut self, event: &Event) {
-        self.counts.add(event);
+        self.work.add(event);
         match event {
-            Event::GenerationStarted { .. } => {
-                self.study.set_length(self.counts.jobs as u64);
-                self.study.set_position(self.counts.finished as u64);
-                // Jobs of an earlier run do not enter the estimate of the remaining time.
-                self.study.reset_eta();
+            Event::GenerationStarted { .. } => self.draw_study(),
+            Event::JobStarted { thread, .. } => self.draw_job(*thread),
+            Event::JobSample { thread, .. } => {
+                self.draw_job(*thread);
+                self.draw_study();
             }
-            Event::JobStarted { id, label, thread } => {
-                let bar = self.job(*thread);
-                bar.set_position(0);
-                bar.set_prefix(format!("{} {label}", id.short()));
-                bar.set_message(bar.prefix());
-            }
-            Event::JobSample { thread, progress } => {
-                let part = (progress.time / progress.end_time).clamp(0.0, 1.0);
-                let bar = self.job(*thread);
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "between 0 and JOB_STEPS"
-                )]
-                bar.set_position((part * JOB_STEPS as f64) as u64);
-                bar.set_message(format!(
-                    "{}  t {:.3} s  z {:.3} m  p {:.4} Pa",
-                    bar.prefix(),
-                    progress.time,
-                    progress.z_centre,
-                    progress.pressure
-                ));
-            }
-            Event::JobFinished { .. } => {
-                self.study.set_position(self.counts.finished as u64);
-                self.study.set_message(format!("{} failed", self.counts.failed));
+            Event::JobFinished { thread, .. } => {
+                self.draw_job(*thread);
+                self.draw_study();
                 if self.verbose
                     && let Some(text) = finished_line(event)
                 {

@@ -1,6 +1,7 @@
 //! The progress of a run on stderr: bars on a terminal, plain lines elsewhere, nothing when quiet.
 
 use std::io::{self, IsTerminal};
+use std::num::NonZero;
 
 use indicatif::ProgressDrawTarget;
 
@@ -8,6 +9,7 @@ use crate::run::event::{Event, Reporter, Silent};
 
 mod bars;
 mod lines;
+mod work;
 
 use bars::Bars;
 use lines::Lines;
@@ -23,41 +25,17 @@ pub enum Loudness {
     Verbose,
 }
 
-/// The reporter for this stderr.
-pub fn reporter(loudness: Loudness) -> Box<dyn Reporter> {
+/// The reporter for this stderr, of a run with this number of threads; `None` for one per core.
+pub fn reporter(loudness: Loudness, threads: Option<NonZero<usize>>) -> Box<dyn Reporter> {
     if loudness == Loudness::Quiet {
         return Box::new(Silent);
     }
     let verbose = loudness == Loudness::Verbose;
     if io::stderr().is_terminal() {
         let colour = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-        Box::new(Bars::new(ProgressDrawTarget::stderr(), colour, verbose))
+        Box::new(Bars::new(ProgressDrawTarget::stderr(), colour, verbose, threads))
     } else {
-        Box::new(Lines::new(io::stderr(), verbose))
-    }
-}
-
-/// Numbers of jobs so far.
-#[derive(Debug, Clone, Copy, Default)]
-struct JobCounts {
-    jobs: usize,
-    finished: usize,
-    failed: usize,
-}
-
-impl JobCounts {
-    fn add(&mut self, event: &Event) {
-        match event {
-            Event::GenerationStarted { jobs, finished, .. } => {
-                self.jobs += jobs;
-                self.finished += finished;
-            }
-            Event::JobFinished { status, .. } => {
-                self.finished += 1;
-                self.failed += usize::from(status.is_failure());
-            }
-            Event::JobStarted { .. } | Event::JobSample { .. } | Event::Note(_) | Event::Ended => {}
-        }
+        Box::new(Lines::new(io::stderr(), verbose, threads))
     }
 }
 

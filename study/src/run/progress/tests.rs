@@ -8,7 +8,7 @@ use billow_solver::models::run::Progress;
 use billow_solver::output::outcome::FailureKind;
 use indicatif::TermLike;
 
-use super::lines::duration_text;
+use super::work::duration_text;
 use super::*;
 use crate::job::{JobId, Status};
 
@@ -31,7 +31,7 @@ fn events() -> Vec<Event> {
 
 #[test]
 fn lines_report_the_progress_of_the_study() {
-    let mut lines = Lines::new(Vec::new(), true);
+    let mut lines = Lines::new(Vec::new(), true, NonZero::new(1));
     for event in events() {
         lines.event(&event);
     }
@@ -43,7 +43,7 @@ fn lines_report_the_progress_of_the_study() {
 
 #[test]
 fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
-    let mut lines = Lines::new(Vec::new(), false);
+    let mut lines = Lines::new(Vec::new(), false, NonZero::new(1));
     let [started, _, job, sample, finished] = events().try_into().unwrap();
     lines.event(&started);
     lines.event(&job);
@@ -51,35 +51,38 @@ fn a_long_job_is_reported_from_time_to_time_with_the_remaining_time() {
     assert_eq!(String::from_utf8(lines.out.clone()).unwrap().lines().count(), 1, "not yet");
     // As if it had started 100 s ago: a quarter of the only open job is done.
     let long_ago = Instant::now().checked_sub(Duration::from_secs(100)).unwrap();
-    lines.start = Some((long_ago, 3));
+    lines.work.start = Some((long_ago, 3));
     lines.last = Some(long_ago);
     lines.event(&sample);
     lines.event(&sample);
     let written = String::from_utf8(lines.out.clone()).unwrap();
     let expected = "4 jobs, 3 finished, 1 to run\n\
                     3 of 4 jobs finished, 0 failed, about 5 min remaining\n\
-                    \x20 abababab N=5 M=2  t 0.5000 of 2 s  z_centre 0.300 m  p 51.0000 Pa\n";
+                    \x20 abababab  t 0.500 of 2 s  z_centre 0.300 m  pressure 51 Pa  N=5 M=2\n";
     assert_eq!(written, expected, "one report, not one per sample");
     lines.event(&finished);
-    assert!(lines.running.is_empty());
+    assert!(lines.work.running.is_empty());
     assert_eq!(duration_text(Duration::from_secs(7_300)), "2.0 h");
 }
 
 #[test]
 fn a_study_without_jobs_to_run_writes_no_line() {
-    let mut lines = Lines::new(Vec::new(), false);
+    let mut lines = Lines::new(Vec::new(), false, NonZero::new(1));
     lines.event(&Event::GenerationStarted { number: 0, jobs: 4, finished: 4 });
     lines.event(&Event::Ended);
     assert!(lines.out.is_empty());
 }
 
+/// Ends each write to a [`Screen`]. A bar writes a line at once.
+const WRITE_END: char = '\u{1f}';
+
 /// A terminal that keeps everything that was written to it.
-#[derive(Debug, Clone, Default)]
-struct Screen(Arc<Mutex<String>>);
+#[derive(Debug, Clone)]
+struct Screen(Arc<Mutex<String>>, u16);
 
 impl TermLike for Screen {
     fn width(&self) -> u16 {
-        100
+        self.1
     }
 
     fn move_cursor_up(&self, _: usize) -> io::Result<()> {
@@ -103,7 +106,9 @@ impl TermLike for Screen {
     }
 
     fn write_str(&self, text: &str) -> io::Result<()> {
-        self.0.lock().unwrap().push_str(text);
+        let mut written = self.0.lock().unwrap();
+        written.push_str(text);
+        written.push(WRITE_END);
         Ok(())
     }
 
@@ -116,21 +121,77 @@ impl TermLike for Screen {
     }
 }
 
-#[test]
-fn bars_show_the_study_and_the_running_job_and_are_cleared() {
-    let screen = Screen::default();
+/// What a screen of this width shows at the end of the events, and the bars.
+fn drawn(width: u16, events: &[Event]) -> (Screen, Bars) {
+    let screen = Screen(Arc::default(), width);
     let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
-    let mut bars = Bars::new(target, false, false);
-    for event in events() {
-        bars.event(&event);
+    let mut bars = Bars::new(target, false, false, NonZero::new(1));
+    for event in events {
+        bars.event(event);
     }
     bars.study.force_draw();
     bars.jobs[1].force_draw();
+    (screen, bars)
+}
+
+#[test]
+fn bars_show_the_study_and_the_running_job_and_are_cleared() {
+    let (screen, mut bars) = drawn(100, &events()[..4]);
     let text = screen.0.lock().unwrap().clone();
     assert!(text.contains("note: a line is torn"), "{text}");
-    assert!(text.contains("4/4 jobs  1 failed"), "{text}");
-    assert!(text.contains("abababab N=5 M=2  t 0.500 s  z 0.300 m  p 51.0000 Pa"), "{text}");
+    assert!(text.contains("elapsed, 3 of 4 jobs finished, 0 failed"), "{text}");
+    assert!(!text.contains("remaining"), "no estimate from no time: {text}");
+    let job = "abababab  t 0.500 of 2 s  z_centre 0.300 m  pressure 51 Pa  N=5 M=2";
+    assert!(text.contains(job), "{text}");
     assert!(!text.contains('\x1b'), "no colour was asked for");
+    bars.event(&events()[4]);
+    bars.study.force_draw();
+    let text = screen.0.lock().unwrap().clone();
+    assert!(text.contains("4 of 4 jobs finished, 1 failed"), "{text}");
     bars.event(&Event::Ended);
-    assert!(screen.0.lock().unwrap().ends_with("<clear>"));
+    assert!(screen.0.lock().unwrap().trim_end_matches(WRITE_END).ends_with("<clear>"));
+}
+
+#[test]
+fn no_line_is_wider_than_the_terminal() {
+    let mut events = events();
+    events.remove(1);
+    if let Event::JobStarted { label, .. } = &mut events[1] {
+        *label = "mass_flow_rate=0.005 strategy=a_long_name ".repeat(5);
+    }
+    for width in [30, 40, 80] {
+        let (screen, _bars) = drawn(width, &events[..3]);
+        let text = screen.0.lock().unwrap().clone();
+        for line in text.split([WRITE_END, '\n']) {
+            let columns = line.trim_end().chars().count();
+            assert!(columns <= usize::from(width), "{width}: {columns} {line:?}");
+        }
+        assert!(text.contains("elapsed"), "{text}");
+    }
+    let (screen, _bars) = drawn(80, &events[..3]);
+    let text = screen.0.lock().unwrap().clone();
+    assert!(text.contains("3 of 4 jobs finished, 0 failed"), "{text}");
+    assert!(text.contains("t 0.500 of 2 s  z_centre 0.300 m  pressure 51 Pa"), "{text}");
+}
+
+#[test]
+fn the_remaining_time_is_that_of_the_threads_of_the_run() {
+    let started = Event::GenerationStarted { number: 0, jobs: 10, finished: 0 };
+    let finished = |thread: usize| Event::JobFinished {
+        id: JobId::from_digits(&"ab".repeat(16)).unwrap(),
+        thread,
+        status: Status::Done,
+        verdict: None,
+    };
+    // Eight jobs in 40 s: one thread needs 5 s for one, four threads 20 s.
+    for (threads, jobs_done, seconds) in [(1, 8, 10), (4, 8, 20), (4, 9, 17), (2, 5, 40)] {
+        let mut work = work::Work::new(NonZero::new(threads));
+        work.add(&started);
+        assert_eq!(work.remaining_time(), None, "nothing has run yet");
+        (0..jobs_done).for_each(|_| work.add(&finished(0)));
+        assert_eq!(work.remaining_time(), None, "no time has passed yet");
+        work.start = Some((Instant::now().checked_sub(Duration::from_secs(40)).unwrap(), 0));
+        let remaining = work.remaining_time().unwrap().as_secs();
+        assert!(remaining.abs_diff(seconds) <= 1, "{threads} {jobs_done}: {remaining} s");
+    }
 }

@@ -54,7 +54,7 @@ fn history(root: &Path, number: u32) -> Vec<u8> {
 
 /// The same job with one more sample: other bits.
 fn other_bits(number: u32) -> Outcome {
-    Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5, note: None }
+    Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5 }
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use billow_solver::geometry::field::Field;
+use billow_solver::mechanics::supports::Supports;
 use billow_solver::scene::film_scene::Filling;
+use billow_solver::scene::film_support::FilmSupport;
 use billow_solver::scene::{GasSupply, HeatTransfer, InflowWindow};
 use nalgebra::Vector3;
 
@@ -10,6 +13,7 @@ use super::object::Object;
 use super::shape::Shape;
 use crate::input::keys::draft::Draft;
 use crate::input::keys::{KEYS, SCENE_WINDOW_KEYS, named};
+use crate::input::plausible::Implausible;
 use crate::input::settings::{list, missing_key, species};
 use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
@@ -20,6 +24,7 @@ pub(super) fn read(
     tree: &Json,
     draft: &Draft,
     shape: &mut Shape,
+    supports: &[FilmSupport],
     notes: &mut Vec<String>,
     source: &Source,
 ) -> Result<Filling, InputError> {
@@ -50,7 +55,7 @@ pub(super) fn read(
             "{\"pressure\": \"1 kPa\"}",
         ));
     }
-    close(shape, notes, source)?;
+    close(shape, supports, notes, source)?;
     let volume = check_outward(shape, source)?;
     let mut supply = GasSupply {
         species: species(&draft.species, source)?,
@@ -128,6 +133,10 @@ fn windows(
             let problem = "the window ends before it begins";
             return Err(window.error("to", problem, format!("above its `from`, {from} s")));
         }
+        if let Some((key, value, problem)) = beyond_the_end(from, to, end_time) {
+            let next = "change it, or raise solver.end_time".to_owned();
+            source.warn(&format!("{path}.{key}"), &shown(value), Implausible { problem, next });
+        }
         let rate = window.needed(const { named(SCENE_WINDOW_KEYS, "mass_flow_rate") })?;
         let temperature = window.needed(const { named(SCENE_WINDOW_KEYS, "temperature") })?;
         windows.push(InflowWindow {
@@ -140,6 +149,17 @@ fn windows(
     windows.retain(|window| window.mass_flow_rate > 0.0 && window.from < window.to);
     windows.sort_by(|a, b| a.from.total_cmp(&b.from).then(a.to.total_cmp(&b.to)));
     Ok(windows)
+}
+
+/// The key, value and problem of a window that starts or ends after the run.
+fn beyond_the_end(from: f64, to: f64, end_time: f64) -> Option<(&'static str, f64, String)> {
+    if from >= end_time {
+        let problem = format!("is after solver.end_time ({end_time} s): the window is ignored");
+        return Some(("from", from, problem));
+    }
+    let problem =
+        || format!("is after solver.end_time ({end_time} s): the part after it is ignored");
+    (to > end_time).then(|| ("to", to, problem()))
 }
 
 /// Largest enclosed volume that counts as zero, as a fraction of A^(3/2) of the film's area A (chosen:
@@ -185,7 +205,12 @@ fn check_outward(shape: &Shape, source: &Source) -> Result<f64, InputError> {
 }
 
 /// Closes an open film by fans. Film that is open only because its seams are not joined is an error.
-fn close(shape: &mut Shape, notes: &mut Vec<String>, source: &Source) -> Result<(), InputError> {
+fn close(
+    shape: &mut Shape,
+    supports: &[FilmSupport],
+    notes: &mut Vec<String>,
+    source: &Source,
+) -> Result<(), InputError> {
     let loops = shape.shell.boundary();
     if loops.is_empty() {
         return Ok(());
@@ -219,11 +244,18 @@ fn close(shape: &mut Shape, notes: &mut Vec<String>, source: &Source) -> Result<
         }
     }
     let edges: usize = loops.iter().map(Vec::len).sum();
-    let tips = shape.shell.close();
+    let supports = Supports::new(supports, &Field::of(&shape.shell.positions));
+    let tips = shape.shell.close(|node| supports.projector(node as usize));
+    let walls = shape.shell.walls.len();
     notes.push(format!(
-        "the film is open: {} fan(s) over {edges} free edges close its volume (about the centre of a \
-         plane loop, else about the origin)",
+        "the film is open: {} fan(s) over {edges} free edges close its volume",
         tips.len()
     ));
+    if walls > 0 {
+        notes.push(format!(
+            "supports hold the edges of {walls} fan(s), which count as walls or symmetry planes: reactions \
+             leave out the pressure on them"
+        ));
+    }
     Ok(())
 }

@@ -1,8 +1,12 @@
 //! `mesh`: film from OBJ files of any program. Vertices without a face are dropped, vertices that
 //! coincide are joined only with `weld`; the user's numbers are kept.
 
+use billow_solver::geometry::field::Field;
 use billow_solver::geometry::mesh_io::obj_reader::{self, Face, Surface};
 use billow_solver::geometry::shell::{Shell, ShellError};
+use billow_solver::mechanics::closure::ClosureNodes;
+use billow_solver::mechanics::supports::Supports;
+use billow_solver::scene::film_scene::FilmScene;
 use nalgebra::Vector3;
 
 use super::object::Object;
@@ -179,6 +183,26 @@ fn closing_groups(object: &Object<'_>, surface: &Surface) -> Result<Vec<bool>> {
     }
     let closes = |of_face: &Vec<String>| of_face.iter().any(|name| names.contains(&name.as_str()));
     Ok(surface.names.iter().map(closes).collect())
+}
+
+/// Refuses a vertex of closure that belongs to no film and that the rim of its faces does not place.
+pub(super) fn check_closure(
+    film: &FilmScene,
+    numbering: &Numbering,
+    source: &Source,
+) -> std::result::Result<(), InputError> {
+    let supports = Supports::new(&film.supports, &Field::of(&film.shell.positions));
+    let Err(error) = ClosureNodes::new(&film.shell, &supports) else { return Ok(()) };
+    let vertex = numbering.vertex(error.node).map_or(0, |vertex| vertex + 1);
+    let problem = format!(
+        "OBJ vertex {vertex} (counted from 1) of its faces belongs to no film, and the rim of the faces does not \
+         determine where it moves"
+    );
+    let allowed = "faces whose edge is film all round, with vertices that the edge surrounds";
+    let mut error = source.error("mesh.closure", "", problem, allowed);
+    "make the vertex part of the film, close the faces without it, or hold it with a support (fix xyz)"
+        .clone_into(&mut error.hint);
+    Err(error)
 }
 
 /// What `closure` may be, for errors.

@@ -40,7 +40,7 @@ use crate::input::study_file::{self, Json};
 use crate::input::value::Value;
 use crate::input::{overrides, renamed};
 use crate::job::canonical_json;
-use crate::platform::error::{InputError, Result};
+use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::history_file::bytes_hash;
 use reader::Reader;
@@ -96,7 +96,20 @@ impl SceneFile {
         instruction_set: InstructionSet,
     ) -> Result<Self> {
         let file = path.display().to_string();
-        let mut tree = study_file::parse(text, &file)?;
+        let tree = study_file::parse(text, &file)?;
+        Self::from_tree(tree, path, sets, instruction_set).map_err(|error| match error {
+            Error::Input(error) => Error::Input(study_file::with_place(error, text, &file)),
+            other => other,
+        })
+    }
+
+    fn from_tree(
+        mut tree: Json,
+        path: &Path,
+        sets: &[String],
+        instruction_set: InstructionSet,
+    ) -> Result<Self> {
+        let file = path.display().to_string();
         let mut source = Source::new(&file);
         if !matches!(tree, Json::Object(_)) {
             let problem = format!("is {}, not an object", tree.kind());
@@ -127,8 +140,9 @@ impl SceneFile {
             Some(json) => mesh::read(json, reader)?,
             None => capsule::read(&draft, &reader.source)?,
         };
-        let filling = filling::read(tree, &draft, &mut shape, &mut notes, &reader.source)?;
         let supports = supports::read(tree, &draft, &shape, &reader.source)?;
+        let filling =
+            filling::read(tree, &draft, &mut shape, &supports, &mut notes, &reader.source)?;
         conflicts::check(&supports, &shape, &reader.source)?;
         let mut seating = supports::seating(&supports, &shape);
         if statics {
@@ -139,6 +153,9 @@ impl SceneFile {
             outputs::read(tree.get("outputs"), &shape, &mut notes, &reader.source)?;
         let end_time = end_time(&draft, &reader.source)?;
         check_sample_interval(outputs.sample_interval, end_time, &reader.source)?;
+        if !statics {
+            outputs::check_samples(outputs.sample_interval, end_time, &reader.source);
+        }
         let contact = contact::read(tree, &draft, &reader.source)?;
         if contact.is_none() && !statics && shape.folded {
             notes
@@ -163,9 +180,11 @@ impl SceneFile {
             outputs,
             contact,
         };
+        mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &draft));
         let film = check_film(film, tree, &mut notes, &reader.source)?;
+        notes.extend(reader.source.warnings());
         let (json, fingerprint) = identity(tree, reader);
         Ok(Self {
             film,

@@ -10,7 +10,8 @@ use super::object::Object;
 use super::selection::{triangle, vertex};
 use super::shape::Shape;
 use crate::input::keys::{NEAR, OUTPUT_KEYS, named};
-use crate::input::source::Source;
+use crate::input::plausible::{Implausible, MIN_SAMPLES};
+use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
@@ -93,6 +94,17 @@ pub(super) fn read(
         FilmOutputs { sample_interval, nodes, elements, frames },
         Recorded { nodes: names, elements: element_names },
     ))
+}
+
+/// Warns of a run with few samples. Times in s.
+pub(super) fn check_samples(interval: f64, end_time: f64, source: &Source) {
+    if end_time >= MIN_SAMPLES * interval {
+        return;
+    }
+    let samples = (end_time / interval).floor() + 1.0;
+    let problem = format!("samples a run of {end_time} s only {samples} time(s)");
+    let next = "check its unit; the default is \"1 ms\"".to_owned();
+    source.warn("outputs.sample_interval", &shown(interval), Implausible { problem, next });
 }
 
 const NODES: &str = "vertices by number, 0 for the first of the file, or positions [x, y, z] (the node \

@@ -1,6 +1,7 @@
 //! The files that a scene names, read and hashed.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use crate::input::source::Source;
@@ -30,7 +31,12 @@ impl Reader {
         let path = self.folder.join(name);
         let disk = |problem: String| Error::Disk { path: path.clone(), problem };
         let bytes = files::read_at_most(&path, MAX_MESH_SIZE)
-            .map_err(|error| disk(format!("cannot read the file of {key}: {error}{RELATIVE}")))?
+            .map_err(|error| {
+                let near =
+                    files::nearest_name(&path).filter(|_| error.kind() == ErrorKind::NotFound);
+                let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                disk(format!("cannot read the file of {key}: {error}{RELATIVE}{near}"))
+            })?
             .ok_or_else(|| disk(format!("is larger than {} MiB", MAX_MESH_SIZE >> 20)))?;
         self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
         String::from_utf8(bytes).map_err(|error| {

@@ -115,7 +115,8 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
         let unplanned = journal.records.keys().filter(|id| !planned.contains(id)).count();
         if unplanned > 0 {
             let problem = format!("{unplanned} finished jobs are not in the study as it is now");
-            let next = "nothing; they are used again when the grid has their points";
+            let next = "nothing; they are used again when the grid has their points, except those of \
+                        another physics version";
             health.note(&results.journal_path(), problem, next);
         }
     }
@@ -127,7 +128,8 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
     }
     health.records = journal.records.len();
     if let (Some(study), Some(points)) = (study, points) {
-        let stored = Stored { results: results.clone(), study, journal, points };
+        let units = study.display_units().clone();
+        let stored = Stored { results: results.clone(), study, units, journal, points };
         check_table(&stored, &mut health);
     }
     health.findings.sort_by_key(|finding| !finding.fault);

@@ -1,14 +1,16 @@
 //! study.json: which study a results folder belongs to. It is the resolved study, a study file.
 
+use std::collections::BTreeMap;
 use std::io;
 
 use serde::Deserialize;
 
 use super::Results;
 use crate::input::study_file::Json;
+use crate::input::units::DisplayUnits;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};
-use crate::study::Study;
+use crate::study::{Study, UNITS};
 
 /// Name of the format.
 const FORMAT: &str = "billow-study";
@@ -21,6 +23,9 @@ struct Owner {
     format: String,
     version: u64,
     name: String,
+    /// Units in which quantities are shown, by name of parameter or column.
+    #[serde(default)]
+    units: BTreeMap<String, String>,
 }
 
 /// The bytes of study.json for a resolved study.
@@ -34,12 +39,36 @@ fn study_bytes(name: &str, study: &Json) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// A resolved study without the units in which its quantities are shown.
+fn without_units(mut study: Json) -> Json {
+    if let Json::Object(members) = &mut study {
+        members.retain(|(name, _)| name != UNITS);
+    }
+    study
+}
+
 impl Results<'_> {
     /// Name of the study that the folder belongs to; `None` without study.json.
     ///
     /// # Errors
     /// [`Error::Disk`] when study.json cannot be read, is not valid, or is of a newer version.
     pub fn owner(&self) -> Result<Option<String>> {
+        Ok(self.read_owner()?.map(|owner| owner.name))
+    }
+
+    /// The units in which the study's quantities are shown; SI without study.json.
+    ///
+    /// # Errors
+    /// As [`Self::owner`].
+    pub fn display_units(&self) -> Result<DisplayUnits> {
+        let mut units = DisplayUnits::si();
+        for (name, symbol) in self.read_owner()?.iter().flat_map(|owner| &owner.units) {
+            units.set(name, symbol);
+        }
+        Ok(units)
+    }
+
+    fn read_owner(&self) -> Result<Option<Owner>> {
         let path = self.study_path();
         let bytes = match self.files().read(&path) {
             Ok(bytes) => bytes,
@@ -57,7 +86,7 @@ impl Results<'_> {
                 owner.version
             )));
         }
-        Ok(Some(owner.name))
+        Ok(Some(owner))
     }
 
     fn refused(&self, problem: &str) -> Error {
@@ -86,19 +115,21 @@ impl Results<'_> {
     }
 
     /// Whether the folder was last run for this resolved study. A study.json with old names of keys
-    /// is compared by its meaning.
+    /// is compared by its meaning. The units in which quantities are shown do not count.
     ///
     /// # Errors
     /// [`Error::Disk`] when study.json cannot be read.
     pub fn holds(&self, name: &str, study: &Json) -> Result<bool> {
         let path = self.study_path();
         let stored = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
-        let wanted = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
-        if stored == wanted {
+        let bytes = |name: &str, study: &Json| {
+            study_bytes(name, study).map_err(|error| disk_error(&path, &error))
+        };
+        if stored == bytes(name, study)? {
             return Ok(true);
         }
         let Ok(stored) = Study::load(&path, &[]) else { return Ok(false) };
-        let stored = study_bytes(&stored.name, &stored.resolved());
-        Ok(stored.map_err(|error| disk_error(&path, &error))? == wanted)
+        let stored = bytes(&stored.name, &without_units(stored.resolved()))?;
+        Ok(stored == bytes(name, &without_units(study.clone()))?)
     }
 }

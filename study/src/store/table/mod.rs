@@ -1,10 +1,15 @@
-//! The summary table: one row per planned point, in plan order, built from plan and journal.
+//! The summary table: one row per planned point, in plan order, built from plan and journal. Points
+//! that are one job stand one after the other and have the same job id.
 //!
-//! Columns: `job`, the parameters of the study, then [`crate::job::row::COLUMNS`]. A parameter keeps
-//! its name when a later column has the same one; the later column is then called `<name>_resolved`.
+//! Columns: `job`, the parameters of the study, [`crate::job::row::COLUMNS`], then
+//! [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the later
+//! column is then called `<name>_resolved`.
 
 use std::collections::BTreeMap;
 
+use billow_solver::output::measures::Verdict;
+
+use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
@@ -12,6 +17,9 @@ use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
 pub mod parquet;
+pub mod same_job;
+
+use same_job::PointRow;
 
 /// Suffix of a column whose name a parameter of the study has.
 const RESOLVED: &str = "_resolved";
@@ -32,6 +40,8 @@ pub struct Column {
     pub cell_type: CellType,
     /// SI unit; "1" for a dimensionless number, empty for text or an unknown unit.
     pub unit: String,
+    /// Unit in which its cells are shown; they are SI.
+    pub shown: DisplayUnit,
     /// Meaning, one line.
     pub meaning: String,
     /// One value per row.
@@ -45,18 +55,23 @@ impl Table {
         records: &BTreeMap<JobId, Record>,
         unit: &dyn Fn(&str) -> String,
     ) -> Self {
+        let points = &same_job::point_rows(points);
         let mut columns = vec![Column {
             name: "job".to_owned(),
             cell_type: CellType::Text,
             unit: String::new(),
+            shown: DisplayUnit::si(""),
             meaning: "job id: hash of all that decides the result".to_owned(),
-            cells: points.iter().map(|p| Value::Text(p.job.id.as_str().to_owned())).collect(),
+            cells: points
+                .iter()
+                .map(|row| Value::Text(row.point.job.id.as_str().to_owned()))
+                .collect(),
         }];
         columns.extend(parameter_columns(points, unit));
         let parameters: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
 
-        let row = |point: &Point| {
-            journal::cells_of(point, records).unwrap_or_else(|| Cells::new(Status::Pending))
+        let row = |row: &PointRow<'_>| {
+            journal::cells_of(row.point, records).unwrap_or_else(|| Cells::new(Status::Pending))
         };
         let rows: Vec<Cells> = points.iter().map(row).collect();
         for column in COLUMNS {
@@ -65,11 +80,22 @@ impl Table {
                 name: format!("{}{}", column.name, if shadowed { RESOLVED } else { "" }),
                 cell_type: column.cell_type,
                 unit: column.unit.to_owned(),
+                shown: DisplayUnit::si(column.unit),
                 meaning: column.meaning.to_owned(),
                 cells: rows.iter().map(|row| row.get(column.id).clone()).collect(),
             });
         }
+        columns.push(same_job::column(points));
         Self { columns }
+    }
+
+    /// The same table, shown in these units. Its cells stay SI.
+    #[must_use]
+    pub fn shown_in(mut self, units: &DisplayUnits) -> Self {
+        for column in &mut self.columns {
+            column.shown = units.of(&column.name, &column.unit);
+        }
+        self
     }
 
     /// Number of rows.
@@ -99,6 +125,14 @@ impl Table {
         }
     }
 
+    /// Verdict of a row; `None` without one.
+    pub fn verdict(&self, row: usize) -> Option<Verdict> {
+        match self.value(ColumnId::Verdict, row) {
+            Some(Value::Text(name)) => Verdict::from_name(name),
+            _ => None,
+        }
+    }
+
     /// The parameters of the study: the columns between `job` and `status`.
     pub fn parameters(&self) -> impl Iterator<Item = &Column> {
         let is_parameter = |column: &&Column| column.name != ColumnId::Status.name();
@@ -112,9 +146,9 @@ pub fn row_column_name(name: &str) -> &str {
 }
 
 /// Every parameter of any point, in the order of first appearance.
-fn parameter_columns(points: &[Point], unit: &dyn Fn(&str) -> String) -> Vec<Column> {
+fn parameter_columns(points: &[PointRow<'_>], unit: &dyn Fn(&str) -> String) -> Vec<Column> {
     let mut names: Vec<&str> = Vec::new();
-    for (name, _) in points.iter().flat_map(|point| &point.job.parameters) {
+    for (name, _) in points.iter().flat_map(|point| point.parameters) {
         if !names.contains(&name.as_str()) {
             names.push(name);
         }
@@ -123,15 +157,17 @@ fn parameter_columns(points: &[Point], unit: &dyn Fn(&str) -> String) -> Vec<Col
         let cells: Vec<Value> = points
             .iter()
             .map(|point| {
-                let found = point.job.parameters.iter().find(|(other, _)| other == name);
+                let found = point.parameters.iter().find(|(other, _)| other == name);
                 found.map_or(Value::Null, |(_, value)| value.clone())
             })
             .collect();
         let cell_type = common_type(&cells);
+        let unit = unit(name);
         Column {
             name: (*name).to_owned(),
             cell_type,
-            unit: unit(name),
+            shown: DisplayUnit::si(&unit),
+            unit,
             meaning: "parameter of the study".to_owned(),
             cells: cells.into_iter().map(|cell| convert(cell_type, cell)).collect(),
         }

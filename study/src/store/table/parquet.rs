@@ -16,6 +16,7 @@ use polars::prelude::{
 use serde::{Deserialize, Serialize};
 
 use super::{Column, Table, row_column_name};
+use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{CellType, ColumnId, current_column_name};
@@ -207,10 +208,12 @@ fn from_polars(
             _ => Value::Null,
         })
     });
+    let unit = label.map_or("", |label| label.unit.as_str());
     Ok(Column {
         name: column.name().to_string(),
         cell_type,
-        unit: label.map_or_else(String::new, |label| label.unit.clone()),
+        unit: unit.to_owned(),
+        shown: DisplayUnit::si(unit),
         meaning: label.map_or_else(String::new, |label| label.meaning.clone()),
         cells: cells.collect::<std::result::Result<_, String>>()?,
     })

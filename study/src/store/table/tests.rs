@@ -42,6 +42,27 @@ fn every_planned_point_is_a_row_in_plan_order() {
 }
 
 #[test]
+fn points_of_one_job_are_rows_that_name_each_other() {
+    let mut points = fixture::generation(2).points;
+    let with = |number: i64| {
+        let mut parameters = points[0].job.parameters.clone();
+        parameters[0].1 = Value::Integer(number);
+        parameters
+    };
+    // Given twice, N = 7 is one row; the cell of a job of many points stays short.
+    points[0].merged = [7, 7, 8, 9, 10, 11, 12, 13, 14, 15].map(with).to_vec();
+    let table = Table::build(&points, &BTreeMap::new(), &|_| String::new());
+    assert_eq!(table.rows(), 11);
+    let jobs = cells(&table, "job");
+    assert!(jobs[0] == jobs[9] && jobs[9] != jobs[10]);
+    let others = cells(&table, "same_job_as");
+    let expected = "N=6; N=7; N=8; N=9; N=10; N=11; N=12; N=13; and 1 more";
+    assert_eq!(others[9], Value::Text(expected.to_owned()));
+    assert_eq!(others[10], Value::Null);
+    assert_eq!(table.one_row_per_job(&[3, 4, 9, 10]), [3, 10]);
+}
+
+#[test]
 fn parameters_are_typed_and_keep_their_name() {
     let table = built();
     assert_eq!(table.column("N").unwrap().cell_type, CellType::Integer);

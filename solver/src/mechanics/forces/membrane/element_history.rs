@@ -86,6 +86,34 @@ pub fn stored_energy(model: &FilmModel, histories: &[[ElementHistory; 2]]) -> f6
     energy
 }
 
+/// The stress (Pa) that the largest principal second Piola-Kirchhoff stress reaches on this fraction of the
+/// film's reference area; 0 where less of it is in tension. Without the numerical stress.
+pub fn stress_on_fraction(
+    model: &FilmModel,
+    histories: &[[ElementHistory; 2]],
+    fraction: f64,
+) -> f64 {
+    let mut stresses = Vec::with_capacity(model.elements());
+    let mut total = 0.0;
+    for (constants, histories) in model.constants.iter().zip(histories) {
+        for (block, history) in constants.iter().zip(histories) {
+            for (lane, minus_volume) in block.minus_volume.0.iter().enumerate() {
+                let [mean, half_difference, xy] = lane_of(&history.stress, lane);
+                let radius = (half_difference * half_difference + xy * xy).sqrt();
+                stresses.push((mean + radius, -minus_volume));
+                total -= minus_volume;
+            }
+        }
+    }
+    stresses.sort_unstable_by(|(s, u), (t, v)| t.total_cmp(s).then(v.total_cmp(u)));
+    let mut area = 0.0;
+    let reached = stresses.iter().find(|(_, volume)| {
+        area += volume;
+        area >= fraction * total
+    });
+    reached.map_or(0.0, |(stress, _)| stress.max(0.0))
+}
+
 /// Forces of the numerical stress on the nodes (N) at these positions (m): a part of the membrane
 /// forces.
 pub fn numerical_forces(

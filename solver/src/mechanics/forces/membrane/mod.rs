@@ -21,7 +21,7 @@ mod element_history;
 mod elements;
 mod strain;
 
-pub use element_history::{ElementHistory, numerical_forces, stored_energy};
+pub use element_history::{ElementHistory, numerical_forces, stored_energy, stress_on_fraction};
 pub use strain::{deformation_gradient, strain, strain_energy};
 
 use elements::{LaneSums, sum_elements};
@@ -120,6 +120,12 @@ impl NodeForces {
         for (sum, entry) in self.sums[node].normal.iter_mut().zip(&normal) {
             *sum += entry;
         }
+    }
+
+    /// Six times ∂V/∂x (m²) of a node, which becomes zero.
+    pub(crate) fn take_normal(&mut self, node: usize) -> Vector3<f64> {
+        let [x, y, z, _] = core::mem::take(&mut self.sums[node].normal);
+        Vector3::new(x, y, z)
     }
 
     /// Multiplies ∂V/∂x of a node by a factor.

@@ -209,3 +209,32 @@ fn film_at_rest_for_long_has_the_stress_of_film_without_loss() {
     });
     assert_close(&with, &without, 1e-12);
 }
+
+/// Elements of equal area in uniaxial tension, the k-th at k times the first stress.
+#[test]
+fn the_stress_on_a_fraction_of_the_area_is_that_of_its_element() {
+    let film = Film { compression: 1.0, poisson_ratio: 0.0, ..Film::PAPER_ELASTIC };
+    let flat = [Vector2::new(0.0, 0.0), Vector2::new(0.1, 0.0), Vector2::new(0.0, 0.1)];
+    let count = 20_u32;
+    let triangles: Vec<[u32; 3]> = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let reference = vec![flat; triangles.len()];
+    let model = FilmModel::new(&film, 3 * triangles.len(), &triangles, &reference).expect("a film");
+    let strain_of = |k: u32| 1e-3 * f64::from((7 * k) % count + 1);
+    let positions: Vec<Vector3<f64>> = (0..count)
+        .flat_map(|k| {
+            let stretch = (1.0 + 2.0 * strain_of(k)).sqrt();
+            flat.map(|x| Vector3::new(stretch * x.x, x.y, 0.5 * f64::from(k)))
+        })
+        .collect();
+    let positions = Field::of(&positions);
+    let mut histories = ElementHistory::at_rest(&model, &positions);
+    let mut out = NodeForces::new(&model);
+    let set = InstructionSet::detect();
+    let _ = assemble_membrane(set, &model, &positions, 0.0, &mut histories, &mut out);
+    let modulus = film.youngs_modulus;
+    for (fraction, rank) in [(0.0, 20.0), (0.049, 20.0), (0.051, 19.0), (0.249, 16.0), (0.999, 1.0)]
+    {
+        let stress = stress_on_fraction(&model, &histories, fraction);
+        assert!((stress / (1e-3 * rank * modulus) - 1.0).abs() < 1e-9, "{fraction}: {stress}");
+    }
+}

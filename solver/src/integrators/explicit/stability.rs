@@ -1,0 +1,119 @@
+//! What a step must not do: leave the finite numbers, exceed the stable step of stretched film, or stretch the
+//! film beyond its material model.
+//!
+//! ```text
+//! ω² ≤ ω_film² (1 + 3 S1/E)              in-plane frequency of film stretched by the stress S1
+//! S1 ≤ 4 E                               e1 = 4: film at three times its length
+//! ```
+//!
+//! The tangent of St. Venant-Kirchhoff film along a stretch λ is λ² C + S, with λ² = 1 + 2 e and e ≤ S1/E: at
+//! most C (1 + 3 S1/E). A node may be faster than the waves of its film: soft film under gas is.
+
+use super::{Explicit, StepInterval};
+use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::forces::membrane::strain;
+use crate::output::audit::MAX_LEDGER_RESIDUAL;
+use crate::output::outcome::{Failure, FailureKind};
+
+/// Growth of ω² with S1/E. Source: the tangent above.
+const STIFFENING: f64 = 3.0;
+/// S1/E above which the step follows the stretch. Chosen: film of high modulus is far below it, and the margin of
+/// the CFL number covers it.
+const MIN_STRETCHED: f64 = 0.25;
+/// Step over the longest step at which an interval is planned again. Chosen: a growing stretch then does not
+/// plan every step.
+const MAX_STEP_RATIO: f64 = 1.1;
+/// Upper bound of S1/E. Chosen: no polymer film is linear in Green strain at three times its length.
+const MAX_STRESS_RATIO: f64 = 4.0;
+
+/// Whether a displacement (m) in one step is larger than the film, or not finite.
+pub(super) fn moves_too_far(model: &FilmModel, displacement: f64) -> bool {
+    let within = displacement <= model.size();
+    !within
+}
+
+/// Upper bound of the energy defect over the energy moved within a step, whose works are not complete. Chosen: far
+/// above the works of one step, far below what an unstable step adds.
+const MAX_PARTIAL_DEFECT: f64 = 0.1;
+
+impl Explicit {
+    /// S1/E now.
+    fn stress_ratio(&self) -> f64 {
+        // Written so that NaN counts as no stress: the volume is NaN too, and is checked.
+        (self.largest_stress / self.model.material.youngs_modulus).max(0.0)
+    }
+
+    /// Upper bound of ω² of the film as it is stretched now, rad²/s²; that of the film at rest below
+    /// [`MIN_STRETCHED`].
+    pub(super) fn stretched_squared(&self) -> f64 {
+        let film = self.model.largest_frequency();
+        let ratio = self.stress_ratio();
+        let at_rest = film * film;
+        if ratio > MIN_STRETCHED { at_rest * (1.0 + STIFFENING * ratio) } else { at_rest }
+    }
+
+    /// Whether the steps of an interval are too long for the film as it is stretched now.
+    pub(super) fn step_too_long(&self, interval: &StepInterval) -> bool {
+        !interval.quiescent
+            && self.stress_ratio() > MIN_STRETCHED
+            && interval.length > MAX_STEP_RATIO * self.stable_step()
+    }
+
+    /// Checks a step whose largest displacement (m) and volume (m³) after it are these.
+    pub(super) fn check_finite(&self, displacement: f64, volume: f64) -> Result<(), Failure> {
+        if !moves_too_far(&self.model, displacement) && volume.is_finite() {
+            return Ok(());
+        }
+        let (node, speed) = self.fastest_node();
+        let place = format!(
+            "node {node} moves at {speed:.3e} m/s: farther than the size of the film in one step"
+        );
+        Err(self.failure(FailureKind::Unstable, &place))
+    }
+
+    /// The fastest node and its speed, m/s. NaN counts as the fastest.
+    fn fastest_node(&self) -> (usize, f64) {
+        let speed = |node: usize| self.state.velocities.get(node).norm();
+        let fastest = (0..self.model.nodes())
+            .fold(0, |fastest, node| if speed(node) <= speed(fastest) { fastest } else { node });
+        (fastest, speed(fastest))
+    }
+
+    /// Whether the energy ledger now closes to this fraction of the energy moved.
+    fn energy_balances(&self, fraction: f64) -> bool {
+        let ledger = self.ledger();
+        let defect = ledger.defect_since(self.state.start_energy).abs();
+        defect <= fraction * (ledger.kinetic + ledger.external())
+    }
+
+    /// The failure of a gas volume that is not above 0: by an unstable step if energy came without a source.
+    pub(super) fn inverted_volume(&self) -> Failure {
+        if self.energy_balances(MAX_PARTIAL_DEFECT) {
+            return self.failure(FailureKind::InvertedVolume, "gas volume");
+        }
+        let (node, speed) = self.fastest_node();
+        let place = format!(
+            "node {node} moves at {speed:.3e} m/s: the gas volume is negative, and energy came without a source"
+        );
+        self.failure(FailureKind::Unstable, &place)
+    }
+
+    /// Checks the stretch of the film after a step. Film that stretched by itself has a balanced ledger.
+    pub(super) fn check_stretch(&self) -> Result<(), Failure> {
+        if self.stress_ratio() <= MAX_STRESS_RATIO {
+            return Ok(());
+        }
+        let first =
+            |element: usize| strain(&self.model, &self.state.positions, element).principal().0;
+        let element = (0..self.model.elements()).fold(0, |largest, element| {
+            if first(element) > first(largest) { element } else { largest }
+        });
+        let stretch = (1.0 + 2.0 * first(element)).sqrt();
+        let balanced = self.energy_balances(MAX_LEDGER_RESIDUAL);
+        let node = self.model.triangles[element][0];
+        let place =
+            format!("node {node}, element {element}: stretched to {stretch:.2} times its length");
+        let kind = if balanced { FailureKind::Overstretched } else { FailureKind::Unstable };
+        Err(self.failure(kind, &place))
+    }
+}

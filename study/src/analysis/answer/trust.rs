@@ -1,0 +1,74 @@
+//! How far the results of a study can be trusted.
+
+use crate::analysis::compare;
+use crate::analysis::statistics::Spread;
+use crate::input::value::Value;
+use crate::job::Status;
+use crate::job::row::ColumnId;
+use crate::store::table::Table;
+
+/// The audit over all done jobs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trust {
+    /// Number of done jobs.
+    pub jobs: usize,
+    /// Largest energy ledger residual.
+    pub ledger_residual: f64,
+    /// Largest gas balance residual.
+    pub gas_residual: f64,
+    /// Passages of all jobs; `None` when no model counted them.
+    pub passages: Option<i64>,
+    /// Largest number of intersections at a sample of each job, summed; `None` when no model counted
+    /// them.
+    pub intersections: Option<i64>,
+    /// Number of jobs that counted passages.
+    pub counted: usize,
+    /// Number of jobs marked `numerically_damped`.
+    pub numerically_damped: usize,
+}
+
+/// The audit of the done jobs in some rows; `None` without any.
+pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
+    let is_done = |row: &usize| table.status(*row) == Some(Status::Done);
+    let done: Vec<usize> = rows.iter().copied().filter(is_done).collect();
+    let largest = |id: ColumnId| {
+        let column = table.column(id.name());
+        let values = column.into_iter().flat_map(|column| {
+            done.iter().filter_map(|row| compare::measured(table, column, *row))
+        });
+        Spread::of(values).map_or(0.0, |spread| spread.largest)
+    };
+    let counts = |id: ColumnId| -> Vec<i64> {
+        let count = |row: &usize| match table.value(id, *row) {
+            Some(Value::Integer(count)) => Some(*count),
+            _ => None,
+        };
+        done.iter().filter_map(count).collect()
+    };
+    let total = |counts: &[i64]| (!counts.is_empty()).then(|| counts.iter().sum());
+    let passages = counts(ColumnId::Passages);
+    (!done.is_empty()).then(|| Trust {
+        jobs: done.len(),
+        ledger_residual: largest(ColumnId::LedgerResidual),
+        gas_residual: largest(ColumnId::GasResidual),
+        passages: total(&passages),
+        intersections: total(&counts(ColumnId::Intersections)),
+        counted: passages.len(),
+        numerically_damped: done
+            .iter()
+            .filter(|row| {
+                table.value(ColumnId::NumericallyDamped, **row) == Some(&Value::Bool(true))
+            })
+            .count(),
+    })
+}
+
+/// Whether a job is done and its audit found nothing: no passage, no intersection, no motion damped by the
+/// numerics.
+pub(super) fn is_trusted(table: &Table, row: usize) -> bool {
+    let none = |column| !matches!(table.value(column, row), Some(Value::Integer(1..)));
+    table.status(row) == Some(Status::Done)
+        && none(ColumnId::Passages)
+        && none(ColumnId::Intersections)
+        && table.value(ColumnId::NumericallyDamped, row) != Some(&Value::Bool(true))
+}

@@ -1,0 +1,159 @@
+//! The best and the worst value of each parameter by the headline measures, and what is not compared.
+
+use std::fmt::Write as _;
+
+use crate::analysis::answer::{Effect, Effects, Extremes, MeasureEffect};
+use crate::analysis::compare::{Tolerance, ToleranceSource};
+use crate::input::value::{Value, brief_number};
+use crate::job::row::HEADLINE;
+use crate::platform::error::Result;
+use crate::store::results::Results;
+use crate::store::table::Table;
+use crate::study::Study;
+
+/// Most characters in a line.
+pub const MAX_LINE_WIDTH: usize = 120;
+/// Most values of a parameter that a line names. Chosen: more values need a chart.
+pub const MAX_VALUES: usize = 6;
+
+/// Prints on stderr the best and the worst value of each parameter that varies in some rows of a table.
+///
+/// # Errors
+/// A study.json that cannot be read.
+pub fn print(results: &Results<'_>, table: &Table, rows: &[usize]) -> Result<()> {
+    // A table without its study cannot say which parameters change together.
+    if results.owner()?.is_none() {
+        return Ok(());
+    }
+    let study = Study::load(&results.study_path(), &[])?;
+    let effects = Effects::of(table, rows, &HEADLINE, &|name| study.zipped_with(name));
+    for text in lines(&effects) {
+        for line in wrapped(&text, 6) {
+            eprintln!("best: {line}");
+        }
+    }
+    Ok(())
+}
+
+/// One line per parameter, without indentation: for each measure the best and the worst value, with their
+/// medians.
+pub fn lines(effects: &Effects) -> Vec<String> {
+    effects.effects.iter().map(line).collect()
+}
+
+fn line(effect: &Effect) -> String {
+    let mut parts: Vec<String> =
+        effect.measures.iter().map(|measure| part(effect, measure)).collect();
+    parts.extend(partly_deployed(effect));
+    let sets: Vec<usize> = effect.measures.iter().map(|measure| measure.sets).collect();
+    let mut line = format!("{}: {}", effect.parameter, parts.join("; "));
+    if let (Some(least), Some(most)) = (sets.iter().min(), sets.iter().max()) {
+        let range = if least == most { most.to_string() } else { format!("{least} to {most}") };
+        let _ = write!(line, "; over {range} set{}", if *most == 1 { "" } else { "s" });
+    }
+    line
+}
+
+/// One measure: its best and worst values.
+fn part(effect: &Effect, measure: &MeasureEffect) -> String {
+    let name = measure.measure.name();
+    // The extreme value with its median, then the values that are equal to it.
+    let shown = |indices: &[usize], mark: &str| {
+        let texts: Vec<String> = indices
+            .iter()
+            .take(MAX_VALUES)
+            .map(|index| effect.shown.quantity(&effect.values[*index]))
+            .collect();
+        let more = indices.len() - texts.len();
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let median = indices.first().and_then(|index| measure.medians[*index]);
+        let median = median.map_or_else(|| "-".to_owned(), |median| measure.shown.brief(median));
+        format!("{}{more} {median} ({mark})", texts.join(", "))
+    };
+    match &measure.extremes {
+        Extremes::Equal => format!("{name} equal within {}", limit(&measure.tolerance)),
+        Extremes::Range { lowest, highest } => {
+            format!("{name} {}, {}", shown(lowest, "lowest"), shown(highest, "highest"))
+        }
+        Extremes::Judged { best, worst } if best.is_empty() => {
+            format!("{name} {}, no best: no value always deploys", shown(worst, "worst"))
+        }
+        Extremes::Judged { best, worst } if best.first() == worst.first() => {
+            format!("{name} {}", shown(best, "worst, but no other value always deploys"))
+        }
+        Extremes::Judged { best, worst } => {
+            format!("{name} {}, {}", shown(best, "best"), shown(worst, "worst"))
+        }
+    }
+}
+
+/// The values that do not deploy in every job.
+fn partly_deployed(effect: &Effect) -> Option<String> {
+    let partly = effect.values.iter().zip(&effect.deployed);
+    let mut texts: Vec<String> = partly
+        .filter(|(_, (deployed, jobs))| deployed < jobs)
+        .map(|(value, (deployed, jobs))| {
+            format!("{} {deployed} of {jobs}", effect.shown.quantity(value))
+        })
+        .collect();
+    let more = texts.len().saturating_sub(MAX_VALUES);
+    texts.truncate(MAX_VALUES);
+    if more > 0 {
+        texts.push(format!("and {more} more values not always"));
+    }
+    (!texts.is_empty()).then(|| format!("deployed and trusted: {}", texts.join(", ")))
+}
+
+/// What is not compared, and why: parameters, and values of a parameter.
+pub fn left_out(effects: &Effects) -> Vec<String> {
+    let mut lines: Vec<String> = effects
+        .not_compared
+        .iter()
+        .map(|(parameter, reason)| format!("{parameter}: {reason}"))
+        .collect();
+    for effect in &effects.effects {
+        // One line per value and reason, with the measures concerned.
+        let mut reasons: Vec<(&Value, &str, Vec<&str>)> = Vec::new();
+        for (value, measure, reason) in &effect.left_out {
+            match reasons.iter_mut().find(|(known, text, _)| *known == value && text == reason) {
+                Some((_, _, measures)) => measures.push(measure.name()),
+                None => reasons.push((value, reason, vec![measure.name()])),
+            }
+        }
+        let more = reasons.len().saturating_sub(MAX_VALUES);
+        lines.extend(reasons.iter().take(MAX_VALUES).map(|(value, reason, measures)| {
+            let value = effect.shown.quantity(value);
+            format!("{} {value} in {}: {reason}", effect.parameter, measures.join(", "))
+        }));
+        if more > 0 {
+            lines.push(format!("{}: {more} more values (--json lists them)", effect.parameter));
+        }
+    }
+    lines
+}
+
+/// The limit of a tolerance: "5 %", or an absolute difference.
+pub fn limit(tolerance: &Tolerance) -> String {
+    if tolerance.source == ToleranceSource::Unknown {
+        "rounding".to_owned()
+    } else if tolerance.absolute {
+        brief_number(tolerance.limit)
+    } else {
+        format!("{} %", brief_number(100.0 * tolerance.limit))
+    }
+}
+
+/// Breaks a line at its semicolons so that it fits beside `indent` characters.
+pub fn wrapped(line: &str, indent: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for part in line.split_inclusive("; ") {
+        let length = part.trim_end().chars().count();
+        match lines.last_mut() {
+            Some(last) if indent + last.chars().count() + length <= MAX_LINE_WIDTH => {
+                last.push_str(part);
+            }
+            _ => lines.push(part.to_owned()),
+        }
+    }
+    lines.iter().map(|line| line.trim_end().to_owned()).collect()
+}

@@ -1,0 +1,133 @@
+//! What has changed since results were computed: the study, or the physics.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::target::StudyArgs;
+use crate::input::value::Value;
+use crate::job::row::ColumnId;
+use crate::platform::error::Result;
+use crate::platform::provenance::PHYSICS_VERSION;
+use crate::scene::summary;
+use crate::store::results::Results;
+use crate::store::table::Table;
+use crate::study::{Study, UNITS};
+
+/// Says on stderr in which keys the given study file, with its overrides `set`, differs from the study of
+/// the results.
+///
+/// # Errors
+/// An invalid study file; a study.json that cannot be read.
+pub fn note(results: &Results<'_>, given: &StudyArgs, set: &[String]) -> Result<()> {
+    let Some(path) = given.study.as_deref().filter(|path| path.is_file()) else { return Ok(()) };
+    let study = Study::load(path, set)?;
+    if results.holds(&study.name, &study.resolved())? {
+        return Ok(());
+    }
+    let stored = Study::load(&results.study_path(), &[])?;
+    let changes = between(&stored, &study).join(", ");
+    eprintln!(
+        "billow: {file} is not the study of these rows ({changes}): the last run had another file or \
+         --set; give the same --set, or `billow run {file}`: it keeps all finished jobs",
+        file = path.display()
+    );
+    Ok(())
+}
+
+/// The keys in which two studies differ, with both values: "film.thickness 2.54e-5 → 3e-5".
+fn between(from: &Study, to: &Study) -> Vec<String> {
+    const MAX_SHOWN: usize = 4;
+    const GRID: &str = "grid";
+    let values = |study: &Study| -> BTreeMap<String, String> {
+        let mut json = serde_json::to_value(study.resolved()).unwrap_or_default();
+        // The grid is named as a whole.
+        // How a number is shown is no change.
+        json.as_object_mut().and_then(|keys| keys.remove(UNITS));
+        let grid = json.as_object_mut().and_then(|keys| keys.remove("grid")).unwrap_or_default();
+        let rows = summary::rows(&json).into_iter();
+        rows.map(|row| (row[0].to_string(), row[1].to_string()))
+            .chain([(GRID.to_owned(), grid.to_string())])
+            .collect()
+    };
+    let (old, new) = (values(from), values(to));
+    let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+    let differing = keys.into_iter().filter(|key| old.get(*key) != new.get(*key));
+    let shown = |value: Option<&String>| value.map_or_else(|| "none".to_owned(), String::clone);
+    let mut changes: Vec<String> = differing
+        .map(|key| match key.as_str() {
+            GRID => GRID.to_owned(),
+            _ => format!("{key} {} → {}", shown(old.get(key)), shown(new.get(key))),
+        })
+        .collect();
+    let more = changes.len().saturating_sub(MAX_SHOWN);
+    changes.truncate(MAX_SHOWN);
+    if more > 0 {
+        changes.push(format!("and {more} more"));
+    }
+    changes
+}
+
+/// Before a run: says on stderr that the folder was last run for another form of this study.
+///
+/// # Errors
+/// A study.json that cannot be read.
+pub fn note_before_run(results: &Results<'_>, study: &Study) -> Result<()> {
+    // A folder of another study is refused by the run itself.
+    if results.owner()?.as_ref() != Some(&study.name)
+        || results.holds(&study.name, &study.resolved())?
+    {
+        return Ok(());
+    }
+    let Ok(stored) = Study::load(&results.study_path(), &[]) else { return Ok(()) };
+    eprintln!(
+        "note: {} was last run for another form of this study ({}): its table follows this run; \
+         finished jobs of both are kept. --results DIR keeps both tables",
+        results.root().display(),
+        between(&stored, study).join(", ")
+    );
+    Ok(())
+}
+
+/// Says on stderr how many rows of a table another version of the physics computed.
+pub fn note_other_physics(table: &Table) {
+    let mut versions: BTreeMap<i64, usize> = BTreeMap::new();
+    let all: Vec<usize> = (0..table.rows()).collect();
+    for row in table.one_row_per_job(&all) {
+        if let Some(Value::Integer(version)) = table.value(ColumnId::PhysicsVersion, row)
+            && *version != i64::from(PHYSICS_VERSION)
+        {
+            *versions.entry(*version).or_default() += 1;
+        }
+    }
+    if let Some(note) = other_physics(&versions) {
+        eprintln!("note: {note}");
+    }
+}
+
+/// What to know about finished jobs of other versions of the physics, by version; `None` without any.
+pub fn other_physics(versions: &BTreeMap<i64, usize>) -> Option<String> {
+    let texts: Vec<String> = versions
+        .iter()
+        .map(|(version, jobs)| format!("{jobs} of physics version {version}"))
+        .collect();
+    (!texts.is_empty()).then(|| {
+        format!(
+            "finished jobs: {}; this program has version {PHYSICS_VERSION} and other job ids, so \
+             `billow run` computes them again; the old results stay in the folder (billow show JOB)",
+            texts.join(", ")
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finished_jobs_of_other_physics_are_counted() {
+        assert_eq!(other_physics(&BTreeMap::new()), None);
+        let note = other_physics(&[(3, 2), (4, 31)].into()).unwrap();
+        assert!(
+            note.starts_with("finished jobs: 2 of physics version 3, 31 of physics version 4;")
+        );
+    }
+}

@@ -1,0 +1,128 @@
+//! A place in a text file: its line and column, and its line as a message shows it.
+
+use crate::platform::quote;
+
+/// Characters of a line that a message shows, at most (chosen: with its number it fits a terminal of
+/// 80 columns).
+const MAX_SHOWN: usize = 68;
+/// Columns of a tab (chosen: most editors' setting for JSON is 2 or 4).
+const TAB_WIDTH: usize = 4;
+
+/// Line and column, from 1, of a byte of a text. A column is a character; a tab is one.
+pub fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = &text[..floor(text, offset)];
+    let line = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    (line, before[start..].chars().count() + 1)
+}
+
+/// The line of a byte of a text with its number, and a caret below the place:
+///
+/// ```text
+///   3 |     "N": 6
+///     |           ^
+/// ```
+///
+/// A long line is cut on both sides of the place.
+pub fn excerpt(text: &str, offset: usize) -> String {
+    let offset = floor(text, offset);
+    let (number, column) = line_and_column(text, offset);
+    let start = text[..offset].rfind('\n').map_or(0, |end| end + 1);
+    let end = text[offset..].find('\n').map_or(text.len(), |length| offset + length);
+    let line = text[start..end].trim_end_matches('\r');
+    let length = line.chars().count();
+    let before = column - 1;
+    // The place stands in the middle of a line that is cut.
+    let first = if length <= MAX_SHOWN { 0 } else { before.saturating_sub(MAX_SHOWN / 2) };
+    let first = first.min(length.saturating_sub(MAX_SHOWN));
+    let mut shown = String::new();
+    let mut caret = 0;
+    if first > 0 {
+        shown.push('…');
+        caret += 1;
+    }
+    for (index, c) in line.chars().enumerate().skip(first).take(MAX_SHOWN) {
+        let cell = match c {
+            '\t' => " ".repeat(TAB_WIDTH),
+            c if quote::acts(c) => c.escape_unicode().to_string(),
+            c => c.to_string(),
+        };
+        if index < before {
+            caret += if cell.chars().count() == 1 { width(c) } else { cell.chars().count() };
+        }
+        shown.push_str(&cell);
+    }
+    if first + MAX_SHOWN < length {
+        shown.push('…');
+    }
+    let gutter = number.to_string();
+    let blank = " ".repeat(gutter.len());
+    format!("  {gutter} | {shown}\n  {blank} | {}^", " ".repeat(caret))
+}
+
+/// The start of the character that a byte belongs to; the end of the text beyond it.
+fn floor(text: &str, offset: usize) -> usize {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    offset
+}
+
+/// Columns of a character on a terminal: two for East Asian wide characters and pictures, none for a
+/// mark that combines with the character before (ranges: Unicode Standard Annex 11 and blocks of
+/// combining marks).
+fn width(c: char) -> usize {
+    match u32::from(c) {
+        0x300..=0x36f | 0xfe00..=0xfe0f => 0,
+        0x1100..=0x115f
+        | 0x2e80..=0xa4cf
+        | 0xac00..=0xd7a3
+        | 0xf900..=0xfaff
+        | 0xfe30..=0xfe6f
+        | 0xff00..=0xff60
+        | 0xffe0..=0xffe6
+        | 0x1_f300..=0x1_faff
+        | 0x2_0000..=0x3_fffd => 2,
+        _ => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(text: &str, needle: &str) -> usize {
+        text.find(needle).unwrap()
+    }
+
+    #[test]
+    fn columns_are_characters_and_the_caret_stands_below_them() {
+        let text = "{\r\n\t\"größe\": 6,\r\n  \"樹\": x\r\n}";
+        let six = at(text, "6");
+        assert_eq!(line_and_column(text, six), (2, 11));
+        assert_eq!(excerpt(text, six), "  2 |     \"größe\": 6,\n    |              ^");
+        let x = at(text, "x");
+        assert_eq!(line_and_column(text, x), (3, 8));
+        assert_eq!(excerpt(text, x), "  3 |   \"樹\": x\n    |         ^");
+        // Beyond the end, and inside a character.
+        assert_eq!(line_and_column(text, 1000), (4, 2));
+        assert_eq!(line_and_column(text, at(text, "ö") + 1), line_and_column(text, at(text, "ö")));
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place() {
+        for place in [0, 10, 40, 5_000, 9_990, 9_999] {
+            let mut text = "é".repeat(10_000);
+            let offset = 2 * place;
+            text.replace_range(offset..offset + 2, "x");
+            let shown = excerpt(&text, offset);
+            let (line, caret) = shown.split_once('\n').unwrap();
+            assert!(line.chars().count() <= MAX_SHOWN + 8, "{line}");
+            let column = caret.chars().count() - 1;
+            assert_eq!(line.chars().nth(column), Some('x'), "{place}\n{shown}");
+        }
+        let shown = excerpt("a\x1b[2J, b", 6);
+        assert!(!shown.contains('\x1b') && shown.contains("\\u{1b}[2J"), "{shown}");
+    }
+}

@@ -1,0 +1,127 @@
+//! The units in which a study's quantities are shown: those of the section `units`, and those that the
+//! file writes for a key, first under `grid`, then in its section.
+
+use super::base::Base;
+use super::target;
+use crate::input::keys::{self, KEYS, KeyKind, STUDY};
+use crate::input::settings::object;
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::units::{DisplayUnit, DisplayUnits, written_unit};
+use crate::job::row::{COLUMNS, current_column_name};
+use crate::platform::error::InputError;
+
+/// What the section `units` must look like, for errors.
+const ALLOWED: &str =
+    "a unit of this quantity, as in {\"mass_flow_rate\": \"g/s\", \"t_90_z_rim\": \"ms\"}";
+
+/// Reads the units of a study whose keys and grid are valid.
+///
+/// # Errors
+/// A name in `units` that is neither a key nor a column, or a unit of another dimension.
+pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayUnits, InputError> {
+    let mut units = DisplayUnits::si();
+    if let Some(section) = tree.get("units") {
+        for (name, value) in object(section, &STUDY, "units", source)? {
+            let path = format!("units.{name}");
+            let Json::Text(symbol) = value else {
+                let problem = format!("is {}, not a unit", value.kind());
+                return Err(source.error(&path, &value.brief(), problem, ALLOWED));
+            };
+            let (name, si) = quantity(name, &path, value, base, source)?;
+            DisplayUnit::new(symbol, si)
+                .map_err(|problem| source.error(&path, &value.brief(), problem, ALLOWED))?;
+            units.set(&name, symbol);
+        }
+    }
+    written_in_grid(tree.get("grid"), &mut |name, value| {
+        if let Ok(column) = target::find(name, "grid", value, base, source) {
+            suggest(&mut units, &column.name, value);
+        }
+    });
+    written_in_section("", tree, &mut units);
+    Ok(units)
+}
+
+/// The name under which the unit of a key or column is kept, and its SI unit.
+pub(super) fn quantity(
+    name: &str,
+    path: &str,
+    value: &Json,
+    base: &Base,
+    source: &Source,
+) -> Result<(String, &'static str), InputError> {
+    if let Ok(column) = target::find(name, path, value, base, source) {
+        return Ok((column.name, column.target.key().unit()));
+    }
+    let current = current_column_name(name).0;
+    if let Some(column) = COLUMNS.iter().find(|column| column.name == current) {
+        return Ok((current.to_owned(), column.unit));
+    }
+    let known = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
+    let known = known.map(|(index, _)| keys::short_name(index));
+    let near = keys::nearest(name, known.chain(COLUMNS.iter().map(|column| column.name)));
+    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let problem = format!("is neither a key of the study nor a column of its table{near}");
+    Err(source.error(path, &value.brief(), problem, "keys, as mass_flow_rate; columns, as peak_vz"))
+}
+
+/// Calls `found` with every name that the grid varies, and what it gives: lists, ranges, values.
+fn written_in_grid(grid: Option<&Json>, found: &mut dyn FnMut(&str, &Json)) {
+    let Some(Json::Object(members)) = grid else { return };
+    for (name, value) in members {
+        match (name.as_str(), value) {
+            ("zip" | "points", Json::List(items)) => {
+                for item in items {
+                    if let Json::Object(members) = item {
+                        members.iter().for_each(|(name, value)| found(name, value));
+                    }
+                }
+            }
+            ("filter", _) => {}
+            _ => found(name, value),
+        }
+    }
+}
+
+/// The units of the keys of an object and of the objects in it; `path` is its place in the file.
+fn written_in_section(path: &str, json: &Json, units: &mut DisplayUnits) {
+    match json {
+        Json::Object(members) => {
+            for (name, value) in members {
+                if path.is_empty() && matches!(name.as_str(), "grid" | "units") {
+                    continue;
+                }
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                written_in_section(&path, value, units);
+            }
+        }
+        Json::List(items) => {
+            for (index, item) in items.iter().enumerate() {
+                written_in_section(&format!("{path}[{index}]"), item, units);
+            }
+        }
+        value => {
+            let name = match keys::index(path) {
+                Some(index) if !matches!(KEYS[index].kind, KeyKind::Quantity(_)) => return,
+                Some(index) => keys::short_name(index),
+                None => path,
+            };
+            suggest(units, name, value);
+        }
+    }
+}
+
+/// Shows a quantity in the first unit that a value, a list of values or a range is written in.
+fn suggest(units: &mut DisplayUnits, name: &str, value: &Json) {
+    match value {
+        Json::Text(text) => {
+            if let Some(unit) = written_unit(text) {
+                units.suggest(name, unit);
+            }
+        }
+        Json::List(items) => items.iter().for_each(|item| suggest(units, name, item)),
+        Json::Object(members) => members.iter().for_each(|(_, item)| suggest(units, name, item)),
+        _ => {}
+    }
+}

@@ -1,0 +1,316 @@
+//! Vessels whose ends are closed by faces that are no film: the closure carries no load away.
+
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{icosphere, moved, pseudo_random, ring_nodes, tube};
+use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::explicit::Explicit;
+use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::forces::membrane::NodeForces;
+use billow_solver::mechanics::forces::pressure::{add_closure, volume};
+use billow_solver::mechanics::supports::Supports;
+use billow_solver::models::film::capsule;
+use billow_solver::scene::film_scene::{Filling, FilmScene};
+use billow_solver::scene::film_support::{FilmSupport, Hold};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::scene::timeline::Phase;
+use billow_solver::scene::{Film, GasSupply};
+use billow_solver::statics::solve_unobserved;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::film_rig::film_forces;
+
+const RADIUS: f64 = 0.25;
+const LENGTH: f64 = 0.4;
+const AROUND: u32 = 16;
+const ALONG: u32 = 4;
+const PRESSURE: f64 = 100.0;
+/// p A of an end, N.
+const END_LOAD: f64 = PRESSURE * core::f64::consts::PI * RADIUS * RADIUS;
+
+/// Closes a loop by faces with a ring of inner vertices and one more near its middle, this far off the mean of
+/// the loop along z (m).
+fn cap(shell: &mut Shell, rim: &[u32], lift: f64) {
+    let at = |node: &u32| shell.positions[*node as usize];
+    let mean = rim.iter().map(at).sum::<Vector3<f64>>() / rim.len() as f64;
+    let up = Vector3::z() * lift;
+    let inner: Vec<Vector3<f64>> =
+        rim.iter().map(|node| mean + (at(node) - mean) * 0.6 + up).collect();
+    let first = shell.positions.len() as u32;
+    shell.positions.extend(inner);
+    let centre = shell.positions.len() as u32;
+    shell.positions.push(mean + Vector3::new(0.02, -0.03, 0.0) + up * 1.5);
+    for k in 0..rim.len() {
+        let next = (k + 1) % rim.len();
+        let (a, b) = (rim[k], rim[next]);
+        let (c, d) = (first + k as u32, first + next as u32);
+        shell.closure.extend([[a, b, d], [a, d, c], [c, d, centre]]);
+    }
+}
+
+/// A tube off the origin whose upper rim is warped by this height (m).
+fn open_tube(warp: f64) -> Shell {
+    moved(tube(AROUND, ALONG, RADIUS, LENGTH), |x| {
+        let angle = libm::atan2(x.y, x.x);
+        let share = (x.z / LENGTH).powi(2);
+        x + Vector3::new(0.3, -0.2, 0.5 + warp * share * libm::cos(2.0 * angle))
+    })
+}
+
+/// The tube with both ends closed by given faces.
+fn vessel(warp: f64, lift: f64) -> Shell {
+    let mut shell = open_tube(warp);
+    for rim in shell.boundary() {
+        let upper = rim.contains(&(ALONG * AROUND));
+        cap(&mut shell, &rim, if upper { lift } else { -0.5 * lift });
+    }
+    let shell =
+        Shell::relaxed(shell.positions.clone(), shell.triangles.clone()).closed_by(shell.closure);
+    shell.check().unwrap();
+    assert!(shell.is_closed());
+    shell
+}
+
+trait ClosedBy {
+    fn closed_by(self, closure: Vec<[u32; 3]>) -> Self;
+}
+
+impl ClosedBy for Shell {
+    fn closed_by(self, closure: Vec<[u32; 3]>) -> Self {
+        Self { closure, ..self }
+    }
+}
+
+/// The ring in the middle is held.
+fn middle() -> FilmSupport {
+    let nodes = ring_nodes(ALONG / 2, AROUND);
+    FilmSupport {
+        name: "middle".to_owned(),
+        nodes,
+        hold: Hold::Components([true; 3]),
+        motion: None,
+    }
+}
+
+/// Vessels: plane ends, a dome, warped rims, both.
+const VESSELS: [(f64, f64); 4] = [(0.0, 0.0), (0.0, 0.05), (0.04, 0.0), (0.04, -0.03)];
+
+fn supported(shell: &Shell, supports: &[FilmSupport]) -> (FilmModel, Field) {
+    let positions = Field::of(&shell.positions);
+    let supports = Supports::new(supports, &positions);
+    (FilmModel::supported(&Film::PAPER_ELASTIC, shell, &supports).unwrap(), positions)
+}
+
+/// ∂V/∂x of every node.
+fn areas(model: &FilmModel, positions: &Field) -> Vec<Vector3<f64>> {
+    let mut forces: NodeForces = film_forces(model, positions);
+    let _ = add_closure(model, positions, &mut forces);
+    forces.areas().iter().collect()
+}
+
+#[test]
+fn the_pressure_force_is_the_slope_of_the_volume() {
+    for (warp, lift) in VESSELS {
+        let shell = vessel(warp, lift);
+        let (model, start) = supported(&shell, &[]);
+        let noise = pseudo_random(start.len(), 3);
+        let mut positions = Field::of(
+            &start.iter().zip(&noise).map(|(x, by)| x * 1.1 + by * 0.02).collect::<Vec<_>>(),
+        );
+        let volume_at = |positions: &mut Field| {
+            model.closure_nodes.place(positions);
+            volume(&model, positions)
+        };
+        let now = volume_at(&mut positions);
+        let slopes = areas(&model, &positions);
+        for (node, slope) in slopes.iter().enumerate() {
+            if model.mass[node] == 0.0 {
+                assert_eq!(slope.norm(), 0.0, "a vertex without film carries nothing");
+                continue;
+            }
+            for axis in 0..3 {
+                let at = |by: f64| {
+                    let mut moved = positions.clone();
+                    let mut x = moved.get(node);
+                    x[axis] += by;
+                    moved.set(node, x);
+                    volume_at(&mut moved)
+                };
+                // The volume is a cubic of each coordinate: this difference is exact but for rounding.
+                let (h, wide) = (1e-3, 2e-3);
+                let difference = (8.0 * (at(h) - at(-h)) - (at(wide) - at(-wide))) / (12.0 * h);
+                assert!((difference - slope[axis]).abs() < 1e-11, "{warp} {lift} node {node}");
+            }
+        }
+        let area = core::f64::consts::PI * RADIUS * RADIUS;
+        let sum: Vector3<f64> = slopes.iter().sum();
+        let moment: Vector3<f64> =
+            positions.iter().zip(&slopes).map(|(x, slope)| x.cross(slope)).sum();
+        assert!(sum.norm() < 1e-14 && moment.norm() < 1e-14 && now > 0.5 * area * LENGTH);
+    }
+}
+
+#[test]
+fn the_closure_starts_in_the_shape_of_its_file() {
+    for (warp, lift) in VESSELS {
+        let shell = vessel(warp, lift);
+        let (model, start) = supported(&shell, &[]);
+        let mut placed = start.clone();
+        model.closure_nodes.place(&mut placed);
+        let moved =
+            start.iter().zip(placed.iter()).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(moved < 1e-14, "{moved}");
+        let closed = volume(&model, &placed);
+        assert!((closed / shell.volume(|node| shell.positions[node as usize]) - 1.0).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn statics_of_a_closed_vessel_leave_no_reaction() {
+    for (warp, lift) in VESSELS {
+        let scene = FilmScene {
+            filling: Filling::Pressure(PRESSURE),
+            supports: vec![middle()],
+            ..free_film(vessel(warp, lift), Film::PAPER_ELASTIC)
+        };
+        let state = solve_unobserved(&scene).unwrap();
+        let reaction = &state.reactions[0];
+        let [force, moment] = [reaction.force.norm(), reaction.moment.norm()];
+        assert!(force < 1e-9 * END_LOAD, "{warp} {lift}: {force} N");
+        assert!(moment < 1e-9 * END_LOAD * LENGTH, "{warp} {lift}: {moment} N m");
+    }
+}
+
+/// Film with gas at the test's pressure, at rest in its scene's shape.
+fn with_gas(shell: Shell, supports: Vec<FilmSupport>, mass_damping: f64) -> Explicit {
+    let volume = shell.volume(|node| shell.positions[node as usize]);
+    let supply = nitrogen_supply();
+    let initial_mass = PRESSURE * volume / (supply.species.gas_constant * 293.0);
+    let supply = GasSupply { initial_mass, ..supply };
+    let mut scene = FilmScene {
+        filling: Filling::Gas { supply, initial_temperature: 293.0 },
+        supports,
+        ..free_film(shell, Film::PAPER_ELASTIC)
+    };
+    scene.solver.mass_damping = mass_damping;
+    capsule::start(&scene).unwrap()
+}
+
+/// Largest force and moment of all nodes together over those of an end, in motion.
+fn imbalance(film: &mut Explicit) -> f64 {
+    let mut largest = 0.0_f64;
+    for sample in 1..=5 {
+        film.advance(1e-3 * f64::from(sample), &Phase::default()).unwrap();
+        let (mut sum, mut moment) = (Vector3::zeros(), Vector3::zeros());
+        for node in 0..film.model.nodes() {
+            let force = film.force(node);
+            sum += force;
+            moment += film.state.positions.get(node).cross(&force);
+        }
+        largest = largest.max(sum.norm()).max(moment.norm() / LENGTH);
+    }
+    largest / END_LOAD
+}
+
+#[test]
+fn film_in_motion_gives_no_load_to_its_closure() {
+    for (warp, lift) in VESSELS {
+        let mut film = with_gas(vessel(warp, lift), vec![middle()], 0.0);
+        let start = film.ledger();
+        assert!(imbalance(&mut film) < 1e-11, "{warp} {lift}");
+        let ledger = film.ledger();
+        let defect = ledger.defect(&start).abs() / (ledger.kinetic + ledger.external());
+        assert!(defect < 1e-3, "{warp} {lift}: ledger {defect}");
+    }
+}
+
+#[test]
+fn fans_over_free_rims_move_with_them() {
+    for warp in [0.0, 0.04] {
+        let mut shell = open_tube(warp);
+        let apexes = shell.close(|_| Matrix3::identity());
+        assert!(apexes.len() == 2 && shell.walls.is_empty());
+        let mut film = with_gas(shell, vec![middle()], 0.0);
+        assert!(imbalance(&mut film) < 1e-11, "{warp}");
+    }
+}
+
+#[test]
+fn free_vessel_keeps_its_momentum() {
+    let mut film = with_gas(vessel(0.04, 0.03), Vec::new(), 0.0);
+    film.advance(5e-3, &Phase::default()).unwrap();
+    let velocities = film.velocities();
+    let momentum: Vector3<f64> =
+        film.model.mass.iter().zip(velocities.iter()).map(|(m, v)| v * *m).sum();
+    let size: f64 = film.model.mass.iter().zip(velocities.iter()).map(|(m, v)| m * v.norm()).sum();
+    assert!(size > 0.0 && momentum.norm() < 1e-12 * size, "{momentum:?} of {size}");
+}
+
+/// Half a sphere on a symmetry plane: the fan over its rim is the plane, not part of the film.
+#[test]
+fn symmetry_planes_take_the_pressure_on_their_fans() {
+    let sphere = icosphere(2, RADIUS);
+    for centre in [Vector3::zeros(), Vector3::new(0.1, 0.2, 0.3)] {
+        let upper =
+            |t: &&[u32; 3]| t.iter().map(|n| sphere.positions[*n as usize].z).sum::<f64>() > 0.0;
+        let triangles: Vec<[u32; 3]> = sphere.triangles.iter().filter(upper).copied().collect();
+        let mut number = std::collections::BTreeMap::new();
+        for node in triangles.iter().flatten() {
+            number.insert(*node, 0_u32);
+        }
+        for (new, value) in (0..).zip(number.values_mut()) {
+            *value = new;
+        }
+        let positions = number.keys().map(|node| sphere.positions[*node as usize]);
+        let mut positions: Vec<Vector3<f64>> = positions.collect();
+        let triangles = triangles.iter().map(|t| t.map(|node| number[&node])).collect();
+        // The rim of this half of an icosphere lies in no plane: flatten it.
+        let rim = Shell::relaxed(positions.clone(), triangles).boundary().concat();
+        for node in &rim {
+            positions[*node as usize].z = 0.0;
+        }
+        let triangles = sphere.triangles.iter().filter(upper);
+        let triangles = triangles.map(|t| t.map(|node| number[&node])).collect();
+        let positions = positions.iter().map(|x| x + centre).collect();
+        let mut shell = Shell::relaxed(positions, triangles);
+        let plane = FilmSupport {
+            name: "plane".to_owned(),
+            nodes: {
+                let mut nodes = rim.clone();
+                nodes.sort_unstable();
+                nodes
+            },
+            hold: Hold::Plane(Vector3::z()),
+            motion: None,
+        };
+        let supports = Supports::new(&[plane.clone()], &Field::of(&shell.positions));
+        let _ = shell.close(|node| supports.projector(node as usize));
+        assert_eq!(shell.walls.len(), 1);
+        let start = Field::of(&shell.positions);
+        let mut film = with_gas(shell, vec![plane.clone()], 2000.0);
+        film.advance(0.02, &Phase::default()).unwrap();
+        let flat: f64 = (0..rim.len())
+            .map(|k| {
+                let at = |node: u32| film.state.positions.get(node as usize) - centre;
+                0.5 * at(rim[(k + 1) % rim.len()]).cross(&at(rim[k])).z
+            })
+            .sum();
+        let [force, _] = film.reaction(&plane.nodes, &plane.hold.projector());
+        let expected = film.overpressure() * flat.abs();
+        assert!((force.z / expected - 1.0).abs() < 1e-3, "{force:?} {expected}");
+        assert!(start.len() == film.model.nodes());
+    }
+}
+
+#[test]
+fn a_vertex_without_a_rim_is_refused() {
+    // A closure whose inner ring is free: it ends nowhere.
+    let mut shell = vessel(0.0, 0.0);
+    let centre = shell.positions.len() as u32 - 1;
+    shell.closure.retain(|face| !face.contains(&centre));
+    let positions = Field::of(&shell.positions);
+    let error =
+        FilmModel::supported(&Film::PAPER_ELASTIC, &shell, &Supports::none(positions.len()))
+            .unwrap_err()
+            .to_string();
+    assert!(error.contains("closing faces"), "{error}");
+}

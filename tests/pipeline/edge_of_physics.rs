@@ -1,0 +1,97 @@
+//! Studies at the edge of what is asked: next to no gas, air outside, very soft film.
+
+use serde_json::{Value, json};
+
+use crate::support::{TestFolder, json_of, stderr};
+
+/// The paper's capsule on a coarse film.
+fn study(subdivisions: u32, end_time: &str, grid: &Value) -> Value {
+    json!({
+        "design": {
+            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
+            "subdivisions": subdivisions,
+        },
+        "gas": {"mass_flow_rate": "5 g/s"},
+        "solver": {"model": "film", "end_time": end_time},
+        "outputs": {"frames": 0},
+        "grid": grid,
+    })
+}
+
+fn rows(study: &Value) -> Vec<Value> {
+    let folder = TestFolder::new(study);
+    let output = folder.run(&["run", "grid.json", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    folder.rows("results/grid")
+}
+
+#[test]
+fn a_capsule_with_next_to_no_gas_stays_folded() {
+    let grid = json!({
+        "mass_flow_rate": [0, 1e-9, 1e-8, 1e-7, 1e-6], "subdivisions": [3, 4],
+    });
+    let rows = rows(&study(3, "50 ms", &grid));
+    assert_eq!(rows.len(), 10);
+    for row in rows {
+        assert_eq!((&row["status"], &row["verdict"]), (&json!("done"), &json!("stalled")), "{row}");
+        assert!(row["volume_ratio"].as_f64().unwrap() < 0.2, "{row}");
+    }
+}
+
+#[test]
+fn ambient_pressure_on_an_empty_capsule_is_refused() {
+    let mut ground = study(2, "5 ms", &json!({"seed": [0]}));
+    ground["gas"]["ambient_pressure"] = json!("1 atm");
+    ground["gas"]["residual_gas_mass"] = json!("0.05 g");
+    let folder = TestFolder::new(&ground);
+    for command in ["plan", "run"] {
+        let output = folder.run(&[command, "grid.json"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = stderr(&output);
+        for part in ["gas.ambient_pressure", "101325", "implodes", "\"residual_gas\": \"ambient\""]
+        {
+            assert!(error.contains(part), "{part:?} not in {error}");
+        }
+    }
+    // A given mass of stored gas is wanted: a note says what it does.
+    ground["gas"]["residual_gas"] = json!("stored");
+    let planned = TestFolder::new(&ground).run(&["plan", "grid.json"]);
+    assert!(planned.status.success(), "{}", stderr(&planned));
+    assert!(stderr(&planned).contains("below gas.ambient_pressure"), "{}", stderr(&planned));
+    ground["gas"]["residual_gas"] = json!("ambient");
+    let output = TestFolder::new(&ground).run(&["plan", "grid.json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("gas.residual_gas_mass"), "{}", stderr(&output));
+}
+
+#[test]
+fn stored_air_carries_the_ambient_pressure() {
+    let mut ground = study(2, "10 ms", &json!({"subdivisions": [2, 3]}));
+    ground["gas"]["ambient_pressure"] = json!("101325 Pa");
+    ground["gas"]["residual_gas"] = json!("ambient");
+    ground["gravity"] = json!(-9.81);
+    let folder = TestFolder::new(&ground);
+    let planned = folder.run(&["plan", "grid.json"]);
+    assert!(!stderr(&planned).contains("below gas.ambient_pressure"), "{}", stderr(&planned));
+    let output = folder.run(&["run", "grid.json", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for row in folder.rows("results/grid") {
+        assert_eq!((&row["status"], &row["verdict"]), (&json!("done"), &json!("stalled")), "{row}");
+        let pressure = row["final_pressure"].as_f64().unwrap();
+        assert!((pressure / 101_325.0 - 1.0).abs() < 0.01, "{row}");
+        let job = row["job"].as_str().unwrap();
+        let shown = json_of(&folder, &["show", &job[..8]]);
+        let text = shown.to_string();
+        assert!(text.contains("\"initial_mass\":0.0176"), "{text}");
+    }
+}
+
+#[test]
+fn very_soft_film_is_no_instability() {
+    let mut soft = study(2, "40 ms", &json!({"seed": [0]}));
+    soft["film"] = json!({"youngs_modulus": "1 MPa"});
+    for row in rows(&soft) {
+        assert_eq!(row["status"], "done", "{row}");
+        assert!(row["ledger_residual"].as_f64().unwrap() < 1e-2, "{row}");
+    }
+}

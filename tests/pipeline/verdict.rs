@@ -1,0 +1,111 @@
+//! Verdicts and times: the static equilibria that runs are compared with.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use crate::support::{TestFolder, json_of, stderr, without_costs};
+
+/// The paper's capsule on the coarsest film.
+fn study(solver: &Value, changes: &Value) -> Value {
+    let mut study = json!({
+        "design": {
+            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
+            "subdivisions": 2
+        },
+        "solver": solver,
+        "outputs": {"frames": 0},
+        "grid": {"seed": [0]}
+    });
+    for (name, value) in changes.as_object().unwrap() {
+        study[name] = value.clone();
+    }
+    study
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name].as_f64().unwrap_or_else(|| panic!("{name} in {row}"))
+}
+
+/// Film that stretches by a third.
+#[test]
+fn compliant_film_is_compared_with_its_own_static_equilibrium() {
+    let soft = json!({
+        "film": {"youngs_modulus": "20 MPa", "thickness": "50 um", "density": "1200 kg/m3"},
+        "gas": {"mass_flow_rate": "10 g/s"}
+    });
+    let folder = TestFolder::new(&study(&json!({"model": "film", "end_time": "0.3 s"}), &soft));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let row = &folder.rows("results/grid")[0];
+    assert_eq!(row["verdict"], "deployed", "{row}");
+    let pressure = number(row, "reference_overpressure");
+    assert!(pressure > 200.0 && row["final_overpressure"] == row["reference_overpressure"]);
+    // A separate search at that pressure.
+    let mut scene = study(&json!({"static": true}), &soft);
+    scene.as_object_mut().unwrap().remove("grid");
+    scene["gas"] = json!({"pressure": pressure});
+    scene["outputs"] = json!({});
+    fs::write(folder.path().join("static.json"), scene.to_string()).unwrap();
+    let exact = json_of(&folder, &["solve", "static.json"]);
+    let volume = number(&exact, "volume");
+    assert!((number(row, "reference_volume") / volume - 1.0).abs() < 2e-3, "{row} {volume}");
+    assert!((number(row, "volume_ratio") - 0.99).abs() < 0.03, "{row}");
+
+    // A changed number in the file of equilibria is noticed: the row stays the same.
+    let before = without_costs(folder.rows("results/grid"));
+    let references = folder.path().join("results/grid/references");
+    let file = fs::read_dir(&references).unwrap().next().unwrap().unwrap().path();
+    let kept = fs::read_to_string(&file).unwrap();
+    fs::write(&file, kept.replacen("0.", "1.", 1)).unwrap();
+    fs::remove_dir_all(folder.path().join("results/grid/jobs")).unwrap();
+    folder.stdout(&["run", "grid.json", "-q"]);
+    assert_eq!(without_costs(folder.rows("results/grid")), before);
+    assert_eq!(fs::read_to_string(&file).unwrap(), kept);
+}
+
+/// Gas that comes after the motion changes no time; times count from the release too.
+#[test]
+fn equal_motion_has_equal_times() {
+    let strategies = json!({
+        "strategies": {
+            "residual": {"inflow": []},
+            "delayed": {"inflow": [{"from": "0.25 s", "to": "0.3 s"}]},
+            "held": {"release_time": "20 ms", "inflow": []}
+        },
+        "gas": {"mass_flow_rate": "5 g/s", "residual_gas_mass": "0.1 g"},
+        "grid": {"strategy": ["residual", "delayed", "held"]}
+    });
+    let solver = json!({"model": "film", "end_time": "0.3 s"});
+    let folder = TestFolder::new(&study(&solver, &strategies));
+    let run = folder.run(&["run", "grid.json", "-q"]);
+    assert!(run.status.success(), "{}", stderr(&run));
+    let rows = folder.rows("results/grid");
+    assert_ne!(rows[0]["final_pressure"], rows[1]["final_pressure"]);
+    for name in ["t_50_z_rim", "t_50_volume", "t_50_z_rim_since_release"] {
+        assert!(number(&rows[0], name) > 0.0);
+        assert_eq!(rows[0][name], rows[1][name], "{name}");
+    }
+    assert_eq!(rows[0]["t_50_z_rim"], rows[0]["t_50_z_rim_since_release"]);
+    let held = &rows[2];
+    let since = number(held, "t_50_z_rim") - number(held, "t_50_z_rim_since_release");
+    assert!((since - 0.02).abs() < 1e-12, "{held}");
+}
+
+#[test]
+fn a_capsule_without_gas_has_no_verdict_and_a_reason() {
+    let empty = json!({"gas": {"mass_flow_rate": 0, "residual_gas_mass": 0}});
+    for model in ["piston", "film"] {
+        let solver = json!({"model": model, "end_time": "5 ms"});
+        let folder = TestFolder::new(&study(&solver, &empty));
+        folder.run(&["run", "grid.json", "-q"]);
+        let row = &folder.rows("results/grid")[0];
+        if row["status"] != "done" {
+            continue;
+        }
+        assert!(row["verdict"].is_null() && row["volume_ratio"].is_null(), "{row}");
+        let reason = row["reason"].as_str().unwrap();
+        assert!(reason.contains("final overpressure is 0 Pa"), "{reason}");
+        let why = folder.stdout(&["why", row["job"].as_str().unwrap(), "results/grid"]);
+        assert!(why.contains("final overpressure is 0 Pa"), "{why}");
+    }
+}
