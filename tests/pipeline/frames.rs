@@ -79,6 +79,16 @@ fn frames_of_a_job_are_stored_and_drawn() {
     assert_eq!(all.len(), 4);
     assert_eq!(stored.times()[0].to_bits(), 0.0_f64.to_bits());
     assert_eq!(stored.times()[3].to_bits(), 0.004_f64.to_bits());
+    // Velocities, stresses and gaps belong to the shapes.
+    let nodes = all[0].positions.len();
+    for frame in &all {
+        assert_eq!((frame.velocities.len(), frame.gaps.len()), (nodes, nodes));
+        assert_eq!(frame.stresses.len(), elements);
+    }
+    let moved = |node: usize| all[3].positions[node][2] - all[2].positions[node][2];
+    let top = (0..nodes).max_by(|a, b| moved(*a).total_cmp(&moved(*b))).unwrap();
+    assert!(moved(top) > 0.0 && all[3].velocities[top][2] > 0.0, "the top rises");
+    assert!(all[3].stresses.iter().any(|stress| stress[0] > 0.0), "the film carries gas");
     // A frame is the shape at a sample: both have the same highest node.
     let history = history_file::read(&path).unwrap().history;
     for frame in &all {
@@ -99,10 +109,15 @@ fn frames_of_a_job_are_stored_and_drawn() {
     assert_eq!(folder.path().join(rows[1]["file"].as_str().unwrap()), png);
     assert_eq!((&rows[0]["frames"], &rows[0]["to"]), (&json!(4), &json!(0.004)));
     assert_eq!(panels(&svg), [elements; 4]);
+    // The values of the last sample stand below the last shape.
     let text = fs::read_to_string(&svg).unwrap();
+    let last = |name: &str| *history.column(name).last().unwrap();
+    for value in ["t = 4 ms".to_owned(), format!("p = {:.1} Pa", last("pressure"))] {
+        assert!(text.contains(&format!(">{value}<")), "{value}");
+    }
     let title = format!(">grid, job {}, frames 4<", &job[..8]);
     assert!(text.contains(&title), "study, job, parameters");
-    assert!(text.contains("storey 3") && text.contains("caps") && text.contains(">4 ms<"));
+    assert!(text.contains("storey 3") && text.contains("caps"));
     assert_eq!(pixels(&png)[0], 180 * 12);
 
     // A repetition gives the same bytes; a history file may be named directly.
@@ -114,6 +129,11 @@ fn frames_of_a_job_are_stored_and_drawn() {
     folder.stdout(&[&["frames", path], arguments.as_slice()].concat());
     assert_eq!(panels(&folder.path().join("two.svg")), [elements; 2]);
     assert!(fs::read_to_string(folder.path().join("two.svg")).unwrap().contains("wrinkled"));
+    for (colour, label) in [("stress", "Largest principal stress ("), ("speed", "Speed (m")] {
+        folder.stdout(&["frames", path, "--colour", colour, "--title", "Mine", "--out", "q.svg"]);
+        let text = fs::read_to_string(folder.path().join("q.svg")).unwrap();
+        assert!(text.contains(label) && text.contains(">Mine<"), "{colour}");
+    }
     let output = folder.run(&["frames", path, "--times", "3.9 ms,0.004,0", "--out", "a.PNG"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("1 of these 3 times"), "{}", stderr(&output));

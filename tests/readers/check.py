@@ -184,7 +184,9 @@ def check_history(path, row):
         frames = [
             (name, file[name][()])
             for name in ["VTKHDF/Connectivity", "VTKHDF/CellData/storey", "VTKHDF/Steps/Values",
-                         "VTKHDF/Points", "VTKHDF/CellData/regime"]
+                         "VTKHDF/Points", "VTKHDF/CellData/regime", "VTKHDF/CellData/principal_stress_1",
+                         "VTKHDF/CellData/principal_stress_2", "VTKHDF/PointData/velocity",
+                         "VTKHDF/PointData/gap"]
             if film
         ]
         hashed = content_hash(columns + frames)
@@ -252,6 +254,13 @@ def check_frames(path, values, stored):
         data = grid.GetCellData()
         check((vtk_to_numpy(data.GetArray("storey")) == storeys).all(), f"{path}: storeys at {time} s")
         check((vtk_to_numpy(data.GetArray("regime")) == regimes[step]).all(), f"{path}: regimes at {time} s")
+        for which in ["principal_stress_1", "principal_stress_2"]:
+            expected = stored[f"VTKHDF/CellData/{which}"][step * len(cells) : (step + 1) * len(cells)]
+            check((vtk_to_numpy(data.GetArray(which)) == expected).all(), f"{path}: {which} at {time} s")
+        points = grid.GetPointData()
+        for which in ["velocity", "gap"]:
+            expected = stored[f"VTKHDF/PointData/{which}"][step * nodes : (step + 1) * nodes]
+            check((vtk_to_numpy(points.GetArray(which)) == expected).all(), f"{path}: {which} at {time} s")
         sample = np.flatnonzero(values["time"] == time)
         check(len(sample) == 1, f"{path}: the frame at {time} s is no sample")
         highest = np.float32(values["z_max"][sample[0]])

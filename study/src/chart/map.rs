@@ -1,15 +1,15 @@
 //! One measure over two parameters: one cell per point, one panel per combination of the other
 //! parameters.
 
+use super::names::{self, Name};
 use super::outcome::{self, Outcomes};
 use super::parameters::{self, Facets, Parameter};
-use super::{Source, invalid_option, title};
+use super::{Source, invalid_option};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::render::figure::Sheet;
 use crate::render::figure::legend::Sample;
-use crate::render::figure::map::{Cell, Maps, Panel};
-use crate::render::figure::unit::Unit;
+use crate::render::figure::map::{Cell, Maps, Panel, SAME_JOB};
 use crate::store::table::Column;
 
 /// Most panels in one figure. Chosen: more do not fit on a page.
@@ -68,11 +68,12 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
     }
     let [x, y] = [Axis::new(x, &source.rows)?, Axis::new(y, &source.rows)?];
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
-    let unit = Unit::shown_in(&measure.shown, &measure.unit, values.clone());
+    let unit = parameters::shown_unit(measure, values.clone());
     let range = values.fold(None, |range: Option<[f64; 2]>, value| {
         let value = unit.shown(value);
         Some(range.map_or([value, value], |[low, high]| [low.min(value), high.max(value)]))
     });
+    let shared: Vec<usize> = source.shared_jobs().into_iter().flatten().collect();
     let mut outcomes = Outcomes::new(source);
     let mut panels = Vec::with_capacity(facets.panels.len());
     for (title, rows) in &facets.panels {
@@ -84,14 +85,18 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
                 cells.push(match here.as_slice() {
                     [] => Cell::Absent,
                     [row] => match outcome::value(source, measure, *row) {
-                        Some(value) => Cell::Value(unit.shown(value), outcomes.mark(*row)),
+                        Some(value) => Cell::Value {
+                            value: unit.shown(value),
+                            outcome: outcomes.mark(*row),
+                            shared: shared.contains(row),
+                        },
                         None => Cell::Letter(outcomes.letter(*row)),
                     },
                     several => return Err(several_points(&asked, several.len())),
                 });
             }
         }
-        panels.push(Panel { title: title.clone(), cells });
+        panels.push(Panel { title: names::capital(title), cells });
     }
     if range.is_none() {
         notes.push(format!("No job here has a value of {}.", measure.name));
@@ -100,16 +105,29 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
     if panels.iter().any(|panel| panel.cells.contains(&Cell::Absent)) {
         legend.entries.push((Sample::Absent, "no such point in the study".to_owned()));
     }
+    let has_shared = |cell: &Cell| matches!(cell, Cell::Value { shared: true, .. });
+    if panels.iter().flat_map(|panel| &panel.cells).any(has_shared) {
+        let entry = (Sample::Letter(SAME_JOB.to_owned()), "same job as another cell".to_owned());
+        legend.entries.push(entry);
+    }
+    notes.extend(source.shared_job_note());
+    let name = Name::of_measure(&measure.name, &measure.meaning);
+    let title = format!(
+        "{} over {} and {}",
+        name.plain,
+        x.parameter.plain().plain,
+        y.parameter.plain().plain
+    );
     let maps = Maps {
         sheet: Sheet {
-            title: title(&measure.meaning, &measure.name),
-            subtitle: source.subtitle_by(&facets),
+            title: source.title_or(&title),
+            subtitle: source.subtitle(),
             legends: vec![legend],
             notes,
         },
         x: x.texts(&source.rows),
         y: y.texts(&source.rows),
-        label: unit.label(&measure.name),
+        label: name.label(&unit),
         range,
         panels,
     };

@@ -11,14 +11,17 @@ use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
-use self::parameters::Facets;
+use self::parameters::Parameter;
 
+mod encoding;
 pub mod history;
 pub mod map;
+mod names;
 mod outcome;
 pub mod over;
-mod parameters;
+pub mod parameters;
 pub mod standard;
+mod time_axis;
 
 /// The rows of a chart.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,28 +34,103 @@ pub struct Source<'a> {
     pub rows: Vec<usize>,
     /// How the rows were chosen, as in "where N == 6"; empty for all rows.
     pub choice: String,
+    /// Title of the figure; empty for that of the chart.
+    pub title: String,
 }
 
-impl Source<'_> {
-    /// The line below the title: study and rows.
+impl<'a> Source<'a> {
+    /// The lines below the title: study and rows, and the parameters that have one value in all of them.
     fn subtitle(&self) -> Vec<String> {
         let rows = self.rows.len();
         let noun = if rows == 1 { "point" } else { "points" };
         let choice = if self.choice.is_empty() { "" } else { " " };
-        vec![format!("study {}: {rows} {noun}{choice}{}", self.study, self.choice)]
-    }
-
-    /// The same, and the parameters of the panels.
-    fn subtitle_by(&self, panels: &Facets<'_>) -> Vec<String> {
-        let mut lines = self.subtitle();
-        if !panels.heading.is_empty() {
-            lines.push(format!("panels by {}", panels.heading));
+        let mut lines = vec![format!("study {}: {rows} {noun}{choice}{}", self.study, self.choice)];
+        if let Some(first) = self.rows.first() {
+            let fixed: Vec<String> = self
+                .table
+                .parameters()
+                .filter(|column| parameters::is_fixed(column, &self.rows))
+                .map(|column| Parameter::new(column, &self.rows).named(*first))
+                .collect();
+            if !fixed.is_empty() {
+                lines.push(format!("Every point: {}", fixed.join(", ")));
+            }
         }
         lines
     }
 
+    /// The title: the given one, or that of the chart.
+    fn title_or(&self, title: &str) -> String {
+        if self.title.is_empty() { names::capital(title) } else { self.title.clone() }
+    }
+
+    /// The job id of a row.
+    fn job(&self, row: usize) -> &'a str {
+        match self.table.column("job").map(|column| &column.cells[row]) {
+            Some(Value::Text(id)) => id,
+            _ => "",
+        }
+    }
+
+    /// Rows of the same job, in the order of their first row; only jobs with several rows.
+    fn shared_jobs(&self) -> Vec<Vec<usize>> {
+        let mut jobs: Vec<(&str, Vec<usize>)> = Vec::new();
+        let mut index = std::collections::BTreeMap::new();
+        for row in &self.rows {
+            let id = self.job(*row);
+            let at = *index.entry(id).or_insert(jobs.len());
+            if at == jobs.len() {
+                jobs.push((id, Vec::new()));
+            }
+            jobs[at].1.push(*row);
+        }
+        jobs.into_iter().map(|(_, rows)| rows).filter(|rows| rows.len() > 1).collect()
+    }
+
+    /// A note on the points that are one job: "N 5: strategy a = strategy b".
+    fn shared_job_note(&self) -> Option<String> {
+        /// Most jobs that the note names. Chosen: two lines of text.
+        const MAX_NAMED: usize = 3;
+        let shared = self.shared_jobs();
+        let points: usize = shared.iter().map(Vec::len).sum();
+        let jobs =
+            if shared.len() == 1 { "1 job".to_owned() } else { format!("{} jobs", shared.len()) };
+        let mut texts: Vec<String> =
+            shared.iter().take(MAX_NAMED).map(|rows| self.same_job_text(rows)).collect();
+        if shared.len() > MAX_NAMED {
+            texts.push(format!("and {} more", shared.len() - MAX_NAMED));
+        }
+        (!shared.is_empty())
+            .then(|| format!("{points} points are {jobs}, with one result: {}.", texts.join("; ")))
+    }
+
+    /// What some points of one job have in common, and their differences with "=" between them.
+    fn same_job_text(&self, rows: &[usize]) -> String {
+        let columns =
+            self.table.parameters().filter(|column| !parameters::is_fixed(column, &self.rows));
+        let all: Vec<Parameter<'_>> =
+            columns.map(|column| Parameter::new(column, &self.rows)).collect();
+        let (common, different): (Vec<_>, Vec<_>) =
+            all.iter().partition(|parameter| parameters::is_fixed(parameter.column, rows));
+        let text = |parameters: &[&Parameter<'_>], row: usize| {
+            let texts: Vec<String> =
+                parameters.iter().map(|parameter| parameter.named(row)).collect();
+            texts.join(", ")
+        };
+        let equal = rows.iter().enumerate().map(|(number, row)| match different.as_slice() {
+            // The name stands once.
+            [only] if number > 0 => only.of_row(*row),
+            _ => text(&different, *row),
+        });
+        let equal: Vec<String> = equal.collect();
+        match text(&common, rows[0]).as_str() {
+            "" => equal.join(" = "),
+            common => format!("{common}: {}", equal.join(" = ")),
+        }
+    }
+
     /// The column of numbers with this name, which `option` asks for.
-    fn measure(&self, option: &str, name: &str) -> Result<&Column> {
+    fn measure(&self, option: &str, name: &str) -> Result<&'a Column> {
         let numbers = || {
             let columns = self.table.columns.iter();
             columns
@@ -68,7 +146,7 @@ impl Source<'_> {
     }
 
     /// The parameter with this name, which `option` asks for.
-    fn parameter(&self, option: &str, name: &str) -> Result<&Column> {
+    fn parameter(&self, option: &str, name: &str) -> Result<&'a Column> {
         let found = self.table.parameters().find(|column| column.name == name);
         found.ok_or_else(|| {
             let names: Vec<&str> =
@@ -102,15 +180,6 @@ fn number(value: &Value) -> Option<f64> {
         Value::Integer(value) => Some(*value as f64),
         Value::Number(value) if value.is_finite() => Some(*value),
         _ => None,
-    }
-}
-
-/// A title: the meaning of a quantity, then its name in brackets.
-fn title(meaning: &str, name: &str) -> String {
-    let mut letters = meaning.chars();
-    match letters.next() {
-        Some(first) => format!("{}{} ({name})", first.to_uppercase(), letters.as_str()),
-        None => name.to_owned(),
     }
 }
 

@@ -18,7 +18,7 @@ const NOT_OCCURRED: &str = "done, event did not occur";
 pub struct Outcomes<'a> {
     source: &'a Source<'a>,
     letters: BTreeMap<String, String>,
-    marked: BTreeMap<String, usize>,
+    marked: Vec<(Option<Verdict>, usize)>,
     lettered: BTreeMap<String, usize>,
 }
 
@@ -41,13 +41,16 @@ impl<'a> Outcomes<'a> {
             let letter = letters_of_name.chain('A'..='Z').find(free).unwrap_or('?');
             letters.insert(kind.to_owned(), letter.to_string());
         }
-        Self { source, letters, marked: BTreeMap::new(), lettered: BTreeMap::new() }
+        Self { source, letters, marked: Vec::new(), lettered: BTreeMap::new() }
     }
 
     /// The marker of a job that is done, with a value.
     pub fn mark(&mut self, row: usize) -> Fill {
         let verdict = verdict(self.source, row);
-        *self.marked.entry(verdict.to_owned()).or_default() += 1;
+        match self.marked.iter_mut().find(|(known, _)| *known == verdict) {
+            Some((_, count)) => *count += 1,
+            None => self.marked.push((verdict, 1)),
+        }
         fill(verdict)
     }
 
@@ -61,9 +64,13 @@ impl<'a> Outcomes<'a> {
 
     /// The legend of the markers and letters in use. With `cells` the letters stand in cells, as in a map.
     pub fn legend(&self, cells: bool) -> Legend {
-        let marks = self.marked.iter().map(|(verdict, count)| {
-            let name = if verdict.is_empty() { "done, no verdict" } else { verdict };
-            (Sample::Marker(fill(verdict)), format!("{name} ({count})"))
+        // From deployed to stalled, then without a verdict.
+        let order = VERDICTS.map(Some).into_iter().chain([None]);
+        let marked =
+            order.filter_map(|verdict| self.marked.iter().find(|(known, _)| *known == verdict));
+        let marks = marked.map(|(verdict, count)| {
+            let name = verdict.map_or("done, no verdict", Verdict::name);
+            (Sample::Marker(fill(*verdict)), format!("{name} ({count})"))
         });
         let letters = self.lettered.iter().map(|(kind, count)| {
             let letter = self.letters.get(kind).cloned().unwrap_or_default();
@@ -81,11 +88,15 @@ impl<'a> Outcomes<'a> {
     }
 }
 
-fn fill(verdict: &str) -> Fill {
+/// Every verdict, the best one first.
+const VERDICTS: [Verdict; 3] = [Verdict::Deployed, Verdict::Partial, Verdict::Stalled];
+
+/// The marker of a verdict.
+pub fn fill(verdict: Option<Verdict>) -> Fill {
     match verdict {
-        _ if verdict == Verdict::Partial.name() => Fill::Open,
-        _ if verdict == Verdict::Stalled.name() => Fill::Crossed,
-        _ => Fill::Filled,
+        None | Some(Verdict::Deployed) => Fill::Filled,
+        Some(Verdict::Partial) => Fill::Open,
+        Some(Verdict::Stalled) => Fill::Crossed,
     }
 }
 
@@ -112,7 +123,8 @@ pub fn has_failed(source: &Source<'_>, row: usize) -> bool {
     source.table.status(row).is_some_and(Status::is_failure)
 }
 
-/// The verdict of a row; empty without one.
-pub fn verdict<'a>(source: &Source<'a>, row: usize) -> &'a str {
-    text(source, "verdict", row)
+/// The verdict of a row.
+pub fn verdict(source: &Source<'_>, row: usize) -> Option<Verdict> {
+    let name = text(source, "verdict", row);
+    VERDICTS.into_iter().find(|verdict| verdict.name() == name)
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::names::{self, Name};
 use super::number;
 use crate::analysis::compare::{self, canonical};
 use crate::input::value::{Value, short_number};
@@ -18,13 +19,32 @@ pub struct Parameter<'a> {
     pub column: &'a Column,
     /// Unit in which it is shown.
     pub unit: Unit,
+    /// Significant digits of its numbers.
+    digits: usize,
 }
 
 impl<'a> Parameter<'a> {
     /// The parameter of a column; its unit fits the values of these rows.
     pub fn new(column: &'a Column, rows: &[usize]) -> Self {
-        let values = rows.iter().filter_map(|row| number(&column.cells[*row]));
-        Self { column, unit: Unit::shown_in(&column.shown, &column.unit, values) }
+        let values = || rows.iter().filter_map(|row| number(&column.cells[*row]));
+        let unit = shown_unit(column, values());
+        let digits = digits(&values().map(|si| unit.shown(si)).collect::<Vec<_>>());
+        Self { column, unit, digits }
+    }
+
+    /// Its plain name and symbol.
+    pub fn plain(&self) -> Name {
+        Name::of_parameter(self.name())
+    }
+
+    /// Its name as the heading of a legend.
+    pub fn heading(&self) -> String {
+        self.plain().with_symbol()
+    }
+
+    /// Name and value: "N 5", "mass flow rate 1 g/s".
+    pub fn named(&self, row: usize) -> String {
+        format!("{} {}", self.plain().before_value(), self.of_row(row))
     }
 
     /// Name.
@@ -53,11 +73,11 @@ impl<'a> Parameter<'a> {
     /// label; texts have their units themselves.
     pub fn along(&self, values: &[Value], rows: &[usize]) -> (String, Vec<String>) {
         if self.is_number(rows) {
-            let shown: Vec<f64> =
-                values.iter().filter_map(number).map(|si| self.unit.shown(si)).collect();
-            (self.unit.label(self.name()), distinct(&shown))
+            let texts = values.iter().map(|value| self.without_unit(value)).collect();
+            (self.plain().label(&self.unit), texts)
         } else {
-            (self.name().to_owned(), values.iter().map(|value| self.text(value)).collect())
+            let label = names::capital(&self.heading());
+            (label, values.iter().map(|value| self.text(value)).collect())
         }
     }
 
@@ -66,7 +86,7 @@ impl<'a> Parameter<'a> {
         match value {
             Value::Null => "–".to_owned(),
             Value::Integer(_) | Value::Number(_) => number(value)
-                .map_or_else(|| value.to_string(), |si| short_number(self.unit.shown(si))),
+                .map_or_else(|| value.to_string(), |si| rounded(self.unit.shown(si), self.digits)),
             other => other.to_string(),
         }
     }
@@ -95,22 +115,33 @@ impl<'a> Parameter<'a> {
     }
 }
 
-/// Numbers with four significant digits; with six if four make two of them equal.
-fn distinct(numbers: &[f64]) -> Vec<String> {
-    let short = |number: &f64| {
-        let rounded = format!("{number:.3e}").parse().unwrap_or(*number);
-        minus(&short_number(rounded))
+/// The unit of a parameter or measure in a chart: the one that the study writes, else the readable one for
+/// these values.
+pub fn shown_unit(column: &Column, values: impl IntoIterator<Item = f64>) -> Unit {
+    Unit::shown_in(&column.shown, &column.unit, values)
+}
+
+/// The significant digits, three to six, at which different numbers have different texts.
+fn digits(numbers: &[f64]) -> usize {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    let distinct = |digits: &usize| {
+        sorted.windows(2).all(|pair| rounded(pair[0], *digits) != rounded(pair[1], *digits))
     };
-    let texts: Vec<String> = numbers.iter().map(short).collect();
-    if texts.windows(2).all(|pair| pair[0] != pair[1]) {
-        texts
-    } else {
-        numbers.iter().map(|number| minus(&short_number(*number))).collect()
-    }
+    (3..6).find(distinct).unwrap_or(6)
+}
+
+/// A number with some significant digits; a whole number keeps all.
+fn rounded(number: f64, digits: usize) -> String {
+    let digits = digits.saturating_sub(1);
+    let near: f64 = format!("{number:.digits$e}").parse().unwrap_or(number);
+    let whole = number.fract() == 0.0;
+    minus(&short_number(if whole { number } else { near }))
 }
 
 /// Parameters with more than one value in the rows, in the order of the study, and notes about those that
-/// change together with another one: "`residual_gas_mass` changes with `strategy`". `axes` are not
+/// change together with another one: "Residual gas mass changes with inflation strategy". `axes` are not
 /// returned, but other parameters can change with them.
 pub fn varying<'a>(
     table: &'a Table,
@@ -126,11 +157,20 @@ pub fn varying<'a>(
         }
         let mut others = axes.iter().chain(&kept);
         match others.find(|other| determines(Some(other), column, rows)) {
-            Some(other) => notes.push(format!("{} changes with {}.", column.name, other.name)),
+            Some(other) => {
+                let name = |column: &Column| Name::of_parameter(&column.name).plain;
+                let (name, other) = (names::capital(&name(column)), name(other));
+                notes.push(format!("{name} changes with {other}."));
+            }
             None => kept.push(column),
         }
     }
     (kept.into_iter().map(|column| Parameter::new(column, rows)).collect(), notes)
+}
+
+/// Whether a column has one value in some rows.
+pub fn is_fixed(column: &Column, rows: &[usize]) -> bool {
+    determines(None, column, rows)
 }
 
 /// Whether equal values of `cause` always have equal values of `effect`; without `cause`, whether `effect`
@@ -176,11 +216,8 @@ pub fn groups(parameters: &[Parameter<'_>], rows: &[usize]) -> Vec<Group> {
             let row = group[0].1;
             let texts: Vec<String> =
                 parameters.iter().map(|parameter| parameter.of_row(row)).collect();
-            let named: Vec<String> = parameters
-                .iter()
-                .zip(&texts)
-                .map(|(parameter, text)| format!("{} {text}", parameter.name()))
-                .collect();
+            let named: Vec<String> =
+                parameters.iter().map(|parameter| parameter.named(row)).collect();
             Group {
                 values: texts.join(", "),
                 named: named.join(", "),
@@ -193,33 +230,27 @@ pub fn groups(parameters: &[Parameter<'_>], rows: &[usize]) -> Vec<Group> {
 /// Rows by panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facets<'a> {
-    /// Names of the parameters if the titles give only their values; else empty.
-    pub heading: String,
-    /// Titles and rows of the panels.
+    /// Titles and rows of the panels. A title names every parameter of the panels.
     pub panels: Vec<(String, Vec<usize>)>,
     /// The parameters.
     pub parameters: Vec<Parameter<'a>>,
 }
 
-/// Most characters of a panel title, approximately.
-const MAX_TITLE_LENGTH: usize = 26;
-
-/// One panel per combination of some parameters. The titles name the parameters if there is space.
+/// One panel per combination of some parameters.
 pub fn facets<'a>(parameters: Vec<Parameter<'a>>, rows: &[usize]) -> Facets<'a> {
     let groups = groups(&parameters, rows);
-    let short = groups.iter().all(|group| group.named.chars().count() <= MAX_TITLE_LENGTH);
-    let named = short || parameters.len() == 1;
-    let title = |group: &Group| if named { group.named.clone() } else { group.values.clone() };
-    Facets {
-        heading: if named { String::new() } else { heading(&parameters) },
-        panels: groups.iter().map(|group| (title(group), group.rows.clone())).collect(),
-        parameters,
+    let mut panels: Vec<(String, Vec<usize>)> =
+        groups.into_iter().map(|group| (group.named, group.rows)).collect();
+    if panels.is_empty() {
+        // A figure without points says so in an empty panel.
+        panels.push((String::new(), Vec::new()));
     }
+    Facets { panels, parameters }
 }
 
 /// Names of parameters, as a heading.
 pub fn heading(parameters: &[Parameter<'_>]) -> String {
-    parameters.iter().map(Parameter::name).collect::<Vec<_>>().join(", ")
+    parameters.iter().map(Parameter::heading).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -227,9 +258,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axis_numbers_are_short_and_distinct() {
-        assert_eq!(distinct(&[0.1, 0.215_443, 100.0]), ["0.1", "0.2154", "100"]);
-        assert_eq!(distinct(&[-1.000_01, 1.0, 1.000_02]), ["−1.00001", "1", "1.00002"]);
-        assert!(distinct(&[]).is_empty());
+    fn numbers_are_short_and_distinct() {
+        let texts = |numbers: &[f64]| -> Vec<String> {
+            numbers.iter().map(|number| rounded(*number, digits(numbers))).collect()
+        };
+        assert_eq!(texts(&[0.1, 0.215_443, 100.0]), ["0.1", "0.215", "100"]);
+        assert_eq!(texts(&[-1.000_01, 1.0, 1.000_02]), ["−1.00001", "1", "1.00002"]);
+        assert_eq!(texts(&[1234.0, 12_345.0]), ["1234", "12345"]);
+        assert!(texts(&[]).is_empty());
     }
 }

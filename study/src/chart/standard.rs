@@ -1,12 +1,10 @@
 //! The standard charts, which `billow chart` draws without options: they answer the first questions of most
 //! studies.
 
-use super::history::has_history;
+use super::history::{MAX_JOBS, has_history};
 use super::parameters::{self, Parameter};
 use super::{Source, number};
 
-/// Most jobs in a figure of histories.
-const MAX_JOBS: usize = 12;
 /// Quantities over time.
 const HISTORIES: [&str; 3] = ["z_rim", "vz", "pressure"];
 /// Measures over the first parameter.
@@ -50,7 +48,9 @@ pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
             "no histories: {stored} jobs are too many for one figure ({MAX_JOBS} at most); choose \
              some: billow chart --history z_rim --where CONDITION"
         ));
-    } else if stored > 0 {
+    } else if stored == 0 {
+        notes.push("no histories: no job has one".to_owned());
+    } else {
         kinds.extend(HISTORIES.map(|column| ChartKind::History(vec![column.to_owned()])));
     }
     let (parameters, _) = parameters::varying(source.table, &source.rows, &[]);
@@ -60,10 +60,12 @@ pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
         parameters.iter().filter(is_number).partition(|parameter| parameter.is_quantity());
     let numeric: Vec<String> =
         quantities.into_iter().chain(counts).map(|parameter| parameter.name().to_owned()).collect();
-    let first =
-        numeric.first().cloned().or_else(|| parameters.first().map(|p| p.name().to_owned()));
-    let Some(first) = first else {
-        notes.push("no chart of measures: no parameter varies".to_owned());
+    // A map needs two axes, and parameters without numbers have places too.
+    let texts = parameters.iter().filter(|parameter| !is_number(parameter));
+    let axes: Vec<String> =
+        numeric.into_iter().chain(texts.map(|parameter| parameter.name().to_owned())).collect();
+    let Some(first) = axes.first().cloned() else {
+        notes.push("no chart of measures and no map: no parameter varies".to_owned());
         return (kinds, notes);
     };
     let measured: Vec<String> = MEASURES
@@ -77,13 +79,19 @@ pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
         .map(str::to_owned)
         .collect();
     if measured.is_empty() {
-        notes.push("no chart of measures: no job has a measure".to_owned());
+        let names = MEASURES.join(", ");
+        notes.push(format!("no chart of measures and no map: no job has a value of {names}"));
     }
     let over = |measure: &String| ChartKind::Over(measure.clone(), first.clone(), Vec::new());
     kinds.extend(measured.iter().map(over));
-    if let [x, y, ..] = numeric.as_slice() {
-        let map = |measure: &String| ChartKind::Map(measure.clone(), [x.clone(), y.clone()]);
-        kinds.extend(measured.iter().take(1).map(map));
+    match axes.as_slice() {
+        [x, y, ..] => {
+            let map = |measure: &String| ChartKind::Map(measure.clone(), [x.clone(), y.clone()]);
+            kinds.extend(measured.iter().take(1).map(map));
+        }
+        _ => {
+            notes.push(format!("no map: it needs two parameters that vary, and only {first} does"));
+        }
     }
     (kinds, notes)
 }

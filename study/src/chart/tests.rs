@@ -45,6 +45,11 @@ fn study(edit: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
         points[*index].infeasible =
             Some(Infeasible { reason: "too low".to_owned(), nearest: Vec::new() });
     }
+    with_records(&points, edit)
+}
+
+/// The table of these points, all done and deployed; `edit` sets the cells of each point.
+fn with_records(points: &[Point], edit: impl Fn(usize, &mut Cells)) -> Table {
     let mut records = BTreeMap::new();
     for (index, point) in points.iter().enumerate() {
         let mut cells = Cells::new(Status::Done);
@@ -61,11 +66,17 @@ fn study(edit: impl Fn(usize, &mut Cells), infeasible: &[usize]) -> Table {
         "residual_gas_mass" => "kg".to_owned(),
         _ => "1".to_owned(),
     };
-    Table::build(&points, &records, &unit)
+    Table::build(points, &records, &unit)
 }
 
 fn source(table: &Table) -> Source<'_> {
-    Source { study: "made_up", table, rows: (0..table.rows()).collect(), choice: String::new() }
+    Source {
+        study: "made_up",
+        table,
+        rows: (0..table.rows()).collect(),
+        choice: String::new(),
+        title: String::new(),
+    }
 }
 
 fn mixed() -> Table {
@@ -96,11 +107,13 @@ fn every_point_of_a_measure_is_shown_with_its_outcome() {
     let texts =
         check::figure(&over::svg(&source(&table), "peak_vz", "mass_flow_rate", &[]).unwrap());
     for text in [
-        "mass_flow_rate (g/s)",
-        "peak_vz (m/s)",
-        "N, strategy",
-        "5, direct",
-        "6, rapid",
+        "Mass flow rate (g/s)",
+        "Peak velocity of the top ring over mass flow rate",
+        "Peak velocity of the top ring peak_vz (m/s)",
+        "Colour and marker: number of panels N",
+        "Line: inflation strategy",
+        "direct",
+        "rapid",
         "deployed (5)",
         "partial (1)",
         "stalled (1)",
@@ -108,7 +121,7 @@ fn every_point_of_a_measure_is_shown_with_its_outcome() {
         "infeasible (2)",
         "pending (1)",
         "done, event did not occur (1)",
-        "residual_gas_mass changes with strategy.",
+        "Residual gas mass changes with inflation strategy.",
     ] {
         assert!(contains(&texts, text), "{text}: {texts:?}");
     }
@@ -130,18 +143,21 @@ fn lines_by_one_parameter_leave_the_others_to_panels() {
     let by = ["N".to_owned()];
     let svg = over::svg(&source(&table), "peak_vz", "mass_flow_rate", &by).unwrap();
     let texts = check::figure(&svg);
-    assert!(contains(&texts, "strategy direct") && contains(&texts, "strategy rapid"), "{texts:?}");
-    assert!(contains(&texts, "One panel for each of strategy: nothing is averaged."), "{texts:?}");
+    for title in ["Inflation strategy direct", "Inflation strategy rapid"] {
+        assert!(contains(&texts, title), "{texts:?}");
+    }
 }
 
 #[test]
 fn a_measure_over_names_has_one_position_per_name() {
     let table = mixed();
     let texts = check::figure(&over::svg(&source(&table), "peak_vz", "strategy", &[]).unwrap());
-    assert!(
-        contains(&texts, "direct") && contains(&texts, "rapid") && contains(&texts, "5, 1 g/s"),
-        "{texts:?}"
-    );
+    // Without lines nothing is distinguished by dashes.
+    let shown = ["direct", "rapid", "Number of panels N", "5", "Mass flow rate 1 g/s"];
+    assert!(shown.iter().all(|text| contains(&texts, text)), "{texts:?}");
+    let by = ["N", "mass_flow_rate"].map(str::to_owned);
+    let texts = check::figure(&over::svg(&source(&table), "peak_vz", "strategy", &by).unwrap());
+    assert!(contains(&texts, "5, 1 g/s") && contains(&texts, "6, 5 g/s"), "{texts:?}");
 }
 
 #[test]
@@ -150,9 +166,9 @@ fn a_map_shows_each_value_and_each_outcome() {
     let svg = map::svg(&source(&table), "peak_vz", ["mass_flow_rate", "N"]).unwrap();
     let texts = check::figure(&svg);
     for text in [
-        "strategy direct",
-        "peak_vz (m/s)",
-        "mass_flow_rate (g/s)",
+        "Inflation strategy direct",
+        "Peak velocity of the top ring over mass flow rate and number of panels",
+        "Mass flow rate (g/s)",
         "20.0",
         "31.0",
         "∅",
@@ -195,29 +211,78 @@ fn histories_are_labelled_by_the_varying_parameters() {
     let svg = history::svg(&source(&table), &columns, [None, None], &read).unwrap();
     let texts = check::figure(&svg);
     for text in [
-        "N, mass_flow_rate, strategy",
-        "5, 1 g/s, direct",
-        "5, 1 g/s, rapid (partial)",
-        "5, 2 g/s, rapid (step_limit)",
-        "time (ms)",
-        "z_rim (m)",
-        "pressure (Pa)",
-        "smallest_gap (mm)",
-        "mean height of the top ring",
-        "end of a run that failed",
+        "Colour and marker: number of panels N",
+        "Line: mass flow rate",
+        "Inflation strategy rapid",
+        "Time t (ms)",
+        "Height of the top ring, gas pressure, smallest gap between film and film over",
+        "Height of the top ring z_rim (m)",
+        "Gas pressure (Pa)",
+        "partial (1)",
+        "stalled (1)",
+        "failed: step_limit (1)",
+        "9 lines for 12 points; 3 have no history: 1 pending, 2 infeasible.",
     ] {
         assert!(contains(&texts, text), "{text}: {texts:?}");
     }
-    let missing = "residual_gas_mass changes with strategy.";
+    let missing = "Residual gas mass changes with inflation strategy.";
     assert!(contains(&texts, missing), "{texts:?}");
-    assert!(contains(&texts, "Without a history: 1 pending, 2 infeasible."), "{texts:?}");
 
     let cut = history::svg(&source(&table), &columns[..1], [Some(0.1), Some(0.2)], &read).unwrap();
     let texts = check::figure(&cut);
     assert!(
-        contains(&texts, "100") && contains(&texts, "200") && !contains(&texts, "300"),
+        contains(&texts, "100") && contains(&texts, "180") && !contains(&texts, "300"),
         "{texts:?}"
     );
+}
+
+#[test]
+fn points_that_are_one_job_are_shown_and_named() {
+    let mut points: Vec<Point> = Vec::new();
+    for (number, (panels, flow)) in
+        [(5, 0.001), (5, 0.002), (6, 0.001), (6, 0.002)].iter().enumerate()
+    {
+        let parameters = [("N", Value::Integer(*panels)), ("mass_flow_rate", Value::Number(*flow))];
+        points.push(point(u32::try_from(number).unwrap(), &parameters));
+    }
+    points[3].job.id = points[2].job.id.clone();
+    let table = with_records(&points, |_, _| {});
+    let source = source(&table);
+    let note = "2 points are 1 job, with one result: N 6: mass flow rate 1 g/s = 2 g/s.";
+    let map = check::figure(&map::svg(&source, "peak_vz", ["mass_flow_rate", "N"]).unwrap());
+    for text in ["20.0", "= 23.0", "=", "same job as another cell", note] {
+        assert!(contains(&map, text), "{text}: {map:?}");
+    }
+    let over = check::figure(&over::svg(&source, "peak_vz", "mass_flow_rate", &[]).unwrap());
+    assert!(contains(&over, note) && contains(&over, "deployed (4)"), "{over:?}");
+    let lines = history::svg(&source, &["z_rim".to_owned()], [None; 2], &read).unwrap();
+    assert_eq!(lines.matches("<polyline").count(), 3, "one line per job");
+    assert!(contains(&check::figure(&lines), note));
+}
+
+#[test]
+fn a_chart_has_the_units_of_the_study() {
+    let mut table = mixed();
+    for (name, unit, si) in [("mass_flow_rate", "kg/h", "kg/s"), ("peak_vz", "km/h", "m/s")] {
+        let column = table.columns.iter_mut().find(|column| column.name == name).unwrap();
+        column.shown = crate::input::units::DisplayUnit::new(unit, si).unwrap();
+    }
+    let texts =
+        check::figure(&over::svg(&source(&table), "peak_vz", "mass_flow_rate", &[]).unwrap());
+    for text in ["Mass flow rate (kg/h)", "3.6", "Peak velocity of the top ring peak_vz (km/h)"] {
+        assert!(contains(&texts, text), "{text}: {texts:?}");
+    }
+}
+
+#[test]
+fn a_title_can_be_given_and_fixed_parameters_are_named() {
+    let table = mixed();
+    let rows = (0..table.rows()).filter(|row| row % 2 == 0).collect();
+    let titled = Source { title: "My figure".to_owned(), rows, ..source(&table) };
+    let texts = check::figure(&over::svg(&titled, "peak_vz", "mass_flow_rate", &[]).unwrap());
+    for text in ["My figure", "Every point: inflation strategy direct, residual gas mass 0 kg"] {
+        assert!(contains(&texts, text), "{text}: {texts:?}");
+    }
 }
 
 #[test]
@@ -256,9 +321,12 @@ fn an_impossible_chart_is_an_error_that_says_what_is_allowed() {
             "{error}"
         );
     }
-    let many = Source { rows: (0..12).cycle().take(60).collect(), ..source.clone() };
+    let points: Vec<Point> =
+        (0..60).map(|n| point(n, &[("N", Value::Integer(n.into()))])).collect();
+    let table = with_records(&points, |_, _| {});
+    let many = Source { rows: (0..60).collect(), table: &table, ..source };
     let error = history::svg(&many, &columns("vz"), [None; 2], &read).unwrap_err().to_string();
-    assert!(error.contains("20 jobs at most"), "{error}");
+    assert!(error.contains("48 jobs at most"), "{error}");
 }
 
 #[test]

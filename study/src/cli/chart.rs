@@ -47,10 +47,13 @@ pub struct Args {
     /// Only rows for which this condition holds, as in `N == 6 and mass_flow_rate >= '2 g/s'`.
     #[arg(long = "where", value_name = "CONDITION", conflicts_with = "jobs")]
     pub condition: Option<String>,
+    /// Title of the chart [default: quantity and axes].
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
     /// Start of the time axis: s, or with a unit.
     #[arg(long, value_name = "TIME", requires = "history")]
     pub from: Option<String>,
-    /// End of the time axis: s, or with a unit.
+    /// End of the time axis: s, or with a unit [default: soon after the last film has settled].
     #[arg(long, value_name = "TIME", requires = "history")]
     pub to: Option<String>,
     /// File to write, .svg or .png [default: both, in the folder charts of the results].
@@ -125,7 +128,8 @@ fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a
         (None, 0) => String::new(),
         (None, _) => "(chosen jobs)".to_owned(),
     };
-    Ok(Source { study, table, rows, choice })
+    let title = args.title.clone().unwrap_or_default();
+    Ok(Source { study, table, rows, choice, title })
 }
 
 /// Name of the results folder; the whole path when it has no last part, as in ".".
@@ -168,11 +172,7 @@ fn draw(
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
 ) -> Result<String> {
     match kind {
-        ChartKind::History(columns) => {
-            // Points that are one job have one history.
-            let rows = source.table.one_row_per_job(&source.rows);
-            history::svg(&Source { rows, ..source.clone() }, columns, range, read)
-        }
+        ChartKind::History(columns) => history::svg(source, columns, range, read),
         ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
         ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
     }
@@ -189,14 +189,16 @@ fn kind(args: &Args) -> Result<Option<ChartKind>> {
         .as_deref()
         .map(|name| target::current_name("--measure", name.trim()).to_owned());
     let Some(measure) = measure else {
-        return match &args.out {
-            None => Ok(None),
-            Some(path) => Err(refused(
-                "--out",
-                &path.display().to_string(),
-                "one file for several charts",
-                "one chart: --history, --measure … --over, or --measure … --map",
-            )),
+        let one = "one chart: --history, --measure … --over, or --measure … --map";
+        return match (&args.out, &args.title) {
+            (None, None) => Ok(None),
+            (Some(path), _) => {
+                let path = path.display().to_string();
+                Err(refused("--out", &path, "one file for several charts", one))
+            }
+            (None, Some(title)) => {
+                Err(refused("--title", title, "one title for several charts", one))
+            }
         };
     };
     match (args.over.clone(), args.map.as_slice()) {

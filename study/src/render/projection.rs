@@ -100,6 +100,9 @@ mod tests {
             time: 0.0,
             positions: triangles.as_flattened().to_vec(),
             regimes: vec![Regime::Taut; triangles.len()],
+            velocities: Vec::new(),
+            stresses: Vec::new(),
+            gaps: Vec::new(),
         };
         (numbers.map(|first| [first, first + 1, first + 2]).collect(), frame)
     }

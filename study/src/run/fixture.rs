@@ -133,6 +133,9 @@ pub fn frames(number: u32, count: u32) -> Frames {
         time: 0.1 * f64::from(frame),
         positions: (0..4).map(|node| position(frame, node)).collect(),
         regimes: (0..2).map(|element| all[((frame + element) % 3) as usize]).collect(),
+        velocities: (0..4).map(|node| position(frame, node + 1)).collect(),
+        stresses: vec![[2e6, 1e6], [0.0, 0.0]],
+        gaps: vec![1e-3; 4],
     };
     Frames {
         triangles: vec![[0, 1, 2], [1, 3, 2]],

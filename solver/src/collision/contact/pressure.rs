@@ -1,4 +1,4 @@
-//! Interlayer pressure: how strongly films press on each other.
+//! Interlayer pressure and gaps: how strongly films press on each other, and how near they are.
 //!
 //! ```text
 //! interlayer pressure at a node = Σ |w| F over its contacts / film area of the node
@@ -24,6 +24,21 @@ pub struct InterlayerPressure {
 }
 
 impl ContactModel {
+    /// Distance of each node to other film at these positions (m), from its contacts; at most the contact
+    /// distance.
+    pub fn node_gaps(&self, positions: &Field, state: &ContactState) -> Vec<f64> {
+        let mut gaps = vec![self.distance; positions.len()];
+        for contact in &state.contacts {
+            let nodes = contact.pair.nodes(&self.mesh.topology);
+            let gap = contact.pair.closest(&vectors_of(positions, nodes)).squared.sqrt();
+            for node in nodes {
+                let least = &mut gaps[node as usize];
+                *least = least.min(gap);
+            }
+        }
+        gaps
+    }
+
     /// Interlayer pressure at these positions (m). `areas`: film area of each node, m².
     pub fn interlayer_pressure(
         &self,

@@ -3,7 +3,7 @@
 use super::FilmRun;
 use crate::mechanics::forces::membrane::{strain, stress_on_fraction};
 use crate::mechanics::resultants::resultants;
-use crate::output::frames::Frame;
+use crate::output::frames::{Frame, rounded};
 use crate::output::history::Track;
 
 /// Name, unit and meaning of the track of film stress that one element does not decide.
@@ -103,7 +103,20 @@ pub(super) fn frame(run: &FilmRun) -> Frame {
     let (model, state) = (&run.film.model, &run.film.state);
     #[expect(clippy::cast_possible_truncation, reason = "frames are in single precision")]
     let positions = state.positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]).collect();
-    let regime = |element| model.material.regime(strain(model, &state.positions, element));
-    let regimes = (0..model.elements()).map(regime).collect();
-    Frame { time: state.time, positions, regimes }
+    let mut regimes = Vec::with_capacity(model.elements());
+    let mut stresses = Vec::with_capacity(model.elements());
+    for element in 0..model.elements() {
+        let strain = strain(model, &state.positions, element);
+        let (first, second) = model.material.stress(strain).tensor.principal();
+        regimes.push(model.material.regime(strain));
+        stresses.push([rounded(first), rounded(second)]);
+    }
+    let velocities = run.film.velocities();
+    let velocities = velocities.iter().map(|v| [v.x, v.y, v.z].map(rounded)).collect();
+    let contact_model = run.film.parameters.contact.as_ref();
+    let gaps = contact_model.map_or_else(Vec::new, |contact_model| {
+        contact_model.node_gaps(&state.positions, &state.contact_state)
+    });
+    let gaps = gaps.into_iter().map(rounded).collect();
+    Frame { time: state.time, positions, regimes, velocities, stresses, gaps }
 }

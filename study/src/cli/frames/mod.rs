@@ -11,20 +11,23 @@ use super::options::{OutputOptions, QuietOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{StudyArgs, folder_of_job};
-use crate::input::value::{Value, short_number};
+use crate::chart::parameters::Parameter;
+use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
-use crate::render::figure::unit::Unit;
-use crate::render::filmstrip::{Colour, Filmstrip};
+use crate::render::filmstrip::Filmstrip;
 use crate::render::projection::View;
 use crate::store::history_file::{self, StoredFrames};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 
 mod choose;
+mod colours;
+mod values;
 
 use choose::{by_displacement, nearest};
+use colours::colour;
 
 /// Arguments of `billow frames`.
 #[derive(Debug, clap::Args)]
@@ -47,9 +50,12 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pub times: Vec<String>,
-    /// Meaning of the colours [default: the storey; plain for a mesh without storeys].
+    /// Meaning of the colours [default: storey; none for a mesh without storeys].
     #[arg(long, value_enum)]
     pub colour: Option<ColourArg>,
+    /// Title of the picture [default: study, job and parameters].
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
     /// Direction of view: azimuth and elevation, degrees.
     #[arg(
         long,
@@ -75,8 +81,13 @@ pub enum ColourArg {
     Storey,
     /// The state of the film: taut, wrinkled, slack.
     Regime,
+    /// The largest principal stress, on one scale in all shapes.
+    Stress,
+    /// The speed, on one scale in all shapes.
+    Speed,
     /// One colour.
-    Plain,
+    #[value(alias = "plain")]
+    None,
 }
 
 /// A run whose shapes are drawn.
@@ -104,7 +115,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                   next: run it with solver.model \"film\" and outputs.frames above 0"
                 .to_owned(),
     })?;
-    let colour = colour(args.colour, &stored)?;
+    let history = history_file::read(&source.path)?.history;
     let numbers = if args.times.is_empty() {
         by_displacement(args.count, &displacements(&stored)?)?
     } else {
@@ -112,13 +123,22 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     };
     let frames: Vec<Frame> =
         numbers.iter().map(|number| stored.frame(*number)).collect::<Result<_>>()?;
+    let (colour, mut notes) = colour(args.colour, &stored, &frames)?;
+    for note in notes.iter().filter(|_| !args.quiet.quiet) {
+        eprintln!("billow: {note}");
+    }
+    let (values, meaning) = values::below(&frames, &history);
+    notes.extend(meaning);
+    let title = args.title.clone().unwrap_or(source.title);
     let svg = Filmstrip {
-        title: &source.title,
+        title: &title,
         triangles: stored.triangles(),
         storeys: stored.storeys(),
         frames: &frames,
         view,
         colour,
+        values: &values,
+        notes: &notes,
     }
     .svg();
     if args.out.is_none()
@@ -173,18 +193,18 @@ fn source(args: &Args) -> Result<Source> {
     })
 }
 
-/// Study, job and its parameters with their units.
+/// Study, job and its parameters with their units, as charts name them.
 fn title(stored: &Stored<'_>, id: &JobId) -> String {
     let mut title = format!("{}, job {}", stored.study.name, id.short());
-    for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
-        let text = if let Value::Number(si) = value {
-            let si_unit = stored.study.unit(name);
-            let unit = Unit::shown_in(&stored.units.of(name, si_unit), si_unit, [*si]);
-            unit.after(&short_number(unit.shown(*si)))
-        } else {
-            value.to_string()
-        };
-        let _ = write!(title, ", {name} {text}");
+    let table = stored.table();
+    let row = table.column("job").and_then(|jobs| {
+        jobs.cells.iter().position(|cell| *cell == Value::Text(id.as_str().to_owned()))
+    });
+    let all: Vec<usize> = (0..table.rows()).collect();
+    for column in table.parameters() {
+        if let Some(row) = row {
+            let _ = write!(title, ", {}", Parameter::new(column, &all).named(row));
+        }
     }
     title
 }
@@ -201,23 +221,6 @@ fn pictures(args: &Args, source: &Source) -> Result<Vec<PathBuf>> {
     };
     Picture::of(path)?;
     Ok(vec![path.clone()])
-}
-
-/// The meaning of the colours: the one asked for, or storeys if the film has some.
-fn colour(asked: Option<ColourArg>, stored: &StoredFrames) -> Result<Colour> {
-    let capsule = stored.storeys().iter().any(|storey| *storey > 0);
-    match asked {
-        Some(ColourArg::Regime) => Ok(Colour::Regime),
-        Some(ColourArg::Plain) => Ok(Colour::Plain),
-        Some(ColourArg::Storey) if !capsule => Err(refused(
-            "--colour",
-            "storey",
-            "this film is not a capsule and has no storeys",
-            "regime, plain",
-        )),
-        Some(ColourArg::Storey) => Ok(Colour::Storey),
-        None => Ok(if capsule { Colour::Storey } else { Colour::Plain }),
-    }
 }
 
 fn view(text: &str) -> Result<View> {

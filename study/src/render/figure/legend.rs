@@ -1,6 +1,6 @@
 //! The legend, below the plots, so that it never covers data.
 
-use super::style::{self, Fill, MEDIUM, SMALL};
+use super::style::{self, Fill, MEDIUM, PLAIN, SMALL, Series};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, cut};
 
@@ -17,9 +17,9 @@ pub struct Legend {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sample {
     /// Line and marker of a series.
-    Series(usize),
+    Line(Series),
     /// Marker of a series without lines.
-    Point(usize),
+    Point(Series),
     /// A marker that stands for no series.
     Marker(Fill),
     /// The cross at the end of a run that failed.
@@ -53,11 +53,7 @@ impl Legend {
             below += ROW;
             page.text([corner[0], below - 1.2], &Letters::new(SMALL), &heading);
         }
-        let lines = self.entries.iter().any(|(sample, _)| matches!(sample, Sample::Series(_)));
-        let indent = if lines { LINE_SAMPLE } else { MARKER_SAMPLE };
-        let widest =
-            self.entries.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
-        let column = (widest + indent + GAP).min(width);
+        let (indent, column) = (self.indent(), self.column().min(width));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -77,18 +73,39 @@ impl Legend {
     }
 }
 
+impl Legend {
+    /// Width of a sample and the gap after it, mm.
+    fn indent(&self) -> f64 {
+        let lines = self.entries.iter().any(|(sample, _)| matches!(sample, Sample::Line(_)));
+        if lines { LINE_SAMPLE } else { MARKER_SAMPLE }
+    }
+
+    /// Width of a column of entries, mm.
+    fn column(&self) -> f64 {
+        let widths = self.entries.iter().map(|(_, text)| font::width(text, SMALL));
+        widths.fold(0.0, f64::max) + self.indent() + GAP
+    }
+
+    /// Width of the part with all entries in one row, mm.
+    fn width_of_one_row(&self) -> f64 {
+        (self.column() * self.entries.len() as f64).max(font::width(&self.heading, SMALL) + GAP)
+    }
+}
+
 /// Draws a sample with its left end at `left`.
 fn draw_sample(page: &mut Page, sample: &Sample, left: Position) {
     let middle = [left[0] + 2.0, left[1]];
     match sample {
-        Sample::Series(series) => {
-            page.line(left, [left[0] + LINE_SAMPLE - 2.0, left[1]], &style::line(*series));
+        Sample::Line(series) => {
+            page.line(left, [left[0] + LINE_SAMPLE - 2.0, left[1]], &series.line());
             let middle = [left[0] + 0.5 * (LINE_SAMPLE - 2.0), left[1]];
-            style::marker(page, middle, *series, Fill::Filled, MARKER);
+            if series.marker.is_some() {
+                style::marker(page, middle, *series, Fill::Filled, MARKER);
+            }
         }
         Sample::Point(series) => style::marker(page, middle, *series, Fill::Filled, MARKER),
-        Sample::Marker(fill) => style::plain_marker(page, middle, "#333333", *fill, MARKER),
-        Sample::Cross => style::cross(page, middle, "#333333", MARKER),
+        Sample::Marker(fill) => style::plain_marker(page, middle, PLAIN, *fill, MARKER),
+        Sample::Cross => style::cross(page, middle, PLAIN, MARKER),
         Sample::Letter(letter) => {
             let letters = Letters::new(MEDIUM).at(Anchor::Middle);
             page.text([middle[0], middle[1] + 0.36 * MEDIUM], &letters, letter);
@@ -107,11 +124,18 @@ fn draw_sample(page: &mut Page, sample: &Sample, left: Position) {
 /// Size of a marker, mm.
 pub const MARKER: f64 = 2.0;
 
-/// Draws several parts one below the other. Returns their height, mm.
+/// Draws several parts: side by side where they fit with one row of entries each, else one below the other.
+/// Returns their height, mm.
 pub fn draw(parts: &[Legend], page: &mut Page, corner: Position, width: f64) -> f64 {
-    let mut height = 0.0;
+    let (mut height, mut row, mut x) = (0.0, 0.0_f64, 0.0);
     for part in parts.iter().filter(|part| !part.entries.is_empty()) {
-        height += part.draw(page, [corner[0], corner[1] + height], width) + 1.0;
+        let needed = part.width_of_one_row();
+        if x > 0.0 && x + needed > width {
+            (height, row, x) = (height + row, 0.0, 0.0);
+        }
+        let position = [corner[0] + x, corner[1] + height];
+        row = row.max(part.draw(page, position, width - x) + 1.0);
+        x += needed + GAP;
     }
-    height
+    height + row
 }

@@ -7,7 +7,7 @@ use super::style::{self, AXIS, EMPTY, Fill, HATCH, MARGIN, MEDIUM, SMALL};
 use super::{INNER, Sheet, ticks};
 use crate::input::value::short_number;
 use crate::render::font;
-use crate::render::page::{Anchor, Letters, Page, Position, cut};
+use crate::render::page::{Anchor, Letters, Page, Position, cut, wrapped_at_commas};
 
 mod bar;
 
@@ -42,8 +42,15 @@ pub struct Panel {
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// A value, and the marker of the outcome.
-    Value(f64, Fill),
+    /// A value.
+    Value {
+        /// The value.
+        value: f64,
+        /// The marker of the outcome.
+        outcome: Fill,
+        /// Whether another cell shows the same job; [`SAME_JOB`] says so.
+        shared: bool,
+    },
     /// No value: the letter of the outcome.
     Letter(String),
     /// No such point in the study.
@@ -62,6 +69,8 @@ const MAP_HEIGHT: f64 = 60.0;
 const MAX_CELL_WIDTH: f64 = 26.0;
 /// Distance between maps side by side, mm.
 const GAP: f64 = 5.0;
+/// Sign before the number in a cell of a job that another cell shows too.
+pub const SAME_JOB: &str = "=";
 /// Width of the outcome marker and its distance from the number, mm.
 const MARKER_WIDTH: f64 = 4.5;
 
@@ -79,9 +88,14 @@ struct Layout {
     cell: [f64; 2],
     /// Width and height of a map.
     map: [f64; 2],
-    /// Height of the title line above a map.
+    /// Titles of the maps, broken into lines.
+    titles: Vec<Vec<String>>,
+    /// Height of the title above a map.
     title: f64,
 }
+
+/// Height of a line of a title, mm.
+const TITLE_LINE: f64 = 1.35 * SMALL;
 
 impl Layout {
     fn new(maps: &Maps) -> Self {
@@ -95,7 +109,9 @@ impl Layout {
         let max_height =
             if maps.panels.len() > across { MAX_CELL_HEIGHT } else { MAX_CELL_HEIGHT_OF_ONE_ROW };
         let cell_height = (MAP_HEIGHT / rows as f64).clamp(MIN_CELL_HEIGHT, max_height);
-        let titled = maps.panels.iter().any(|panel| !panel.title.is_empty());
+        let titles: Vec<Vec<String>> =
+            maps.panels.iter().map(|panel| wrapped_at_commas(&panel.title, SMALL, width)).collect();
+        let lines = titles.iter().map(Vec::len).max().unwrap_or(0);
         Self {
             left,
             inner_width,
@@ -103,7 +119,8 @@ impl Layout {
             across,
             cell: [width / columns as f64, cell_height],
             map: [width, cell_height * rows as f64],
-            title: if titled { 5.5 } else { 1.5 },
+            titles,
+            title: 1.5 + TITLE_LINE * lines as f64,
         }
     }
 
@@ -149,8 +166,11 @@ impl Maps {
             let mut axis_height: f64 = 0.0;
             for (column, panel) in panels.iter().enumerate() {
                 let corner = [layout.left + column as f64 * (width + GAP), y];
-                let title = cut(&panel.title, SMALL, width);
-                page.text([corner[0], y - 1.6], &Letters::new(SMALL), &title);
+                let title = &layout.titles[row * layout.across + column];
+                for (number, line) in title.iter().rev().enumerate() {
+                    let position = [corner[0], y - 1.6 - number as f64 * TITLE_LINE];
+                    page.text(position, &Letters::new(SMALL), &cut(line, SMALL, width));
+                }
                 self.draw_cells(page, panel, corner, layout.cell);
                 if column == 0 {
                     self.draw_y_axis(page, corner, layout);
@@ -184,7 +204,9 @@ impl Maps {
     fn across(&self, inner_width: f64) -> usize {
         let columns = self.x.1.len().max(1) as f64;
         let numbers = self.panels.iter().flat_map(|panel| &panel.cells).map(|cell| match cell {
-            Cell::Value(value, _) => font::width(&cell_number(*value), SMALL) + MARKER_WIDTH,
+            Cell::Value { value, shared, .. } => {
+                font::width(&cell_text(*value, *shared), SMALL) + MARKER_WIDTH
+            }
             _ => SMALL,
         });
         let names = self.x.1.iter().map(|name| font::width(name, SMALL) + 1.5);
@@ -202,8 +224,9 @@ impl Maps {
             let cell_corner =
                 [corner[0] + column as f64 * width, corner[1] + (rows - 1 - row) as f64 * height];
             match cell {
-                Cell::Value(value, fill) => {
-                    self.draw_value(page, (*value, *fill), cell_corner, size);
+                Cell::Value { value, outcome, shared } => {
+                    let text = cell_text(*value, *shared);
+                    self.draw_value(page, (*value, &text, *outcome), cell_corner, size);
                 }
                 Cell::Letter(letter) => draw_letter(page, letter, cell_corner, size),
                 Cell::Absent => page.frame(cell_corner, size, &HATCH),
@@ -217,7 +240,7 @@ impl Maps {
     fn draw_value(
         &self,
         page: &mut Page,
-        (value, fill): (f64, Fill),
+        (value, text, fill): (f64, &str, Fill),
         corner: Position,
         size: [f64; 2],
     ) {
@@ -225,13 +248,12 @@ impl Maps {
         let middle = [corner[0] + 0.5 * width, corner[1] + 0.5 * height];
         let (colour, ink) = style::map_colour(self.fraction(value));
         page.fill(corner, size, &colour);
-        let text = cell_number(value);
-        let text_width = font::width(&text, SMALL);
+        let text_width = font::width(text, SMALL);
         let both_fit = text_width + MARKER_WIDTH <= width;
         let shift = if both_fit { 1.6 } else { 0.0 };
         if text_width + 0.6 <= width {
             let letters = Letters { colour: ink, ..Letters::new(SMALL).at(Anchor::Middle) };
-            page.text([middle[0] + shift, middle[1] + 0.36 * SMALL], &letters, &text);
+            page.text([middle[0] + shift, middle[1] + 0.36 * SMALL], &letters, text);
         }
         let marker = if both_fit {
             [middle[0] + shift - 0.5 * text_width - 1.9, middle[1]]
@@ -290,6 +312,12 @@ fn draw_letter(page: &mut Page, letter: &str, corner: Position, size: [f64; 2]) 
 /// Width of the widest of some small texts, mm.
 fn widest(texts: &[String]) -> f64 {
     texts.iter().map(|text| font::width(text, SMALL)).fold(0.0, f64::max)
+}
+
+/// The text of a cell.
+fn cell_text(value: f64, shared: bool) -> String {
+    let number = cell_number(value);
+    if shared { format!("{SAME_JOB} {number}") } else { number }
 }
 
 /// A number in a cell: three significant digits.

@@ -1,4 +1,7 @@
-//! Styles that distinguish series: colour, dashes and marker. Each one alone is sufficient.
+//! Styles that distinguish series: colour, dashes and marker.
+//!
+//! A series is given by one index, and then each part alone is sufficient; or by the values of two
+//! parameters, and then colour and marker show the first one and dashes the second one.
 //!
 //! The colours are those of Okabe and Ito, which colour-blind readers can distinguish; their yellow is not
 //! used, because it is not visible on white. Dashes and markers distinguish series in black and white. Maps
@@ -20,11 +23,15 @@ pub const MARGIN: f64 = 4.0;
 /// Colours of series.
 const COLOURS: [&str; 7] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"];
-/// Dashes of series, mm. Five dashes and seven colours and markers give 35 different series.
+/// Dashes of series, mm.
 const DASHES: [&[f64]; 5] =
     [&[], &[2.8, 1.1], &[0.7, 0.8], &[3.2, 0.9, 0.7, 0.9], &[5.0, 0.9, 1.4, 0.9, 1.4, 0.9]];
 /// Width of the line of a series, mm.
 const LINE: f64 = 0.45;
+/// Width of the line of a quantity that rings, mm.
+const THIN_LINE: f64 = 0.25;
+/// Colour of samples that stand for no series.
+pub const PLAIN: &str = "#333333";
 /// Lines of axes and frames.
 pub const AXIS: Stroke = Stroke::solid("#333333", 0.25);
 /// Grid lines.
@@ -36,14 +43,66 @@ pub const EMPTY: &str = "#e8e8e8";
 /// Hatch of cells without a value.
 pub const HATCH: Stroke = Stroke::solid("#b0b0b0", 0.2);
 
-/// Colour of a series.
-pub fn colour(series: usize) -> &'static str {
-    COLOURS[series % COLOURS.len()]
+/// Colours of an ordered series with more values than [`COLOURS`]: viridis without its light end, which is
+/// not visible on white.
+const SEQUENCE: [&str; 20] = [
+    "#440154", "#470e61", "#481b6d", "#482878", "#46337f", "#423f85", "#3e4989", "#39558c",
+    "#355f8d", "#31688e", "#2d718e", "#297a8e", "#25848e", "#218d8d", "#1e978a", "#20a386",
+    "#2bad80", "#3bb976", "#51c369", "#6ccd59",
+];
+/// Number of values of a parameter that colours can show.
+pub const MAX_COLOURS: usize = SEQUENCE.len();
+/// Number of values of a parameter that dashes can show.
+pub const MAX_DASHES: usize = DASHES.len();
+
+/// The style of a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Series {
+    /// Colour.
+    pub colour: &'static str,
+    /// Index of the dashes; 0 is a solid line.
+    pub dashes: usize,
+    /// Index of the marker shape; `None` for a line without markers.
+    pub marker: Option<usize>,
 }
 
-/// Line of a series.
-pub fn line(series: usize) -> Stroke {
-    Stroke { colour: colour(series), width: LINE, dashes: DASHES[series % DASHES.len()] }
+impl Series {
+    /// The style of the series with this index.
+    pub fn nth(index: usize) -> Self {
+        Self {
+            colour: COLOURS[index % COLOURS.len()],
+            dashes: index % DASHES.len(),
+            // When the colours repeat, each one gets the shape of the next colour.
+            marker: Some((index + index / COLOURS.len()) % COLOURS.len()),
+        }
+    }
+
+    /// The style of value `colour` of `colours` of one parameter, and value `dashes` of another one.
+    pub fn of_values((colour, colours): (usize, usize), dashes: usize) -> Self {
+        let shade = if colours <= COLOURS.len() {
+            COLOURS[colour % COLOURS.len()]
+        } else {
+            let last = SEQUENCE.len() - 1;
+            SEQUENCE[(colour * last / (colours - 1)).min(last)]
+        };
+        let marker = Some(colour % COLOURS.len());
+        Self { colour: shade, dashes: dashes % DASHES.len(), marker }
+    }
+
+    /// Dashes alone, for a legend.
+    pub fn dashes_only(dashes: usize) -> Self {
+        Self { colour: PLAIN, dashes: dashes % DASHES.len(), marker: None }
+    }
+
+    /// The line.
+    pub fn line(self) -> Stroke {
+        Stroke { colour: self.colour, width: LINE, dashes: DASHES[self.dashes] }
+    }
+
+    /// A thinner line, for a quantity that rings.
+    pub fn thin_line(self) -> Stroke {
+        Stroke { width: THIN_LINE, ..self.line() }
+    }
 }
 
 /// Style of a marker, which shows the outcome of a job.
@@ -58,12 +117,9 @@ pub enum Fill {
 }
 
 /// Draws the marker of a series, about `size` mm wide.
-pub fn marker(page: &mut Page, centre: Position, series: usize, fill: Fill, size: f64) {
-    let colour = colour(series);
-    let inside = if fill == Fill::Filled { colour } else { "#ffffff" };
-    // When the colours repeat, each one gets the shape of the next colour.
-    let shape = (series + series / COLOURS.len()) % COLOURS.len();
-    draw_shape(page, centre, shape, colour, (inside, fill), size);
+pub fn marker(page: &mut Page, centre: Position, series: Series, fill: Fill, size: f64) {
+    let inside = if fill == Fill::Filled { series.colour } else { "#ffffff" };
+    draw_shape(page, centre, series.marker.unwrap_or(0), series.colour, (inside, fill), size);
 }
 
 /// Draws the marker of an outcome, for no series: a circle in one colour.
@@ -166,16 +222,27 @@ const VIRIDIS: [[f64; 3]; 17] = [
 
 /// Colour of a fraction (0 to 1) of the range of a map, and black or white for text on it.
 pub fn map_colour(fraction: f64) -> (String, &'static str) {
+    let mixed = viridis(fraction);
+    let [red, green, blue] = mixed.map(libm::round);
+    let letters = if luminance(mixed) > 0.2 { "#000000" } else { "#ffffff" };
+    (format!("rgb({red},{green},{blue})"), letters)
+}
+
+/// The same colour as sRGB bytes.
+pub fn map_rgb(fraction: f64) -> [u8; 3] {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+    viridis(fraction).map(|channel| libm::round(channel) as u8)
+}
+
+/// Viridis at a fraction (0 to 1), sRGB channels from 0 to 255.
+fn viridis(fraction: f64) -> [f64; 3] {
     let position = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 15")]
     let below = (position as usize).min(VIRIDIS.len() - 2);
     let rest = position - below as f64;
-    let mixed: [f64; 3] = std::array::from_fn(|channel| {
+    std::array::from_fn(|channel| {
         VIRIDIS[below][channel] * (1.0 - rest) + VIRIDIS[below + 1][channel] * rest
-    });
-    let [red, green, blue] = mixed.map(libm::round);
-    let letters = if luminance(mixed) > 0.2 { "#000000" } else { "#ffffff" };
-    (format!("rgb({red},{green},{blue})"), letters)
+    })
 }
 
 /// Relative luminance of an sRGB colour, 0 to 1. Source: WCAG 2.1.
@@ -197,10 +264,26 @@ mod tests {
     }
 
     #[test]
-    fn the_first_35_series_differ_without_colour() {
+    fn the_first_20_series_differ_without_colour() {
+        let styles = (0..20).map(Series::nth);
         let pairs: std::collections::BTreeSet<_> =
-            (0..35).map(|series| (series % COLOURS.len(), series % DASHES.len())).collect();
-        assert_eq!(pairs.len(), 35);
+            styles.map(|series| (series.marker, series.dashes)).collect();
+        assert_eq!(pairs.len(), 20);
+    }
+
+    #[test]
+    fn values_of_two_parameters_give_colours_and_dashes() {
+        for colours in [2, 7, 8, MAX_COLOURS] {
+            let styles: Vec<Series> = (0..colours)
+                .flat_map(|colour| {
+                    (0..MAX_DASHES).map(move |dashes| Series::of_values((colour, colours), dashes))
+                })
+                .collect();
+            for (index, style) in styles.iter().enumerate() {
+                assert!(!styles[..index].contains(style), "{colours}: {style:?}");
+            }
+        }
+        assert!(SEQUENCE.windows(2).all(|pair| luminance(rgb(pair[0])) < luminance(rgb(pair[1]))));
     }
 
     #[test]

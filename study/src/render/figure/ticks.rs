@@ -84,11 +84,15 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     }
 }
 
+/// Zero is near a range if its one end is at most this fraction of its other end. Chosen: figures of one study
+/// have equal baselines, and a range within a tenth of its value still shows its differences.
+const NEAR_ZERO: f64 = 0.9;
+
 /// A range that contains `low ..= high` with padding at both ends. It starts or ends at zero when zero is
 /// near.
 pub fn padded(low: f64, high: f64) -> (f64, f64) {
-    let low = if low >= 0.0 && low <= 0.5 * high { 0.0 } else { low };
-    let high = if high <= 0.0 && high >= 0.5 * low { 0.0 } else { high };
+    let low = if low >= 0.0 && low <= NEAR_ZERO * high { 0.0 } else { low };
+    let high = if high <= 0.0 && high >= NEAR_ZERO * low { 0.0 } else { high };
     let span = high - low;
     // A single value: a tenth of it on both sides.
     let padding = if span > 1e-9 * high.abs().max(low.abs()) {

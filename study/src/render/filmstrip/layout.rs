@@ -1,6 +1,6 @@
 //! Layout of a filmstrip: panels with one scale, rows as high as their highest shape, scale bar, legend.
 
-use super::{Filmstrip, LETTER, LINE, MARGIN, MAX_HEIGHT, WIDTH};
+use super::{Filmstrip, LETTER, LINE, MARGIN, MAX_HEIGHT, VALUE_LINE, WIDTH};
 use crate::input::value::short_number;
 use crate::render::font;
 use crate::render::page::{Letters, Page, Stroke};
@@ -16,6 +16,8 @@ pub(super) struct Layout {
     /// Height of each row: that of its highest shape.
     heights: Vec<f64>,
     columns: usize,
+    /// Height of the texts below a shape.
+    texts: f64,
 }
 
 impl Layout {
@@ -33,6 +35,8 @@ impl Layout {
             }
             tops.push(top);
         }
+        let lines = strip.values.iter().map(Vec::len).max().unwrap_or(0).max(1);
+        let texts = LINE + VALUE_LINE * (lines - 1) as f64;
         // Film without extent is drawn as a dot.
         let width = (right - low[0]).max(1e-9);
         let heights = |columns: usize| -> Vec<f64> {
@@ -42,7 +46,7 @@ impl Layout {
         let fitting = |columns: usize| {
             let heights = heights(columns);
             let across = WIDTH - 2.0 * MARGIN - MARGIN * (columns - 1) as f64;
-            let down = MAX_HEIGHT - (LINE + MARGIN) * heights.len() as f64;
+            let down = MAX_HEIGHT - (texts + MARGIN) * heights.len() as f64;
             (across / (columns as f64 * width)).min(down / heights.iter().sum::<f64>())
         };
         // The score of a layout decreases with empty panels.
@@ -59,7 +63,7 @@ impl Layout {
         }
         let scale = fitting(columns);
         let heights = heights(columns).iter().map(|height| scale * height).collect();
-        Self { scale, low, width: scale * width, heights, columns }
+        Self { scale, low, width: scale * width, heights, columns, texts }
     }
 
     /// Upper end of the first row.
@@ -69,12 +73,17 @@ impl Layout {
 
     /// Lower end of the shapes of a row.
     pub(super) fn ground(&self, row: usize) -> f64 {
-        Self::top() + self.heights[..=row].iter().sum::<f64>() + (LINE + MARGIN) * row as f64
+        Self::top() + self.heights[..=row].iter().sum::<f64>() + (self.texts + MARGIN) * row as f64
     }
 
     /// Lower end of all rows.
     pub(super) fn bottom(&self) -> f64 {
-        self.ground(self.heights.len() - 1) + LINE + MARGIN
+        self.ground(self.heights.len() - 1) + self.texts + MARGIN
+    }
+
+    /// Width for the texts below a shape.
+    pub(super) fn cell(&self) -> f64 {
+        (WIDTH - MARGIN) / self.columns as f64 - 0.5 * MARGIN
     }
 
     /// Lower left corner of a panel; all columns have the same width.

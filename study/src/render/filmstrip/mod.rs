@@ -1,18 +1,20 @@
-//! Shapes of one run side by side, as SVG: the same view and scale in every panel, its time below it, one
-//! scale bar and one legend.
+//! Shapes of one run side by side, as SVG: the same view and scale in every panel, the sampled values below
+//! it, one scale bar, one legend or colour bar.
 //!
 //! The colours are suitable for colour-blind readers. In grey, neighbouring storeys differ in brightness,
-//! and the three states of the film differ more than the shading of one state.
+//! and the three states of the film differ more than the shading of one state. A quantity has the colours of
+//! viridis, whose lightness increases evenly, with little shading.
 
 use billow_solver::mechanics::material::Regime;
 use billow_solver::output::frames::Frame;
 
 use self::layout::Layout;
+use super::figure::style;
 use super::font;
 use super::page::{self, Anchor, Letters, Page, Position, Stroke};
 use super::projection::{Facet, View};
-use crate::input::value::short_number;
 
+mod bar;
 mod layout;
 
 /// Width of the page, mm: across an A4 page with its margins.
@@ -25,6 +27,8 @@ const MARGIN: f64 = 4.0;
 const LETTER: f64 = 2.8;
 /// Height of a line of text, mm.
 const LINE: f64 = 1.7 * LETTER;
+/// Distance of the lines of values below a shape, mm.
+const VALUE_LINE: f64 = 1.35 * LETTER;
 /// Brightness of the inside of the film over that of its outside.
 const INSIDE_BRIGHTNESS: f64 = 0.72;
 
@@ -50,7 +54,7 @@ const REGIMES: [(Regime, &str, [u8; 3]); 3] = [
 ];
 
 /// Meaning of the colours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Colour {
     /// The storey of a capsule.
     Storey,
@@ -58,6 +62,19 @@ pub enum Colour {
     Regime,
     /// One colour.
     Plain,
+    /// A quantity of the elements.
+    Quantity(Quantity),
+}
+
+/// A quantity that the colours show, on one scale in all panels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// Name and unit, as "speed (m/s)".
+    pub label: String,
+    /// Values of each element, one list per frame, in the unit of the label.
+    pub values: Vec<Vec<f64>>,
+    /// Values at both ends of the scale, low < high. Values beyond have the colours of the ends.
+    pub range: [f64; 2],
 }
 
 /// A filmstrip to draw.
@@ -75,6 +92,19 @@ pub struct Filmstrip<'a> {
     pub view: View,
     /// Meaning of the colours.
     pub colour: Colour,
+    /// Texts below each shape, one list of lines per frame: its time and sampled values.
+    pub values: &'a [Vec<String>],
+    /// Lines of text at the end of the picture.
+    pub notes: &'a [String],
+}
+
+impl Quantity {
+    /// Position of the value of an element on the scale, 0 to 1.
+    fn fraction(&self, frame: usize, element: usize) -> f64 {
+        let [low, high] = self.range;
+        let value = self.values.get(frame).and_then(|values| values.get(element)).copied();
+        ((value.unwrap_or(low) - low) / (high - low)).clamp(0.0, 1.0)
+    }
 }
 
 impl Filmstrip<'_> {
@@ -83,21 +113,36 @@ impl Filmstrip<'_> {
         let layout = Layout::of(self);
         let legend = self.legend();
         let below = LINE * layout.lines_below(&legend) as f64;
-        let height = layout.bottom() + below + MARGIN;
+        let bar = if matches!(self.colour, Colour::Quantity(_)) { bar::HEIGHT } else { 0.0 };
+        let notes: Vec<String> = self
+            .notes
+            .iter()
+            .flat_map(|note| page::wrapped(note, LETTER, WIDTH - 2.0 * MARGIN))
+            .collect();
+        let height = layout.bottom() + below + bar + LINE * notes.len() as f64 + MARGIN;
         let mut page = Page::new();
         let title = page::cut(self.title, LETTER, WIDTH - 2.0 * MARGIN);
         page.text([MARGIN, MARGIN + LETTER], &Letters::new(LETTER), &title);
-        let seconds = self.frames.iter().any(|frame| frame.time >= 1.0);
         for (number, frame) in self.frames.iter().enumerate() {
             self.panel(&mut page, &layout, number, frame);
             let [x, y] = layout.corner(number);
-            let under = [x + 0.5 * layout.width, y + 1.3 * LETTER];
             let letters = Letters::new(LETTER).at(Anchor::Middle);
-            page.text(under, &letters, &time_label(frame.time, seconds));
+            for (line, text) in self.values.get(number).into_iter().flatten().enumerate() {
+                let under = [x + 0.5 * layout.width, y + 1.3 * LETTER + line as f64 * VALUE_LINE];
+                page.text(under, &letters, &page::cut(text, LETTER, layout.cell()));
+            }
         }
         let baseline = layout.bottom() + LETTER;
         layout.scale_bar(&mut page, [MARGIN, baseline]);
         draw_legend(&mut page, &legend, [MARGIN + layout.bar_width(), baseline]);
+        if let Colour::Quantity(quantity) = &self.colour {
+            bar::draw(&mut page, quantity, [MARGIN + layout.bar_width(), baseline - LETTER]);
+        }
+        let grey = Letters { colour: "#444444", ..Letters::new(LETTER) };
+        for (number, note) in notes.iter().enumerate() {
+            let y = layout.bottom() + below + bar + LETTER + LINE * number as f64;
+            page.text([MARGIN, y], &grey, note);
+        }
         page.finish(WIDTH, height, self.title)
     }
 
@@ -105,10 +150,12 @@ impl Filmstrip<'_> {
     fn panel(&self, page: &mut Page, layout: &Layout, number: usize, frame: &Frame) {
         let facets = self.view.facets(self.triangles, frame);
         let line = (6.0 / (facets.len() as f64).sqrt()).clamp(0.03, 0.12);
+        // Black edges are not visible on the dark end of viridis.
+        let edge = if matches!(self.colour, Colour::Quantity(_)) { "#c0c0c0" } else { "#000000" };
         page.open(
             &format!("frame{number}"),
             &format!(
-                "stroke=\"#000000\" stroke-opacity=\"0.35\" stroke-width=\"{line:.3}\" \
+                "stroke=\"{edge}\" stroke-opacity=\"0.35\" stroke-width=\"{line:.3}\" \
                  stroke-linejoin=\"round\""
             ),
         );
@@ -127,7 +174,7 @@ impl Filmstrip<'_> {
                 short(c[0] - b[0]),
                 short(c[1] - b[1]),
             );
-            page.path(&hexadecimal(self.fill(facet, frame)), &d);
+            page.path(&hexadecimal(self.fill(facet, number, frame)), &d);
         }
         page.close();
     }
@@ -137,8 +184,8 @@ impl Filmstrip<'_> {
         clippy::cast_sign_loss,
         reason = "a colour between 0 and 255"
     )]
-    fn fill(&self, facet: &Facet, frame: &Frame) -> [u8; 3] {
-        let (colour, dark) = match self.colour {
+    fn fill(&self, facet: &Facet, number: usize, frame: &Frame) -> [u8; 3] {
+        let (colour, dark) = match &self.colour {
             Colour::Plain => (PLAIN, 0.4),
             Colour::Storey => (self.storey_colour(self.storeys[facet.element]), 0.45),
             // The brightness shows the state; the shading is weak.
@@ -147,8 +194,13 @@ impl Filmstrip<'_> {
                 let known = REGIMES.iter().find(|(known, ..)| *known == regime);
                 (known.map_or(PLAIN, |(.., colour)| *colour), 0.75)
             }
+            // Shading would change the value that a colour shows, so it is weak, and equal on both sides.
+            Colour::Quantity(quantity) => {
+                (style::map_rgb(quantity.fraction(number, facet.element)), 0.85)
+            }
         };
-        let side = if facet.outside { 1.0 } else { INSIDE_BRIGHTNESS };
+        let one_sided = !matches!(self.colour, Colour::Quantity(_)) && !facet.outside;
+        let side = if one_sided { INSIDE_BRIGHTNESS } else { 1.0 };
         let bright = side * (dark + (1.0 - dark) * facet.light);
         colour.map(|part| (f64::from(part) * bright).round() as u8)
     }
@@ -168,7 +220,7 @@ impl Filmstrip<'_> {
     /// Names and colours of the legend.
     fn legend(&self) -> Vec<(String, [u8; 3])> {
         match self.colour {
-            Colour::Plain => Vec::new(),
+            Colour::Plain | Colour::Quantity(_) => Vec::new(),
             Colour::Regime => {
                 REGIMES.iter().map(|(_, name, colour)| ((*name).to_owned(), *colour)).collect()
             }
@@ -209,14 +261,6 @@ fn draw_legend(page: &mut Page, legend: &[(String, [u8; 3])], position: Position
         page.frame(corner, size, &Stroke::solid("#000000", 0.12));
         page.text([x + 1.6 * LETTER, y], &Letters::new(LETTER), name);
         position[0] += width + LETTER;
-    }
-}
-
-fn time_label(time: f64, seconds: bool) -> String {
-    if seconds {
-        format!("{} s", short_number(time))
-    } else {
-        format!("{} ms", short_number(1e3 * time))
     }
 }
 

@@ -10,7 +10,14 @@ fn shape(time: f64, tall: f32) -> Frame {
     let ground = [[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]];
     let ring = |z: f32| ground.map(|[x, y]: [f32; 2]| [x, y, z]);
     let positions = [ring(0.0), ring(0.5 * tall), ring(tall)].concat();
-    Frame { time, positions, regimes: REGIMES.map(|(regime, ..)| regime).repeat(6) }
+    Frame {
+        time,
+        positions,
+        regimes: REGIMES.map(|(regime, ..)| regime).repeat(6),
+        velocities: Vec::new(),
+        stresses: Vec::new(),
+        gaps: Vec::new(),
+    }
 }
 
 /// The elements of the box, and their storeys: two storeys and a top cap.
@@ -31,6 +38,8 @@ fn drawn(times: &[f64], colour: Colour) -> String {
     let (triangles, storeys) = elements();
     let frames: Vec<Frame> =
         times.iter().map(|time| shape(*time, 0.04 + 0.2 * *time as f32)).collect();
+    let values: Vec<Vec<String>> =
+        times.iter().map(|time| vec![format!("t {time}"), "p 2 kPa".to_owned()]).collect();
     Filmstrip {
         title: "grid: job 01234567 (N=5 & M<3)",
         triangles: &triangles,
@@ -38,6 +47,8 @@ fn drawn(times: &[f64], colour: Colour) -> String {
         frames: &frames,
         view: View::new(0.0, 0.0),
         colour,
+        values: &values,
+        notes: &["a note".to_owned()],
     }
     .svg()
 }
@@ -66,14 +77,13 @@ fn corners(svg: &Document<'_>, panel: usize) -> Vec<[[f64; 2]; 3]> {
 }
 
 #[test]
-fn every_frame_has_a_panel_with_its_time() {
+fn every_frame_has_a_panel_with_its_values() {
     let svg = drawn(&[0.0, 0.0125, 0.5], Colour::Storey);
     let svg = Document::parse(&svg).unwrap();
     let texts = texts(&svg);
     assert_eq!(texts[0], "grid: job 01234567 (N=5 & M<3)");
-    assert_eq!(texts[1..4], ["0 ms", "12.5 ms", "500 ms"]);
-    assert_eq!(texts[5..], ["storey 1", "storey 2", "caps"]);
-    assert!(drawn(&[0.0125, 1.5], Colour::Plain).contains(">0.0125 s<"));
+    assert_eq!(texts[1..7], ["t 0", "p 2 kPa", "t 0.0125", "p 2 kPa", "t 0.5", "p 2 kPa"]);
+    assert_eq!(texts[8..], ["storey 1", "storey 2", "caps", "a note"]);
     for panel in 0..3 {
         assert_eq!(corners(&svg, panel).len(), 18, "every element, front and back");
     }
@@ -93,7 +103,7 @@ fn all_panels_have_the_scale_of_the_scale_bar() {
     let line = bar.children().find(|node| node.has_tag_name("line")).unwrap();
     let attribute = |name: &str| line.attribute(name).unwrap().parse::<f64>().unwrap();
     let length = attribute("x2") - attribute("x1");
-    let label = texts(&svg)[4].clone();
+    let label = texts(&svg)[7].clone();
     let length_of_label = label.strip_suffix(" mm").unwrap().parse::<f64>().unwrap() / 1e3;
     assert!(
         [1.0, 2.0, 5.0].iter().any(|d| (libm::log10(length_of_label / d) % 1.0).abs() < 1e-9),
@@ -110,7 +120,7 @@ fn all_panels_have_the_scale_of_the_scale_bar() {
 fn the_three_states_of_the_film_differ_in_grey() {
     let svg = drawn(&[0.0], Colour::Regime);
     let svg = Document::parse(&svg).unwrap();
-    assert_eq!(texts(&svg)[3..], ["taut", "wrinkled", "slack"]);
+    assert_eq!(texts(&svg)[4..7], ["taut", "wrinkled", "slack"]);
     let grey =
         |[r, g, b]: [u8; 3]| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
     let tones: Vec<f64> = REGIMES.iter().map(|(.., colour)| grey(*colour)).collect();
@@ -118,6 +128,31 @@ fn the_three_states_of_the_film_differ_in_grey() {
     assert!(0.75 * tones[0] > tones[1] && 0.75 * tones[1] > tones[2], "{tones:?}");
     let differ = |pair: &[[u8; 3]]| (grey(pair[0]) - grey(pair[1])).abs() > 20.0;
     assert!(STOREYS.windows(2).all(differ), "neighbours differ in grey");
+}
+
+#[test]
+fn a_quantity_has_one_scale_with_its_unit() {
+    let quantity = Quantity {
+        label: "speed (m/s)".to_owned(),
+        values: vec![vec![0.0; 18], vec![5.0; 18], vec![20.0; 18]],
+        range: [0.0, 10.0],
+    };
+    let fractions = [0, 1, 2].map(|frame| quantity.fraction(frame, 3));
+    assert!(fractions.iter().zip([0.0, 0.5, 1.0]).all(|(a, b)| (a - b).abs() < 1e-12));
+    let svg = drawn(&[0.0, 0.5, 0.8], Colour::Quantity(quantity));
+    let svg = Document::parse(&svg).unwrap();
+    let texts = texts(&svg);
+    for text in ["0", "2", "10", "speed (m/s)", "a note"] {
+        assert!(texts.iter().any(|shown| shown == text), "{text}: {texts:?}");
+    }
+    let bright = |panel: usize| -> f64 {
+        let id = format!("frame{panel}");
+        let group = svg.descendants().find(|node| node.attribute("id") == Some(&id)).unwrap();
+        let fill = group.children().find_map(|node| node.attribute("fill")).unwrap();
+        let channel = |at: usize| f64::from(u8::from_str_radix(&fill[at..at + 2], 16).unwrap());
+        0.2126 * channel(1) + 0.7152 * channel(3) + 0.0722 * channel(5)
+    };
+    assert!(bright(0) < bright(1) && bright(1) < bright(2));
 }
 
 #[test]
@@ -132,6 +167,8 @@ fn the_legend_lists_storeys_that_share_a_colour() {
         frames: &frames,
         view: View::new(0.5, 0.4),
         colour: Colour::Storey,
+        values: &[],
+        notes: &[],
     };
     let names: Vec<String> = strip.legend().into_iter().map(|(name, _)| name).collect();
     assert_eq!(names.len(), 8);
@@ -166,6 +203,8 @@ proptest! {
         let (triangles, storeys) = elements();
         let frames: Vec<Frame> = (0..count).map(|n| shape(n as f64, tall)).collect();
         let title = "long ".repeat(50);
+        let mut lines = vec!["1 ms".to_owned(), "long ".repeat(9), "2 kPa".to_owned()];
+        lines.truncate(if count > 24 { 1 } else { 3 });
         let strip = Filmstrip {
             title: &title,
             triangles: &triangles,
@@ -173,6 +212,8 @@ proptest! {
             frames: &frames,
             view: View::new(azimuth, elevation),
             colour: Colour::Storey,
+            values: &vec![lines; count],
+            notes: &[],
         };
         let text = strip.svg();
         let svg = Document::parse(&text).unwrap();

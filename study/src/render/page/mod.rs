@@ -8,7 +8,7 @@ use super::font;
 
 mod text;
 
-pub use text::{cut, wrapped};
+pub use text::{cut, wrapped, wrapped_at_commas};
 
 use text::escaped;
 
@@ -124,6 +124,15 @@ impl Page {
             "<polygon points=\"{}\" fill=\"{fill}\" {}/>",
             points(positions),
             stroke.attributes()
+        );
+    }
+
+    /// A closed area in a light shade of a colour, through which lines below it are visible.
+    pub fn area(&mut self, positions: &[Position], colour: &str) {
+        let _ = writeln!(
+            self.body,
+            "<polygon points=\"{}\" fill=\"{colour}\" fill-opacity=\"0.3\" stroke=\"none\"/>",
+            points(positions)
         );
     }
 

@@ -2,16 +2,49 @@
 
 use crate::render::font;
 
-/// Breaks a text at its spaces into lines of at most `width`; a wider word has its own line.
+/// Breaks a text at its spaces into lines of at most `width`; a wider word has its own line. A number stays
+/// with the word after it, its unit.
 pub fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
+    let mut words: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
+        match words.last_mut() {
+            Some(last) if is_number(last) => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    in_lines(&words, " ", size, width)
+}
+
+/// Breaks a text into lines at its commas, and a part that is wider than a line at its spaces.
+pub fn wrapped_at_commas(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut parts: Vec<String> = text.split(", ").map(|part| format!("{part}, ")).collect();
+    if let Some(last) = parts.last_mut() {
+        last.truncate(last.len() - 2);
+    }
+    let lines = in_lines(&parts, "", size, width).into_iter();
+    lines.flat_map(|line| wrapped(line.trim_end(), size, width)).collect()
+}
+
+fn is_number(word: &str) -> bool {
+    word.starts_with(|letter: char| letter.is_ascii_digit() || letter == '−')
+        && word.chars().all(|letter| letter.is_ascii_digit() || "−.e".contains(letter))
+}
+
+/// Joins pieces with a separator to lines of at most `width`.
+fn in_lines(pieces: &[String], between: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in pieces {
         match lines.last_mut() {
-            Some(line) if font::width(&format!("{line} {word}"), size) <= width => {
-                line.push(' ');
+            Some(line)
+                if font::width(format!("{line}{between}{word}").trim_end(), size) <= width =>
+            {
+                line.push_str(between);
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word.clone()),
         }
     }
     lines
@@ -56,6 +89,16 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn a_number_keeps_its_unit_and_lines_break_at_commas() {
+        assert_eq!(wrapped("gas mass 0.05 g", 3.0, 24.0), ["gas mass", "0.05 g"]);
+        let title = "Mass flow rate 1 g/s, residual gas mass 0.05 g";
+        let lines = ["Mass flow rate 1 g/s,", "residual gas mass 0.05 g"];
+        assert_eq!(wrapped_at_commas(title, 3.0, 60.0), lines);
+        assert_eq!(wrapped_at_commas(title, 3.0, 200.0), [title]);
+        assert!(wrapped_at_commas("", 3.0, 20.0).is_empty());
+    }
 
     proptest! {
         #[test]

@@ -1,10 +1,10 @@
 //! The colour bar of a figure of maps.
 
-use super::Maps;
+use super::{MAP_HEIGHT, MAX_CELL_HEIGHT, MIN_CELL_HEIGHT, Maps};
 use crate::render::figure::style::{self, AXIS, MEDIUM, SMALL};
 use crate::render::figure::ticks;
 use crate::render::font;
-use crate::render::page::{Anchor, Letters, Page, Position, cut};
+use crate::render::page::{Anchor, Letters, Page, Position, cut, wrapped};
 
 /// Width of the colour bar, mm.
 const BAR: f64 = 4.0;
@@ -28,7 +28,15 @@ impl Maps {
         if self.range.is_none() {
             return 0.0;
         }
-        4.0 + BAR + 1.8 + self.bar_text_width() + 2.0 + 1.3 * MEDIUM
+        let lines = self.label_lines().len().max(1) as f64;
+        4.0 + BAR + 1.8 + self.bar_text_width() + 2.0 + 1.3 * lines * MEDIUM
+    }
+
+    /// The lines of the label, which fit beside the lowest map of this number of rows.
+    fn label_lines(&self) -> Vec<String> {
+        let rows = self.y.1.len().max(1) as f64;
+        let height = rows * (MAP_HEIGHT / rows).clamp(MIN_CELL_HEIGHT, MAX_CELL_HEIGHT);
+        wrapped(&self.label, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0)
     }
 
     /// Draws the colour bar with its numbers and label.
@@ -56,8 +64,11 @@ impl Maps {
             page.text([corner[0] + BAR + 1.8, y + 0.36 * SMALL], &Letters::new(SMALL), &text);
         }
         let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
-        let label = cut(&self.label, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0);
-        let x = corner[0] + BAR + 1.8 + self.bar_text_width() + 1.3 * MEDIUM;
-        page.text([x, corner[1] + 0.5 * height], &letters, &label);
+        let left = corner[0] + BAR + 1.8 + self.bar_text_width();
+        for (number, line) in self.label_lines().iter().enumerate() {
+            let x = left + 1.3 * MEDIUM * (number + 1) as f64;
+            let line = cut(line, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0);
+            page.text([x, corner[1] + 0.5 * height], &letters, &line);
+        }
     }
 }

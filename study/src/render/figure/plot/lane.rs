@@ -1,7 +1,7 @@
 //! The lane below a plot: one letter per job without a value.
 
 use super::super::scale::Scale;
-use super::super::style::{self, AXIS, EMPTY, SMALL};
+use super::super::style::{AXIS, EMPTY, SMALL, Series};
 use crate::render::page::{Anchor, Letters, Page, Position};
 
 /// A job without a value.
@@ -9,8 +9,8 @@ use crate::render::page::{Anchor, Letters, Page, Position};
 pub struct Mark {
     /// Value on the x axis.
     pub x: f64,
-    /// Index of the series.
-    pub series: usize,
+    /// The style of its series.
+    pub series: Series,
     /// The letter of its outcome.
     pub letter: String,
 }
@@ -47,8 +47,8 @@ pub fn draw(
     }
     let (positions, _) = positions(marks, x, width);
     for (mark, [at, row]) in marks.iter().zip(positions) {
-        let colour = style::colour(mark.series);
-        let letters = Letters { colour, ..Letters::new(SMALL).at(Anchor::Middle) };
+        let letters =
+            Letters { colour: mark.series.colour, ..Letters::new(SMALL).at(Anchor::Middle) };
         page.text([at, top + (row + 0.79) * LANE_ROW], &letters, &mark.letter);
     }
 }

@@ -4,12 +4,13 @@
 //! a value is a letter in a lane below the plot.
 
 use super::scale::{Scale, Spread};
-use super::style::{AXIS, Fill, MARGIN, MEDIUM, SMALL};
+use super::style::{AXIS, Fill, MARGIN, MEDIUM, SMALL, Series};
 use super::ticks::{self, Tick};
 use super::{INNER, Sheet};
 use crate::render::font;
-use crate::render::page::{Anchor, Letters, Page, cut};
+use crate::render::page::{Anchor, Letters, Page, cut, wrapped, wrapped_at_commas};
 
+mod band;
 pub mod lane;
 mod line;
 mod panel;
@@ -60,13 +61,15 @@ pub struct Panel {
     pub lane: Vec<Mark>,
     /// Text in the middle of an empty plot.
     pub message: String,
+    /// Whether the place of the panel stays empty.
+    pub blank: bool,
 }
 
 /// One series of a plot.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Index of the series: gives colour, dashes, marker.
-    pub series: usize,
+    /// Colour, dashes, marker.
+    pub series: Series,
     /// Pieces of the line, each a list of joined points; all finite.
     pub pieces: Vec<Vec<[f64; 2]>>,
     /// Markers at given points.
@@ -75,6 +78,8 @@ pub struct Line {
     pub sparse_markers: bool,
     /// Crosses at the ends of failed runs.
     pub crosses: Vec<[f64; 2]>,
+    /// Whether the line is thin, and a band where it turns too often to be read.
+    pub rings: bool,
 }
 
 /// Distance between plots side by side, mm.
@@ -92,9 +97,18 @@ struct Layout {
     height: f64,
     /// Number of rows of letters in the lane, by row of plots.
     lanes: Vec<usize>,
-    /// Height of the title line above a plot.
+    /// Titles of the plots, broken into lines.
+    titles: Vec<Vec<String>>,
+    /// Height of the title above a plot.
     title: f64,
 }
+
+/// Note of a figure with a band.
+const BAND_NOTE: &str = "Shaded bands: the range of a line that turns too often to be drawn.";
+/// Distance of the lines of a label, in sizes of its letters.
+const LABEL_LINE: f64 = 1.3;
+/// Height of a line of a title, mm.
+const TITLE_LINE: f64 = 1.35 * SMALL;
 
 impl Layout {
     fn lane_height(&self, row: usize) -> f64 {
@@ -108,13 +122,18 @@ impl Plots {
         let mut page = Page::new();
         let mut y = self.sheet.head(&mut page);
         let layout = self.layout();
+        let mut bands = false;
         let last_row = self.panels.len().saturating_sub(self.across);
         for (row, panels) in self.panels.chunks(self.across.max(1)).enumerate() {
             y += layout.title;
             let bottom = y + layout.height;
             let mut below: f64 = 2.0;
             for (column, panel) in panels.iter().enumerate() {
+                if panel.blank {
+                    continue;
+                }
                 let left = layout.columns[column];
+                let number = row * self.across + column;
                 let frame = Frame {
                     left,
                     top: y,
@@ -126,8 +145,10 @@ impl Plots {
                     lane_rows: layout.lanes.get(row).copied().unwrap_or(0),
                     first: column == 0,
                 };
-                panel.draw(&mut page, &frame);
-                if row * self.across + column >= last_row {
+                bands |= panel.draw(&mut page, &frame, &layout.titles[number]);
+                let below_is_blank =
+                    self.panels.get(number + self.across).is_none_or(|panel| panel.blank);
+                if number >= last_row || below_is_blank {
                     let top = bottom + layout.lane_height(row);
                     below = below.max(self.draw_x_axis(&mut page, &frame, top));
                 }
@@ -141,7 +162,11 @@ impl Plots {
         let letters = Letters::new(MEDIUM).at(Anchor::Middle);
         page.text([0.5 * (left + right), y], &letters, &label);
         y += 0.5 * MEDIUM;
-        self.sheet.foot(page, y)
+        let mut sheet = self.sheet.clone();
+        if bands {
+            sheet.notes.insert(0, BAND_NOTE.to_owned());
+        }
+        sheet.foot(page, y)
     }
 
     fn layout(&self) -> Layout {
@@ -163,7 +188,9 @@ impl Plots {
         if self.panels.iter().any(|panel| !panel.lane.is_empty()) {
             gutter = gutter.max(font::width(lane::NAME, SMALL));
         }
-        let left = MARGIN + 1.8 * MEDIUM + gutter + 2.0;
+        let labels = self.panels.iter().step_by(across);
+        let labels = labels.map(|panel| panel.label_lines(height).len()).max().unwrap_or(0).max(1);
+        let left = MARGIN + (0.5 + LABEL_LINE * labels as f64) * MEDIUM + gutter + 2.0;
         // Half of the last number of the x axis extends beyond the plot.
         let inner_width = INNER + MARGIN - left - 3.0;
         let width = (inner_width - (across - 1) as f64 * GAP) / across as f64;
@@ -173,8 +200,11 @@ impl Plots {
         let rows = |panel: &Panel| lane::positions(&panel.lane, &x, width).1;
         let lanes = self.panels.chunks(across);
         let lanes = lanes.map(|row| row.iter().map(rows).max().unwrap_or(0)).collect();
-        let title = if self.panels.iter().any(|panel| !panel.title.is_empty()) { 5.5 } else { 1.5 };
-        Layout { columns, width, height, lanes, title }
+        let titles: Vec<Vec<String>> =
+            self.panels.iter().map(|panel| wrapped_at_commas(&panel.title, SMALL, width)).collect();
+        let lines = titles.iter().map(Vec::len).max().unwrap_or(0);
+        let title = 1.5 + TITLE_LINE * lines as f64;
+        Layout { columns, width, height, lanes, titles, title }
     }
 
     fn x_scale(&self, left: f64, width: f64) -> Scale {
@@ -238,6 +268,13 @@ impl Plots {
             page.text(position, &Letters::new(SMALL).at(Anchor::Middle), &text);
         }
         1.6 + lines as f64 * 1.25 * SMALL
+    }
+}
+
+impl Panel {
+    /// The lines of the label of a y axis of this height, mm.
+    fn label_lines(&self, height: f64) -> Vec<String> {
+        wrapped(&self.label, MEDIUM, height + 4.0)
     }
 }
 

@@ -2,15 +2,19 @@
 
 use super::lane;
 use super::line::{along, thinned};
-use super::{Panel, y_ticks};
+use super::{LABEL_LINE, Line, Panel, TITLE_LINE, band, y_ticks};
 use crate::render::figure::legend;
 use crate::render::figure::scale::Scale;
 use crate::render::figure::style::{self, AXIS, Fill, GRID, MARGIN, MEDIUM, SMALL};
 use crate::render::figure::ticks::Tick;
-use crate::render::page::{Anchor, Letters, Page, Position, cut, wrapped};
+use crate::render::page::{Anchor, Letters, Page, Position, Stroke, cut, wrapped};
 
-/// Number of markers along a line with sparse markers.
+/// The line of zero in a plot of both signs.
+const ZERO: Stroke = Stroke::solid("#888888", 0.25);
+/// Number of markers along a line with sparse markers, at most.
 const SPARSE_MARKERS: f64 = 6.0;
+/// Distance of these markers along x, mm, at least. Chosen: with several lines they do not hide the data.
+const MARKER_DISTANCE: f64 = 20.0;
 
 /// Where a panel lies on the page, mm, and its scales.
 pub(super) struct Frame {
@@ -46,19 +50,18 @@ impl Frame {
 }
 
 impl Panel {
-    /// Draws the panel, with the y axis if it is the first one of its row.
-    pub(super) fn draw(&self, page: &mut Page, frame: &Frame) {
-        let title = cut(&self.title, SMALL, frame.width);
-        page.text([frame.left, frame.top - 1.6], &Letters::new(SMALL), &title);
+    /// Draws the panel, with the y axis if it is the first one of its row. Returns whether it has a band.
+    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) -> bool {
+        for (number, line) in title.iter().rev().enumerate() {
+            let y = frame.top - 1.6 - number as f64 * TITLE_LINE;
+            page.text([frame.left, y], &Letters::new(SMALL), &cut(line, SMALL, frame.width));
+        }
         self.draw_grid(page, frame);
         let size = [frame.width, frame.height];
         page.clip([frame.left, frame.top], size);
+        let mut bands = false;
         for line in &self.lines {
-            for piece in &line.pieces {
-                let positions: Vec<Position> =
-                    piece.iter().map(|point| frame.position(*point)).collect();
-                page.polyline(&thinned(&positions), &style::line(line.series));
-            }
+            bands |= draw_line(page, line, frame);
         }
         page.unclip();
         page.frame([frame.left, frame.top], size, &AXIS);
@@ -68,6 +71,7 @@ impl Panel {
             lane::draw(page, &self.lane, area, &frame.x, frame.first);
         }
         self.draw_message(page, frame);
+        bands
     }
 
     /// Grid lines, and the y axis with its label.
@@ -87,10 +91,17 @@ impl Panel {
             let x = frame.x.position(*value);
             page.line([x, top], [x, bottom], &GRID);
         }
+        if self.range[0] < 0.0 && self.range[1] > 0.0 {
+            let y = frame.y.position(0.0);
+            page.line([left, y], [right, y], &ZERO);
+        }
         if frame.first {
             let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
-            let label = cut(&self.label, MEDIUM, frame.height + 4.0);
-            page.text([MARGIN + MEDIUM, 0.5 * (top + bottom)], &letters, &label);
+            for (number, line) in self.label_lines(frame.height).iter().enumerate() {
+                let x = MARGIN + (1.0 + LABEL_LINE * number as f64) * MEDIUM;
+                let line = cut(line, MEDIUM, frame.height + 4.0);
+                page.text([x, 0.5 * (top + bottom)], &letters, &line);
+            }
         }
     }
 
@@ -99,11 +110,14 @@ impl Panel {
         let sparse = self.lines.iter().filter(|line| line.sparse_markers).count();
         for (number, line) in self.lines.iter().enumerate() {
             if line.sparse_markers {
-                let step = frame.width / SPARSE_MARKERS;
+                let step = (frame.width / SPARSE_MARKERS).max(MARKER_DISTANCE);
                 let shift = (number as f64 + 0.5) / sparse as f64;
                 let start = frame.left + shift * step;
                 let positions = along(line, (&frame.x, &frame.y), start, step);
-                for position in positions.into_iter().filter(|position| frame.contains(*position)) {
+                // A marker at an end would be half outside.
+                let inside =
+                    |[x, y]: Position| frame.contains([x - 1.0, y]) && frame.contains([x + 1.0, y]);
+                for position in positions.into_iter().filter(|position| inside(*position)) {
                     style::marker(page, position, line.series, Fill::Filled, 1.7);
                 }
             }
@@ -112,7 +126,7 @@ impl Panel {
                 style::marker(page, position, line.series, *fill, legend::MARKER);
             }
             for point in &line.crosses {
-                style::cross(page, frame.position(*point), style::colour(line.series), 2.6);
+                style::cross(page, frame.position(*point), line.series.colour, 2.6);
             }
         }
     }
@@ -130,4 +144,32 @@ impl Panel {
             page.text(position, &Letters::new(SMALL).at(Anchor::Middle), line);
         }
     }
+}
+
+/// Draws a line. Where one that rings turns too often to be read, it is a band. Returns whether it has one.
+fn draw_line(page: &mut Page, line: &Line, frame: &Frame) -> bool {
+    let mut bands = false;
+    let stroke = if line.rings { line.series.thin_line() } else { line.series.line() };
+    for piece in &line.pieces {
+        let positions: Vec<Position> = piece.iter().map(|point| frame.position(*point)).collect();
+        if !line.rings {
+            page.polyline(&thinned(&positions), &stroke);
+            continue;
+        }
+        for part in band::parts(&positions) {
+            match part {
+                band::Part::Line(positions) => page.polyline(&thinned(&positions), &stroke),
+                band::Part::Band { upper, lower } => {
+                    let around: Vec<Position> =
+                        upper.iter().chain(lower.iter().rev()).copied().collect();
+                    page.area(&around, line.series.colour);
+                    let border = Stroke { dashes: &[], ..stroke };
+                    page.polyline(&upper, &border);
+                    page.polyline(&lower, &border);
+                    bands = true;
+                }
+            }
+        }
+    }
+    bands
 }

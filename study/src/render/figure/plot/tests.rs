@@ -30,13 +30,14 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
     let (bottom, top) =
         ticks::padded(extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max));
     let line = |series: usize| Line {
-        series,
+        series: Series::nth(series),
+        rings: series == 1,
         pieces: vec![points.clone()],
         marks: vec![(points[0], Fill::Open)],
         sparse_markers: true,
         crosses: if series == 0 { vec![points[points.len() - 1]] } else { Vec::new() },
     };
-    let lane = (0..series).map(|series| Mark { x: high, series, letter: "S".to_owned() }).collect();
+    let lane = (0..series).map(|series| mark_of(high, series)).collect();
     Plots {
         sheet: Sheet {
             title: "Height of the top ring while the capsule fills, of all the jobs there are"
@@ -44,7 +45,9 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
             subtitle: vec!["study".to_owned()],
             legends: vec![Legend {
                 heading: "N".to_owned(),
-                entries: (0..series).map(|n| (Sample::Series(n), format!("N {n}"))).collect(),
+                entries: (0..series)
+                    .map(|n| (Sample::Line(Series::nth(n)), format!("N {n}")))
+                    .collect(),
             }],
             notes: vec!["a note".to_owned()],
         },
@@ -57,10 +60,15 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
                 lines: (0..series).map(line).collect(),
                 lane: if panel == 0 { Vec::clone(&lane) } else { Vec::new() },
                 message: String::new(),
+                blank: false,
             })
             .collect(),
         across,
     }
+}
+
+fn mark_of(x: f64, series: usize) -> Mark {
+    Mark { x, series: Series::nth(series), letter: "S".to_owned() }
 }
 
 fn same(a: [f64; 2], b: [f64; 2]) -> bool {
@@ -90,7 +98,7 @@ proptest! {
         positions in prop::collection::btree_set(0..8_u8, 1..8), marks in 1..9_usize, width in 35.0..140.0_f64,
     ) {
         let x = Scale::new(Spread::Linear, [-0.4, 7.4], [10.0, 10.0 + width]);
-        let mark = |x: &u8, series| Mark { x: f64::from(*x), series, letter: "S".to_owned() };
+        let mark = |x: &u8, series| mark_of(f64::from(*x), series);
         let marks: Vec<Mark> =
             positions.iter().flat_map(|x| (0..marks).map(move |series| mark(x, series))).collect();
         let (positions, rows) = lane::positions(&marks, &x, width);
@@ -137,6 +145,14 @@ fn quantities_units_legend_and_message_are_on_the_page() {
 }
 
 #[test]
+fn a_figure_with_a_band_says_what_it_is() {
+    let ys: Vec<f64> = (0..3000).map(|index| f64::from(index % 2)).collect();
+    let note = |figure: &Plots| check::figure(&figure.svg()).contains(&BAND_NOTE.to_owned());
+    assert!(note(&plots(axis(0.0, 1.0), &ys, 1, 1, 2)));
+    assert!(!note(&plots(axis(0.0, 1.0), &[0.0, 1.0], 1, 1, 2)));
+}
+
+#[test]
 fn long_names_stand_alternately_on_two_lines() {
     let mut x = axis(-0.5, 4.5);
     x.names = true;
@@ -151,7 +167,7 @@ fn long_names_stand_alternately_on_two_lines() {
 #[test]
 fn many_letters_at_one_position_stand_in_rows() {
     let x = Scale::new(Spread::Linear, [0.0, 2.0], [10.0, 40.0]);
-    let mark = |series| Mark { x: 0.0, series, letter: "S".to_owned() };
+    let mark = |series| mark_of(0.0, series);
     let marks: Vec<Mark> = (0..20).map(mark).chain([Mark { x: 2.0, ..mark(0) }]).collect();
     let (positions, rows) = lane::positions(&marks, &x, 30.0);
     assert!(rows > 1);

@@ -8,10 +8,15 @@
 //!   Points [frames · nodes, 3]: f32, m; frame k from row k · nodes; one chunk per frame
 //!   CellData/storey [elements]: u32, 0 the bottom cap, 1 … M, M + 1 the top cap
 //!   CellData/regime [frames · elements]: u8, 0 slack, 1 wrinkled, 2 taut; frame k from k · elements
+//!   CellData/principal_stress_1, …_2 [frames · elements]: f32, Pa, the larger first
+//!   PointData/velocity [frames · nodes, 3]: f32, m/s
+//!   PointData/gap [frames · nodes]: f32, m, at most the contact distance; with contact only
 //!   Steps      attribute NSteps; Values [frames]: s
 //!     PartOffsets, CellOffsets, ConnectivityIdOffsets 0; NumberOfParts 1; PointOffsets k · nodes
-//!     CellDataOffsets/storey 0; CellDataOffsets/regime k · elements
+//!     CellDataOffsets/storey 0; the other CellDataOffsets k · elements; PointDataOffsets k · nodes
 //! ```
+//! Files of earlier versions have no stresses, no velocities and no gaps.
+//!
 //! `CellOffsets` and `ConnectivityIdOffsets` have a second axis of length one: an unstructured grid has
 //! one kind of topology. Source: "VTKHDF format specification" in the documentation of VTK.
 
@@ -24,9 +29,12 @@ use hdf5::file::LinkCreationOrder;
 use hdf5::types::FixedAscii;
 use hdf5::{Dataset, Extents, File, Group, H5Type};
 
+use self::fields::StoredFields;
 use super::sha256::Contents;
 use super::{DEFLATE_LEVEL, HDF5_LOCK, damaged, number_attribute};
 use crate::platform::error::Result;
+
+mod fields;
 
 /// Name of the group.
 const GROUP: &str = "VTKHDF";
@@ -70,13 +78,18 @@ pub(super) fn hash(frames: &Frames, contents: &mut Contents) {
     let points = coordinates(frames).map(|coordinate| coordinate.to_bits().to_le_bytes());
     contents.add("VTKHDF/Points", 3 * count * nodes, points);
     contents.add("VTKHDF/CellData/regime", count * elements, regimes(frames).map(|code| [code]));
+    fields::hash(frames, contents);
 }
 
 /// Writes the group.
 pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     let (count, elements) = (frames.frames.len(), frames.triangles.len());
     let nodes = frames.frames.first().map_or(0, |frame| frame.positions.len());
-    let fits = |frame: &Frame| frame.positions.len() == nodes && frame.regimes.len() == elements;
+    let fits = |frame: &Frame| {
+        frame.positions.len() == nodes
+            && frame.regimes.len() == elements
+            && fields::fit(frame, frames)
+    };
     if frames.storeys.len() != elements || !frames.frames.iter().all(fits) {
         return Err("frames of different sizes".into());
     }
@@ -116,7 +129,9 @@ pub(super) fn write(file: &File, frames: &Frames) -> hdf5::Result<()> {
     array(&steps, "ConnectivityIdOffsets", (count, 1), None, &zeros)?;
     let offsets = create_group(&steps, "CellDataOffsets")?;
     array(&offsets, "storey", count, None, &zeros)?;
-    array(&offsets, "regime", count, None, &every(elements))
+    array(&offsets, "regime", count, None, &every(elements))?;
+
+    fields::write(frames, &group, [&cells, &steps, &offsets])
 }
 
 fn create_group(parent: &Group, name: &str) -> hdf5::Result<Group> {
@@ -150,6 +165,7 @@ pub struct StoredFrames {
     nodes: usize,
     points: Dataset,
     regimes: Dataset,
+    fields: StoredFields,
 }
 
 /// Opens the group and reads everything except the frames; `None` for a file without the group.
@@ -184,8 +200,17 @@ pub(super) fn read(file: &File, path: &Path) -> hdf5::Result<Option<StoredFrames
     if !times.iter().all(|time| time.is_finite()) || !times.is_sorted() {
         return Err("frames out of order".into());
     }
-    let (path, triangles) = (path.to_owned(), triangles.to_vec());
-    Ok(Some(StoredFrames { path, triangles, storeys, times, nodes, points, regimes }))
+    let stored = StoredFrames {
+        fields: StoredFields::open(&group, count * nodes, count * triangles.len())?,
+        path: path.to_owned(),
+        triangles: triangles.to_vec(),
+        storeys,
+        times,
+        nodes,
+        points,
+        regimes,
+    };
+    Ok(Some(stored))
 }
 
 impl StoredFrames {
@@ -227,7 +252,8 @@ impl StoredFrames {
         let regime = |code: &u8| REGIMES.get(usize::from(*code)).copied();
         let regimes: Option<Vec<Regime>> = codes.iter().map(regime).collect();
         let regimes = regimes.ok_or_else(|| format!("frame {number} has unknown regimes"))?;
-        Ok(Frame { time, positions: points.to_vec(), regimes })
+        let (velocities, stresses, gaps) = self.fields.frame(number, nodes, elements)?;
+        Ok(Frame { time, positions: points.to_vec(), regimes, velocities, stresses, gaps })
     }
 }
 

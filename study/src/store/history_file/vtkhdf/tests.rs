@@ -115,11 +115,52 @@ fn the_content_hash_depends_on_every_frame() {
         edited(&|frames| frames.frames[2].positions[3][2] = 0.0),
         edited(&|frames| frames.frames[0].regimes[0] = Regime::Taut),
         edited(&|frames| drop(frames.frames.pop())),
+        edited(&|frames| frames.frames[1].velocities[2][0] = 9.0),
+        edited(&|frames| frames.frames[1].stresses[1][0] = 9.0),
+        edited(&|frames| frames.frames[1].gaps[0] = 9.0),
+        edited(&|frames| without_fields(frames)),
     ];
     for (index, hash) in hashes.iter().enumerate() {
         assert!(!hashes[..index].contains(hash), "{index}");
     }
     assert_eq!(hash(Some(frames())), hashes[1]);
+}
+
+/// Frames as earlier versions wrote them.
+fn without_fields(frames: &mut Frames) {
+    for frame in &mut frames.frames {
+        frame.velocities.clear();
+        frame.stresses.clear();
+        frame.gaps.clear();
+    }
+}
+
+#[test]
+fn fields_are_stored_for_vtk_and_older_frames_have_none() {
+    let (_folder, path) = path_with(&encoded(Some(fixture::frames(1, 3))));
+    let group = File::open(&path).unwrap().group("VTKHDF").unwrap();
+    let velocity = group.dataset("PointData/velocity").unwrap();
+    assert_eq!((velocity.shape(), velocity.chunk().unwrap()), (vec![12, 3], vec![4, 3]));
+    assert_eq!(group.dataset("PointData/gap").unwrap().shape(), [12]);
+    for (name, expected) in [
+        ("PointDataOffsets/velocity", [0, 4, 8]),
+        ("PointDataOffsets/gap", [0, 4, 8]),
+        ("CellDataOffsets/principal_stress_1", [0, 2, 4]),
+        ("CellDataOffsets/principal_stress_2", [0, 2, 4]),
+    ] {
+        let offsets = group.dataset(&format!("Steps/{name}")).unwrap().read_raw::<i64>().unwrap();
+        assert_eq!(offsets, expected, "{name}");
+    }
+    let stress = group.dataset("CellData/principal_stress_1").unwrap();
+    assert_eq!(stress.read_raw::<f32>().unwrap(), [2e6, 0.0, 2e6, 0.0, 2e6, 0.0]);
+
+    let mut older = fixture::frames(1, 3);
+    without_fields(&mut older);
+    let bytes = encoded(Some(older.clone()));
+    assert_eq!(read_back(&bytes).unwrap().unwrap(), older);
+    let (_folder, path) = path_with(&bytes);
+    let group = File::open(&path).unwrap().group("VTKHDF").unwrap();
+    assert!(!group.link_exists("PointData") && !group.link_exists("Steps/PointDataOffsets"));
 }
 
 #[test]
@@ -147,6 +188,11 @@ fn damaged_frames_are_refused_with_the_name_of_the_file() {
         ("frames out of order", &|group| set(group, "Steps/Values", &[0.0, 0.2, 0.1])),
         ("frame 2 has unknown regimes", &|group| {
             set(group, "CellData/regime", &[0.0, 1.0, 1.0, 2.0, 2.0, 3.0]);
+        }),
+        ("PointData/velocity has another size", &|group| {
+            group.unlink("PointData/velocity").unwrap();
+            let points = group.group("PointData").unwrap();
+            points.new_dataset::<f32>().shape((11, 3)).create("velocity").unwrap();
         }),
         ("frame 1 has non-finite positions", &|group| {
             let mut points = [0.0; 36];
@@ -181,6 +227,9 @@ proptest! {
                 time,
                 positions: bits[4 * number..4 * number + 4].iter().map(finite).collect(),
                 regimes: codes[2 * number..2 * number + 2].iter().map(|code| REGIMES[*code]).collect(),
+                velocities: bits[4 * number..4 * number + 4].iter().map(finite).collect(),
+                stresses: vec![[1.0, -0.0]; 2],
+                gaps: Vec::new(),
             }
         };
         let frames: Vec<Frame> = (0..5).map(frame).collect();

@@ -1,0 +1,158 @@
+//! Plain names of quantities, for titles and axes: "height of the top ring" for `z_rim`.
+
+use crate::render::figure::unit::Unit;
+
+/// Plain names of history columns and tracks.
+const HISTORY: &[(&str, &str)] = &[
+    ("z_centre", "height of the top centre"),
+    ("z_rim", "height of the top ring"),
+    ("z_max", "height of the highest node"),
+    ("vz", "velocity of the top ring"),
+    ("vz_centre", "velocity of the top centre"),
+    ("volume", "enclosed volume"),
+    ("pressure", "gas pressure"),
+    ("temperature", "gas temperature"),
+    ("gas_mass", "mass of the gas"),
+    ("lid_force", "force on the lid"),
+    ("kinetic_energy", "kinetic energy of the film"),
+    ("strain_energy", "strain energy of the film"),
+    ("contact_energy", "energy of contact"),
+    ("gas_work", "work of the gas"),
+    ("smallest_gap", "smallest gap between film and film"),
+    ("interlayer_pressure", "largest pressure of film on film"),
+];
+
+/// Plain names of measures, the columns of the table.
+const MEASURES: &[(&str, &str)] = &[
+    ("volume_ratio", "volume over static volume"),
+    ("height_ratio", "height over static height"),
+    ("t_50_z_rim", "time to 50 % of the height"),
+    ("t_90_z_rim", "time to 90 % of the height"),
+    ("t_50_volume", "time to 50 % of the volume"),
+    ("t_90_volume", "time to 90 % of the volume"),
+    ("t_deployed", "time to deployment"),
+    ("t_settled", "time to rest"),
+    ("peak_vz", "peak velocity of the top ring"),
+    ("t_peak_vz", "time of the peak velocity"),
+    ("peak_kinetic_energy", "peak kinetic energy of the film"),
+    ("overshoot", "overshoot of the height"),
+    ("ringing_rms", "ringing velocity after deployment"),
+    ("ringing_frequency", "frequency of ringing"),
+    ("film_stress", "peak film stress"),
+    ("peak_lid_force", "peak force on the lid"),
+    ("final_z_rim", "final height of the top ring"),
+    ("final_volume", "final volume"),
+    ("final_pressure", "final gas pressure"),
+    ("final_temperature", "final gas temperature"),
+];
+
+/// Plain names of parameters; that of any other parameter is the last part of its path, in words.
+const PARAMETERS: &[(&str, &str)] = &[
+    ("N", "number of panels"),
+    ("M", "number of storeys"),
+    ("alpha1_over_phi", "angle ratio α1/ϕ"),
+    ("strategy", "inflation strategy"),
+    ("subdivisions", "subdivisions of the mesh"),
+];
+
+/// The name of a quantity in a figure.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Name {
+    /// Plain name, in lower case.
+    pub plain: String,
+    /// Symbol in files and options; empty if the plain name shows it already.
+    pub symbol: String,
+}
+
+impl Name {
+    /// The name of a history column or a track. Without a plain name its `meaning` stands for it.
+    pub fn of_history(name: &str, meaning: &str) -> Self {
+        Self::found(HISTORY, name).unwrap_or_else(|| Self::of_meaning(name, meaning))
+    }
+
+    /// The name of a measure, in the same way.
+    pub fn of_measure(name: &str, meaning: &str) -> Self {
+        Self::found(MEASURES, name).unwrap_or_else(|| Self::of_meaning(name, meaning))
+    }
+
+    /// The name of a parameter, from its name or path.
+    pub fn of_parameter(name: &str) -> Self {
+        let last = name.rsplit('.').next().unwrap_or(name);
+        Self::found(PARAMETERS, last)
+            .unwrap_or_else(|| Self { plain: last.replace('_', " "), symbol: String::new() })
+    }
+
+    fn found(names: &[(&str, &str)], name: &str) -> Option<Self> {
+        let plain = names.iter().find(|(known, _)| *known == name)?.1;
+        // A symbol that the plain name shows is not repeated.
+        let words = name.replace('_', " ");
+        let shown = plain.contains('α') || (name.len() > 1 && plain.contains(&words));
+        let symbol = if shown { "" } else { name };
+        Some(Self { plain: plain.to_owned(), symbol: symbol.to_owned() })
+    }
+
+    /// A meaning up to its first comma or semicolon; the name alone if it is long.
+    fn of_meaning(name: &str, meaning: &str) -> Self {
+        /// Most characters of a plain name. Chosen: with symbol and unit it fits along an axis.
+        const LONGEST: usize = 44;
+        let short = meaning.split([',', ';', ':', '(']).next().unwrap_or_default().trim();
+        if short.is_empty() || short.chars().count() > LONGEST {
+            return Self { plain: name.to_owned(), symbol: String::new() };
+        }
+        Self { plain: short.to_owned(), symbol: name.to_owned() }
+    }
+
+    /// The label of an axis: plain name, symbol, unit.
+    pub fn label(&self, unit: &Unit) -> String {
+        unit.label(&capital(&self.with_symbol()))
+    }
+
+    /// Plain name and symbol.
+    pub fn with_symbol(&self) -> String {
+        let gap = if self.symbol.is_empty() { "" } else { " " };
+        format!("{}{gap}{}", self.plain, self.symbol)
+    }
+
+    /// The short name before a value: the symbol of a count, else the plain name.
+    pub fn before_value(&self) -> &str {
+        if self.symbol.is_empty() { &self.plain } else { &self.symbol }
+    }
+}
+
+/// A text with a capital first letter; a symbol keeps its case.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) if !text.split(' ').next().is_some_and(|word| word.contains('_')) => {
+            format!("{}{}", first.to_uppercase(), letters.as_str())
+        }
+        _ => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_have_name_symbol_and_unit() {
+        let metre = Unit::of("m", 1.0);
+        let label = |name: &Name, unit: &Unit| name.label(unit);
+        assert_eq!(
+            label(&Name::of_history("z_rim", ""), &metre),
+            "Height of the top ring z_rim (m)"
+        );
+        assert_eq!(Name::of_history("pressure", "").with_symbol(), "gas pressure");
+        assert_eq!(Name::of_parameter("strategy").with_symbol(), "inflation strategy");
+        let flow = Unit::of("kg/s", 0.005);
+        assert_eq!(label(&Name::of_parameter("gas.mass_flow_rate"), &flow), "Mass flow rate (g/s)");
+        assert_eq!(label(&Name::of_parameter("N"), &Unit::si("1")), "Number of panels N");
+        assert_eq!(Name::of_parameter("N").before_value(), "N");
+        assert_eq!(
+            Name::of_measure("new_one", "largest of all, at a sample").with_symbol(),
+            "largest of all new_one"
+        );
+        assert_eq!(Name::of_measure("new_one", &"long ".repeat(20)).plain, "new_one");
+        assert_eq!(label(&Name::of_measure("new_one", &"long ".repeat(20)), &metre), "new_one (m)");
+    }
+}
