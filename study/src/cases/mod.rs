@@ -24,7 +24,7 @@ mod row;
 mod table;
 
 mod axisymmetric;
-mod contact_capsule;
+pub mod contact_capsule;
 mod contact_impacts;
 mod contact_relaxed;
 pub mod contact_rig;
