@@ -28,8 +28,10 @@ pub fn print(results: &Results<'_>, table: &Table, rows: &[usize]) -> Result<()>
     let study = Study::load(&results.study_path(), &[])?;
     let effects = Effects::of(table, rows, &HEADLINE, &|name| study.zipped_with(name));
     for text in lines(&effects) {
+        let mut topic = "best:";
         for line in wrapped(&text, 6) {
-            eprintln!("best: {line}");
+            eprintln!("{topic:<5} {line}");
+            topic = "";
         }
     }
     Ok(())
@@ -113,7 +115,7 @@ pub fn left_out(effects: &Effects) -> Vec<String> {
         .collect();
     for effect in &effects.effects {
         // One line per value and reason, with the measures concerned.
-        let mut reasons: Vec<(&Value, &str, Vec<&str>)> = Vec::new();
+        let mut reasons: Vec<(&Option<Value>, &str, Vec<&str>)> = Vec::new();
         for (value, measure, reason) in &effect.left_out {
             match reasons.iter_mut().find(|(known, text, _)| *known == value && text == reason) {
                 Some((_, _, measures)) => measures.push(measure.name()),
@@ -122,8 +124,9 @@ pub fn left_out(effects: &Effects) -> Vec<String> {
         }
         let more = reasons.len().saturating_sub(MAX_VALUES);
         lines.extend(reasons.iter().take(MAX_VALUES).map(|(value, reason, measures)| {
-            let value = effect.shown.quantity(value);
-            format!("{} {value} in {}: {reason}", effect.parameter, measures.join(", "))
+            let value = value.as_ref().map(|value| format!(" {}", effect.shown.quantity(value)));
+            let value = value.unwrap_or_default();
+            format!("{}{value} in {}: {reason}", effect.parameter, measures.join(", "))
         }));
         if more > 0 {
             lines.push(format!("{}: {more} more values (--json lists them)", effect.parameter));

@@ -1,8 +1,8 @@
 //! What has changed since results were computed: the study, or the physics.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
-use super::target::StudyArgs;
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::platform::error::Result;
@@ -17,8 +17,8 @@ use crate::study::{Study, UNITS};
 ///
 /// # Errors
 /// An invalid study file; a study.json that cannot be read.
-pub fn note(results: &Results<'_>, given: &StudyArgs, set: &[String]) -> Result<()> {
-    let Some(path) = given.study.as_deref().filter(|path| path.is_file()) else { return Ok(()) };
+pub fn note(results: &Results<'_>, file: Option<&Path>, set: &[String]) -> Result<()> {
+    let Some(path) = file.filter(|path| path.is_file()) else { return Ok(()) };
     let study = Study::load(path, set)?;
     if results.holds(&study.name, &study.resolved())? {
         return Ok(());

@@ -3,26 +3,23 @@
 //!
 //! The jobs of a measure are the done jobs that can be trusted and have the measure. Jobs that are equal in
 //! all other parameters form a set. The medians of the values are comparable if each value has a job in
-//! each set. So some values and some sets are chosen: those with the most independent comparisons,
-//!
-//! ```text
-//! (values − 1) · sets → max
-//! ```
+//! each set, so some values and some sets are chosen ([`super::medians`]).
 //!
 //! A value that is not among them is left out, with the reason. A set of jobs counts once, whatever number
 //! of points are these jobs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::output::measures::Verdict;
 
+use super::medians::{Extremes, Set, block, extremes};
 use super::trust::is_trusted;
 use crate::analysis::compare::{self, Measure, Sets, Tolerance, canonical};
 use crate::analysis::statistics::Spread;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
-use crate::job::row::{BetterSide, ColumnId};
+use crate::job::row::ColumnId;
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
@@ -52,8 +49,8 @@ pub struct Effect {
     pub deployed: Vec<(usize, usize)>,
     /// One entry per measure that can be compared.
     pub measures: Vec<MeasureEffect>,
-    /// Values that are left out of a measure: the value, the measure, the reason.
-    pub left_out: Vec<(Value, ColumnId, String)>,
+    /// What is left out: the value, or `None` for all of them; the measure; the reason.
+    pub left_out: Vec<(Option<Value>, ColumnId, String)>,
 }
 
 /// The effect of one parameter on one measure.
@@ -71,28 +68,6 @@ pub struct MeasureEffect {
     pub extremes: Extremes,
     /// Up to which difference medians are equal.
     pub tolerance: Tolerance,
-}
-
-/// The best and the worst values of a parameter by one measure: positions in [`Effect::values`], the
-/// extreme one first, then those that are equal to it up to the tolerance.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Extremes {
-    /// All medians are equal up to the tolerance.
-    Equal,
-    /// The measure has a better side. `best` is empty when no value deploys in all its jobs.
-    Judged {
-        /// The values with the best medians of those that deploy in all their jobs.
-        best: Vec<usize>,
-        /// The values with the worst medians.
-        worst: Vec<usize>,
-    },
-    /// Neither side is better, or no spread of the measure is known.
-    Range {
-        /// The values with the lowest medians.
-        lowest: Vec<usize>,
-        /// The values with the highest medians.
-        highest: Vec<usize>,
-    },
 }
 
 impl Effects {
@@ -116,7 +91,9 @@ impl Effects {
             if compare::values(parameter, rows).len() < 2 {
                 continue;
             }
-            let study = Comparable { table, rows, parameter, zipped: zipped(&parameter.name) };
+            let keys = parameter.cells.iter().map(canonical).collect();
+            let study =
+                Comparable { table, rows, parameter, keys, zipped: zipped(&parameter.name) };
             match study.effect(&measures) {
                 Ok(effect) => effects.effects.push(effect),
                 Err(reason) => effects.not_compared.push((parameter.name.clone(), reason)),
@@ -126,14 +103,13 @@ impl Effects {
     }
 }
 
-/// One row of a set per value of the parameter.
-type Set = Vec<Option<usize>>;
-
 /// A parameter that varies in some rows.
 struct Comparable<'a> {
     table: &'a Table,
     rows: &'a [usize],
     parameter: &'a Column,
+    /// The value of the parameter in each row of the table, as it is matched.
+    keys: Vec<String>,
     zipped: Vec<Zipped>,
 }
 
@@ -170,10 +146,13 @@ impl Comparable<'_> {
                     && compare::measured(self.table, measure.column, row).is_some()
             };
             let (sets, _) = self.sets(&effect.values, &has);
-            let Some((chosen, block)) = block(&sets, effect.values.len()) else { continue };
+            let Some((chosen, block)) = block(&sets, effect.values.len()) else {
+                effect.left_out.push((None, *id, self.without_measure()));
+                continue;
+            };
             for index in (0..effect.values.len()).filter(|index| !chosen.contains(index)) {
                 let reason = self.left_out(&effect.values[index], index, &sets, &has);
-                effect.left_out.push((effect.values[index].clone(), *id, reason));
+                effect.left_out.push((Some(effect.values[index].clone()), *id, reason));
             }
             let medians = (0..effect.values.len()).map(|index| {
                 let rows = block.iter().filter_map(|set| set[index]);
@@ -192,10 +171,7 @@ impl Comparable<'_> {
             });
         }
         if effect.measures.is_empty() {
-            return Err(format!(
-                "no two trusted done jobs that differ in {} alone have the same measure",
-                effect.parameter
-            ));
+            return Err(self.without_measure());
         }
         Ok(effect)
     }
@@ -210,10 +186,11 @@ impl Comparable<'_> {
         let mut seen = BTreeSet::new();
         let mut kept = Vec::new();
         for rows in &sets.sets {
-            let of_value = |text: &String| {
-                rows.iter().copied().find(|row| canonical(&self.parameter.cells[*row]) == *text)
-            };
-            let set: Set = texts.iter().map(of_value).collect();
+            let mut first: BTreeMap<&str, usize> = BTreeMap::new();
+            for row in rows {
+                first.entry(&self.keys[*row]).or_insert(*row);
+            }
+            let set: Set = texts.iter().map(|text| first.get(text.as_str()).copied()).collect();
             let jobs: Vec<Option<String>> = set.iter().map(|row| row.and_then(job)).collect();
             let different: BTreeSet<&String> = jobs.iter().flatten().collect();
             if different.len() > 1 && seen.insert(jobs) {
@@ -256,6 +233,12 @@ impl Comparable<'_> {
         format!("no two points differ in {name} alone")
     }
 
+    /// Why no values have comparable medians of a measure.
+    fn without_measure(&self) -> String {
+        let name = &self.parameter.name;
+        format!("no two trusted done jobs that differ in {name} alone have the measure")
+    }
+
     /// Why a value is left out of a measure.
     fn left_out(
         &self,
@@ -265,7 +248,8 @@ impl Comparable<'_> {
         has: &dyn Fn(usize) -> bool,
     ) -> String {
         let with = sets.iter().filter(|set| set[index].is_some()).count();
-        let is_value = |row: &&usize| canonical(&self.parameter.cells[**row]) == canonical(value);
+        let key = canonical(value);
+        let is_value = |row: &&usize| self.keys[**row] == key;
         if with > 0 {
             format!("it is in {with} of {} sets", sets.len())
         } else if self.rows.iter().filter(is_value).any(|row| has(*row)) {
@@ -273,61 +257,5 @@ impl Comparable<'_> {
         } else {
             "no trusted done job has the measure".to_owned()
         }
-    }
-}
-
-/// The values and the sets with the most independent comparisons, of those sets in which every one of these
-/// values has a job; `None` when no set has two values.
-fn block(sets: &[Set], values: usize) -> Option<(Vec<usize>, Vec<&Set>)> {
-    let number = |index: &usize| sets.iter().filter(|set| set[*index].is_some()).count();
-    let mut order: Vec<usize> = (0..values).collect();
-    // The sort is stable: values of equally many sets stay in plan order.
-    order.sort_by_key(|index| std::cmp::Reverse(number(index)));
-    let mut complete: Vec<&Set> = sets.iter().collect();
-    let mut best: Option<(usize, usize)> = None;
-    for (others, index) in order.iter().enumerate() {
-        complete.retain(|set| set[*index].is_some());
-        let comparisons = others * complete.len();
-        if comparisons > 0 && best.is_none_or(|(_, most)| comparisons >= most) {
-            best = Some((others + 1, comparisons));
-        }
-    }
-    let (number, _) = best?;
-    let chosen = order[..number].to_vec();
-    let block = sets.iter().filter(|set| chosen.iter().all(|index| set[*index].is_some()));
-    Some((chosen.clone(), block.collect()))
-}
-
-/// The best and the worst of some medians. `always` says which values deploy in all their jobs.
-fn extremes(medians: &[Option<f64>], measure: &Measure<'_>, always: &[bool]) -> Extremes {
-    let mut order: Vec<(usize, f64)> = medians
-        .iter()
-        .enumerate()
-        .filter_map(|(index, median)| Some((index, (*median)?)))
-        .collect();
-    order.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let (Some(lowest), Some(highest)) = (order.first(), order.last()) else {
-        return Extremes::Equal;
-    };
-    if measure.tolerance.is_tie(lowest.1, highest.1) {
-        return Extremes::Equal;
-    }
-    let tied = |order: &mut dyn Iterator<Item = &(usize, f64)>| -> Vec<usize> {
-        let Some((first, extreme)) = order.next() else { return Vec::new() };
-        let equal = order.take_while(|(_, median)| measure.tolerance.is_tie(*extreme, *median));
-        [*first].into_iter().chain(equal.map(|(index, _)| *index)).collect()
-    };
-    let deploys = |entry: &&(usize, f64)| always[entry.0];
-    let (lowest, highest) = (tied(&mut order.iter()), tied(&mut order.iter().rev()));
-    match measure.side() {
-        BetterSide::Smaller => {
-            let best = tied(&mut order.iter().filter(deploys));
-            Extremes::Judged { best, worst: highest }
-        }
-        BetterSide::Larger => {
-            let best = tied(&mut order.iter().rev().filter(deploys));
-            Extremes::Judged { best, worst: lowest }
-        }
-        BetterSide::Neither => Extremes::Range { lowest, highest },
     }
 }

@@ -14,9 +14,11 @@ use crate::store::stored::Stored;
 use crate::store::table::Table;
 
 mod effects;
+mod medians;
 mod trust;
 
-pub use effects::{Effect, Effects, Extremes, MeasureEffect};
+pub use effects::{Effect, Effects, MeasureEffect};
+pub use medians::Extremes;
 pub use trust::Trust;
 
 /// The answer of a study.

@@ -56,12 +56,12 @@ fn cell(job: &[PointRow<'_>], row: usize) -> Value {
     if job.len() == 1 {
         return Value::Null;
     }
-    let own = job[row].parameters;
+    let here = job[row].parameters;
     let others = (0..job.len()).filter(|other| *other != row).take(MAX_NAMED);
     let mut texts: Vec<String> = others
         .map(|other| {
             let parameters = job[other].parameters.iter();
-            let differing = parameters.filter(|pair| !own.contains(pair)).cloned().collect();
+            let differing = parameters.filter(|pair| !here.contains(pair)).cloned().collect();
             point::label(&differing)
         })
         .collect();

@@ -1,16 +1,13 @@
 //! `billow compare`: compares the values of one parameter, all other parameters being equal.
 
-use std::fmt::Write as _;
 use std::io::Write;
 
-use super::best;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::print::{Heading, count, print_quantities};
+use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, filtered, find, folder};
-use super::{Format, changes, output_error};
+use super::{Format, changes, output_error, study_keys};
 use crate::analysis::compare::{
-    self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, ToleranceSource, measures_with,
-    pairs_of_jobs,
+    self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, measures_with,
 };
 use crate::input::units::{self, Dimension, DisplayUnit};
 use crate::input::value::Value;
@@ -22,6 +19,8 @@ use crate::platform::nearest::did_you_mean;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
+
+mod notes;
 
 /// Measures that a table compares by default.
 const DEFAULT_MEASURES: [&str; 2] = ["t_90_z_rim_since_release", "peak_kinetic_energy"];
@@ -91,8 +90,12 @@ struct Comparison<'a> {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &args.set.set)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
-    changes::note(&stored.results, &args.study, &args.set.set)?;
-    let table = args.units.show(stored.table(), stored.study.display_units())?;
+    changes::note(&stored.results, args.study.study.as_deref(), &args.set.set)?;
+    let table = stored.table();
+    let units = args.units.of_table(&table, stored.study.display_units())?;
+    let mut table = table.shown_in(&units);
+    let names = study_keys::names_in(args.condition.as_deref());
+    study_keys::add(&stored.study, &mut table, &units, &names);
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let rows = filtered(&table, args.condition.as_deref())?;
@@ -310,68 +313,5 @@ impl Comparison<'_> {
         };
         let rows: Vec<Vec<Value>> = tallies.iter().map(row).collect();
         print_quantities(&columns, &rows, format, out)
-    }
-
-    /// Prints, on stderr, which value is the base, which ratios are better, and what is not compared.
-    fn print_notes(&self, base: &Value, alone: &[usize]) {
-        let by = &self.by.name;
-        let base = self.by.shown.quantity(base);
-        let mut text = format!("base: {by} = {base}; ratio: other / base");
-        for (noun, side) in [("smaller", BetterSide::Smaller), ("larger", BetterSide::Larger)] {
-            let measures = self.measures.iter().filter(|measure| measure.side() == side);
-            let names: Vec<&str> = measures.map(|measure| measure.column.name.as_str()).collect();
-            if !names.is_empty() {
-                let _ = write!(text, "; better: {noun} {}", names.join(", "));
-            }
-        }
-        eprintln!("{text}");
-        let ties = self.measures.iter().map(|measure| {
-            let source = match measure.tolerance.source {
-                ToleranceSource::Given => "--tie",
-                ToleranceSource::Seeds => "spread over the seeds",
-                ToleranceSource::Method => "spread of the method",
-                ToleranceSource::Unknown => "spread not known: lower or higher, not better",
-            };
-            let limit = best::limit(&measure.tolerance);
-            format!("{} within {limit} ({source})", measure.column.name)
-        });
-        eprintln!("tie: {}", ties.collect::<Vec<_>>().join(", "));
-        for carried in &self.sets.carried {
-            eprintln!("note: {carried} changes with {by}, so it is not matched");
-        }
-        let jobs = pairs_of_jobs(self.table, &self.pairs).len();
-        if jobs < self.pairs.len() {
-            eprintln!(
-                "note: {} of points are {} of jobs; the summary counts each of these once",
-                count(self.pairs.len(), "pair"),
-                count(jobs, "pair")
-            );
-        }
-        if !alone.is_empty() {
-            eprintln!(
-                "note: {} without a partner that has the same other parameters: {}",
-                count(alone.len(), "row"),
-                self.labels(alone)
-            );
-        }
-    }
-
-    /// Parameters of some rows, of the first three at most.
-    fn labels(&self, rows: &[usize]) -> String {
-        const MAX_SHOWN: usize = 3;
-        let label = |row: &usize| {
-            let parameters = self.table.parameters();
-            let texts: Vec<String> = parameters
-                .map(|column| {
-                    format!("{}={}", column.name, column.shown.quantity(&column.cells[*row]))
-                })
-                .collect();
-            texts.join(", ")
-        };
-        let mut labels: Vec<String> = rows.iter().take(MAX_SHOWN).map(label).collect();
-        if rows.len() > MAX_SHOWN {
-            labels.push(format!("and {} more", rows.len() - MAX_SHOWN));
-        }
-        labels.join("; ")
     }
 }

@@ -6,15 +6,18 @@ use std::path::Path;
 
 use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::Verdict;
-use serde_json::{Map, json};
 
 use super::best::{self, MAX_LINE_WIDTH, MAX_VALUES};
 use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Extremes, Trust};
+use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Trust};
 use crate::input::units::{self, Dimension, DisplayUnit};
-use crate::input::value::{Value, brief_number, json_value};
+use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::{ColumnId, HEADLINE};
+
+mod json;
+
+pub use json::json;
 
 /// Characters before the text of a line: two spaces, the topic, a space.
 const TOPIC_WIDTH: usize = 11;
@@ -77,9 +80,9 @@ fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
 /// A headline measure with the unit of its medians.
 fn headline(effects: &Effects, measure: ColumnId) -> String {
     let measures = effects.effects.iter().flat_map(|effect| &effect.measures);
-    let shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
+    let mut shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
     let si = DisplayUnit::si(measure.column().unit);
-    shown.last().unwrap_or(&si).label(measure.name())
+    shown.next().unwrap_or(&si).label(measure.name())
 }
 
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
@@ -257,99 +260,4 @@ fn lines(effect: &Effect, indent: usize) -> Vec<String> {
 /// Number of sets of the measure with the most.
 fn sets(effect: &Effect) -> usize {
     effect.measures.iter().map(|measure| measure.sets).max().unwrap_or(0)
-}
-
-/// The answer as JSON keys.
-pub fn json(answer: &Answer) -> serde_json::Value {
-    json!({
-        "question": answer.question,
-        "jobs": answer.counts.jobs(),
-        "near_threshold": answer.counts.near_threshold,
-        "fastest": extreme_json(answer.fastest.as_ref(), HEADLINE[0].name()),
-        "hardest": extreme_json(answer.hardest.as_ref(), "peak_vz"),
-        "most_energy": extreme_json(answer.most_energy.as_ref(), "peak_kinetic_energy"),
-        "trust": answer.trust.map(|trust| trust_json(&trust, answer.largest_strain)),
-        "medians": answer.effects.effects.iter().map(effect_json).collect::<Vec<_>>(),
-        "not_compared": answer.effects.not_compared.iter()
-            .map(|(parameter, reason)| json!({"parameter": parameter, "reason": reason}))
-            .collect::<Vec<_>>(),
-    })
-}
-
-fn extreme_json(
-    extreme: Option<&Extreme>,
-    measure: &str,
-) -> Option<Map<String, serde_json::Value>> {
-    let extreme = extreme?;
-    let parameters = extreme.parameters.iter();
-    let parameters: Map<_, _> =
-        parameters.map(|(name, value, _)| (name.clone(), json_value(value))).collect();
-    let mut keys = Map::new();
-    keys.insert("job".to_owned(), extreme.job.as_str().into());
-    keys.insert("parameters".to_owned(), parameters.into());
-    keys.insert(measure.to_owned(), extreme.value.into());
-    keys.insert("others".to_owned(), extreme.others.into());
-    Some(keys)
-}
-
-fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
-    json!({
-        "jobs": trust.jobs,
-        "ledger_residual": trust.ledger_residual,
-        "gas_residual": trust.gas_residual,
-        "passages": trust.passages,
-        "intersections": trust.intersections,
-        "counted": trust.counted,
-        "numerically_damped": trust.numerically_damped,
-        "film_stress_over_modulus": largest_strain,
-    })
-}
-
-fn effect_json(effect: &Effect) -> serde_json::Value {
-    let values = effect.values.iter().enumerate().map(|(index, value)| {
-        let mut keys = Map::new();
-        keys.insert("value".to_owned(), json_value(value));
-        for measure in &effect.measures {
-            keys.insert(measure.measure.name().to_owned(), json!(measure.medians[index]));
-        }
-        let (deployed, jobs) = effect.deployed[index];
-        keys.insert("deployed".to_owned(), deployed.into());
-        keys.insert("jobs".to_owned(), jobs.into());
-        serde_json::Value::from(keys)
-    });
-    let listed = |indices: &[usize]| -> Vec<serde_json::Value> {
-        indices.iter().map(|index| json_value(&effect.values[*index])).collect()
-    };
-    let measures = effect.measures.iter().map(|measure| {
-        let mut keys = json!({
-            "measure": measure.measure.name(),
-            "sets": measure.sets,
-            "tolerance": measure.tolerance.limit,
-            "equal": measure.extremes == Extremes::Equal,
-        });
-        match &measure.extremes {
-            Extremes::Equal => {}
-            Extremes::Judged { best, worst } => {
-                keys["best"] = listed(best).into();
-                keys["worst"] = listed(worst).into();
-            }
-            Extremes::Range { lowest, highest } => {
-                keys["lowest"] = listed(lowest).into();
-                keys["highest"] = listed(highest).into();
-            }
-        }
-        keys
-    });
-    let left_out = effect.left_out.iter().map(|(value, measure, reason)| {
-        json!({"value": json_value(value), "measure": measure.name(), "reason": reason})
-    });
-    json!({
-        "parameter": effect.parameter,
-        "unit": effect.unit,
-        "with_it": effect.carried,
-        "sets": sets(effect),
-        "values": values.collect::<Vec<_>>(),
-        "measures": measures.collect::<Vec<_>>(),
-        "left_out": left_out.collect::<Vec<_>>(),
-    })
 }

@@ -1,0 +1,75 @@
+//! What a reader of a comparison must know, on stderr.
+
+use std::fmt::Write as _;
+
+use super::Comparison;
+use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
+use crate::cli::best;
+use crate::cli::print::count;
+use crate::input::value::Value;
+use crate::job::row::BetterSide;
+
+impl Comparison<'_> {
+    /// Prints, on stderr, which value is the base, which ratios are better, and what is not compared.
+    pub(super) fn print_notes(&self, base: &Value, alone: &[usize]) {
+        let by = &self.by.name;
+        let base = self.by.shown.quantity(base);
+        let mut text = format!("base: {by} = {base}; ratio: other / base");
+        for (noun, side) in [("smaller", BetterSide::Smaller), ("larger", BetterSide::Larger)] {
+            let measures = self.measures.iter().filter(|measure| measure.side() == side);
+            let names: Vec<&str> = measures.map(|measure| measure.column.name.as_str()).collect();
+            if !names.is_empty() {
+                let _ = write!(text, "; better: {noun} {}", names.join(", "));
+            }
+        }
+        eprintln!("{text}");
+        let ties = self.measures.iter().map(|measure| {
+            let source = match measure.tolerance.source {
+                ToleranceSource::Given => "--tie",
+                ToleranceSource::Seeds => "spread over the seeds",
+                ToleranceSource::Method => "spread of the method",
+                ToleranceSource::Unknown => "spread not known: lower or higher, not better",
+            };
+            let limit = best::limit(&measure.tolerance);
+            format!("{} within {limit} ({source})", measure.column.name)
+        });
+        eprintln!("tie: {}", ties.collect::<Vec<_>>().join(", "));
+        for carried in &self.sets.carried {
+            eprintln!("note: {carried} changes with {by}, so it is not matched");
+        }
+        let jobs = pairs_of_jobs(self.table, &self.pairs).len();
+        if jobs < self.pairs.len() {
+            eprintln!(
+                "note: {} of points are {} of jobs; the summary counts each of these once",
+                count(self.pairs.len(), "pair"),
+                count(jobs, "pair")
+            );
+        }
+        if !alone.is_empty() {
+            eprintln!(
+                "note: {} without a partner that has the same other parameters: {}",
+                count(alone.len(), "row"),
+                self.labels(alone)
+            );
+        }
+    }
+
+    /// Parameters of some rows, of the first three at most.
+    fn labels(&self, rows: &[usize]) -> String {
+        const MAX_SHOWN: usize = 3;
+        let label = |row: &usize| {
+            let parameters = self.table.parameters();
+            let texts: Vec<String> = parameters
+                .map(|column| {
+                    format!("{}={}", column.name, column.shown.quantity(&column.cells[*row]))
+                })
+                .collect();
+            texts.join(", ")
+        };
+        let mut labels: Vec<String> = rows.iter().take(MAX_SHOWN).map(label).collect();
+        if rows.len() > MAX_SHOWN {
+            labels.push(format!("and {} more", rows.len() - MAX_SHOWN));
+        }
+        labels.join("; ")
+    }
+}
