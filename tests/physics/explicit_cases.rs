@@ -2,19 +2,14 @@
 //! reference cases of `billow validate`.
 
 use billow_solver::geometry::shapes::{icosphere, nodes_where, sheet};
-use billow_solver::integrators::explicit::{Explicit, PressureLoad};
+use billow_solver::integrators::explicit::PressureLoad;
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
-use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::ledger::Ledger;
-use billow_solver::output::outcome::{FailureKind, Stop};
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::film_scene::FilmContact;
+use billow_solver::output::outcome::FailureKind;
+use billow_solver::scene::Film;
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::motion::{Motion, Profile};
-use billow_solver::scene::timeline::Timeline;
-use billow_solver::scene::{Film, paper};
 use nalgebra::Vector3;
 
 use crate::film_rig::{at_rest, free, mapped, nitrogen_gas};
@@ -85,6 +80,7 @@ fn failures_have_their_kind() {
     // Soft film under a pressure far beyond its modulus stretches without end; its energy balances.
     let soft = Film { youngs_modulus: 1e4, ..Film::PAPER_ELASTIC };
     let mut film = at_rest(&piece, &soft, PressureLoad::Overpressure(50.0), GasState::default());
+    film.parameters.cfl = 0.01;
     let failure = film.advance(10.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::Overstretched, "{failure:?}");
     assert!(failure.place.contains("times its length"), "{failure:?}");
@@ -102,23 +98,4 @@ fn failures_have_their_kind() {
     film.state.start_energy = film.ledger().kinetic;
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::InvertedVolume, "{failure:?}");
-}
-
-/// A contact force of the wrong sign accelerates film without bound: its ledger closes, its energy has no source.
-#[test]
-fn contact_that_attracts_film_is_unstable() {
-    let scene = paper::capsule(3, 0.03);
-    let contact = FilmContact { distance: Some(1e-3), ..FilmContact::default() };
-    let set = InstructionSet::detect();
-    let mut run = FilmRun::from_scene(set, &scene, 0.45, Some(contact)).unwrap();
-    let Explicit { model, mut parameters, state, .. } = run.film;
-    let contact = parameters.contact.as_mut().unwrap();
-    contact.stiffness_per_mass = -contact.stiffness_per_mass;
-    run.film = Explicit::new(model, parameters, state.positions, state.velocities, state.gas);
-    let stop = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved).stop;
-    let Stop::Failed(failure) = stop else { panic!("{stop:?}") };
-    assert!(
-        matches!(failure.kind, FailureKind::Unstable | FailureKind::Interpenetrated),
-        "{failure:?}"
-    );
 }

@@ -271,7 +271,8 @@ impl Explicit {
         stopwatch.begins(Stage::Gas);
         self.add_plate_work(end);
         let volume = sums.six_volumes / 6.0;
-        self.check_motion(max_speed_squared.sqrt(), drift, volume)?;
+        let max_speed = max_speed_squared.sqrt();
+        self.check_finite(max_speed * drift, volume)?;
         let works = &mut self.state.works;
         works.numerical_dissipation +=
             sums.numerical_dissipation * self.parameters.fault_factor(Term::NumericalWork);
@@ -285,6 +286,7 @@ impl Explicit {
         self.half_step_works(length);
         self.state.last_step = length;
         stopwatch.begins(Stage::Audit);
+        self.check_source(max_speed)?;
         self.check_stretch()?;
         self.monitor_step()
     }

@@ -59,18 +59,26 @@ impl Explicit {
             && interval.length > MAX_STEP_RATIO * self.stable_step()
     }
 
-    /// Checks a step of `length` (s) with this largest speed (m/s), and this volume (m³) after it.
-    pub(super) fn check_motion(&self, speed: f64, length: f64, volume: f64) -> Result<(), Failure> {
-        let problem = if moves_too_far(&self.model, speed * length) || !volume.is_finite() {
-            "farther than the size of the film in one step"
-        } else if speed > self.model.wave_speed() && !self.energy_has_source() {
-            "its energy came without a source"
-        } else {
+    /// Checks a step whose largest displacement (m) and volume (m³) after it are these.
+    pub(super) fn check_finite(&self, displacement: f64, volume: f64) -> Result<(), Failure> {
+        if !moves_too_far(&self.model, displacement) && volume.is_finite() {
             return Ok(());
-        };
+        }
+        Err(self.unstable("farther than the size of the film in one step"))
+    }
+
+    /// Checks the energy after a step with this largest speed (m/s), where it is above that of the film's waves.
+    pub(super) fn check_source(&self, speed: f64) -> Result<(), Failure> {
+        if speed <= self.model.wave_speed() || self.energy_has_source() {
+            return Ok(());
+        }
+        Err(self.unstable("its energy came without a source"))
+    }
+
+    fn unstable(&self, problem: &str) -> Failure {
         let (node, speed) = self.fastest_node();
         let place = format!("node {node} moves at {speed:.3e} m/s: {problem}");
-        Err(self.failure(FailureKind::Unstable, &place))
+        self.failure(FailureKind::Unstable, &place)
     }
 
     /// The fastest node and its speed, m/s. NaN counts as the fastest.
