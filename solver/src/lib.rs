@@ -42,4 +42,4 @@ pub mod statics;
 
 /// Version of the physics: part of every job id. It increases with every change of the solver that changes
 /// a result.
-pub const PHYSICS_VERSION: u32 = 5;
+pub const PHYSICS_VERSION: u32 = 6;

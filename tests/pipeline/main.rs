@@ -31,5 +31,6 @@ mod status_why_show;
 mod streams;
 mod study_files;
 mod support;
+mod units;
 mod validate;
 mod verdict;

@@ -175,7 +175,7 @@ fn old_names_in_options_work_with_a_note() {
 fn comparisons_and_charts_of_old_results_work() {
     let (folder, _) = folder();
     let compared = folder.stdout(&["compare", "old", "--by", "model", "--base", "piston"]);
-    assert!(compared.contains("peak_vz"), "{compared}");
+    assert!(compared.contains("peak_kinetic_energy"), "{compared}");
     let drawn = folder.stdout(&["chart", "old"]);
     assert!(drawn.contains(".svg"), "{drawn}");
 }

@@ -9,9 +9,9 @@
 //! Slack or flat film of extent L converges fastest under a pressure p0 that makes it taut everywhere;
 //! the equilibrium then follows the pressure down to p. Film that starts full, near its shape, begins at
 //! a tenth of that pressure. From there, and from a known equilibrium, the first attempt goes to a near p in
-//! one step; if it fails, pressures descend as above. At intermediate pressures film has a compression fraction `c_k` in proportion
-//! to the pressure, so that its shape hardly depends on it and each pressure needs few steps; the last
-//! step has the fraction of the film. Wrinkled film has many energy minima near each other. Descending
+//! one step; if it fails, pressures descend as above. At intermediate pressures film has a compression
+//! fraction `c_k` in proportion to the pressure, so that its shape hardly depends on it and each pressure
+//! needs few steps; the last step has the fraction of the film. Wrinkled film has many energy minima near each other. Descending
 //! pressures reach the minimum that continues the taut film, with its symmetry; a start at the final
 //! pressure ends with dents.
 
@@ -83,8 +83,8 @@ pub fn settle(
         iterations: 0,
     };
     let stages = stages(loaded, positions, from);
-    if let Some(first) = short_path(loaded, positions, from, stages[0]) {
-        match continuation.run_short(positions, first) {
+    if let Some(before) = short_path(loaded, positions, from, stages[0]) {
+        match continuation.run_short(positions, &before) {
             Err(failure) if failure.kind != StaticFailureKind::Stopped => {}
             ended => return ended,
         }
@@ -148,15 +148,13 @@ fn short_path(
     positions: &Field,
     from: Option<f64>,
     first: Stage,
-) -> Option<Option<Stage>> {
+) -> Option<Vec<Stage>> {
     let near = |pressure: f64| pressure.abs() <= MAX_DIRECT_RATIO * loaded.overpressure.abs();
-    match from {
-        Some(from) => near(from).then_some(None),
-        None => {
-            let full = fullness(loaded.model, positions) > MIN_FULLNESS;
-            (full && near(first.overpressure)).then_some(Some(first))
-        }
+    if let Some(from) = from {
+        return near(from).then(Vec::new);
     }
+    let full = fullness(loaded.model, positions) > MIN_FULLNESS;
+    (full && near(first.overpressure)).then(|| vec![first])
 }
 
 /// V/A^(3/2), A the film's area free of stress.
@@ -177,16 +175,16 @@ struct Continuation<'a, 'b> {
 }
 
 impl Continuation<'_, '_> {
-    /// Moves held nodes, then takes the first load, if any, and in one step the load asked for.
+    /// Moves held nodes, then follows these loads, and in one step takes the load asked for.
     fn run_short(
         &mut self,
         positions: &Field,
-        first: Option<Stage>,
+        before: &[Stage],
     ) -> Result<Equilibrium, StaticFailure> {
         let mut positions = positions.clone();
         move_held(self.loaded.supports, &mut positions, 1.0);
-        if let Some(first) = first {
-            positions = self.approach(positions, first, FIRST_SHIFT)?;
+        for stage in before {
+            positions = self.approach(positions, *stage, FIRST_SHIFT)?;
         }
         let limit = self.tolerances.iterations.min(DIRECT_ITERATIONS);
         let tolerances = Tolerances { iterations: limit, ..*self.tolerances };

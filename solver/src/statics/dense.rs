@@ -142,8 +142,8 @@ impl Diagonal {
         for column in 0..TILE {
             for row in column..TILE {
                 let mut entry = tile[column].0[lane + row];
-                for earlier in 0..column {
-                    entry -= lower[row][earlier] * lower[column][earlier];
+                for (left, right) in lower[row].iter().zip(&lower[column]).take(column) {
+                    entry -= left * right;
                 }
                 if row == column {
                     // Written so that NaN is refused too.
@@ -340,8 +340,9 @@ fn solve_backward_kernel<L: Wide>(
         let diagonal = &row[first..columns.min(first + WIDTH)];
         for (column, lanes) in diagonal.iter().enumerate().rev() {
             let mut value = values[column] - sums[first + column].sum();
-            for below in column + 1..diagonal.len() {
-                value -= lanes.0[below] * values[below];
+            for (entry, below) in lanes.0.iter().zip(&*values).take(diagonal.len()).skip(column + 1)
+            {
+                value -= entry * below;
             }
             values[column] = value / lanes.0[column];
         }

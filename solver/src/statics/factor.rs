@@ -297,3 +297,70 @@ fn scatter(plan: &Plan, values: &[Lanes], count: usize, all: &mut [f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector, Vector3};
+
+    use super::*;
+    use crate::geometry::shapes::{grid, nodes_where, pseudo_random};
+    use crate::mechanics::supports::Supports;
+    use crate::scene::Film;
+    use crate::scene::film_support::{FilmSupport, Hold, PlaneBody};
+
+    /// Held, oblique and free nodes, and a rigid plane that moves several corners of a face.
+    #[test]
+    fn the_solution_satisfies_the_assembled_equations() {
+        let shell = grid(6, 5, 0.3, 0.25);
+        let on = |hold: Hold, nodes: Vec<u32>| FilmSupport {
+            name: String::new(),
+            nodes,
+            hold,
+            motion: None,
+        };
+        let body = PlaneBody { normal: Vector3::z(), mass: 0.1, velocity: 0.0, force: 1.0 };
+        let supports = [
+            on(Hold::Components([true; 3]), nodes_where(&shell, |x| x.x <= 0.0)),
+            on(Hold::Components([true, true, false]), nodes_where(&shell, |x| x.x >= 0.299)),
+            on(Hold::Body(body), nodes_where(&shell, |x| x.x >= 0.299)),
+        ];
+        let model = FilmModel::of_shell(&Film::PAPER_ELASTIC, &shell).unwrap();
+        let positions = Field::of(&shell.positions);
+        let unknowns = Unknowns::new(&model, &Supports::new(&supports, &positions));
+        let random = pseudo_random(9 * model.elements(), 3);
+        let stiffness: Vec<Stiffness> = random
+            .chunks(9)
+            .map(|columns| {
+                let half = Stiffness::from_fn(|i, j| columns[j][i % 3] + columns[i][j % 3]);
+                half * half.transpose()
+            })
+            .collect();
+        let shift = vec![0.1; unknowns.len()];
+        let mut full = DMatrix::from_diagonal(&DVector::from_vec(shift.clone()));
+        for (face, stiffness) in model.triangles.iter().zip(&stiffness) {
+            let moves = |corner: usize| &unknowns.of_node[face[corner] as usize];
+            for (i, j) in (0..9).map(|index| (index / 3, index % 3)) {
+                for (row, across) in moves(i) {
+                    for (column, along) in moves(j) {
+                        let block = stiffness.fixed_view::<3, 3>(3 * i, 3 * j);
+                        full[(*row as usize, *column as usize)] += across.dot(&(block * along));
+                    }
+                }
+            }
+        }
+        let elimination = Elimination::new(&model, &unknowns, &positions);
+        let forces: Vec<f64> = (0..unknowns.len()).map(|k| libm::sin(k as f64)).collect();
+        let mut factor = Factor::default();
+        // The second factorisation uses the memory of the first.
+        for _ in 0..2 {
+            let set = InstructionSet::detect();
+            assert!(elimination.factor(set, &stiffness, &shift, &mut factor));
+            let found = DVector::from_vec(elimination.solve(set, &mut factor, &forces));
+            let error = (&full * found - DVector::from_vec(forces.clone())).amax();
+            assert!(error < 1e-8, "{error}");
+        }
+        let indefinite: Vec<f64> = shift.iter().map(|_| -1e4).collect();
+        let set = InstructionSet::detect();
+        assert!(!elimination.factor(set, &stiffness, &indefinite, &mut factor));
+    }
+}

@@ -30,7 +30,8 @@ pub struct FrontFace {
 /// Unknowns of a face in its front.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FaceEntries {
-    /// Each is one component of one corner: (index in the front, row of the stiffness), ascending.
+    /// Each is one component of one corner, and none moves two: (index in the front, row of the stiffness),
+    /// ascending.
     Components(Vec<(u32, u32)>),
     /// Index in the front, corner, direction.
     Oblique(Vec<FaceUnknown>),
@@ -43,9 +44,11 @@ impl FaceEntries {
             Some((*local, u32::try_from(3 * corner + axis).expect("under 9")))
         };
         unknowns.sort_by_key(|(local, ..)| *local);
+        // A rigid plane may move several corners.
+        let shared = unknowns.windows(2).any(|pair| pair[0].0 == pair[1].0);
         match unknowns.iter().map(component).collect() {
-            Some(components) => Self::Components(components),
-            None => Self::Oblique(unknowns),
+            Some(components) if !shared => Self::Components(components),
+            _ => Self::Oblique(unknowns),
         }
     }
 }

@@ -23,6 +23,7 @@ pub mod rig;
 mod row;
 mod table;
 
+mod axisymmetric;
 pub mod contact_capsule;
 mod contact_impacts;
 mod contact_relaxed;
@@ -44,6 +45,7 @@ mod oscillation;
 mod piston_model;
 mod sphere_motion;
 mod static_airbag;
+mod static_compliant;
 mod static_discs;
 mod static_end_state;
 mod static_equilibrium;

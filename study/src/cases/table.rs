@@ -3,8 +3,8 @@
 use super::{
     Case, Outcome, Rig, Tier, contact_capsule, contact_impacts, contact_relaxed, contact_stack,
     contact_tube, damping, drum, energy_balance, forces, friction_adhesion, gas_piston, gas_vessel,
-    invariants, moving_fold, piston_model, sphere_motion, static_airbag, static_discs,
-    static_end_state, static_polygon, static_shells, static_wrinkling, step_limit,
+    invariants, moving_fold, piston_model, sphere_motion, static_airbag, static_compliant,
+    static_discs, static_end_state, static_polygon, static_shells, static_wrinkling, step_limit,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -185,6 +185,21 @@ pub const CASES: &[Case] = &[
         "mylar_balloon",
         "two discs sewn together and inflated, with the meridian's equation",
         static_discs::mylar_balloon,
+    ),
+    quick(
+        "compliant_disc",
+        "a disc of compliant film under pressure, with an integration along its meridian",
+        static_compliant::held_disc,
+    ),
+    quick(
+        "compliant_frustum",
+        "a frustum of compliant film between rings, with an integration along its meridian",
+        static_compliant::held_frustum,
+    ),
+    quick(
+        "compliant_capsule",
+        "the capsule with circular caps of compliant film, with an integration along its meridian",
+        static_compliant::capsule,
     ),
     quick(
         "square_airbag",

@@ -68,7 +68,7 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
     }
     let [x, y] = [Axis::new(x, &source.rows)?, Axis::new(y, &source.rows)?];
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
-    let unit = Unit::fit(&measure.unit, values.clone());
+    let unit = Unit::shown_in(&measure.shown, &measure.unit, values.clone());
     let range = values.fold(None, |range: Option<[f64; 2]>, value| {
         let value = unit.shown(value);
         Some(range.map_or([value, value], |[low, high]| [low.min(value), high.max(value)]))

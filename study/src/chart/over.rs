@@ -46,7 +46,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     check_size(over, &facets, &lines, &series)?;
 
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
-    let unit = Unit::fit(&measure.unit, values.clone());
+    let unit = Unit::shown_in(&measure.shown, &measure.unit, values.clone());
     let extent = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(unit.shown(value)), high.max(unit.shown(value))]
     });

@@ -24,7 +24,7 @@ impl<'a> Parameter<'a> {
     /// The parameter of a column; its unit fits the values of these rows.
     pub fn new(column: &'a Column, rows: &[usize]) -> Self {
         let values = rows.iter().filter_map(|row| number(&column.cells[*row]));
-        Self { column, unit: Unit::fit(&column.unit, values) }
+        Self { column, unit: Unit::shown_in(&column.shown, &column.unit, values) }
     }
 
     /// Name.

@@ -76,7 +76,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if let Some(path) = &args.out {
         Picture::of(path)?;
     }
-    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
+    let mut target = target::open(&args.study, &args.set.set, &args.units)?;
+    target.add_keys(&[], args.condition.as_deref())?;
+    let Target { results, table, .. } = target;
     let name = study_name(&results);
     let source = source(args, &name, &table)?;
     let standard = asked.is_none();

@@ -37,6 +37,7 @@ mod schema;
 mod show;
 mod solve;
 mod status;
+mod study_keys;
 mod table;
 mod target;
 mod usage;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use crate::input::keys;
+use crate::input::keys::{self, KEYS};
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::platform::error::{Error, Result};
 use crate::run::progress::Loudness;
@@ -92,7 +92,7 @@ impl UnitsOption {
         study: &DisplayUnits,
         si: &dyn Fn(&str) -> Option<String>,
     ) -> Result<DisplayUnits> {
-        let mut units = if self.si { DisplayUnits::si() } else { study.clone() };
+        let mut units = if self.si { DisplayUnits::all_si() } else { study.clone() };
         for text in &self.units {
             let refuse = |problem: String| {
                 let allowed = "NAME=UNIT, as in t_90_z_rim=ms";
@@ -102,23 +102,23 @@ impl UnitsOption {
             let (name, symbol) =
                 text.split_once('=').ok_or_else(|| refuse("has no `=`".to_owned()))?;
             let name = name.trim();
-            let name = keys::find(name).map_or(name, |index| keys::short_name(index));
-            let si =
-                si(name).ok_or_else(|| refuse("names no parameter and no column".to_owned()))?;
+            let key = keys::find(name);
+            let name = key.map_or(name, |index| keys::short_name(index));
+            let of_key = || key.map(|index| KEYS[index].unit().to_owned());
+            let si = si(name).or_else(of_key);
+            let si = si.ok_or_else(|| refuse("names no parameter and no column".to_owned()))?;
             DisplayUnit::new(symbol, &si).map_err(refuse)?;
             units.set(name, symbol);
         }
         Ok(units)
     }
 
-    /// The table, shown in the units of the study with the options applied.
+    /// The units in which a table is shown: those of the study with the options applied.
     ///
     /// # Errors
     /// As [`Self::apply`].
-    pub fn show(&self, table: Table, study: &DisplayUnits) -> Result<Table> {
-        let units =
-            self.apply(study, &|name| table.column(name).map(|column| column.unit.clone()))?;
-        Ok(table.shown_in(&units))
+    pub fn of_table(&self, table: &Table, study: &DisplayUnits) -> Result<DisplayUnits> {
+        self.apply(study, &|name| table.column(name).map(|column| column.unit.clone()))
     }
 }
 

@@ -9,7 +9,8 @@ use super::print::{Heading, print_quantities, print_rows};
 use super::target::{StudyArgs, current_name, folder_of_job};
 use super::{Format, output_error};
 use crate::input::keys::{self, KEYS};
-use crate::input::units::{DisplayUnit, DisplayUnits};
+use crate::input::renamed;
+use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::row::{Cells, ColumnGroup};
 use crate::job::{JobId, Status};
@@ -108,7 +109,7 @@ fn in_units(
     for row in &mut rows {
         let Some(Value::Text(si)) = row.get(3) else { continue };
         let unit = units.of(&named(row), si);
-        if !si.is_empty() && unit != DisplayUnit::si(si) {
+        if unit.is_chosen() && !unit.symbol().is_empty() {
             row[2] = unit.value(&row[2]);
             row[3] = Value::Text(unit.symbol().to_owned());
         }
@@ -160,7 +161,7 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
     // The row is shown even if its file cannot be read: the error is then one of the rows.
     match scene(stored, id) {
         Ok(scene) => rows.extend(summary::rows(&scene).into_iter().map(|mut pair| {
-            let name = pair[0].to_string();
+            let name = current_path(&pair[0].to_string());
             let key = KEYS.iter().find(|key| key.path == name);
             let meaning = key.map_or("", |key| key.doc);
             let value = pair.pop().unwrap_or(Value::Null);
@@ -169,6 +170,23 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         Err(error) => rows.push(vec![text("scene"), text("error"), text(&error.to_string())]),
     }
     rows
+}
+
+/// The path of a value in a stored scene as a file has it: with the current name of its key, and the
+/// number of a list item in brackets.
+fn current_path(stored: &str) -> String {
+    let mut path = String::with_capacity(stored.len());
+    for part in stored.split('.') {
+        if !path.is_empty() && part.parse::<usize>().is_ok() {
+            path.push('[');
+            path.push_str(part);
+            path.push(']');
+        } else {
+            path.push_str(if path.is_empty() { "" } else { "." });
+            path.push_str(part);
+        }
+    }
+    renamed::current(&path).unwrap_or(path)
 }
 
 /// SI unit of a number in a scene, given its dotted key; empty without a unit.
@@ -223,7 +241,7 @@ fn print_history(
         })
         .collect();
     let units = args.units.apply(units, &|name| {
-        let known = all_names.iter().any(|known| *known == name);
+        let known = all_names.contains(&name);
         known.then(|| si_of_column(name).to_owned())
     })?;
     let headings: Vec<Heading> = columns

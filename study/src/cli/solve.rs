@@ -102,7 +102,7 @@ fn solve(args: &Args, scene: &SceneFile) -> Result<Solved> {
         if !args.quiet.quiet && last.elapsed() >= PROGRESS_INTERVAL {
             last = Instant::now();
             eprintln!(
-                "billow: {:.6} of {} s, top at {:.4} m, {:.1} Pa",
+                "billow: t {:.6} of {} s, z_centre {:.4} m, pressure {:.1} Pa",
                 progress.time, progress.end_time, progress.z_centre, progress.pressure
             );
         }

@@ -8,7 +8,7 @@ use super::print::{Heading, print_quantities};
 use super::target::{self, StudyArgs, Target, filtered, find};
 use super::{Format, best};
 use crate::input::value::Value;
-use crate::job::row::{ColumnId, SAME_JOB_AS};
+use crate::job::row::{ColumnId, SAME_JOB_AS, current_column_name};
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
@@ -58,10 +58,16 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let Target { results, table } = target::open(&args.study, &args.set.set, &args.units)?;
+    let mut target = target::open(&args.study, &args.set.set, &args.units)?;
+    let all_columns = target.table.columns.len();
+    let sorts = args.sort.iter().map(|key| key.split(':').next().unwrap_or_default());
+    let asked = args.columns.iter().map(String::as_str).chain(sorts);
+    let asked: Vec<String> = asked.map(|name| name.trim().to_owned()).collect();
+    target.add_keys(&asked, args.condition.as_deref())?;
+    let Target { results, table, .. } = target;
     let rows = sorted(&table, filtered(&table, args.condition.as_deref())?, &args.sort)?;
     let format = args.output.format();
-    let columns = chosen(&table, &args.columns, format)?;
+    let columns = chosen(&table, &args.columns, &args.sort, format)?;
     let headings: Vec<Heading> = columns.iter().map(|column| heading(column)).collect();
     let cells: Vec<Vec<Value>> = rows
         .iter()
@@ -78,7 +84,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                  mass_flow_rate == '5 g/s'"
             );
         }
-        eprintln!("{} of {} columns (--columns all)", columns.len(), table.columns.len());
+        eprintln!("{} of {} columns (--columns all)", columns.len(), all_columns);
         let jobs = table.one_row_per_job(&rows).len();
         if jobs < rows.len() {
             eprintln!(
@@ -148,21 +154,35 @@ fn compare(a: &Value, b: &Value, descending: bool) -> Ordering {
     if descending { order.reverse() } else { order }
 }
 
-fn chosen<'a>(table: &'a Table, names: &[String], format: Format) -> Result<Vec<&'a Column>> {
+fn chosen<'a>(
+    table: &'a Table,
+    names: &[String],
+    sort: &[String],
+    format: Format,
+) -> Result<Vec<&'a Column>> {
     match names {
-        [] if format == Format::Table => Ok(main_columns(table)),
+        [] if format == Format::Table => Ok(main_columns(table, sort)),
         [] => Ok(table.columns.iter().collect()),
         [all] if all == "all" => Ok(table.columns.iter().collect()),
         names => names.iter().map(|name| find(table, "--columns", name.trim())).collect(),
     }
 }
 
-/// Job, parameters, and the main columns that fit on a line.
-fn main_columns(table: &Table) -> Vec<&Column> {
+/// Job, parameters, the columns that sort the rows, and the main columns that fit on a line.
+fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
     columns.extend(table.parameters());
+    for name in sort.iter().map(|key| key.split(':').next().unwrap_or_default().trim()) {
+        let column = table.column(current_column_name(name).0);
+        let is_new = |column: &&Column| columns.iter().all(|known| known.name != column.name);
+        columns.extend(column.filter(is_new));
+    }
     let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
-    for column in MAIN_COLUMNS.iter().filter_map(|column| table.column(column.name())) {
+    let mains = MAIN_COLUMNS.iter().filter_map(|column| table.column(column.name()));
+    let sorting: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    for column in
+        mains.filter(|column| !sorting.contains(&column.name.as_str())).collect::<Vec<_>>()
+    {
         let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
         // The status is always shown.
         if column.name == "status" || (has_values && width + self::width(column) <= MAX_LINE_WIDTH)

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::changes;
 use super::options::{ResultsOption, UnitsOption};
+use super::study_keys;
 use crate::input::expression::{Expression, Type, Variable};
-use crate::input::units::Dimension;
+use crate::input::units::{Dimension, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
 use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note};
@@ -35,6 +36,20 @@ pub struct Target {
     pub results: Results<'static>,
     /// The table.
     pub table: Table,
+    /// The units in which it is shown.
+    pub units: DisplayUnits,
+}
+
+impl Target {
+    /// Adds a column for every key of the study that these names, or those of a condition, name.
+    ///
+    /// # Errors
+    /// A study.json that cannot be read.
+    pub fn add_keys(&mut self, names: &[String], condition: Option<&str>) -> Result<()> {
+        let mut names = names.to_vec();
+        names.extend(study_keys::names_in(condition));
+        study_keys::add_from(&self.results, &mut self.table, &self.units, &names)
+    }
 }
 
 /// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
@@ -57,8 +72,9 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
         Some(path) => Study::load(path, set)?.display_units().clone(),
         None => results.display_units()?,
     };
-    let table = units.show(table, &display)?;
-    Ok(Target { results, table })
+    let units = units.of_table(&table, &display)?;
+    let table = table.shown_in(&units);
+    Ok(Target { results, table, units })
 }
 
 /// The results folder: the given folder, or the folder of the given study file, or the only folder under

@@ -65,10 +65,8 @@ pub(crate) fn meant(key: &Key, json: &Json) -> Option<String> {
 /// value is nearest to the example of the key. `None` if no unit does.
 fn with_unit(key: &Key, quantity: &Quantity, number: f64) -> Option<String> {
     let dimension = quantity.dimension;
-    let typical = match parse(key.example, "example").map(|json| quantity.read(&json)) {
-        Ok(Ok(Value::Number(number))) => number,
-        _ => return None,
-    };
+    let example = parse(key.example, "example").map(|json| quantity.read(&json));
+    let Ok(Ok(Value::Number(typical))) = example else { return None };
     let distance = |si: f64| (libm::log(si.abs()) - libm::log(typical.abs())).abs();
     let texts = dimension.units().iter().skip(usize::from(dimension != Dimension::Number));
     let candidates = texts.filter_map(|unit| {

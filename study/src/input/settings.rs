@@ -192,7 +192,7 @@ pub(crate) fn check_sample_interval(
     Err(source.error(
         "outputs.sample_interval",
         &shown(interval),
-        format!("samples a run of {end_time} s more than {MAX_SAMPLES:.0} times"),
+        format!("samples a run of {} s more than {MAX_SAMPLES:.0} times", shown(end_time)),
         format!("at least {} s for this end_time", shown(end_time / MAX_SAMPLES)),
     ))
 }

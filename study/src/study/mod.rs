@@ -24,7 +24,7 @@ mod variables;
 
 use std::path::Path;
 
-use crate::input::keys::{KEYS, STUDY, position};
+use crate::input::keys::{self, KEYS, Key, STUDY, position};
 use crate::input::overrides;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
@@ -38,6 +38,17 @@ pub(crate) use point::StudyPoint;
 
 /// The key of the units in which quantities are shown. It changes no job.
 pub(crate) const UNITS: &str = "units";
+
+/// A key of a study.
+#[derive(Debug, Clone)]
+pub struct StudyKey {
+    /// Its shortest name: the name of its column where the study varies it.
+    pub name: String,
+    /// Its row in the table of keys.
+    pub key: &'static Key,
+    /// Its value outside the grid, SI.
+    pub value: Value,
+}
 
 /// A validated study.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,6 +196,20 @@ impl Study {
     /// under `units`.
     pub fn display_units(&self) -> &DisplayUnits {
         &self.units
+    }
+
+    /// Whether a name may be that of a key, as `film.thickness`, `thickness` or one of a strategy.
+    pub fn may_be_key(name: &str) -> bool {
+        keys::find(name).is_some_and(|index| KEYS[index].varies())
+            || name.starts_with("strategies.")
+    }
+
+    /// A key by its path or its last part; `None` for another name.
+    pub fn key(&self, name: &str) -> Option<StudyKey> {
+        let source = Source::new("");
+        let column = target::find(name, name, &Json::Null, &self.base, &source).ok()?;
+        let (key, value) = (column.target.key(), column.target.value(&self.base));
+        Some(StudyKey { name: column.name, key, value })
     }
 
     /// The resolved study: units converted, defaults written out, axes as lists. It is a study file

@@ -81,7 +81,7 @@ fn check_release(
         &format!("strategies.{name}.release_time"),
         &shown(release_time),
         "the run ends before the capsule is released",
-        format!("below solver.end_time, {end_time} s"),
+        format!("below solver.end_time, {} s", shown(end_time)),
     ))
 }
 
@@ -190,7 +190,7 @@ impl Windows<'_> {
                 &format!("strategies.{}.inflow[{index}].to", self.name),
                 &shown(to),
                 "the window ends before it begins",
-                format!("above its `from`, {from} s"),
+                format!("above its `from`, {} s", shown(from)),
             ));
         }
         let rate = window.mass_flow_rate.or(self.draft.inflow.mass_flow_rate);

@@ -13,6 +13,9 @@ use crate::input::value::brief_number;
 /// that of the last tenth.
 const MIN_FREE_FRACTION: f64 = 0.1;
 
+/// Relative rounding error of a number of samples.
+const ROUNDING: f64 = 1e-9;
+
 /// What a warning compares: one point of a study.
 pub(super) struct Schedule<'a> {
     pub point: &'a Base,
@@ -50,14 +53,18 @@ impl Schedule<'_> {
             let path = format!("strategies.{name}.inflow[{index}]");
             let from = window.from.unwrap_or(strategy.release_time());
             if from >= end {
-                let problem =
-                    format!("starts at {from} s, after solver.end_time ({end} s): it is ignored");
+                let problem = format!(
+                    "starts at {}, after solver.end_time ({}): it is ignored",
+                    seconds(from),
+                    seconds(end)
+                );
                 let next = "start it earlier, or raise solver.end_time";
                 self.warn(&format!("{path}.from"), &seconds(from), problem, next);
             } else if let Some(to) = window.to.filter(|to| *to > end) {
                 let problem = format!(
-                    "ends at {to} s: its part after solver.end_time ({end} s), {} % of its gas, is \
-                     ignored",
+                    "ends at {}: its part after solver.end_time ({}), {} % of its gas, is ignored",
+                    seconds(to),
+                    seconds(end),
                     brief_number(100.0 * (to - end) / (to - from))
                 );
                 let next = "end it earlier, or raise solver.end_time";
@@ -71,8 +78,11 @@ impl Schedule<'_> {
         let (release, end) = (strategy.release_time(), self.end_time());
         let free = end - release;
         if release > 0.0 && free < MIN_FREE_FRACTION * end {
-            let problem =
-                format!("leaves {} s of a run of {end} s for the deployment", brief_number(free));
+            let problem = format!(
+                "leaves {} s of a run of {} for the deployment",
+                brief_number(free),
+                seconds(end)
+            );
             let next = "release earlier, or raise solver.end_time";
             self.warn(&format!("strategies.{name}.release_time"), &seconds(release), problem, next);
         }
@@ -84,10 +94,11 @@ impl Schedule<'_> {
         let time = end - strategy.release_time();
         if mass > 0.0 && mass / rate > time {
             let problem = format!(
-                "enters at gas.burst_rate ({} kg/s) for {} s, beyond solver.end_time ({end} s): only {} % \
+                "enters at gas.burst_rate ({} kg/s) for {} s, beyond solver.end_time ({}): only {} % \
                  enter",
                 brief_number(rate),
                 brief_number(mass / rate),
+                seconds(end),
                 brief_number(100.0 * rate * time / mass)
             );
             let next = "check the unit of the mass; raise gas.burst_rate or solver.end_time, or take \
@@ -100,10 +111,11 @@ impl Schedule<'_> {
     fn check_samples(&self) {
         let outputs = &self.scene.outputs;
         let (interval, end) = (outputs.sample_interval, self.end_time());
-        let samples = (end / interval).floor() + 1.0;
+        let samples = (end / interval * (1.0 + ROUNDING)).floor() + 1.0;
         if end < MIN_SAMPLES * interval {
             let problem = format!(
-                "samples a run of {end} s only {}, too few for times and peaks",
+                "samples a run of {} only {}, too few for times and peaks",
+                seconds(end),
                 times(samples)
             );
             let next = "check its unit; the default is \"1 ms\"";

@@ -74,7 +74,9 @@ fn written_in_grid(grid: Option<&Json>, found: &mut dyn FnMut(&str, &Json)) {
             ("zip" | "points", Json::List(items)) => {
                 for item in items {
                     if let Json::Object(members) = item {
-                        members.iter().for_each(|(name, value)| found(name, value));
+                        for (name, value) in members {
+                            found(name, value);
+                        }
                     }
                 }
             }

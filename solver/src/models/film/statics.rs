@@ -113,6 +113,7 @@ const UNIT_MOTION: Motion = Motion {
 
 impl Erected {
     /// The same capsule in a known equilibrium: these positions (m), at this overpressure (Pa).
+    #[must_use]
     pub fn at_equilibrium(&self, positions: Field, overpressure: f64) -> Self {
         // Held nodes are at their stowed positions.
         let supports = Supports { movers: Vec::new(), ..self.supports.clone() };

@@ -5,7 +5,7 @@
 //! W = 5 (t_half − t_low)                   low: midway between the first height and the half
 //! ```
 //!
-//! Film rebounds several times on its way to its final height. Which rebound first reaches nine tenths
+//! Film rebounds several times before it rests at its final height. Which rebound first reaches nine tenths
 //! depends on small causes: the mesh, the seed, the time step. Its smoothed course passes the level once.
 //! The width W follows from the opening of the film, so it scales with the motion and does not depend on
 //! when the motion begins. A Hann window has no negative side lobes: no bounce is amplified. The series is
@@ -31,7 +31,7 @@ impl Window {
     }
 
     /// First time (s) at which the smoothed `values` reach `level`.
-    pub(super) fn first(&self, time: &[f64], values: &[f64], level: f64) -> Option<f64> {
+    pub(super) fn first(self, time: &[f64], values: &[f64], level: f64) -> Option<f64> {
         let mut before: Option<[f64; 2]> = None;
         for now in time {
             let value = self.mean(time, values, *now);
@@ -45,7 +45,7 @@ impl Window {
     }
 
     /// Weighted mean of the series around a time between its first and its last sample.
-    fn mean(&self, time: &[f64], values: &[f64], at: f64) -> f64 {
+    fn mean(self, time: &[f64], values: &[f64], at: f64) -> f64 {
         let from = time.partition_point(|t| *t <= at - self.half).saturating_sub(1);
         let to = time.partition_point(|t| *t < at + self.half).min(time.len() - 1);
         let (mut sum, mut weight) = (0.0, 0.0);
@@ -71,7 +71,7 @@ impl Window {
     }
 
     /// ∫ w ds and ∫ w s ds from `low` to `high`, within the window.
-    fn moments(&self, low: f64, high: f64) -> (f64, f64) {
+    fn moments(self, low: f64, high: f64) -> (f64, f64) {
         let k = 0.5 * TAU / self.half;
         let [(s0, c0), (s1, c1)] = [low, high].map(|s| libm::sincos(k * s));
         let zeroth = (high - low) + (s1 - s0) / k;

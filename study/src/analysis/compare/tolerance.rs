@@ -84,9 +84,13 @@ fn method_spread(measure: ColumnId) -> Option<f64> {
     // README, "Models and their limits": at n 8 against n 16, the paper's capsule; peak_vz by seed.
     match measure {
         ColumnId::T50ZRim
-        | ColumnId::T50ZRimSinceRelease
         | ColumnId::T90ZRim
-        | ColumnId::T90ZRimSinceRelease => Some(0.03),
+        | ColumnId::T90Volume
+        | ColumnId::TDeployed
+        | ColumnId::T50ZRimSinceRelease
+        | ColumnId::T90ZRimSinceRelease
+        | ColumnId::T90VolumeSinceRelease
+        | ColumnId::TDeployedSinceRelease => Some(0.03),
         ColumnId::PeakVz => Some(0.05),
         ColumnId::PeakKineticEnergy => Some(0.02),
         ColumnId::VolumeRatio | ColumnId::HeightRatio => Some(0.01),

@@ -80,9 +80,9 @@ fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
 /// A headline measure with the unit of its medians.
 fn headline(effects: &Effects, measure: ColumnId) -> String {
     let measures = effects.effects.iter().flat_map(|effect| &effect.measures);
-    let shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
+    let mut shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
     let si = DisplayUnit::si(measure.column().unit);
-    shown.last().unwrap_or(&si).label(measure.name())
+    shown.next().unwrap_or(&si).label(measure.name())
 }
 
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, filtered, find, folder};
-use super::{Format, changes, output_error};
+use super::{Format, changes, output_error, study_keys};
 use crate::analysis::compare::{
     self, Better, Compared, Measure, Pair, Sets, Tally, Tolerance, measures_with,
 };
@@ -91,7 +91,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &args.set.set)?;
     let stored = Stored::read(Results::new(&Disk, &root))?;
     changes::note(&stored.results, args.study.study.as_deref(), &args.set.set)?;
-    let table = args.units.show(stored.table(), stored.study.display_units())?;
+    let table = stored.table();
+    let units = args.units.of_table(&table, stored.study.display_units())?;
+    let mut table = table.shown_in(&units);
+    let names = study_keys::names_in(args.condition.as_deref());
+    study_keys::add(&stored.study, &mut table, &units, &names);
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let rows = filtered(&table, args.condition.as_deref())?;

@@ -178,7 +178,8 @@ fn title(stored: &Stored<'_>, id: &JobId) -> String {
     let mut title = format!("{}, job {}", stored.study.name, id.short());
     for (name, value) in stored.point(id).iter().flat_map(|point| &point.job.parameters) {
         let text = if let Value::Number(si) = value {
-            let unit = Unit::of(stored.study.unit(name), si.abs());
+            let si_unit = stored.study.unit(name);
+            let unit = Unit::shown_in(&stored.units.of(name, si_unit), si_unit, [*si]);
             unit.after(&short_number(unit.shown(*si)))
         } else {
             value.to_string()

@@ -1,6 +1,7 @@
 //! Tokens of an expression.
 
 use super::tree::{ExpressionError, Operator, Span, error_at};
+use crate::input::units::is_unit;
 
 /// A token.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,8 +70,23 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Span)>, ExpressionError> 
                 position = start + number_length(&text[start..]);
                 let number = text[start..position.max(start + 1)].parse::<f64>();
                 position = position.max(start + 1);
-                match number {
-                    Ok(number) if number.is_finite() => Token::Number(number),
+                match (number, after_number(&text[position..])) {
+                    (Ok(number), "") if number.is_finite() => Token::Number(number),
+                    // A percentage is a pure number: it must not be compared with a length.
+                    (Ok(_), unit @ "%") => {
+                        let number = &text[start..position];
+                        position += text[position..].find(unit).unwrap_or(0) + unit.len();
+                        Token::Text(format!("{number} {unit}"))
+                    }
+                    (Ok(_), unit) if !unit.is_empty() => {
+                        let end = position + text[position..].find(unit).unwrap_or(0) + unit.len();
+                        return Err(error_at(
+                            text,
+                            (start, end),
+                            "a number with a unit is written in quotes",
+                            &format!("'{} {unit}', or a number in SI", &text[start..position]),
+                        ));
+                    }
                     _ => {
                         return Err(error_at(
                             text,
@@ -111,6 +127,21 @@ fn word(word: &str) -> Token {
         "not" => Token::Not,
         _ => Token::Name(word.to_owned()),
     }
+}
+
+/// What follows a number: `%`, a unit, or nothing that belongs to it.
+fn after_number(rest: &str) -> &str {
+    let rest = rest.trim_start();
+    if rest.starts_with('%') {
+        return &rest[..1];
+    }
+    if !rest.starts_with(|c: char| c.is_alphabetic() || c == '°') {
+        return "";
+    }
+    let in_unit = |c: char| c.is_alphanumeric() || matches!(c, '/' | '^' | '°' | '²' | '³' | '_');
+    let unit = &rest[..rest.find(|c| !in_unit(c)).unwrap_or(rest.len())];
+    let unit = unit.trim_end_matches('/');
+    if is_unit(unit) { unit } else { "" }
 }
 
 /// Length of the number position the start of a text, bytes.

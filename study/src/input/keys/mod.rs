@@ -8,6 +8,7 @@ pub mod listing;
 mod objects;
 mod quantity;
 mod scene;
+mod strategy;
 mod study;
 mod table;
 mod words;
@@ -21,8 +22,9 @@ pub use objects::{
 pub(crate) use objects::{FLAT, GRAVITY, NEAR, object_meaning};
 pub use quantity::Quantity;
 pub(crate) use quantity::whole;
+pub use strategy::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 pub(crate) use study::GRID_MEANINGS;
-pub use study::{CAPSULE_SUPPORT_KEYS, KEYS, SECTIONS, STRATEGY_KEYS, WINDOW_KEYS};
+pub use study::{KEYS, SECTIONS};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};
 pub use words::{MODELS, Model, Word, model};
 pub(crate) use words::{PROFILES, SUPPORT_PLACES};

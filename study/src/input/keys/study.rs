@@ -13,7 +13,7 @@ use super::key::Default::{Absent, Integer, Number, Required, Word};
 use super::key::{Key, KeyKind, above, from, key, likely};
 use super::quantity::Quantity;
 use super::words::{
-    CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, SUPPORT_PLACES, pick, plain, words,
+    CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, pick, plain, words,
 };
 use crate::input::units::Dimension;
 
@@ -67,7 +67,7 @@ pub(super) const SAMPLE_INTERVAL: KeyKind = likely(above(Dimension::Time, 0.0, 1
 pub(super) const FLOW_RATE: KeyKind =
     likely(from(Dimension::MassFlowRate, 0.0, 100.0), 0.0, MAX_PLAUSIBLE_FLOW_RATE);
 /// A mass of gas in a folded capsule, kg.
-const GAS_MASS: KeyKind = likely(from(Dimension::Mass, 0.0, 10.0), 0.0, 0.02);
+pub(super) const GAS_MASS: KeyKind = likely(from(Dimension::Mass, 0.0, 10.0), 0.0, 0.02);
 /// Longest plausible run, s. Chosen: a deployment takes seconds, a slow one minutes.
 const MAX_PLAUSIBLE_TIME: f64 = 300.0;
 /// Largest plausible mass flow rate, kg/s. Chosen: it fills a capsule of 1 m3 in milliseconds.
@@ -290,35 +290,6 @@ pub static KEYS: &[Key] = &[
         "Amplitude of the imperfection: its largest displacement, along z. Equal displacements on \
          every mesh of a design. Seed 0 has none.")
         .to(|draft, value| draft.scene.imperfection_amplitude = optional(value)),
-];
-
-/// The keys of a strategy; paths are those within `strategies.<name>`.
-#[rustfmt::skip]
-pub static STRATEGY_KEYS: &[Key] = &[
-    key("release_time", CLOCK, Number(0.0), "\"1 s\"",
-        "Time until which the lid holds the stowed capsule."),
-    key("preinflation_mass", GAS_MASS, Number(0.0), "\"0.15 g\"",
-        "Gas inside from the start, at film temperature, in addition to residual gas."),
-];
-
-/// The keys of an inflow window; paths are those within `strategies.<name>.inflow[]`.
-#[rustfmt::skip]
-pub static WINDOW_KEYS: &[Key] = &[
-    key("from", CLOCK, Absent("the release time"), "\"5 s\"", "Start, since the start of the run."),
-    key("to", CLOCK, Absent("the end time of the run"), "\"12 s\"",
-        "End, since the start of the run."),
-    key("mass_flow_rate", FLOW_RATE, Absent("gas.mass_flow_rate"),
-        "\"1 g/s\"", "Mass flow rate."),
-    key("temperature", KELVIN, Absent("gas.inflow_temperature"), "\"293 K\"",
-        "Temperature of the gas let in."),
-];
-
-/// The keys of a support of a study; paths are those within `supports[]`.
-#[rustfmt::skip]
-pub static CAPSULE_SUPPORT_KEYS: &[Key] = &[
-    key("on", KeyKind::Choice(&words(&SUPPORT_PLACES)), Required, "\"bottom_ring\"", "Where it acts."),
-    key("fix", KeyKind::Text, Required, "\"xyz\"",
-        "Displacement components it holds: letters of xyz, each once."),
 ];
 
 /// The keys of `grid`, and their meanings.

@@ -16,6 +16,8 @@ pub struct DisplayUnit {
     /// As the user writes it; "1" for a pure number, empty for what has no unit.
     symbol: String,
     conversion: Conversion,
+    /// Whether the study or an option asks for it.
+    chosen: bool,
 }
 
 /// How an SI number becomes the shown one.
@@ -32,7 +34,7 @@ enum Conversion {
 impl DisplayUnit {
     /// The SI unit itself; "1" for a pure number, empty for what has no unit.
     pub fn si(si: &str) -> Self {
-        Self { symbol: si.to_owned(), conversion: Conversion::Identity }
+        Self { symbol: si.to_owned(), conversion: Conversion::Identity, chosen: false }
     }
 
     /// A unit of the dimension that the SI unit `si` has.
@@ -42,13 +44,14 @@ impl DisplayUnit {
     pub fn new(symbol: &str, si: &str) -> Result<Self, String> {
         let symbol = symbol.trim();
         if symbol == si {
-            return Ok(Self::si(si));
+            return Ok(Self { chosen: true, ..Self::si(si) });
         }
         let wanted = symbol::unit(si).map_err(|_| "is a unit of what has none".to_owned())?.powers;
         if wanted == dimension::Dimension::Temperature.powers() && CELSIUS.contains(&symbol) {
-            return Ok(Self { symbol: symbol.to_owned(), conversion: Conversion::Celsius });
+            let symbol = symbol.to_owned();
+            return Ok(Self { symbol, conversion: Conversion::Celsius, chosen: true });
         }
-        let scale = symbol::unit(symbol)?;
+        let (scale, symbol) = (symbol::unit(symbol)?, symbol.to_owned());
         if scale.powers != wanted {
             return Err(format!(
                 "is {}, not {}",
@@ -57,7 +60,13 @@ impl DisplayUnit {
             ));
         }
         let inverse = scale.inverse().ok_or("is too large a unit")?;
-        Ok(Self { symbol: symbol.to_owned(), conversion: Conversion::Scale(inverse) })
+        Ok(Self { symbol, conversion: Conversion::Scale(inverse), chosen: true })
+    }
+
+    /// Whether the study or an option asks for this unit. A chart takes a unit that fits its values
+    /// otherwise.
+    pub fn is_chosen(&self) -> bool {
+        self.chosen
     }
 
     /// Its symbol; empty for a pure number and for what has no unit.
@@ -142,12 +151,19 @@ impl DisplayUnit {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct DisplayUnits {
     symbols: BTreeMap<String, String>,
+    /// Whether SI is asked for where a name has no entry.
+    all_si: bool,
 }
 
 impl DisplayUnits {
-    /// Every quantity in SI.
+    /// Every quantity in SI, as nothing else is asked for.
     pub fn si() -> Self {
         Self::default()
+    }
+
+    /// Every quantity in SI, as asked for.
+    pub fn all_si() -> Self {
+        Self { all_si: true, ..Self::default() }
     }
 
     /// Shows the quantity of this name in a unit.
@@ -174,7 +190,7 @@ impl DisplayUnits {
             .get(name)
             .or_else(|| self.symbols.get(name.strip_suffix(RESOLVED).unwrap_or(name)));
         let unit = symbol.and_then(|symbol| DisplayUnit::new(symbol, si).ok());
-        unit.unwrap_or_else(|| DisplayUnit::si(si))
+        unit.unwrap_or_else(|| DisplayUnit { chosen: self.all_si, ..DisplayUnit::si(si) })
     }
 }
 
@@ -224,6 +240,8 @@ mod tests {
         assert_eq!(units.of("height", "m").symbol(), "mm");
         assert_eq!(units.of("height_resolved", "m").symbol(), "mm");
         assert_eq!(units.of("height", "kg"), DisplayUnit::si("kg"));
+        assert!(units.of("height", "m").is_chosen() && !units.of("width", "m").is_chosen());
+        assert!(DisplayUnits::all_si().of("width", "m").is_chosen());
         assert_eq!(units.of("N", "1").label("N"), "N");
         let unit = units.of("height", "m");
         assert_eq!(unit.label("height"), "height (mm)");

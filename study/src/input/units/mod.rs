@@ -51,6 +51,11 @@ pub fn symbols(dimension: Dimension) -> Vec<String> {
     symbols
 }
 
+/// Whether a text is a unit, as "g/s".
+pub fn is_unit(text: &str) -> bool {
+    CELSIUS.contains(&text) || symbol::unit(text).is_ok()
+}
+
 /// Reads a quantity of any dimension, given as powers of the base units.
 ///
 /// # Errors

@@ -1,5 +1,7 @@
 //! Readable units: values are SI in the program, but an axis shows 5 g/s, 32 ms and 1.2 kPa.
 
+use crate::input::units::DisplayUnit;
+
 /// The unit in which a column is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
@@ -7,6 +9,8 @@ pub struct Unit {
     pub symbol: String,
     /// Its size in the SI unit.
     size: f64,
+    /// The unit that the study or an option asks for, in place of the size.
+    chosen: Option<DisplayUnit>,
 }
 
 /// A unit for an SI quantity: symbol, size, and the largest value, in this unit, from which it is used.
@@ -53,12 +57,30 @@ impl Unit {
             choices.iter().find(|(_, size, _)| size.total_cmp(&1.0).is_eq())
         };
         let (symbol, size, _) = chosen.unwrap_or(&choices[choices.len() - 1]);
-        Self { symbol: (*symbol).to_owned(), size: *size }
+        Self { symbol: (*symbol).to_owned(), size: *size, chosen: None }
     }
 
     /// The SI unit itself.
     pub fn si(si: &str) -> Self {
-        Self { symbol: raised(if si == "1" { "" } else { si }), size: 1.0 }
+        Self { symbol: raised(if si == "1" { "" } else { si }), size: 1.0, chosen: None }
+    }
+
+    /// The unit that the study or an option asks for; without one, the unit for these values.
+    pub fn shown_in(
+        display: &DisplayUnit,
+        si: &str,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Self {
+        if !display.is_chosen() {
+            return Self::fit(si, values);
+        }
+        let symbol = match display.symbol() {
+            "um" => "µm".to_owned(),
+            "deg" => "°".to_owned(),
+            "degC" => "°C".to_owned(),
+            symbol => raised(symbol),
+        };
+        Self { symbol, size: 1.0, chosen: Some(display.clone()) }
     }
 
     /// The unit for these values; non-finite values are ignored.
@@ -69,6 +91,9 @@ impl Unit {
 
     /// An SI value in this unit.
     pub fn shown(&self, si: f64) -> f64 {
+        if let Some(chosen) = &self.chosen {
+            return chosen.number(si);
+        }
         // Sizes below 1 are inexact powers of ten, but their reciprocals are exact.
         if self.size < 1e-2 && self.symbol != "°" {
             si * libm::round(1.0 / self.size)
@@ -134,5 +159,19 @@ mod tests {
         }
         assert_eq!(Unit::fit("s", [f64::NAN, -0.02, 0.01]).label("t"), "t (ms)");
         assert_eq!(Unit::of("1", 1.0).label("N"), "N");
+    }
+
+    #[test]
+    fn a_unit_that_is_asked_for_comes_first() {
+        let unit = |symbol, si| {
+            let display = DisplayUnit::new(symbol, si).unwrap();
+            Unit::shown_in(&display, si, [0.0005])
+        };
+        assert_eq!(unit("m", "m").label("height"), "height (m)");
+        assert_eq!(unit("um", "m").after("500"), "500 µm");
+        assert_eq!(unit("degC", "K").label("T"), "T (°C)");
+        assert!((unit("degC", "K").shown(293.15) - 20.0).abs() < 1e-12);
+        let fitted = Unit::shown_in(&DisplayUnit::si("m"), "m", [0.0005]);
+        assert_eq!(fitted.symbol, "mm");
     }
 }

@@ -131,7 +131,11 @@ fn windows(
         let to = to.unwrap_or(end_time.max(from));
         if to < from || (to <= from && window.given("to").is_some()) {
             let problem = "the window ends before it begins";
-            return Err(window.error("to", problem, format!("above its `from`, {from} s")));
+            return Err(window.error(
+                "to",
+                problem,
+                format!("above its `from`, {} s", shown(from)),
+            ));
         }
         if let Some((key, value, problem)) = beyond_the_end(from, to, end_time) {
             let next = "change it, or raise solver.end_time".to_owned();
@@ -154,11 +158,13 @@ fn windows(
 /// The key, value and problem of a window that starts or ends after the run.
 fn beyond_the_end(from: f64, to: f64, end_time: f64) -> Option<(&'static str, f64, String)> {
     if from >= end_time {
-        let problem = format!("is after solver.end_time ({end_time} s): the window is ignored");
+        let problem =
+            format!("is after solver.end_time ({} s): the window is ignored", shown(end_time));
         return Some(("from", from, problem));
     }
-    let problem =
-        || format!("is after solver.end_time ({end_time} s): the part after it is ignored");
+    let problem = || {
+        format!("is after solver.end_time ({} s): the part after it is ignored", shown(end_time))
+    };
     (to > end_time).then(|| ("to", to, problem()))
 }
 

@@ -5,7 +5,7 @@ use billow_solver::scene::motion::{Motion, Profile, Rotation};
 use super::object::Object;
 use crate::input::keys::draft::Draft;
 use crate::input::keys::{MOVE_KEYS, PROFILES, ROTATION_KEYS, named};
-use crate::input::source::Source;
+use crate::input::source::{Source, shown};
 use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
@@ -22,7 +22,7 @@ pub(super) fn read(
     let to = to.ok_or_else(|| object.missing(const { named(MOVE_KEYS, "to") }))?;
     if to <= from {
         let problem = "the move ends before it begins";
-        return Err(object.error("to", problem, format!("above its `from`, {from} s")));
+        return Err(object.error("to", problem, format!("above its `from`, {} s", shown(from))));
     }
     let rotation = object
         .given("rotation")

@@ -102,7 +102,7 @@ pub(super) fn check_samples(interval: f64, end_time: f64, source: &Source) {
         return;
     }
     let samples = (end_time / interval).floor() + 1.0;
-    let problem = format!("samples a run of {end_time} s only {samples} time(s)");
+    let problem = format!("samples a run of {} s only {samples} time(s)", shown(end_time));
     let next = "check its unit; the default is \"1 ms\"".to_owned();
     source.warn("outputs.sample_interval", &shown(interval), Implausible { problem, next });
 }

@@ -1,0 +1,103 @@
+//! Keys of a study as columns of its table: `film.loss_factor`, `design.N`. A key that the study does not
+//! vary has one value in every row.
+
+use crate::input::units::DisplayUnits;
+use crate::input::value::Value;
+use crate::job::row::{CellType, current_column_name};
+use crate::platform::error::Result;
+use crate::store::results::Results;
+use crate::store::table::{Column, Table};
+use crate::study::{Study, StudyKey};
+
+/// Adds a column for every key of the study that `names` name and the table does not have. Other names
+/// are left to the reader of the name. The study of the results is read only if a name asks for it.
+///
+/// # Errors
+/// A study.json that cannot be read.
+pub fn add_from(
+    results: &Results<'_>,
+    table: &mut Table,
+    units: &DisplayUnits,
+    names: &[String],
+) -> Result<()> {
+    let missing = |name: &&String| {
+        let column = current_column_name(name).0;
+        table.column(name).is_none() && table.column(column).is_none() && Study::may_be_key(name)
+    };
+    let missing: Vec<String> = names.iter().filter(missing).cloned().collect();
+    if missing.is_empty() || results.owner()?.is_none() {
+        return Ok(());
+    }
+    add(&Study::load(&results.study_path(), &[])?, table, units, &missing);
+    Ok(())
+}
+
+/// Adds a column for every key of the study that `names` name and the table does not have.
+pub fn add(study: &Study, table: &mut Table, units: &DisplayUnits, names: &[String]) {
+    for name in names {
+        if table.column(name).is_some() {
+            continue;
+        }
+        let Some(key) = study.key(name) else { continue };
+        let column = match table.parameters().find(|column| column.name == key.name) {
+            Some(parameter) => Column { name: name.clone(), ..parameter.clone() },
+            None => constant(name, key, table.rows(), units),
+        };
+        table.columns.push(column);
+    }
+}
+
+/// A column with the same value in every row.
+fn constant(name: &str, key: StudyKey, rows: usize, units: &DisplayUnits) -> Column {
+    let unit = key.key.unit();
+    Column {
+        name: name.to_owned(),
+        cell_type: match key.value {
+            Value::Bool(_) => CellType::Bool,
+            Value::Integer(_) => CellType::Integer,
+            Value::Number(_) => CellType::Number,
+            Value::Null if !unit.is_empty() => CellType::Number,
+            Value::Null | Value::Text(_) => CellType::Text,
+        },
+        unit: unit.to_owned(),
+        shown: units.of(&key.name, unit),
+        meaning: key.key.doc.to_owned(),
+        cells: vec![key.value; rows],
+    }
+}
+
+/// The names in a condition, outside of quotes: letters, digits, `_`, dots and numbers in brackets.
+pub fn names_in(condition: Option<&str>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let mut quote = None;
+    let mut name = String::new();
+    for symbol in condition.unwrap_or_default().chars().chain([' ']) {
+        let in_name = symbol.is_ascii_alphanumeric() || matches!(symbol, '_' | '.' | '[' | ']');
+        if quote.is_none() && in_name {
+            name.push(symbol);
+            continue;
+        }
+        if !name.is_empty() {
+            names.push(std::mem::take(&mut name));
+        }
+        if matches!(symbol, '\'' | '"') {
+            quote = if quote == Some(symbol) { None } else { quote.or(Some(symbol)) };
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_a_condition_are_found() {
+        let condition =
+            "film.loss_factor > 0.01 and (strategy=='late' or strategies.a.inflow[0].to<1)";
+        let expected =
+            ["film.loss_factor", "0.01", "and", "strategy", "or", "strategies.a.inflow[0].to", "1"];
+        assert_eq!(names_in(Some(condition)), expected.map(str::to_owned));
+        assert!(names_in(None).is_empty());
+    }
+}

@@ -1,0 +1,35 @@
+//! The keys of the objects of a study: strategies, inflow windows, supports.
+
+use super::key::Default::{Absent, Number, Required};
+use super::key::{Key, KeyKind, key};
+use super::study::{CLOCK, FLOW_RATE, GAS_MASS, KELVIN};
+use super::words::{SUPPORT_PLACES, words};
+
+/// The keys of a strategy; paths are those within `strategies.<name>`.
+#[rustfmt::skip]
+pub static STRATEGY_KEYS: &[Key] = &[
+    key("release_time", CLOCK, Number(0.0), "\"1 s\"",
+        "Time until which the lid holds the stowed capsule."),
+    key("preinflation_mass", GAS_MASS, Number(0.0), "\"0.15 g\"",
+        "Gas inside from the start, at film temperature, in addition to residual gas."),
+];
+
+/// The keys of an inflow window; paths are those within `strategies.<name>.inflow[]`.
+#[rustfmt::skip]
+pub static WINDOW_KEYS: &[Key] = &[
+    key("from", CLOCK, Absent("the release time"), "\"5 s\"", "Start, since the start of the run."),
+    key("to", CLOCK, Absent("the end time of the run"), "\"12 s\"",
+        "End, since the start of the run."),
+    key("mass_flow_rate", FLOW_RATE, Absent("gas.mass_flow_rate"),
+        "\"1 g/s\"", "Mass flow rate."),
+    key("temperature", KELVIN, Absent("gas.inflow_temperature"), "\"293 K\"",
+        "Temperature of the gas let in."),
+];
+
+/// The keys of a support of a study; paths are those within `supports[]`.
+#[rustfmt::skip]
+pub static CAPSULE_SUPPORT_KEYS: &[Key] = &[
+    key("on", KeyKind::Choice(&words(&SUPPORT_PLACES)), Required, "\"bottom_ring\"", "Where it acts."),
+    key("fix", KeyKind::Text, Required, "\"xyz\"",
+        "Displacement components it holds: letters of xyz, each once."),
+];
