@@ -158,16 +158,16 @@ fn a_point_outside_the_grid_leaves_every_parameter_in_the_summary() {
         said.contains("strategy direct in t_90_z_rim_since_release, peak_kinetic_energy: no job"),
         "{said}"
     );
-    assert!(said.contains("strategy: t_90_z_rim_since_release rapid"), "{said}");
+    assert!(said.contains("strategy: t_90_z_rim_since_release preinflate"), "{said}");
     let mut medians = with["medians"].as_array().unwrap().iter();
     let strategy = medians.find(|effect| effect["parameter"] == "strategy").unwrap();
     assert_eq!((&strategy["parameter"], &strategy["sets"]), (&json!("strategy"), &json!(2)));
-    assert_eq!(strategy["measures"][0]["best"], json!(["rapid"]));
+    assert_eq!(strategy["measures"][0]["best"], json!(["preinflate"]));
 
     for command in ["table", "chart"] {
         let said = stderr(&folder.run(&[command, "grid.json"]));
         assert!(
-            said.contains("best: strategy: t_90_z_rim_since_release rapid"),
+            said.contains("best: strategy: t_90_z_rim_since_release preinflate"),
             "{command}: {said}"
         );
         assert!(!stderr(&folder.run(&[command, "grid.json", "-q"])).contains("best:"));
