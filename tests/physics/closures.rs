@@ -286,7 +286,7 @@ fn symmetry_planes_take_the_pressure_on_their_fans() {
             hold: Hold::Plane(Vector3::z()),
             motion: None,
         };
-        let supports = Supports::new(&[plane.clone()], &Field::of(&shell.positions));
+        let supports = Supports::new(std::slice::from_ref(&plane), &Field::of(&shell.positions));
         let _ = shell.close(|node| supports.projector(node as usize));
         assert_eq!(shell.walls.len(), 1);
         let start = Field::of(&shell.positions);

@@ -6,7 +6,7 @@ use crate::mechanics::gas::{Gas, GasState};
 use crate::models::run::Model;
 use crate::output::history::Sample;
 use crate::output::ledger::{GasBalance, Ledger};
-use crate::output::measures::{NoReference, Reference, StaticShape};
+use crate::output::measures::{Reference, StaticShape};
 use crate::output::outcome::{Failure, FailureKind};
 use crate::scene::timeline::Phase;
 
@@ -264,12 +264,9 @@ impl Model for PistonRun {
             let height = end.free_length + overpressure * slope / end.stiffness;
             StaticShape { overpressure, volume: self.piston.volume.volume(height), height }
         };
-        let at_end = if final_overpressure > 0.0 {
-            Ok(shape(final_overpressure))
-        } else {
-            Err(NoReference::NoOverpressure { overpressure: final_overpressure })
-        };
-        Some(Reference { design: Ok(shape(end.design_overpressure)), end: at_end })
+        // Without overpressure the film has its free length.
+        let at_end = shape(final_overpressure.max(0.0));
+        Some(Reference { design: Ok(shape(end.design_overpressure)), end: Ok(at_end) })
     }
 
     fn film_stress(&self) -> f64 {

@@ -35,14 +35,6 @@ pub struct StaticShape {
 /// Why there is no static equilibrium to compare a run with.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoReference {
-    /// The final overpressure is not positive.
-    #[error(
-        "the final overpressure is {overpressure} Pa, and film has a static equilibrium only above 0 Pa"
-    )]
-    NoOverpressure {
-        /// Mean overpressure of the last tenth, Pa.
-        overpressure: f64,
-    },
     /// The search found no equilibrium.
     #[error("no static equilibrium was found at {overpressure} Pa: {problem}")]
     NoEquilibrium {
@@ -127,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_reason_names_the_overpressure() {
-        let text = NoReference::NoOverpressure { overpressure: -3.5 }.to_string();
-        assert!(text.contains("-3.5 Pa"), "{text}");
+        let text = NoReference::Overload { overpressure: 3.5, largest: 2.0 }.to_string();
+        assert!(text.contains("3.5 Pa"), "{text}");
     }
 }

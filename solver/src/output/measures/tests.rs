@@ -173,7 +173,7 @@ fn ratios_use_the_final_shape_and_times_the_design_shape() {
 
 #[test]
 fn a_run_without_final_shape_has_times_and_a_reason() {
-    let missing = NoReference::NoOverpressure { overpressure: 0.0 };
+    let missing = NoReference::Overload { overpressure: 2.0, largest: 1.0 };
     let reference = Reference { design: Ok(SHAPE), end: Err(missing.clone()) };
     let m = measure(&history(ramp, ramp), Some(&reference), &timeline(), 0.0, true);
     assert_eq!((m.verdict, m.volume_ratio, m.overshoot), (None, None, None));

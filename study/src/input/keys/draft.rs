@@ -7,7 +7,7 @@ use billow_solver::scene::{
     Thresholds,
 };
 
-use super::words::{Named, pick};
+use super::words::{Named, ResidualGas, pick};
 use crate::input::value::Value;
 
 /// What the keys of a file say. Fields that no key has set yet hold NaN, 0 or nothing.
@@ -35,18 +35,6 @@ pub struct SpeciesDraft {
     pub gas_constant: Option<f64>,
     /// Specific heat at constant pressure cp, J/(kg K); replaces that of the named gas.
     pub cp: Option<f64>,
-}
-
-/// How residual gas enters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ResidualGas {
-    /// Let in from release on.
-    #[default]
-    Burst,
-    /// Inside from the start.
-    Stored,
-    /// Inside from the start, at ambient pressure.
-    Ambient,
 }
 
 /// Inflow and residual gas of a study.

@@ -5,8 +5,19 @@ use billow_solver::geometry::fold::{Caps, Chirality, Fit};
 use billow_solver::scene::motion::Profile;
 use billow_solver::scene::{ModelKind, Species, SupportLocation};
 
-use super::draft::ResidualGas;
 use crate::input::value::Value;
+
+/// How residual gas enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ResidualGas {
+    /// Let in from release on.
+    #[default]
+    Burst,
+    /// Inside from the start.
+    Stored,
+    /// Inside from the start, at ambient pressure.
+    Ambient,
+}
 
 /// One word that a key may hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

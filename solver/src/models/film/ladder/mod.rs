@@ -129,8 +129,8 @@ impl Ladder {
         self.state(0, continues)
     }
 
-    /// The static shape at an overpressure (Pa). Below the lowest rung it is that of the lowest rung, with
-    /// the overpressure of that rung.
+    /// The static shape at an overpressure (Pa). Below the lowest rung, also at 0 and below, it is that of
+    /// the lowest rung, with the overpressure of that rung: a folded capsule without gas is stalled.
     ///
     /// # Errors
     /// [`NoReference`].
@@ -139,9 +139,6 @@ impl Ladder {
         overpressure: f64,
         continues: Continues<'_>,
     ) -> Result<StaticShape, NoReference> {
-        if overpressure.is_nan() || overpressure <= 0.0 {
-            return Err(NoReference::NoOverpressure { overpressure });
-        }
         let lowest = LOWEST_RUNG * STEPS_PER_RUNG;
         if overpressure <= self.pressure(lowest) {
             return self.state(lowest, continues);

@@ -66,10 +66,6 @@ fn a_shape_depends_on_its_pressure_alone() {
 #[test]
 fn pressures_without_a_static_equilibrium_have_a_reason() {
     let mut ladder = ladder(&soft(3e8), &[]);
-    for overpressure in [0.0, -3.0, f64::NAN] {
-        let missing = ladder.at(overpressure, &mut go_on()).unwrap_err();
-        assert!(matches!(missing, NoReference::NoOverpressure { .. }), "{missing}");
-    }
     let missing = ladder.at(1e12, &mut go_on()).unwrap_err();
     assert!(matches!(missing, NoReference::Overload { .. }), "{missing}");
     assert_eq!(ladder.at(10.0, &mut || false), Err(NoReference::Stopped));
@@ -79,6 +75,8 @@ fn pressures_without_a_static_equilibrium_have_a_reason() {
 #[test]
 fn a_pressure_below_the_lowest_rung_has_the_shape_of_that_rung() {
     let mut ladder = ladder(&soft(3e8), &[]);
-    let found = ladder.at(1e-6, &mut go_on()).unwrap();
-    assert_eq!(found.overpressure, ladder.pressure(LOWEST_RUNG * STEPS_PER_RUNG));
+    for overpressure in [1e-6, 0.0, -3.0] {
+        let found = ladder.at(overpressure, &mut go_on()).unwrap();
+        assert_eq!(found.overpressure, ladder.pressure(LOWEST_RUNG * STEPS_PER_RUNG));
+    }
 }
