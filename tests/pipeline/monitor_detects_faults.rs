@@ -16,10 +16,10 @@ use billow_study::cases::reference::number;
 /// A change of the contact model.
 type Fault = fn(&mut ContactModel);
 
-/// The capsule of `capsule_deployed` for 30 ms with a fault in contact: how it ended, its audit, and
-/// the unrecovered contact energy over the peak kinetic energy.
-fn deploy(fault: Fault) -> (Stop, Audit, f64) {
-    let scene = paper::capsule(5, 0.03);
+/// The capsule of `capsule_deployed` until this time (s) with a fault in contact: how it ended, its audit,
+/// and the unrecovered contact energy over the peak kinetic energy.
+fn deploy(end_time: f64, fault: Fault) -> (Stop, Audit, f64) {
+    let scene = paper::capsule(5, end_time);
     // Far enough for contact to store energy worth a fault.
     let contact = FilmContact { distance: Some(1e-3), ..FilmContact::default() };
     let mut run = stowed(&Rig::default(), &scene, contact).expect("a capsule");
@@ -43,7 +43,7 @@ fn faults_of_contact_cause_counted_passages() {
         }),
     ];
     for (name, fault) in faults {
-        let (stop, audit, _) = deploy(fault);
+        let (stop, audit, _) = deploy(0.03, fault);
         let Stop::Failed(failure) = stop else { panic!("{name}: {stop:?}") };
         assert_eq!(failure.kind, FailureKind::Interpenetrated, "{name}");
         // Counted by the monitor, not a failure of contact.
@@ -57,7 +57,7 @@ fn faults_of_contact_cause_counted_passages() {
 #[test]
 fn a_contact_force_of_the_wrong_sign_is_detected() {
     let (stop, audit, unrecovered) =
-        deploy(|model| model.stiffness_per_mass = -model.stiffness_per_mass);
+        deploy(0.012, |model| model.stiffness_per_mass = -model.stiffness_per_mass);
     println!("{stop:?}, {audit:?}, unrecovered {unrecovered:e}");
     assert!(
         stop != Stop::Done || unrecovered > number("contact/not_returned_band"),
@@ -67,7 +67,7 @@ fn a_contact_force_of_the_wrong_sign_is_detected() {
 
 #[test]
 fn contact_without_a_fault_has_no_passages() {
-    let (stop, audit, unrecovered) = deploy(|_| ());
+    let (stop, audit, unrecovered) = deploy(0.03, |_| ());
     assert_eq!(stop, Stop::Done);
     assert!(unrecovered < number("contact/not_returned_band"), "{unrecovered}");
     assert_eq!((audit.passages, audit.intersections), (Some(0), Some(0)));

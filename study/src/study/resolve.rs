@@ -11,7 +11,6 @@ use crate::input::keys::draft::{Draft, SteppingDraft};
 use crate::input::keys::{KEYS, Key, ResidualGas, named};
 use crate::input::settings::{check_sample_interval, species};
 use crate::input::source::{Source, shown};
-use crate::input::value::Value;
 use crate::platform::error::InputError;
 
 /// The fold design of a point.
@@ -58,12 +57,6 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
     }
     Schedule { point, scene: &scene, burst, source }.check();
     Ok(scene)
-}
-
-/// Whether a study has this number of shapes without asking for it.
-pub(super) fn is_default_frames(frames: u32) -> bool {
-    const FRAMES: &Key = named(KEYS, "outputs.frames");
-    FRAMES.default_value() == Value::Integer(i64::from(frames))
 }
 
 /// Refuses a capsule that is released after the end of its run.

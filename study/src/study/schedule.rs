@@ -5,9 +5,10 @@ use billow_solver::scene::Scene;
 
 use super::base::Base;
 use super::strategy::Strategy;
+use crate::input::keys::{KEYS, Key, named};
 use crate::input::plausible::{Implausible, MIN_SAMPLES};
 use crate::input::source::{Source, shown};
-use crate::input::value::brief_number;
+use crate::input::value::{Value, brief_number};
 
 /// Fraction of the run that a released capsule needs at least, without a warning. Chosen: the verdict is
 /// that of the last tenth.
@@ -120,9 +121,7 @@ impl Schedule<'_> {
             );
             let next = "check its unit; the default is \"1 ms\"";
             self.warn("outputs.sample_interval", &seconds(interval), problem, next);
-        } else if f64::from(outputs.frames) > samples
-            && !super::resolve::is_default_frames(outputs.frames)
-        {
+        } else if f64::from(outputs.frames) > samples && !is_default_frames(outputs.frames) {
             let problem =
                 format!("is more than the {samples} samples of the run: each shape is a sample");
             let next = "keep fewer shapes, or lower outputs.sample_interval";
@@ -139,4 +138,9 @@ fn times(number: f64) -> String {
 /// A time as text.
 fn seconds(time: f64) -> String {
     format!("{} s", shown(time))
+}
+/// Whether a study has this number of shapes without asking for it.
+fn is_default_frames(frames: u32) -> bool {
+    const FRAMES: &Key = named(KEYS, "outputs.frames");
+    FRAMES.default_value() == Value::Integer(i64::from(frames))
 }
