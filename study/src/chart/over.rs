@@ -22,7 +22,7 @@ const PADDING: f64 = 0.06;
 const MAX_MARKED_VALUES: usize = 9;
 
 /// Draws a measure over a parameter. The parameters in `by` give the lines; the other parameters that vary
-/// give the panels. With an empty `by` see [`Encoding`].
+/// give the panels. With an empty `by` see `Encoding`.
 ///
 /// # Errors
 /// Unknown names, a measure that is not a number, too many lines or panels.

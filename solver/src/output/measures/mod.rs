@@ -2,7 +2,7 @@
 //!
 //! Two static equilibria of the design serve as reference ([`Reference`]). Ratios, verdict, overshoot and
 //! `t_deployed` use the one at the **final overpressure** of the run. The other times use the **design
-//! shape**, which depends on the design alone. Times above one half use smoothed series ([`smoothed`]).
+//! shape**, which depends on the design alone. Times above one half use smoothed series (module `smoothed`).
 //! Series are linear between samples.
 
 use crate::output::history::History;

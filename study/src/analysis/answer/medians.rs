@@ -12,7 +12,7 @@ use crate::job::row::BetterSide;
 /// One row of a set per value of the parameter.
 pub(super) type Set = Vec<Option<usize>>;
 
-/// The best and the worst values of a parameter by one measure: positions in [`Effect::values`], the
+/// The best and the worst values of a parameter by one measure: positions in `Effect::values`, the
 /// extreme one first, then those that are equal to it up to the tolerance.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Extremes {

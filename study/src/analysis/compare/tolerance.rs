@@ -83,14 +83,13 @@ impl Tolerance {
 fn method_spread(measure: ColumnId) -> Option<f64> {
     // README, "Models and their limits": at n 8 against n 24, the paper's capsule; peak_vz by seed.
     match measure {
-        ColumnId::T50ZRim | ColumnId::T50ZRimSinceRelease => Some(0.05),
+        ColumnId::T50ZRim | ColumnId::T50ZRimSinceRelease | ColumnId::PeakVz => Some(0.05),
         ColumnId::T90ZRim
         | ColumnId::T90Volume
         | ColumnId::TDeployed
         | ColumnId::T90ZRimSinceRelease
         | ColumnId::T90VolumeSinceRelease
         | ColumnId::TDeployedSinceRelease => Some(0.03),
-        ColumnId::PeakVz => Some(0.05),
         ColumnId::PeakKineticEnergy => Some(0.02),
         ColumnId::VolumeRatio | ColumnId::HeightRatio => Some(0.01),
         ColumnId::FilmStress99 => Some(0.25),

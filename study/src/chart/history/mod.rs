@@ -52,7 +52,7 @@ impl Run {
 }
 
 /// Draws columns of histories over time. `range` gives the ends of the time axis, s, where they differ
-/// from those of [`TimeAxis`].
+/// from those of `TimeAxis`.
 ///
 /// # Errors
 /// An unknown column, too many jobs, an empty range; the errors of `read`.
