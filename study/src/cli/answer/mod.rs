@@ -42,7 +42,7 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
         writeln!(
             out,
             "  strain   film_stress is up to {} % of Young's modulus; the linear film model holds for \
-             a few per cent: is a unit missing?",
+             a few per cent: check the unit of film.youngs_modulus, or read these jobs with care",
             brief_number(100.0 * answer.largest_strain)
         )?;
     }

@@ -82,7 +82,9 @@ fn volume(cells: &Cells, verdict: Option<Verdict>) -> Option<String> {
     let (least, low) = (deployed.threshold, stalled.threshold);
     Some(if verdict == Some(Verdict::Deployed) {
         let margin = percent(deployed.margin);
-        format!("{mean} ≥ {least}, at every sample of that tenth: deployed; {margin} above")
+        format!(
+            "{mean} ≥ {least}, at every sample of that tenth: deployed; the mean is {margin} above"
+        )
     } else if verdict == Some(Verdict::Stalled) {
         format!("{mean} < {low}: stalled; {} below", percent(stalled.margin))
     } else if deployed.margin >= 0.0 {
