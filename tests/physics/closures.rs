@@ -27,8 +27,8 @@ const PRESSURE: f64 = 100.0;
 /// p A of an end, N.
 const END_LOAD: f64 = PRESSURE * core::f64::consts::PI * RADIUS * RADIUS;
 
-/// Closes a loop by faces with a ring of inner vertices and one more near its middle, this far off the mean of
-/// the loop along z (m).
+/// Closes a loop by faces with a ring of inner vertices and one more near its middle, this far off the mean
+/// of the loop along z (m).
 fn cap(shell: &mut Shell, rim: &[u32], lift: f64) {
     let at = |node: &u32| shell.positions[*node as usize];
     let mean = rim.iter().map(at).sum::<Vector3<f64>>() / rim.len() as f64;

@@ -6,12 +6,12 @@
 //! ```
 //!
 //! Symbols: `x_a` a vertex without film, `x_i` the rim of its patch (the connected closing faces of such
-//! vertices); `w_i` weights in proportion to the length of the rim at i, `q_i` the initial position of i from the
-//! mean m; `c_a` and `b_a` constants that place the vertex at its initial position. The patch therefore moves as
-//! the best affine map of its rim. The force `f_a` of the pressure on the vertex goes to the rim by the transpose
-//! of the same map: the nodal forces are the derivative of the volume, so energy, resultant and moment are exact.
-//! A vertex that supports hold in all three directions does not follow: it counts as rim, and its supports take
-//! its force.
+//! vertices); `w_i` weights in proportion to the length of the rim at i, `q_i` the initial position of i from
+//! the mean m; `c_a` and `b_a` constants that place the vertex at its initial position. The patch therefore
+//! moves as the best affine map of its rim. The force `f_a` of the pressure on the vertex goes to the rim by
+//! the transpose of the same map: the nodal forces are the derivative of the volume, so energy, resultant and
+//! moment are exact. A vertex that supports hold in all three directions does not follow: it counts as rim,
+//! and its supports take its force.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -85,8 +85,8 @@ struct Follower {
 }
 
 impl ClosureNodes {
-    /// The vertices of a shell's closing faces that belong to no film. `held`: whether supports hold a node in all
-    /// three directions.
+    /// The vertices of a shell's closing faces that belong to no film. `held`: whether supports hold a node
+    /// in all three directions.
     ///
     /// # Errors
     /// [`ClosureError`] for a vertex that no rim places.

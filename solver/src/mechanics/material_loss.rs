@@ -13,9 +13,9 @@
 //!
 //! A spring of modulus (1 + g)E in series with a Kelvin-Voigt unit of modulus (1 + g)E/g and relaxation
 //! time τ. The spring goes slack and wrinkles; the unit creeps only under the stress that the spring
-//! carries, so slack film does not resist, and its creep strain decays. At rest P = C⁻¹:S: the film then has the modulus
-//! E. Far above 1/(2πτ) the loss factor falls as 1/ω, so the highest frequencies of a mesh are hardly
-//! damped, and the law has no element size in it.
+//! carries, so slack film does not resist, and its creep strain decays. At rest P = C⁻¹:S: the film then has
+//! the modulus E. Far above 1/(2πτ) the loss factor falls as 1/ω, so the highest frequencies of a mesh are
+//! hardly damped, and the law has no element size in it.
 //!
 //! A step advances P with the stress at its start, so the loss is right to first order in Δt/τ, and the
 //! entry of a single step, a trapezoid, may be slightly negative where the driving stress changes sign.

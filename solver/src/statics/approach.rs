@@ -11,17 +11,18 @@
 //! a tenth of that pressure. From there, and from a known equilibrium, the first attempt goes to a near p in
 //! one step; if it fails, pressures descend as above. At intermediate pressures film has a compression
 //! fraction `c_k` in proportion to the pressure, so that its shape hardly depends on it and each pressure
-//! needs few steps; the last step has the fraction of the film. Wrinkled film has many energy minima near each other. Descending
-//! pressures reach the minimum that continues the taut film, with its symmetry; a start at the final
-//! pressure ends with dents.
+//! needs few steps; the last step has the fraction of the film. Wrinkled film has many energy minima near
+//! each other. Descending pressures reach the minimum that continues the taut film, with its symmetry; a
+//! start at the final pressure ends with dents.
 
 use nalgebra::Vector3;
 
 use super::newton::{
     Equilibrium, FIRST_SHIFT, IterationObserver, Loaded, NEAR_SHIFT, StaticFailure,
-    StaticFailureKind, System, Tolerances, equilibrium_of, extent, tensile_stiffness,
+    StaticFailureKind, Tolerances, equilibrium_of, extent, tensile_stiffness,
 };
 use super::relaxation::Relaxation;
+use super::system::System;
 use crate::geometry::field::Field;
 use crate::integrators::explicit::{Explicit, Parameters, PressureLoad};
 use crate::mechanics::film_model::FilmModel;
@@ -77,7 +78,7 @@ pub fn settle(
 ) -> Result<Equilibrium, StaticFailure> {
     let mut continuation = Continuation {
         loaded,
-        system: System::new(loaded, positions),
+        system: System::new(loaded.model, loaded.supports, positions),
         tolerances,
         observer,
         iterations: 0,

@@ -29,6 +29,7 @@ mod newton;
 pub mod order;
 pub mod plan;
 mod relaxation;
+mod system;
 pub mod tangent;
 pub mod unknowns;
 

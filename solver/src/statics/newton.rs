@@ -15,9 +15,7 @@ use core::ops::ControlFlow;
 
 use nalgebra::Vector3;
 
-use super::factor::{Elimination, Factor};
-use super::tangent::{self, Stiffness};
-use super::unknowns::Unknowns;
+use super::system::System;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_membrane};
@@ -154,7 +152,7 @@ pub fn equilibrium(
     tolerances: &Tolerances,
     observer: IterationObserver<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
-    let mut system = System::new(loaded, &positions);
+    let mut system = System::new(loaded.model, loaded.supports, &positions);
     equilibrium_of(&mut system, loaded, positions, FIRST_SHIFT, tolerances, observer)
 }
 
@@ -168,50 +166,6 @@ pub(super) fn equilibrium_of(
     observer: IterationObserver<'_>,
 ) -> Result<Equilibrium, StaticFailure> {
     NewtonSearch::new(loaded, system, positions).run(shift, tolerances, observer)
-}
-
-/// The linear system of the Newton steps of a film with its supports, and its memory.
-pub(super) struct System {
-    unknowns: Unknowns,
-    elimination: Elimination,
-    factor: Factor,
-    stiffness: Vec<Stiffness>,
-    shifts: Vec<f64>,
-}
-
-impl System {
-    /// The system of this film and these supports, whatever the load. The order of elimination depends on
-    /// the positions (m).
-    pub(super) fn new(loaded: &Loaded<'_>, positions: &Field) -> Self {
-        let unknowns = Unknowns::new(loaded.model, loaded.supports);
-        let elimination = Elimination::new(loaded.model, &unknowns, positions);
-        let (factor, stiffness, shifts) = (Factor::default(), Vec::new(), Vec::new());
-        Self { unknowns, elimination, factor, stiffness, shifts }
-    }
-
-    /// Computes the stiffness of every face at these positions (m), film first.
-    fn assemble(&mut self, loaded: &Loaded<'_>, positions: &Field) {
-        let Loaded { model, overpressure, .. } = *loaded;
-        let film = (0..model.elements()).map(|element| {
-            let mut stiffness = tangent::elastic(model, positions, element);
-            let face = model.triangles[element];
-            tangent::add_pressure(&mut stiffness, face, positions, overpressure);
-            stiffness
-        });
-        let closure =
-            model.closure.iter().map(|face| tangent::pressure(*face, positions, overpressure));
-        self.stiffness.clear();
-        self.stiffness.extend(film.chain(closure));
-    }
-
-    /// Factorises the stiffness with the shift μ ω² M (ω in rad/s). `false` if the matrix is not positive
-    /// definite.
-    fn factor(&mut self, instruction_set: InstructionSet, shift: f64, omega: f64) -> bool {
-        let factor = shift * omega * omega;
-        self.shifts.clear();
-        self.shifts.extend(self.unknowns.mass.iter().map(|mass| mass * factor));
-        self.elimination.factor(instruction_set, &self.stiffness, &self.shifts, &mut self.factor)
-    }
 }
 
 /// A search in progress.
@@ -385,8 +339,9 @@ impl<'a> NewtonSearch<'a> {
     /// Factorises the stiffness at the positions, with the smallest μ from `shift` on, in powers of ten,
     /// that makes it positive definite. Returns that μ.
     fn factor(&mut self, mut shift: f64) -> Result<f64, StaticFailure> {
-        let omega = self.loaded.model.largest_frequency();
-        self.system.assemble(self.loaded, &self.positions);
+        let Loaded { model, overpressure, .. } = *self.loaded;
+        let omega = model.largest_frequency();
+        self.system.assemble(model, overpressure, &self.positions);
         while !self.system.factor(self.loaded.instruction_set, shift, omega) {
             shift *= 10.0;
             if shift > MAX_SHIFT {
@@ -418,8 +373,7 @@ impl<'a> NewtonSearch<'a> {
 
     /// The step (m along the unknowns) by the factor in memory from the present forces.
     fn step(&mut self) -> Vec<f64> {
-        let System { elimination, factor, .. } = &mut *self.system;
-        elimination.solve(self.loaded.instruction_set, factor, &self.along)
+        self.system.solve(self.loaded.instruction_set, &self.along)
     }
 
     /// The fraction α of a step to take: at most a few times `max_fraction`. Leaves the forces at the new

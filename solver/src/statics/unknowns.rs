@@ -17,7 +17,8 @@ use crate::mechanics::supports::Supports;
 /// The unknown displacements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknowns {
-    /// Unknowns that move each node, with their direction: first those of the node alone, then those of its planes.
+    /// Unknowns that move each node, with their direction: first those of the node alone, then those of its
+    /// planes.
     pub of_node: Vec<Vec<(u32, Vector3<f64>)>>,
     /// Range of the unknowns of each node alone.
     pub node_range: Vec<core::ops::Range<u32>>,

@@ -10,8 +10,8 @@ use crate::input::settings::species;
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
 
-/// Volume of the stowed capsule of a design, m³: the same on every mesh, because facets are flat. `None` for a
-/// design without a pattern.
+/// Volume of the stowed capsule of a design, m³: the same on every mesh, because facets are flat. `None` for
+/// a design without a pattern.
 fn stowed_volume(design: &FoldDesign) -> Option<f64> {
     let pattern = FoldPattern::new(design).ok()?;
     let shell = Shell::of_mesh(&Mesh::new(&pattern, 1, Shape::Stowed(design.stowed_height)).ok()?);
@@ -64,7 +64,8 @@ pub(super) fn check_gas_inside(gas: &GasSupply, source: &Source) -> Result<(), I
 /// than ambient pressure holds back is common, half is a mistake or a question of its own.
 const MIN_PRESSURE_RATIO: f64 = 0.9;
 
-/// The pressure (Pa) inside a stowed capsule at the start, where ambient pressure exceeds it by more than a tenth.
+/// The pressure (Pa) inside a stowed capsule at the start, where ambient pressure exceeds it by more than a
+/// tenth.
 pub(crate) fn pressure_below_ambient(scene: &Scene) -> Option<f64> {
     let ambient = scene.gas.ambient_pressure;
     if ambient <= 0.0 {

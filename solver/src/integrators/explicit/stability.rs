@@ -1,5 +1,5 @@
-//! What a step must not do: leave the finite numbers, exceed the stable step of stretched film, or stretch the
-//! film beyond its material model.
+//! What a step must not do: leave the finite numbers, exceed the stable step of stretched film, or stretch
+//! the film beyond its material model.
 //!
 //! ```text
 //! ω² ≤ ω_film² (1 + 3 S1/E)              in-plane frequency of film stretched by the stress S1
@@ -17,8 +17,8 @@ use crate::output::outcome::{Failure, FailureKind};
 
 /// Growth of ω² with S1/E. Source: the tangent above.
 const STIFFENING: f64 = 3.0;
-/// S1/E above which the step follows the stretch. Chosen: film of high modulus is far below it, and the margin of
-/// the CFL number covers it.
+/// S1/E above which the step follows the stretch. Chosen: film of high modulus is far below it, and the
+/// margin of the CFL number covers it.
 const MIN_STRETCHED: f64 = 0.25;
 /// Step over the longest step at which an interval is planned again. Chosen: a growing stretch then does not
 /// plan every step.
@@ -32,8 +32,8 @@ pub(super) fn moves_too_far(model: &FilmModel, displacement: f64) -> bool {
     !within
 }
 
-/// Upper bound of the energy defect over the energy moved within a step, whose works are not complete. Chosen: far
-/// above the works of one step, far below what an unstable step adds.
+/// Upper bound of the energy defect over the energy moved within a step, whose works are not complete.
+/// Chosen: far above the works of one step, far below what an unstable step adds.
 const MAX_PARTIAL_DEFECT: f64 = 0.1;
 
 impl Explicit {
@@ -67,7 +67,8 @@ impl Explicit {
         Err(self.unstable("farther than the size of the film in one step"))
     }
 
-    /// Checks the energy after a step with this largest speed (m/s), where it is above that of the film's waves.
+    /// Checks the energy after a step with this largest speed (m/s), where it is above that of the film's
+    /// waves.
     pub(super) fn check_source(&self, speed: f64) -> Result<(), Failure> {
         if speed <= self.model.wave_speed() || self.energy_has_source() {
             return Ok(());

@@ -124,7 +124,8 @@ impl FilmModel {
         Self::build(film, nodes, triangles, reference, &[])
     }
 
-    /// The film of a shell, with its closing faces. `held`: whether supports hold a node in all three directions.
+    /// The film of a shell, with its closing faces. `held`: whether supports hold a node in all three
+    /// directions.
     ///
     /// # Errors
     /// [`FilmError`].

@@ -5,8 +5,8 @@
 //! ṁ = C_d A √(p ρ) √(2γ/(γ−1) (r^(2/γ) − r^((γ+1)/γ)))    subsonic, r = p_ambient/p < 1
 //! ```
 //!
-//! p and ρ are those of the side that the gas leaves. Air outside counts as the gas inside, at film temperature.
-//! This is the form of [`super`] with p √(1/(R T)) = √(p ρ), which is finite for T → 0.
+//! p and ρ are those of the side that the gas leaves. Air outside counts as the gas inside, at film
+//! temperature. This is the form of [`super`] with p √(1/(R T)) = √(p ρ), which is finite for T → 0.
 
 /// Leak orifice for one gas.
 #[derive(Debug, Clone, Copy, PartialEq)]

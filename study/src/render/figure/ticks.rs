@@ -84,8 +84,8 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     }
 }
 
-/// Zero is near a range if its one end is at most this fraction of its other end. Chosen: figures of one study
-/// have equal baselines, and a range within a tenth of its value still shows its differences.
+/// Zero is near a range if its one end is at most this fraction of its other end. Chosen: figures of one
+/// study have equal baselines, and a range within a tenth of its value still shows its differences.
 const NEAR_ZERO: f64 = 0.9;
 
 /// A range that contains `low ..= high` with padding at both ends. It starts or ends at zero when zero is

@@ -111,7 +111,8 @@ fn initial_mass(
     }
 }
 
-/// Pressure of the gas at the start over the ambient pressure below which a note says so. Chosen as for a study.
+/// Pressure of the gas at the start over the ambient pressure below which a note says so. Chosen as for a
+/// study.
 const MIN_PRESSURE_RATIO: f64 = 0.9;
 
 /// A note on gas that has less than ambient pressure at the start.

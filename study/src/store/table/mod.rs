@@ -2,8 +2,8 @@
 //! that are one job stand one after the other and have the same job id.
 //!
 //! Columns: `job`, the parameters of the study, [`crate::job::row::COLUMNS`], then
-//! [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the later
-//! column is then called `<name>_resolved`.
+//! [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the
+//! later column is then called `<name>_resolved`.
 
 use std::collections::BTreeMap;
 

@@ -43,8 +43,8 @@ const HIGHEST_RUNG: i32 = 10;
 /// Lowest rung that starts from the erected shape. Chosen: p r/(E t) = 1.6e-3; below, the rung above is
 /// nearer.
 const LOWEST_ERECTED_RUNG: i32 = 2;
-/// Largest error of linear interpolation at the middle of an interval, relative. Chosen: an accepted half errs
-/// by about a quarter of it.
+/// Largest error of linear interpolation at the middle of an interval, relative. Chosen: an accepted half
+/// errs by about a quarter of it.
 const MAX_MIDDLE_ERROR: f64 = 3e-3;
 
 /// A level on the grid of levels: x times [`STEPS_PER_RUNG`].
@@ -259,11 +259,12 @@ impl Ladder {
 
     /// The erected capsule.
     fn capsule(&mut self) -> Result<&Erected, NoReference> {
-        if self.capsule.is_none() {
-            let built = erected(self.instruction_set, &self.scene);
-            self.capsule = Some(built.map_err(|error| NoReference::NoCapsule(error.to_string()))?);
-        }
-        self.capsule.as_ref().ok_or_else(|| NoReference::NoCapsule(String::new()))
+        let capsule = match self.capsule.take() {
+            Some(capsule) => capsule,
+            None => erected(self.instruction_set, &self.scene)
+                .map_err(|error| NoReference::NoCapsule(error.to_string()))?,
+        };
+        Ok(self.capsule.insert(capsule))
     }
 }
 
