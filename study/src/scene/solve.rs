@@ -13,7 +13,7 @@ use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolutio
 
 use crate::job::Status;
 use crate::platform::error::{Error, InputError, Result};
-use crate::platform::files::{Files, disk_error, write_atomic};
+use crate::platform::files::{Files, disk_error, write_output};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 
@@ -223,5 +223,5 @@ fn store(
     let text = checkpoint
         .to_text()
         .map_err(|error| Error::Disk { path: path.to_owned(), problem: error.to_string() })?;
-    write_atomic(files, path, text.as_bytes()).map_err(|error| disk_error(path, &error))
+    write_output(files, path, text.as_bytes()).map_err(|error| disk_error(path, &error))
 }

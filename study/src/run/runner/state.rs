@@ -12,6 +12,7 @@ use crate::job::point::Point;
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
 use crate::platform::error::{Error, Result};
+use crate::platform::files::Lock;
 use crate::run::event::{Event, Reporter};
 use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record, Writer};
@@ -32,6 +33,7 @@ const MAX_MESSAGES_PER_WORKER: usize = 4;
 /// State of a run.
 pub(super) struct State<'a> {
     run: &'a Run<'a>,
+    lock: &'a Lock,
     writer: Writer<'a>,
     /// The text of study.json that the journal has.
     recorded_study: Option<String>,
@@ -50,9 +52,10 @@ pub(super) struct State<'a> {
 
 impl<'a> State<'a> {
     /// The state at the start, with the journals of earlier runs.
-    pub(super) fn new(run: &'a Run<'a>, journal: Journal) -> Self {
+    pub(super) fn new(run: &'a Run<'a>, lock: &'a Lock, journal: Journal) -> Self {
         Self {
             run,
+            lock,
             writer: Writer::new(run.results.files(), run.results.journal_path()),
             recorded_study: journal.study,
             old_records: journal.invalidated,
@@ -110,6 +113,10 @@ impl<'a> State<'a> {
                     }
                     Some(note) => {
                         reporter.event(&Event::Note(note));
+                        let path = self.run.results.job_path(id);
+                        if path.is_dir() {
+                            self.run.results.set_aside(&path)?;
+                        }
                         self.old_records.insert(id.clone(), record);
                         missing.push(point.job.clone());
                     }
@@ -172,6 +179,9 @@ impl<'a> State<'a> {
         ended: Vec<Ended>,
         reporter: &mut dyn Reporter,
     ) -> Result<()> {
+        if !ended.is_empty() {
+            self.run.results.check_lock(self.lock)?;
+        }
         let mut events = Vec::with_capacity(ended.len());
         let mut records = Vec::with_capacity(ended.len());
         for Ended { index, thread, cells, deployment } in ended {
@@ -229,6 +239,7 @@ impl<'a> State<'a> {
     /// Writes the table when it is outdated.
     pub(super) fn write_table(&mut self) -> Result<()> {
         if self.table_outdated {
+            self.run.results.check_lock(self.lock)?;
             let table = Table::build(&self.points, &self.records, self.run.unit);
             self.run.results.write_table(&table)?;
             self.table_outdated = false;
