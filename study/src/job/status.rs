@@ -22,6 +22,12 @@ pub enum Status {
     Panicked,
     /// The run stopped before its end time. There is no result.
     Failed(FailureKind),
+    /// The job reached its limit of wall time. It has no measures.
+    Timeout,
+    /// The job needs more memory than it may use. It did not run, or has no measures.
+    OutOfMemory,
+    /// The process died twice while the job ran. It runs again only on request.
+    Crashed,
     /// The run was cancelled. A study keeps nothing of it.
     Cancelled,
     /// The run of a single scene was paused; its checkpoint continues it. Never in a study.
@@ -39,6 +45,9 @@ impl Status {
             Self::Infeasible,
             Self::Invalid,
             Self::Panicked,
+            Self::Timeout,
+            Self::OutOfMemory,
+            Self::Crashed,
             Self::Cancelled,
             Self::Paused,
             Self::NoEquilibrium,
@@ -56,6 +65,9 @@ impl Status {
             Self::Invalid => "invalid",
             Self::Panicked => "panicked",
             Self::Failed(kind) => kind.name(),
+            Self::Timeout => "timeout",
+            Self::OutOfMemory => "out_of_memory",
+            Self::Crashed => "crashed",
             Self::Cancelled => "cancelled",
             Self::Paused => "paused",
             Self::NoEquilibrium => "no_equilibrium",
@@ -73,7 +85,13 @@ impl Status {
     /// pattern.
     pub fn is_failure(self) -> bool {
         match self {
-            Self::Invalid | Self::Panicked | Self::Failed(_) | Self::NoEquilibrium => true,
+            Self::Invalid
+            | Self::Panicked
+            | Self::Failed(_)
+            | Self::Timeout
+            | Self::OutOfMemory
+            | Self::Crashed
+            | Self::NoEquilibrium => true,
             Self::Pending | Self::Done | Self::Infeasible | Self::Cancelled | Self::Paused => false,
         }
     }

@@ -75,6 +75,9 @@ fn meaning(status: Status) -> &'static str {
         Status::Failed(FailureKind::Interpenetrated) => {
             "film passed through film, or intersects film"
         }
+        Status::Timeout => "the job reached its limit of wall time (job_limits.wall_time)",
+        Status::OutOfMemory => "the job needs more memory than it may use",
+        Status::Crashed => "the program died twice while this job ran",
         Status::Pending
         | Status::Done
         | Status::Cancelled
@@ -102,6 +105,9 @@ fn next_step(status: Status, short_id: &str, root: &str) -> String {
             "check film.youngs_modulus, film.thickness and the gas (gas.mass_flow_rate, solver.end_time): \
              pressure times radius over E t is the strain"
                 .to_owned()
+        }
+        Status::Timeout | Status::OutOfMemory | Status::Crashed => {
+            format!("billow rerun {short_id} {root}")
         }
         _ => show,
     }

@@ -75,6 +75,9 @@ fn statuses(page: &mut String) {
         | Status::Infeasible
         | Status::Invalid
         | Status::Panicked
+        | Status::Timeout
+        | Status::OutOfMemory
+        | Status::Crashed
         | Status::Failed(_) => true,
     });
     let names: Vec<String> = in_tables.map(|status| format!("`{status}`")).collect();

@@ -1,5 +1,6 @@
 //! SHA-256 of bytes and of named arrays, in lower-case hexadecimal digits.
 
+use billow_solver::platform::seal::hexadecimal;
 use sha2::{Digest, Sha256};
 
 /// The input of a content hash: one array after the other.
@@ -35,12 +36,4 @@ impl Contents {
 /// SHA-256 of bytes, in lower-case hexadecimal digits.
 pub fn bytes_hash(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    use std::fmt::Write;
-    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
