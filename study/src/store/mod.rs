@@ -1,6 +1,7 @@
-//! What a study stores on disk: journal, history files, static references, summary table; and the
+//! What a study stores on disk: journal, history files, static references, checkpoints, summary table; and the
 //! check of a results folder.
 
+pub mod checkpoint_file;
 pub mod doctor;
 pub mod history_file;
 pub mod journal;

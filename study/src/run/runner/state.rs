@@ -6,15 +6,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use super::workers::{self, Ended, Message};
+use super::attempts::Attempts;
+use super::workers::{self, Crew, Ended, Message};
 use super::{Run, Summary};
+use billow_solver::output::outcome::FailureKind;
+
 use crate::job::point::Point;
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::run::event::{Event, Reporter};
 use crate::store::history_file;
-use crate::store::journal::{self, Journal, Record, Writer};
+use crate::store::journal::{self, Journal, Record};
 use crate::store::table::Table;
 use crate::study::plan::{FinishedRow, Generation};
 
@@ -30,9 +33,9 @@ const MAX_JOBS_PER_SYNC: usize = 64;
 const MAX_MESSAGES_PER_WORKER: usize = 4;
 
 /// State of a run.
-pub(super) struct State<'a> {
+pub(super) struct State<'a, 'w> {
     run: &'a Run<'a>,
-    writer: Writer<'a>,
+    attempts: &'a Attempts<'w>,
     /// Old records of jobs that must run again, for comparison.
     old_records: BTreeMap<JobId, Record>,
     /// Records of the journals that are not yet checked against their files.
@@ -46,12 +49,12 @@ pub(super) struct State<'a> {
     table_outdated: bool,
 }
 
-impl<'a> State<'a> {
+impl<'a, 'w> State<'a, 'w> {
     /// The state at the start, with the journals of earlier runs.
-    pub(super) fn new(run: &'a Run<'a>, journal: Journal) -> Self {
+    pub(super) fn new(run: &'a Run<'a>, attempts: &'a Attempts<'w>, journal: Journal) -> Self {
         Self {
             run,
-            writer: Writer::new(run.results.files(), run.results.journal_path()),
+            attempts,
             old_records: journal.invalidated,
             recorded: journal.records,
             records: BTreeMap::new(),
@@ -68,10 +71,20 @@ impl<'a> State<'a> {
         let finished = rerun.iter().filter(|job| self.recorded.contains_key(*job));
         let finished: Vec<JobId> = finished.cloned().collect();
         if !finished.is_empty() {
-            self.writer.invalidate(&finished)?;
+            self.attempts.writer().invalidate(&finished)?;
         }
         for job in finished {
             self.old_records.extend(self.recorded.remove_entry(&job));
+        }
+        Ok(())
+    }
+
+    /// Removes the checkpoints of jobs that have ended: those of a process that died in between.
+    pub(super) fn remove_checkpoints(&self) -> Result<()> {
+        for id in self.attempts.stored() {
+            if self.recorded.get(&id).is_some_and(|record| !reached_limit(record)) {
+                self.attempts.remove(&id)?;
+            }
         }
         Ok(())
     }
@@ -119,8 +132,13 @@ impl<'a> State<'a> {
         if jobs.is_empty() {
             return Ok(());
         }
+        self.run_on(self.run.threads.map_or(0, NonZero::get), jobs, reporter)
+    }
+
+    /// Runs jobs on this number of threads; 0 for one thread per core.
+    fn run_on(&mut self, threads: usize, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
         let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.run.threads.map_or(0, NonZero::get))
+            .num_threads(threads)
             .thread_name(|thread| format!("billow-{thread}"))
             .build()
             .map_err(|error| Error::Disk {
@@ -130,23 +148,40 @@ impl<'a> State<'a> {
         let capacity = MAX_MESSAGES_PER_WORKER * pool.current_num_threads();
         let (sender, receiver) = mpsc::sync_channel(capacity);
         let abort = AtomicBool::new(false);
-        let stop = &self.run.stop;
-        let ending = || abort.load(Ordering::Relaxed) || stop.requested().is_some();
-        let executor = self.run.executor;
+        let (stop, attempts) = (&self.run.stop, self.attempts);
+        let ending = || {
+            let stopped = stop.requested().is_some();
+            // Whoever notices the request first records it; a failed write only costs another attempt.
+            let _ = if stopped { attempts.stop() } else { Ok(()) };
+            abort.load(Ordering::Relaxed) || stopped
+        };
+        let crew = Crew {
+            pool: &pool,
+            executor: self.run.executor,
+            jobs,
+            limits: self.run.limits,
+            attempts,
+            checkpoint_interval: self.run.checkpoint_interval,
+            ending: &ending,
+        };
         std::thread::scope(|scope| {
-            scope.spawn(|| workers::work(&pool, executor, jobs, &ending, sender));
+            scope.spawn(|| crew.work(sender));
             let mut stored = Ok(());
             while let Some((messages, ended)) = receive(&receiver) {
-                for message in &messages {
-                    if let Some(event) = workers::event(message, jobs) {
+                ending();
+                for message in messages {
+                    if let Some(event) = workers::event(&message, jobs) {
                         reporter.event(&event);
+                    }
+                    if let (Message::Failed(error), Ok(())) = (message, &stored) {
+                        stored = Err(error);
                     }
                 }
                 if stored.is_ok() {
                     stored = self.store(jobs, ended, reporter);
-                    // After an error the workers stop. Jobs that end meanwhile run again next time.
-                    abort.store(stored.is_err(), Ordering::Relaxed);
                 }
+                // After an error the workers stop. Jobs that end meanwhile run again next time.
+                abort.store(stored.is_err(), Ordering::Relaxed);
             }
             stored
         })
@@ -185,11 +220,16 @@ impl<'a> State<'a> {
             self.run.results.write_reference(&id, &reference)?;
         }
         if !records.is_empty() {
-            self.writer.append(&records)?;
+            self.attempts.writer().append(&records)?;
             self.summary.ran += records.len();
             self.table_outdated = true;
             for record in &records {
                 self.compare_with_old(record);
+            }
+            for record in &records {
+                if !reached_limit(record) {
+                    self.attempts.remove(&record.job)?;
+                }
             }
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
@@ -205,6 +245,10 @@ impl<'a> State<'a> {
     /// Compares status and content hash of a job that ran again with its old record.
     fn compare_with_old(&mut self, record: &Record) {
         let Some(old) = self.old_records.remove(&record.job) else { return };
+        if reached_limit(&old) || reached_limit(record) {
+            // There are no bits to compare.
+            return;
+        }
         let hash = |record: &Record| record.cells.text(ColumnId::ContentHash).to_owned();
         if old.cells.status() == record.cells.status() && hash(&old) == hash(record) {
             self.summary.same += 1;
@@ -243,6 +287,15 @@ impl<'a> State<'a> {
         }
         summary
     }
+}
+
+/// Whether a job was ended by a limit, or crashed. Its checkpoint is kept, so that it can go on.
+fn reached_limit(record: &Record) -> bool {
+    let limits = [Status::Timeout, Status::OutOfMemory, Status::Crashed];
+    let status = record.cells.status();
+    // A run that used up solver.step_limit has a history.
+    let steps = status == Status::Failed(FailureKind::StepLimit) && record.file_hash.is_none();
+    limits.contains(&status) || steps
 }
 
 /// Messages since the last call, ended jobs apart; `None` when no worker remains.

@@ -5,6 +5,7 @@
 //!                 journal/*.jsonl   which jobs ended, and how (crate::store::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::store::history_file)
 //!                 references/*.json static references of the designs (crate::job::references)
+//!                 checkpoints/*.json states of jobs that have not ended (crate::store::checkpoint_file)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
 //!                 lock              held while a command changes the folder
@@ -28,8 +29,16 @@ use crate::store::table::{Table, parquet};
 mod study_json;
 
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 7] =
-    ["study.json", "journal", "jobs", "references", "summary.parquet", "charts", "lock"];
+pub const RESULT_NAMES: [&str; 8] = [
+    "study.json",
+    "journal",
+    "jobs",
+    "references",
+    "checkpoints",
+    "summary.parquet",
+    "charts",
+    "lock",
+];
 /// Attempts to take the lock before it counts as held. Chosen: a command that only checks the lock
 /// holds it for much less than the sum of the pauses.
 const MAX_LOCK_ATTEMPTS: u32 = 5;
@@ -170,7 +179,7 @@ impl<'a> Results<'a> {
         // The folders of histories have names of two digits.
         folders
             .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
-        folders.extend([self.references_path(), self.root.clone()]);
+        folders.extend([self.references_path(), self.checkpoints_path(), self.root.clone()]);
         for folder in folders {
             files::remove_temporary_files(self.files, &folder)
                 .map_err(|error| disk_error(&folder, &error))?;
