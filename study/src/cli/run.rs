@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use billow_solver::models::film::LadderState;
 use billow_solver::output::outcome::FailureKind;
 
 use super::options::{
@@ -24,6 +25,7 @@ use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::progress;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
+use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::study::Study;
@@ -116,7 +118,7 @@ pub(super) fn run_study(
             unit: &|name| study.unit(name).to_owned(),
             executor: &Solver {
                 instruction_set,
-                references: References::known(results.references()),
+                references: References::known(known_references(&results)),
             },
             results: results.clone(),
             threads,
@@ -142,6 +144,17 @@ pub(super) fn run_study(
 fn interrupted(summary: &Summary) -> Option<Error> {
     let open = summary.counts.of(Status::Pending) > 0;
     summary.signal.filter(|_| open).map(Error::Signal)
+}
+
+/// The static references that can be used. Says on stderr which files are damaged.
+fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
+    let found = results.references();
+    for (path, problem) in &found.unread {
+        if let Unread::Damaged(problem) = problem {
+            eprintln!("billow: {}: {problem}; it is computed again", path.display());
+        }
+    }
+    found.states
 }
 
 /// The error of a run, if it has one.

@@ -40,6 +40,8 @@ pub(crate) use point::StudyPoint;
 
 /// The key of the units in which quantities are shown. It changes no job.
 pub(crate) const UNITS: &str = "units";
+/// Key of the checksum of study.json. A study file has none.
+const CHECKSUM: &str = "checksum";
 
 /// The section of the limits of jobs. It changes no job.
 pub(crate) const JOB_LIMITS: &str = "job_limits";
@@ -131,6 +133,10 @@ impl Study {
         if !matches!(tree, Json::Object(_)) {
             let problem = format!("is {}, not an object", tree.kind());
             return Err(source.error("", "", problem, "one JSON object: {\"design\": …}"));
+        }
+        if let Json::Object(members) = &mut tree {
+            // That of study.json, a study file that a run wrote.
+            members.retain(|(name, _)| name != CHECKSUM);
         }
         if tree.get("format") == Some(&Json::Text("billow-scene".to_owned())) {
             let error = source.error("format", "\"billow-scene\"", "is a scene, not a study", "");

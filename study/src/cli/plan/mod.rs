@@ -97,7 +97,7 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Some(text) = lengths::in_use(&generation.points) {
         eprintln!("{text}");
     }
-    let references = results.references().into_iter().map(|(id, _)| id).collect();
+    let references = results.references().states.into_iter().map(|(id, _)| id).collect();
     if let Some(text) = forecast(&missing, references) {
         eprintln!("{text}");
     }

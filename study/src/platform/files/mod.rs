@@ -36,6 +36,12 @@ pub trait Files: Send + Sync {
     /// The error of the system.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
+    /// Size and time of a file.
+    ///
+    /// # Errors
+    /// The error of the system.
+    fn stamp(&self, path: &Path) -> io::Result<Stamp>;
+
     /// Paths in a folder, sorted by name; none for a missing folder.
     ///
     /// # Errors
@@ -87,8 +93,23 @@ pub trait Files: Send + Sync {
     fn is_locked(&self, path: &Path) -> io::Result<bool>;
 }
 
+/// Size and time of a file: when both are those of its writing, it was hardly changed since.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stamp {
+    /// Size, bytes.
+    pub size: u64,
+    /// Time of its last change, s and ns since 1970: "1764000000.000000001".
+    pub modified: String,
+}
+
 /// A file that only grows.
 pub trait Append: Send {
+    /// Appends without a sync: the bytes survive the death of the process, not a power cut.
+    ///
+    /// # Errors
+    /// As [`Self::append`].
+    fn append_unsynced(&mut self, bytes: &[u8]) -> io::Result<()>;
+
     /// Appends and syncs.
     ///
     /// # Errors

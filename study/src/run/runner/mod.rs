@@ -4,7 +4,7 @@
 //! calling thread stores results (`state`): the history file of a job first and its journal record
 //! second, so a record always has its file. A job that was interrupted in between runs again and gives
 //! the same bits. A worker writes only the line of its attempt and the checkpoints of its job
-//! (`attempts`).
+//! (`attempt_log`).
 //!
 //! A job that is run again ([`Run::rerun`]) is invalidated first. Its new history is compared with
 //! the hash of the old one.
@@ -24,11 +24,12 @@ use crate::run::event::{Event, Reporter};
 use crate::store::results::Results;
 use crate::study::plan::{FinishedRow, Generation};
 
-mod attempts;
+mod attempt_log;
+mod quarantine;
 mod state;
 mod workers;
 
-use attempts::Attempts;
+use attempt_log::AttemptLog;
 use state::State;
 
 /// Time between two checkpoints of a job, at least. Chosen: a crash loses little, and a short job has none.
@@ -83,13 +84,16 @@ pub struct Summary {
 pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let _lock = run.results.lock()?;
     run.results.remove_temporary_files()?;
-    run.results.write_study(run.name, run.study)?;
     let mut journal = run.results.journal()?;
-    for note in core::mem::take(&mut journal.notes) {
-        reporter.event(&Event::Note(note));
+    let study = run.results.write_study(run.name, run.study, &journal)?;
+    for fault in &journal.faults {
+        reporter.event(&Event::Note(fault.to_string()));
     }
-    let attempts = Attempts::new(&run.results)?;
-    let mut state = State::new(run, &attempts, journal);
+    run.results.mend_journal(&journal)?;
+    journal.faults.clear();
+    let log = AttemptLog::new(&run.results, &mut journal)?;
+    let mut state = State::new(run, &log, journal);
+    state.record_study(&study)?;
     state.invalidate()?;
     state.remove_checkpoints()?;
     let mut finished = Vec::new();
@@ -100,7 +104,7 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     {
         last = Some(generation.number);
         let missing = state.begin_generation(generation, reporter)?;
-        state.run_jobs(&missing, reporter)?;
+        state.run_jobs(missing, reporter)?;
         finished = state.finished();
     }
     state.write_table()?;

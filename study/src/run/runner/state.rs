@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use super::attempts::Attempts;
+use super::attempt_log::AttemptLog;
+use super::quarantine::{self, Deaths};
 use super::workers::{self, Crew, Ended, Message};
 use super::{Run, Summary};
 use billow_solver::output::outcome::FailureKind;
@@ -35,13 +36,17 @@ const MAX_MESSAGES_PER_WORKER: usize = 4;
 /// State of a run.
 pub(super) struct State<'a, 'w> {
     run: &'a Run<'a>,
-    attempts: &'a Attempts<'w>,
+    log: &'a AttemptLog<'w>,
+    /// The text of study.json that the journal has.
+    recorded_study: Option<String>,
     /// Old records of jobs that must run again, for comparison.
     old_records: BTreeMap<JobId, Record>,
     /// Records of the journals that are not yet checked against their files.
     recorded: BTreeMap<JobId, Record>,
     /// Records of planned jobs, with undamaged files.
     records: BTreeMap<JobId, Record>,
+    /// Deaths of earlier processes.
+    deaths: Deaths,
     /// Every point planned so far.
     points: Vec<Point>,
     summary: Summary,
@@ -51,18 +56,30 @@ pub(super) struct State<'a, 'w> {
 
 impl<'a, 'w> State<'a, 'w> {
     /// The state at the start, with the journals of earlier runs.
-    pub(super) fn new(run: &'a Run<'a>, attempts: &'a Attempts<'w>, journal: Journal) -> Self {
+    pub(super) fn new(run: &'a Run<'a>, log: &'a AttemptLog<'w>, journal: Journal) -> Self {
         Self {
             run,
-            attempts,
+            log,
+            recorded_study: journal.study,
             old_records: journal.invalidated,
             recorded: journal.records,
             records: BTreeMap::new(),
+            deaths: Deaths::new(journal.deaths),
             points: Vec::new(),
             summary: Summary::default(),
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
             table_outdated: true,
         }
+    }
+
+    /// Records the text of study.json, unless the journal has it.
+    pub(super) fn record_study(&mut self, text: &str) -> Result<()> {
+        if self.recorded_study.as_deref() == Some(text) {
+            return Ok(());
+        }
+        self.log.writer().study(text)?;
+        self.recorded_study = Some(text.to_owned());
+        Ok(())
     }
 
     /// Invalidates the finished ones of the jobs to run again.
@@ -71,9 +88,10 @@ impl<'a, 'w> State<'a, 'w> {
         let finished = rerun.iter().filter(|job| self.recorded.contains_key(*job));
         let finished: Vec<JobId> = finished.cloned().collect();
         if !finished.is_empty() {
-            self.attempts.writer().invalidate(&finished)?;
+            self.log.writer().invalidate(&finished)?;
         }
         for job in finished {
+            self.deaths.forget(&job);
             self.old_records.extend(self.recorded.remove_entry(&job));
         }
         Ok(())
@@ -81,9 +99,9 @@ impl<'a, 'w> State<'a, 'w> {
 
     /// Removes the checkpoints of jobs that have ended: those of a process that died in between.
     pub(super) fn remove_checkpoints(&self) -> Result<()> {
-        for id in self.attempts.stored() {
+        for id in self.log.stored() {
             if self.recorded.get(&id).is_some_and(|record| !reached_limit(record)) {
-                self.attempts.remove(&id)?;
+                self.log.remove(&id)?;
             }
         }
         Ok(())
@@ -116,10 +134,15 @@ impl<'a, 'w> State<'a, 'w> {
                 },
             }
         }
-        let finished = seen.len() - missing.len();
-        if let Some(rerun) = self.run.rerun {
-            missing.retain(|job| rerun.contains(&job.id));
+        match self.run.rerun {
+            Some(rerun) => missing.retain(|job| rerun.contains(&job.id)),
+            None => self.quarantine(&mut missing, reporter)?,
         }
+        let suspects = missing.iter().filter(|job| self.deaths.is_suspect(&job.id));
+        if let Some(note) = quarantine::suspects_note(suspects) {
+            reporter.event(&Event::Note(note));
+        }
+        let finished = seen.iter().filter(|id| self.records.contains_key(*id)).count();
         let jobs = finished + missing.len();
         reporter.event(&Event::GenerationStarted { number: generation.number, jobs, finished });
         self.points.extend(generation.points);
@@ -127,12 +150,34 @@ impl<'a, 'w> State<'a, 'w> {
         Ok(missing)
     }
 
-    /// Runs jobs and stores them as they end.
-    pub(super) fn run_jobs(&mut self, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
-        if jobs.is_empty() {
+    /// Takes the jobs in quarantine out of the missing ones and records their rows.
+    fn quarantine(&mut self, missing: &mut Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
+        let quarantined: Vec<Job> =
+            missing.extract_if(.., |job| self.deaths.is_quarantined(&job.id)).collect();
+        let root = self.run.results.root().display().to_string();
+        let Some(note) = quarantine::quarantine_note(quarantined.iter(), &root) else {
             return Ok(());
+        };
+        reporter.event(&Event::Note(note));
+        let records: Vec<Record> = quarantined.iter().filter_map(quarantine::record).collect();
+        self.log.writer().append(&records)?;
+        self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
+        Ok(())
+    }
+
+    /// Runs jobs and stores them as they end: suspects last, each with no other job beside it.
+    pub(super) fn run_jobs(&mut self, jobs: Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
+        let (suspects, others): (Vec<Job>, Vec<Job>) =
+            jobs.into_iter().partition(|job| self.deaths.is_suspect(&job.id));
+        if !others.is_empty() {
+            self.run_on(self.run.threads.map_or(0, NonZero::get), &others, reporter)?;
         }
-        self.run_on(self.run.threads.map_or(0, NonZero::get), jobs, reporter)
+        for suspect in suspects {
+            if self.run.stop.requested().is_none() {
+                self.run_on(1, &[suspect], reporter)?;
+            }
+        }
+        Ok(())
     }
 
     /// Runs jobs on this number of threads; 0 for one thread per core.
@@ -148,11 +193,12 @@ impl<'a, 'w> State<'a, 'w> {
         let capacity = MAX_MESSAGES_PER_WORKER * pool.current_num_threads();
         let (sender, receiver) = mpsc::sync_channel(capacity);
         let abort = AtomicBool::new(false);
-        let (stop, attempts) = (&self.run.stop, self.attempts);
+        let (stop, log) = (&self.run.stop, self.log);
         let ending = || {
             let stopped = stop.requested().is_some();
-            // Whoever notices the request first records it; a failed write only costs another attempt.
-            let _ = if stopped { attempts.stop() } else { Ok(()) };
+            if stopped {
+                log.stop();
+            }
             abort.load(Ordering::Relaxed) || stopped
         };
         let crew = Crew {
@@ -160,7 +206,7 @@ impl<'a, 'w> State<'a, 'w> {
             executor: self.run.executor,
             jobs,
             limits: self.run.limits,
-            attempts,
+            log,
             checkpoint_interval: self.run.checkpoint_interval,
             ending: &ending,
         };
@@ -198,13 +244,13 @@ impl<'a, 'w> State<'a, 'w> {
         let mut records = Vec::with_capacity(ended.len());
         for Ended { index, thread, cells, deployment } in ended {
             let job = &jobs[index];
-            let mut file_hash = None;
+            let (mut file_hash, mut file_stamp) = (None, None);
             if let Some(deployment) = deployment {
                 let path = self.run.results.job_path(&job.id);
                 let hash = cells.text(ColumnId::ContentHash);
                 let bytes = history_file::encode(job, &deployment, hash)
                     .map_err(|problem| Error::Disk { path, problem })?;
-                self.run.results.write_job(&job.id, &bytes)?;
+                file_stamp = Some(self.run.results.write_job(&job.id, &bytes)?);
                 file_hash = Some(history_file::bytes_hash(&bytes));
             }
             let verdict = cells.text(ColumnId::Verdict);
@@ -214,13 +260,13 @@ impl<'a, 'w> State<'a, 'w> {
                 status: cells.status(),
                 verdict: Some(verdict.to_owned()).filter(|text| !text.is_empty()),
             });
-            records.push(Record { job: job.id.clone(), cells, file_hash });
+            records.push(Record { job: job.id.clone(), cells, file_hash, file_stamp });
         }
         for (id, reference) in self.run.executor.references() {
             self.run.results.write_reference(&id, &reference)?;
         }
         if !records.is_empty() {
-            self.attempts.writer().append(&records)?;
+            self.log.writer().append(&records)?;
             self.summary.ran += records.len();
             self.table_outdated = true;
             for record in &records {
@@ -228,7 +274,7 @@ impl<'a, 'w> State<'a, 'w> {
             }
             for record in &records {
                 if !reached_limit(record) {
-                    self.attempts.remove(&record.job)?;
+                    self.log.remove(&record.job)?;
                 }
             }
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));

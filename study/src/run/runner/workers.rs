@@ -9,7 +9,7 @@ use billow_solver::models::run::Progress;
 use billow_solver::output::outcome::Deployment;
 use rayon::ThreadPool;
 
-use super::attempts::Attempts;
+use super::attempt_log::AttemptLog;
 use crate::job::control::{Control, Order, Task};
 use crate::job::executor::{Executor, Outcome, execute_guarded};
 use crate::job::limits::JobLimits;
@@ -87,8 +87,8 @@ pub struct Crew<'a, 'w> {
     pub jobs: &'a [Job],
     /// Their limits.
     pub limits: JobLimits,
-    /// Their attempts.
-    pub attempts: &'a Attempts<'w>,
+    /// Their attempts and checkpoints.
+    pub log: &'a AttemptLog<'w>,
     /// Time between two checkpoints of a job, at least.
     pub checkpoint_interval: Duration,
     /// Whether the run ends now.
@@ -150,8 +150,8 @@ impl Crew<'_, '_> {
         for (control, refused) in controls.iter().zip(&refused) {
             if refused.is_none() {
                 let job = control.job;
-                self.attempts.start(&job.id)?;
-                let checkpoint = self.attempts.checkpoint(&job.id).unwrap_or_else(|error| {
+                self.log.start(&job.id)?;
+                let checkpoint = self.log.checkpoint(&job.id).unwrap_or_else(|error| {
                     control.note(format!("{error}; the job starts from its beginning"));
                     None
                 });
@@ -224,7 +224,7 @@ impl Control for JobControl<'_, '_> {
     }
 
     fn store(&self, text: &str, _time: f64) {
-        if let Err(error) = self.crew.attempts.store(&self.job.id, text) {
+        if let Err(error) = self.crew.log.store(&self.job.id, text) {
             self.note(format!("{error}; the job goes on"));
         }
         let mut clock = self.clock();

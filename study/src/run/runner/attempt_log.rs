@@ -1,5 +1,6 @@
-//! What workers write themselves: the line of an attempt before it starts, and checkpoints. So neither
-//! waits for the storing thread, which may be writing the table of a large study when a signal arrives.
+//! What workers write themselves: the line of an attempt before it starts, and checkpoints. So a worker
+//! does not wait for the storing thread, which may be writing the table of a large study when a signal
+//! arrives.
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,29 +8,37 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::job::JobId;
 use crate::platform::error::Result;
-use crate::store::journal::Writer;
+use crate::store::attempts::{self, Attempts};
+use crate::store::journal::{Journal, Writer};
 use crate::store::results::Results;
 
-/// The attempts of this process.
-pub struct Attempts<'a> {
+/// Attempts and checkpoints of this process.
+pub struct AttemptLog<'a> {
     results: &'a Results<'a>,
     writer: Mutex<Writer<'a>>,
+    attempts: Mutex<Attempts<'a>>,
     /// Jobs with a checkpoint on disk.
     stored: Mutex<BTreeSet<JobId>>,
-    /// Whether the journal says that this process was asked to stop.
+    /// Whether this process was asked to stop.
     stopped: AtomicBool,
 }
 
-impl<'a> Attempts<'a> {
-    /// The attempts of a process that begins.
+impl<'a> AttemptLog<'a> {
+    /// The log of a process that holds the lock of the results. Adds to the journal the deaths of the
+    /// process before it.
     ///
     /// # Errors
-    /// [`crate::platform::error::Error::Disk`] when the checkpoints cannot be listed.
-    pub fn new(results: &'a Results<'a>) -> Result<Self> {
-        let writer = Writer::new(results.files(), results.journal_path());
-        let stored = results.checkpoints()?.into_iter().collect();
-        let (writer, stored) = (Mutex::new(writer), Mutex::new(stored));
-        Ok(Self { results, writer, stored, stopped: AtomicBool::new(false) })
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn new(results: &'a Results<'a>, journal: &mut Journal) -> Result<Self> {
+        let mut writer = Writer::new(results.files(), results.journal_path());
+        attempts::take_deaths(results, journal, &mut writer)?;
+        Ok(Self {
+            results,
+            writer: Mutex::new(writer),
+            attempts: Mutex::new(Attempts::new(results)),
+            stored: Mutex::new(results.checkpoints()?.into_iter().collect()),
+            stopped: AtomicBool::new(false),
+        })
     }
 
     /// The journal of this process.
@@ -41,8 +50,8 @@ impl<'a> Attempts<'a> {
     ///
     /// # Errors
     /// [`crate::platform::error::Error::Disk`]; the attempt must not start then.
-    pub fn start(&self, _id: &JobId) -> Result<()> {
-        Ok(())
+    pub fn start(&self, id: &JobId) -> Result<()> {
+        locked(&self.attempts).start(&[id])
     }
 
     /// The checkpoint of a job, if it has one.
@@ -61,7 +70,7 @@ impl<'a> Attempts<'a> {
     pub fn store(&self, id: &JobId, text: &str) -> Result<()> {
         self.results.write_checkpoint(id, text)?;
         locked(&self.stored).insert(id.clone());
-        Ok(())
+        self.writer().progress(std::slice::from_ref(id))
     }
 
     /// Removes the checkpoint of a job that has ended.
@@ -77,15 +86,12 @@ impl<'a> Attempts<'a> {
         locked(&self.stored).iter().cloned().collect()
     }
 
-    /// Records once that this process was asked to stop.
-    ///
-    /// # Errors
-    /// [`crate::platform::error::Error::Disk`].
-    pub fn stop(&self) -> Result<()> {
-        if self.stopped.swap(true, Ordering::Relaxed) {
-            return Ok(());
+    /// Notes that this process was asked to stop: its attempts do not count against their jobs, also if it
+    /// must end before they do.
+    pub fn stop(&self) {
+        if !self.stopped.swap(true, Ordering::Relaxed) {
+            locked(&self.attempts).end();
         }
-        Ok(())
     }
 }
 
