@@ -6,12 +6,31 @@
 use std::io;
 use std::path::PathBuf;
 
+use serde::Deserialize;
+
 use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::platform::files::{self, disk_error};
 use crate::store::results::Results;
 
+/// The part of a checkpoint that says how far the run is.
+#[derive(Deserialize)]
+struct Head {
+    state: State,
+}
+
+#[derive(Deserialize)]
+struct State {
+    time: f64,
+}
+
 impl Results<'_> {
+    /// Simulated time of a job's checkpoint, s; `None` without a readable one.
+    pub fn checkpoint_time(&self, id: &JobId) -> Option<f64> {
+        let text = self.read_checkpoint(id).ok()??;
+        serde_json::from_str::<Head>(&text).ok().map(|head| head.state.time)
+    }
+
     /// Path of the checkpoints.
     pub fn checkpoints_path(&self) -> PathBuf {
         self.root().join("checkpoints")
@@ -91,6 +110,9 @@ mod tests {
             assert_eq!(results.read_checkpoint(&id).unwrap().as_deref(), Some(text));
         }
         assert_eq!(results.checkpoints().unwrap(), [id.clone()]);
+        assert_eq!(results.checkpoint_time(&id), None);
+        results.write_checkpoint(&id, r#"{"scene":"x","state":{"time":0.25,"steps":7}}"#).unwrap();
+        assert_eq!(results.checkpoint_time(&id), Some(0.25));
         results.remove_checkpoint(&id).unwrap();
         results.remove_checkpoint(&id).unwrap();
         assert_eq!(results.read_checkpoint(&id).unwrap(), None);

@@ -113,6 +113,8 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
 }
 
 #[cfg(test)]
+mod attempt_tests;
+#[cfg(test)]
 mod rerun_tests;
 #[cfg(test)]
 mod tests;
