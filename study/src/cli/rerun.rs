@@ -53,8 +53,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         (None, [_, ..], []) => with_status(&stored, &args.status)?,
         (None, [], [_, ..]) => named(&stored, ids)?,
         (None, [], []) => return Err(refused("", "no job is named")),
-        _ => {
-            let problem = "jobs are named in more than one way: ids, --where, --status";
+        (Some(_), [], _) => return Err(refused("", "jobs are named both by id and by --where")),
+        (_, [_, ..], _) => {
+            let problem = "jobs are named both by --status and in another way";
             return Err(refused("", problem));
         }
     };

@@ -16,11 +16,11 @@ use signal_hook::low_level;
 /// Signals that end a command, with their exit codes and names.
 pub const STOPPING_SIGNALS: [(i32, &str); 4] =
     [(SIGHUP, "SIGHUP"), (SIGINT, "SIGINT"), (SIGUSR1, "SIGUSR1"), (SIGTERM, "SIGTERM")];
-/// Time after the first signal at which the process ends, whatever it does. Chosen: within 2 s, as batch
-/// systems expect at least.
-const MAX_STOP_TIME: Duration = Duration::from_millis(1800);
+/// Time after the first signal at which the process ends, whatever it does. Chosen: within 2 s, also
+/// where the system needs time to take back the memory of a large mesh.
+const MAX_STOP_TIME: Duration = Duration::from_millis(1600);
 /// Time for a message to stderr before the process ends: stderr may be blocked.
-const MESSAGE_TIME: Duration = Duration::from_millis(50);
+const MESSAGE_TIME: Duration = Duration::from_millis(100);
 
 /// A request to stop, with its signal.
 #[derive(Debug, Clone, Default)]

@@ -71,7 +71,7 @@ fn meaning(status: Status) -> &'static str {
             "the enclosed volume became zero or negative"
         }
         Status::Failed(FailureKind::StepLimit) => {
-            "the run used all its steps (solver.step_limit, job_limits.steps) before its end time"
+            "the run used all steps that solver.step_limit or job_limits.steps allows before its end time"
         }
         Status::Failed(FailureKind::Interpenetrated) => {
             "film passed through film, or intersects film"
