@@ -1,4 +1,4 @@
-//! Pauses and checkpoints of whole runs: the same bits as without, wherever a run stops.
+//! Pauses and checkpoints of whole runs: the same bits as without them, at any step.
 
 use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit, State};
 use billow_solver::models::film::FilmRun;

@@ -55,7 +55,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         (None, [], []) => return Err(refused("", "no job is named")),
         (Some(_), [], _) => return Err(refused("", "jobs are named both by id and by --where")),
         (_, [_, ..], _) => {
-            let problem = "jobs are named both by --status and in another way";
+            let problem = "jobs are named by --status and by ids or --where";
             return Err(refused("", problem));
         }
     };

@@ -200,8 +200,8 @@ fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String
     let mut text = String::new();
     for (status, option) in RERUN {
         // Without job_limits.steps it is solver.step_limit that was reached.
-        let own = status != Status::Failed(FailureKind::StepLimit) || limits.steps.is_some();
-        if own && summary.counts.of(status) > 0 {
+        let by_limit = status != Status::Failed(FailureKind::StepLimit) || limits.steps.is_some();
+        if by_limit && summary.counts.of(status) > 0 {
             let root = root.display();
             let _ = write!(text, "; billow rerun {root} --status {status}{option}");
         }

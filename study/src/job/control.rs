@@ -1,4 +1,4 @@
-//! What the runner tells a running job, and what it gets from it.
+//! What the runner asks of a running job, and what it gets from it.
 
 use billow_solver::models::run::Progress;
 

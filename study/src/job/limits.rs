@@ -2,7 +2,6 @@
 //! reaches one has a row without measures.
 
 use crate::job::Status;
-use crate::job::row::integer;
 
 /// Limits of every job of a study. `None`: no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -67,8 +66,8 @@ impl Limit {
 }
 
 /// Bytes in MB, rounded up.
-fn megabytes(bytes: u64) -> i64 {
-    integer(bytes.div_ceil(1_000_000))
+fn megabytes(bytes: u64) -> u64 {
+    bytes.div_ceil(1_000_000)
 }
 
 #[cfg(test)]

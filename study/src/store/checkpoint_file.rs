@@ -1,7 +1,7 @@
 //! Checkpoints of running jobs: `checkpoints/<job id>.json`, the text of
 //! [`billow_solver::output::checkpoint`]. The fingerprint of the scene is the job id.
 //!
-//! A checkpoint is only a shorter way to the same result: one that is missing or damaged costs time.
+//! A checkpoint only saves time: without it, or where it is damaged, a job gives the same result.
 
 use std::io;
 use std::path::PathBuf;

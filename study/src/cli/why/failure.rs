@@ -102,7 +102,7 @@ fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> S
             let rerun = format!("billow rerun {short_id} {root} --job-limit steps=…");
             match has_history {
                 true => format!("{show}: see how the time advanced; then raise solver.step_limit"),
-                false => format!("{rerun}: the job goes on from its checkpoint"),
+                false => format!("{rerun}: the job resumes from its checkpoint"),
             }
         }
         Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {
@@ -114,7 +114,7 @@ fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> S
                 .to_owned()
         }
         Status::Timeout => format!(
-            "billow rerun {short_id} {root} --job-limit wall_time=…: the job goes on from its checkpoint, if \
+            "billow rerun {short_id} {root} --job-limit wall_time=…: the job resumes from its checkpoint, if \
              it has one"
         ),
         Status::OutOfMemory => format!(

@@ -18,7 +18,7 @@ mod renamed;
 pub use cell::Cell;
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 pub use counts::Counts;
-pub use job_end::{JobEnd, integer};
+pub use job_end::JobEnd;
 pub use noisy::{HEADLINE, NOISY};
 pub use renamed::{
     RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, current_column_name, hashed_column_name, note,

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::attempt_log::AttemptLog;
 use super::quarantine::{self, Deaths};
-use super::workers::{self, Crew, Ended, Message};
+use super::workers::{self, Ended, Message, WorkerPool};
 use super::{Run, Summary};
 use billow_solver::output::outcome::FailureKind;
 
@@ -201,7 +201,7 @@ impl<'a, 'w> State<'a, 'w> {
             }
             abort.load(Ordering::Relaxed) || stopped
         };
-        let crew = Crew {
+        let workers = WorkerPool {
             pool: &pool,
             executor: self.run.executor,
             jobs,
@@ -211,7 +211,7 @@ impl<'a, 'w> State<'a, 'w> {
             ending: &ending,
         };
         std::thread::scope(|scope| {
-            scope.spawn(|| crew.work(sender));
+            scope.spawn(|| workers.work(sender));
             let mut stored = Ok(());
             while let Some((messages, ended)) = receive(&receiver) {
                 ending();

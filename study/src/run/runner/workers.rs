@@ -78,7 +78,7 @@ pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
 }
 
 /// What the workers compute, and with what.
-pub struct Crew<'a, 'w> {
+pub struct WorkerPool<'a, 'w> {
     /// The threads.
     pub pool: &'a ThreadPool,
     /// Computes the jobs.
@@ -95,7 +95,7 @@ pub struct Crew<'a, 'w> {
     pub ending: &'a (dyn Fn() -> bool + Sync),
 }
 
-impl Crew<'_, '_> {
+impl WorkerPool<'_, '_> {
     /// Runs all jobs on the pool, batch by batch in their order, until all are done or the run ends. The
     /// dropped sender signals to the receiver that no message follows.
     pub fn work(&self, sender: SyncSender<Message>) {
@@ -144,7 +144,7 @@ impl Crew<'_, '_> {
         let mut controls = Vec::with_capacity(jobs.len());
         for job in jobs {
             refused.push(self.admit(job));
-            controls.push(JobControl { crew: self, job, thread, sender, clock: Clock::start() });
+            controls.push(JobControl { workers: self, job, thread, sender, clock: Clock::start() });
         }
         let mut tasks = Vec::with_capacity(jobs.len());
         for (control, refused) in controls.iter().zip(&refused) {
@@ -172,7 +172,7 @@ impl Crew<'_, '_> {
 
 /// The runner of one job.
 struct JobControl<'a, 'w> {
-    crew: &'a Crew<'a, 'w>,
+    workers: &'a WorkerPool<'a, 'w>,
     job: &'a Job,
     thread: usize,
     sender: &'a SyncSender<Message>,
@@ -202,11 +202,11 @@ impl JobControl<'_, '_> {
 
 impl Control for JobControl<'_, '_> {
     fn order(&self) -> Order {
-        if (self.crew.ending)() {
+        if (self.workers.ending)() {
             return Order::End;
         }
         let mut clock = self.clock();
-        let pause = self.crew.checkpoint_interval.max(clock.cost * MIN_CHECKPOINT_RATIO);
+        let pause = self.workers.checkpoint_interval.max(clock.cost * MIN_CHECKPOINT_RATIO);
         if clock.checkpoint.elapsed() < pause {
             return Order::Continue;
         }
@@ -224,7 +224,7 @@ impl Control for JobControl<'_, '_> {
     }
 
     fn store(&self, text: &str, _time: f64) {
-        if let Err(error) = self.crew.log.store(&self.job.id, text) {
+        if let Err(error) = self.workers.log.store(&self.job.id, text) {
             self.note(format!("{error}; the job goes on"));
         }
         let mut clock = self.clock();
