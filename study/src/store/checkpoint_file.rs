@@ -109,7 +109,7 @@ mod tests {
             results.write_checkpoint(&id, text).unwrap();
             assert_eq!(results.read_checkpoint(&id).unwrap().as_deref(), Some(text));
         }
-        assert_eq!(results.checkpoints().unwrap(), [id.clone()]);
+        assert_eq!(results.checkpoints().unwrap(), std::slice::from_ref(&id));
         assert_eq!(results.checkpoint_time(&id), None);
         results.write_checkpoint(&id, r#"{"scene":"x","state":{"time":0.25,"steps":7}}"#).unwrap();
         assert_eq!(results.checkpoint_time(&id), Some(0.25));
