@@ -4,6 +4,7 @@
 
 mod bench;
 mod chart;
+mod checkpoints;
 mod command_options;
 mod compare_and_answer;
 mod contact_scenes;

@@ -156,6 +156,11 @@ pub fn read_at_most(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
 }
 
+/// The text of /proc/self/status; `None` where the system has none.
+pub fn process_status() -> Option<String> {
+    fs::read_to_string("/proc/self/status").ok()
+}
+
 /// The path in the same folder whose name is nearest to that of a path that does not exist; also with
 /// the ending `.json` added.
 pub fn nearest_name(path: &Path) -> Option<String> {

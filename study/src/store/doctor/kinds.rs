@@ -11,6 +11,7 @@ pub(super) fn misplaced(results: &Results<'_>) -> Vec<(PathBuf, &'static str)> {
         results.jobs_path(),
         results.references_path(),
         results.charts_path(),
+        results.checkpoints_path(),
     ];
     let files = [results.study_path(), results.table_path(), results.attempts_path()];
     let folders = folders.into_iter().filter(|path| path.exists() && !path.is_dir());

@@ -150,6 +150,14 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
             }
         }
     }
+    match results.damaged_checkpoints() {
+        Ok(damaged) => {
+            for (path, problem) in damaged {
+                health.fault(&path, format!("damaged checkpoint: {problem}"), REPAIR);
+            }
+        }
+        Err(error) => health.error(&results.checkpoints_path(), &error),
+    }
     health.records = journal.records.len();
     if let (Some(study), Some(points)) = (study, points) {
         let units = study.display_units().clone();

@@ -62,6 +62,10 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
             add(&path, &format!("set aside: {problem}; a run computes it again"));
         }
     }
+    for (path, problem) in results.damaged_checkpoints()? {
+        results.set_aside(&path)?;
+        add(&path, &format!("set aside: {problem}; its job starts from its beginning"));
+    }
     if let Ok(Some(_)) = results.owner()
         && let Ok(stored) = Stored::read(results.clone())
         && results.write_table(&stored.table())?
