@@ -99,7 +99,8 @@ impl<'a> AttemptLog<'a> {
     }
 
     /// Notes that this process was asked to stop: its attempts do not count against their jobs, also if it
-    /// must end before they do.
+    /// must end before they do. Called by a thread that waits for nothing else: the storing thread may be
+    /// writing the table, and the workers may be waiting for it.
     pub fn stop(&self) {
         if !self.stopped.swap(true, Ordering::Relaxed) {
             locked(&self.attempts).end();
