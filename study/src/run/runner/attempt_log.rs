@@ -82,6 +82,7 @@ impl<'a> AttemptLog<'a> {
         self.check_folder()?;
         self.results.write_checkpoint(id, text)?;
         locked(&self.stored).insert(id.clone());
+        locked(&self.attempts).progress(id)?;
         self.writer().progress(std::slice::from_ref(id))
     }
 
