@@ -4,11 +4,13 @@
 //! results/<study>/attempts.jsonl
 //! {"checksum":"…","process":"<process id and time>"}
 //! {"checksum":"…","job":"<id>"}                         written before the job starts
+//! {"checksum":"…","job":"<id>","progressed":true}       it stored a checkpoint
 //! ```
 //!
 //! The file exists while a run goes on. A run that ends in order, also after a signal or an error, removes
 //! it. If it is there when the next run takes the lock, its process died: the started jobs without a record
-//! were running then ([`take_deaths`]). Lines are written without a sync: they survive the death of the
+//! were running then ([`take_deaths`]). A job that stored a checkpoint in that process is not to blame: it
+//! gets further with every attempt. Lines are written without a sync: they survive the death of the
 //! process, and after a power cut no job is to blame.
 
 use std::collections::BTreeSet;
@@ -45,6 +47,8 @@ struct Line {
     process: String,
     #[serde(default)]
     job: String,
+    #[serde(default)]
+    progressed: bool,
 }
 
 impl<'a> Attempts<'a> {
@@ -85,6 +89,17 @@ impl<'a> Attempts<'a> {
 }
 
 impl Attempts<'_> {
+    /// Records that a running job stored a checkpoint.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn progress(&mut self, job: &JobId) -> Result<()> {
+        let Some(file) = &mut self.open else { return Ok(()) };
+        let line = seal::seal(&json!({ "job": job.as_str(), "progressed": true }).to_string());
+        file.append_unsynced((line + "\n").as_bytes())
+            .map_err(|error| disk_error(&self.path, &error))
+    }
+
     /// Removes the file: the process ends in order, and later attempts of it do not count either.
     pub fn end(&mut self) {
         self.ended = true;
@@ -132,6 +147,7 @@ pub fn take_deaths(
 fn deaths(bytes: &[u8], journal: &Journal) -> Vec<Death> {
     let mut process = String::new();
     let mut jobs = BTreeSet::new();
+    let mut progressed = BTreeSet::new();
     for line in bytes.split(|byte| *byte == b'\n') {
         let object = std::str::from_utf8(line).ok().and_then(|text| seal::open(text).ok());
         let Some(line) = object.and_then(|text| serde_json::from_str::<Line>(&text).ok()) else {
@@ -140,13 +156,17 @@ fn deaths(bytes: &[u8], journal: &Journal) -> Vec<Death> {
         match JobId::from_digits(&line.job) {
             None => process = line.process,
             Some(job) if journal.records.contains_key(&job) => {}
+            Some(job) if line.progressed => {
+                progressed.insert(job);
+            }
             Some(job) => {
                 jobs.insert(job);
             }
         }
     }
     let alone = jobs.len() == 1;
-    jobs.into_iter().map(|job| Death { job, process: process.clone(), alone }).collect()
+    let blamed = jobs.into_iter().filter(|job| !progressed.contains(job));
+    blamed.map(|job| Death { job, process: process.clone(), alone }).collect()
 }
 
 #[cfg(test)]
@@ -190,6 +210,23 @@ mod tests {
         writer.progress(&[id(2)]).unwrap();
         writer.invalidate(&[id(3)]).unwrap();
         assert!(results.journal().unwrap().deaths.is_empty());
+    }
+
+    #[test]
+    fn a_job_that_stored_a_checkpoint_is_not_to_blame_but_was_running() {
+        let folder = tempfile::tempdir().unwrap();
+        let results = Results::new(&Disk, folder.path());
+        let mut attempts = Attempts::new(&results);
+        attempts.progress(&id(1)).unwrap();
+        attempts.start(&[&id(1), &id(2)]).unwrap();
+        attempts.progress(&id(1)).unwrap();
+        std::mem::forget(attempts);
+        let mut journal = Journal::default();
+        let mut writer = Writer::new(&Disk, results.journal_path());
+        take_deaths(&results, &mut journal, &mut writer).unwrap();
+        let jobs: Vec<&JobId> = journal.deaths.keys().collect();
+        assert_eq!(jobs, [&id(2)]);
+        assert!(!journal.deaths[&id(2)][0].alone);
     }
 
     #[test]

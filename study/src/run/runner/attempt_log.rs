@@ -82,6 +82,7 @@ impl<'a> AttemptLog<'a> {
         self.check_folder()?;
         self.results.write_checkpoint(id, text)?;
         locked(&self.stored).insert(id.clone());
+        locked(&self.attempts).progress(id)?;
         self.writer().progress(std::slice::from_ref(id))
     }
 
@@ -99,7 +100,8 @@ impl<'a> AttemptLog<'a> {
     }
 
     /// Notes that this process was asked to stop: its attempts do not count against their jobs, also if it
-    /// must end before they do.
+    /// must end before they do. Called by a thread that waits for nothing else: the storing thread may be
+    /// writing the table, and the workers may be waiting for it.
     pub fn stop(&self) {
         if !self.stopped.swap(true, Ordering::Relaxed) {
             locked(&self.attempts).end();

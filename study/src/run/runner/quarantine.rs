@@ -67,7 +67,10 @@ pub fn quarantine_note<'a>(jobs: impl Iterator<Item = &'a Job>, root: &str) -> O
 /// The names of jobs: short ids and parameters.
 fn named<'a>(jobs: impl Iterator<Item = &'a Job>) -> Option<String> {
     let all: Vec<&Job> = jobs.collect();
-    let name = |job: &&Job| format!("{} ({})", job.id.short(), job::label(&job.parameters));
+    let name = |job: &&Job| match job::label(&job.parameters) {
+        label if label.is_empty() => job.id.short().to_owned(),
+        label => format!("{} ({label})", job.id.short()),
+    };
     let mut names: Vec<String> = all.iter().take(MAX_NAMED).map(name).collect();
     if all.len() > MAX_NAMED {
         names.push(format!("and {} more", all.len() - MAX_NAMED));

@@ -1,17 +1,14 @@
 //! The thread of a run that stores results: what is finished, what is missing, what came back.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::num::NonZero;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
+
+use billow_solver::output::outcome::FailureKind;
 
 use super::attempt_log::AttemptLog;
 use super::quarantine::{self, Deaths};
-use super::workers::{self, Ended, Message, WorkerPool};
+use super::workers::Ended;
 use super::{Run, Summary};
-use billow_solver::output::outcome::FailureKind;
-
 use crate::job::point::Point;
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
@@ -25,13 +22,10 @@ use crate::study::plan::{FinishedRow, Generation};
 /// Time between two writes of the table while jobs run, at least. Chosen: a reader sees new rows
 /// soon, and writing takes little of a run.
 const MIN_TABLE_INTERVAL: Duration = Duration::from_secs(10);
-/// Time without a check of the stop request, at most.
-const MAX_WAIT: Duration = Duration::from_millis(100);
-/// Jobs stored with one sync of the journal, at most. Chosen: a sync takes longer than a small job.
-const MAX_JOBS_PER_SYNC: usize = 64;
-/// Messages that wait for the storing thread, at most, per worker. When the disk is slow, results then
-/// wait in the workers, and memory stays bounded.
-const MAX_MESSAGES_PER_WORKER: usize = 4;
+/// The same over the time that a write takes, at least. Chosen: a twentieth of a run at most.
+const MIN_TABLE_RATIO: u32 = 20;
+
+mod dispatch;
 
 /// State of a run.
 pub(super) struct State<'a, 'w> {
@@ -154,89 +148,6 @@ impl<'a, 'w> State<'a, 'w> {
         Ok(missing)
     }
 
-    /// Takes the jobs in quarantine out of the missing ones and records their rows.
-    fn quarantine(&mut self, missing: &mut Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
-        let quarantined: Vec<Job> =
-            missing.extract_if(.., |job| self.deaths.is_quarantined(&job.id)).collect();
-        let root = self.run.results.root().display().to_string();
-        let Some(note) = quarantine::quarantine_note(quarantined.iter(), &root) else {
-            return Ok(());
-        };
-        reporter.event(&Event::Note(note));
-        let records: Vec<Record> = quarantined.iter().filter_map(quarantine::record).collect();
-        self.log.writer().append(&records)?;
-        self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
-        Ok(())
-    }
-
-    /// Runs jobs and stores them as they end: suspects last, each with no other job beside it.
-    pub(super) fn run_jobs(&mut self, jobs: Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
-        let (suspects, others): (Vec<Job>, Vec<Job>) =
-            jobs.into_iter().partition(|job| self.deaths.is_suspect(&job.id));
-        if !others.is_empty() {
-            self.run_on(self.run.threads.map_or(0, NonZero::get), &others, reporter)?;
-        }
-        for suspect in suspects {
-            if self.run.stop.requested().is_none() {
-                self.run_on(1, &[suspect], reporter)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Runs jobs on this number of threads; 0 for one thread per core.
-    fn run_on(&mut self, threads: usize, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|thread| format!("billow-{thread}"))
-            .build()
-            .map_err(|error| Error::Disk {
-                path: "threads".into(),
-                problem: format!("cannot start: {error}\n  next: ask for fewer with --threads N"),
-            })?;
-        let capacity = MAX_MESSAGES_PER_WORKER * pool.current_num_threads();
-        let (sender, receiver) = mpsc::sync_channel(capacity);
-        let abort = AtomicBool::new(false);
-        let (stop, log) = (&self.run.stop, self.log);
-        let ending = || {
-            let stopped = stop.requested().is_some();
-            if stopped {
-                log.stop();
-            }
-            abort.load(Ordering::Relaxed) || stopped
-        };
-        let workers = WorkerPool {
-            pool: &pool,
-            executor: self.run.executor,
-            jobs,
-            limits: self.run.limits,
-            log,
-            checkpoint_interval: self.run.checkpoint_interval,
-            ending: &ending,
-        };
-        std::thread::scope(|scope| {
-            scope.spawn(|| workers.work(sender));
-            let mut stored = Ok(());
-            while let Some((messages, ended)) = receive(&receiver) {
-                ending();
-                for message in messages {
-                    if let Some(event) = workers::event(&message, jobs) {
-                        reporter.event(&event);
-                    }
-                    if let (Message::Failed(error), Ok(())) = (message, &stored) {
-                        stored = Err(error);
-                    }
-                }
-                if stored.is_ok() {
-                    stored = self.store(jobs, ended, reporter);
-                }
-                // After an error the workers stop. Jobs that end meanwhile run again next time.
-                abort.store(stored.is_err(), Ordering::Relaxed);
-            }
-            stored
-        })
-    }
-
     /// Stores jobs that ended: history files first, then their records with one sync.
     fn store(
         &mut self,
@@ -312,13 +223,15 @@ impl<'a, 'w> State<'a, 'w> {
 
     /// Writes the table when it is outdated.
     pub(super) fn write_table(&mut self) -> Result<()> {
+        let start = Instant::now();
         if self.table_outdated {
             self.log.check_folder()?;
             let table = Table::build(&self.points, &self.records, self.run.unit);
             self.run.results.write_table(&table)?;
             self.table_outdated = false;
         }
-        self.table_due = Instant::now() + MIN_TABLE_INTERVAL;
+        let now = Instant::now();
+        self.table_due = now + MIN_TABLE_INTERVAL.max((now - start) * MIN_TABLE_RATIO);
         Ok(())
     }
 
@@ -350,23 +263,4 @@ fn reached_limit(record: &Record) -> bool {
     // A run that used up solver.step_limit has a history.
     let steps = status == Status::Failed(FailureKind::StepLimit) && record.file_hash.is_none();
     limits.contains(&status) || steps
-}
-
-/// Messages since the last call, ended jobs apart; `None` when no worker remains.
-fn receive(receiver: &Receiver<Message>) -> Option<(Vec<Message>, Vec<Ended>)> {
-    let mut messages = Vec::new();
-    let mut ended = Vec::new();
-    let mut next = match receiver.recv_timeout(MAX_WAIT) {
-        Ok(message) => Some(message),
-        Err(RecvTimeoutError::Timeout) => None,
-        Err(RecvTimeoutError::Disconnected) => return None,
-    };
-    while let Some(message) = next {
-        match message {
-            Message::Ended(job) => ended.push(*job),
-            other => messages.push(other),
-        }
-        next = if ended.len() < MAX_JOBS_PER_SYNC { receiver.try_recv().ok() } else { None };
-    }
-    Some((messages, ended))
 }
