@@ -61,3 +61,8 @@ pub fn peak<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let result = work();
     (result, PEAK.load(Ordering::Relaxed) - before)
 }
+
+/// Bytes in use.
+pub fn used() -> usize {
+    USED.load(Ordering::Relaxed)
+}

@@ -41,10 +41,13 @@ fn grid() {
         let (_, bare) = peak(|| FilmRun::from_scene(set, &scene, 0.5, None).map(|_| ()));
         let (run, film) = peak(|| models::solve(set, &scene, &mut Unobserved).unwrap());
         let references = References::default();
+        let before = counting::used();
         let (_, statics) = peak(|| references.of(set, &scene, Some(100.0), &mut || true));
+        let kept = counting::used() - before;
+        let estimate = billow_study::job::memory::estimate(&scene);
         let d = &scene.design;
         println!(
-            "{} {} {} el {} mesh {} bare {} film {} statics {} kB/el: {:.2} {:.2} {:.2} {:.2} samples {}",
+            "{} {} {} el {} mesh {} bare {} film {} statics {} kB/el: {:.2} {:.2} {:.2} {:.2} samples {} kept {:.2} ratio {:.2} {:.2}",
             d.panels,
             d.storeys,
             d.subdivisions,
@@ -58,6 +61,9 @@ fn grid() {
             film as f64 / d.elements() as f64 / 1e3,
             statics as f64 / d.elements() as f64 / 1e3,
             run.history.column("time").len(),
+            kept as f64 / d.elements() as f64 / 1e3,
+            estimate.total as f64 / film.max(statics) as f64,
+            estimate.statics as f64 / statics as f64,
         );
     }
 }

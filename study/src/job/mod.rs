@@ -2,6 +2,7 @@
 
 pub mod executor;
 pub mod id;
+pub mod memory;
 pub mod point;
 pub mod references;
 pub mod row;
