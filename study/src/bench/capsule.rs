@@ -200,7 +200,7 @@ pub fn run_to_marks(
                 core_seconds,
                 ledger_residual: audit.ledger_residual,
                 passages: audit.passages,
-                peak_memory: machine::peak_memory(),
+                peak_memory: memory::peak_resident(),
             });
         }
     }

@@ -5,7 +5,7 @@
 //! after    static equilibria + history file
 //! job      the larger of the two
 //!
-//! contact  8 MB + (6.6 + 1.6 log2(1 + M/4)) kB e          statics  (2.2 + 0.17 log2(e/48)) kB e
+//! contact  8 MB + (5.4 + 1.75 log2(1 + M/4)) kB e         statics  (2.8 + 0.19 log2(e/48)) kB e
 //! ```
 //!
 //! Symbols: e elements, M storeys. Source: peaks of a counting allocator, `tests/reference/memory.json`. The
@@ -20,11 +20,11 @@ const CHECKPOINT: [f64; 2] = [300.0, 900.0];
 /// Queues of contact, whatever the mesh, bytes.
 const CONTACT_QUEUES: f64 = 8e6;
 /// Contact of a film that is not folded, bytes per element.
-const CONTACT: f64 = 6600.0;
+const CONTACT: f64 = 5400.0;
 /// Contact for each doubling of the number of layers, bytes per element.
-const CONTACT_LAYERS: f64 = 1600.0;
+const CONTACT_LAYERS: f64 = 1750.0;
 /// Static equilibria, bytes per element: of a small mesh, and for each doubling of its elements.
-const STATICS: [f64; 2] = [2200.0, 170.0];
+const STATICS: [f64; 2] = [2800.0, 190.0];
 /// Elements of the small mesh of [`STATICS`].
 const SMALL_MESH: f64 = 48.0;
 /// Quantities and tracks of a capsule's history, per sample.
