@@ -15,6 +15,7 @@ use billow_solver::scene::timeline::Timeline;
 use super::{Line, interrupted, machine};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
+use crate::platform::memory;
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 

@@ -57,8 +57,12 @@ fn with_records(points: &[Point], edit: impl Fn(usize, &mut Cells)) -> Table {
         cells.set(ColumnId::PeakVz, 20.0 + index as f64);
         cells.set(ColumnId::ContentHash, "invented");
         edit(index, &mut cells);
-        let record =
-            crate::store::journal::Record { job: point.job.id.clone(), file_hash: None, cells };
+        let record = crate::store::journal::Record {
+            job: point.job.id.clone(),
+            file_hash: None,
+            file_stamp: None,
+            cells,
+        };
         records.insert(point.job.id.clone(), record);
     }
     let unit = |name: &str| match name {

@@ -1,4 +1,4 @@
-//! `billow doctor`: checks a results folder.
+//! `billow doctor`: checks a results folder, and repairs it.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -10,6 +10,7 @@ use super::{Format, output_error};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
+use crate::store::doctor::repair::Repaired;
 use crate::store::doctor::{self, Depth, Finding};
 use crate::store::results::{RESULT_NAMES, Results};
 
@@ -18,6 +19,10 @@ use crate::store::results::{RESULT_NAMES, Results};
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    /// Repair what is damaged: restore study.json from the journal, remove invalid journal lines, set damaged
+    /// files aside in the folder `damaged` so that their jobs run again, write the table again.
+    #[arg(long)]
+    repair: bool,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -41,7 +46,13 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                 .to_owned(),
         });
     }
-    let health = doctor::examine(&Results::new(&Disk, &root), Depth::Contents);
+    let results = Results::new(&Disk, &root);
+    if args.repair {
+        for Repaired { path, action } in doctor::repair::repair(&results)? {
+            eprintln!("billow: repaired: {}: {action}", path.display());
+        }
+    }
+    let health = doctor::examine(&results, Depth::Contents);
     let faults = health.faults();
     match args.output.format() {
         Format::Table => {

@@ -48,7 +48,8 @@ impl Memory {
             names.push(format!("{} more", large.len() - MAX_NAMES));
         }
         names.retain(|name| !name.is_empty());
-        let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join("; ")) };
+        let names =
+            if names.is_empty() { String::new() } else { format!(" ({})", names.join("; ")) };
         Some(format!(
             "note: {} of {}{names} will end as out_of_memory: up to {} needed, {} usable of {limit}\n  \
              next: a coarser mesh (design.subdivisions 5 to 16 is enough for a study), or a larger limit",
@@ -97,7 +98,8 @@ pub fn threads(asked: Option<NonZero<usize>>) -> (Option<NonZero<usize>>, Option
     let fitting = limits().into_iter().map(|limit| (limit.threads(wanted), limit));
     match fitting.min_by_key(|(threads, _)| *threads) {
         Some((threads, limit)) if threads < wanted => {
-            let note = format!("note: {limit} has room for {} of {wanted}", count(threads, "thread"));
+            let note =
+                format!("note: {limit} has room for {} of {wanted}", count(threads, "thread"));
             (NonZero::new(threads), Some(note))
         }
         _ => (asked, None),

@@ -37,6 +37,7 @@ mod schema;
 mod show;
 mod solve;
 mod status;
+mod stored;
 mod study_keys;
 mod table;
 mod target;
@@ -80,7 +81,7 @@ pub enum Command {
     Show(show::Args),
     /// Compare the values of one parameter, all other parameters being equal.
     Compare(compare::Args),
-    /// Check a results folder; change nothing. Exit code 1 if something is broken.
+    /// Check a results folder, or repair it. Exit code 1 if something is broken.
     Doctor(doctor::Args),
     /// Draw the shapes of one job side by side, as SVG and PNG.
     Frames(frames::Args),

@@ -13,8 +13,6 @@ use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
-use crate::platform::files::Disk;
-use crate::store::results::Results;
 use crate::store::stored::Stored;
 
 /// Arguments of `billow rerun`.
@@ -46,7 +44,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let (ids, study) = split(&args.jobs, args.results.results.is_some());
     let given = StudyArgs { study: study.map(PathBuf::from), results: args.results.clone() };
     let root = folder(&given, &[])?;
-    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let stored = super::stored::read(&root)?;
     let jobs = match (&args.condition, ids) {
         (Some(condition), []) => matching(&stored, condition)?,
         (None, [_, ..]) => named(&stored, ids)?,

@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use billow_solver::models::film::LadderState;
+
+use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
 use super::print::count;
-use super::memory::Memory;
 use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
@@ -21,6 +23,7 @@ use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::progress;
 use crate::run::runner::{self, Run, Summary};
+use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::study::Study;
@@ -108,7 +111,7 @@ pub(super) fn run_study(
             unit: &|name| study.unit(name).to_owned(),
             executor: &Solver {
                 instruction_set,
-                references: References::known(results.references()),
+                references: References::known(known_references(&results)),
             },
             results: results.clone(),
             threads,
@@ -122,6 +125,17 @@ pub(super) fn run_study(
     let answer = Answer::of(&stored);
     print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
     result(&summary, root)
+}
+
+/// The static references that can be used. Says on stderr which files are damaged.
+fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
+    let found = results.references();
+    for (path, problem) in &found.unread {
+        if let Unread::Damaged(problem) = problem {
+            eprintln!("billow: {}: {problem}; it is computed again", path.display());
+        }
+    }
+    found.states
 }
 
 /// The error of a run, if it has one.

@@ -15,11 +15,9 @@ use crate::input::value::Value;
 use crate::job::row::{Cells, ColumnGroup};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
-use crate::platform::files::Disk;
 use crate::platform::nearest::did_you_mean;
 use crate::scene::summary;
 use crate::store::history_file::{self, StoredHistory};
-use crate::store::results::Results;
 use crate::store::stored::Stored;
 
 /// Columns of a history that a table shows by default.
@@ -74,7 +72,7 @@ pub struct Args {
 /// An unknown job; a history or results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(&args.job, &args.study)?;
-    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let stored = super::stored::read(&root)?;
     let id = stored.job(&args.job)?;
     if args.scene {
         let scene = scene(&stored, &id)?;

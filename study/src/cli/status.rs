@@ -56,7 +56,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &[])?;
     let results = Results::new(&Disk, &root);
     // Damage is part of the answer, not an error.
-    let (stored, _) = Stored::read_valid(results.clone())?;
+    let stored = Stored::read(results.clone())?;
     let health = doctor::examine(&results, Depth::Names);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);

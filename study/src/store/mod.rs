@@ -1,6 +1,8 @@
 //! What a study stores on disk: journal, history files, static references, summary table; and the
 //! check of a results folder.
 
+pub mod attempts;
+pub mod damaged;
 pub mod doctor;
 pub mod history_file;
 pub mod journal;

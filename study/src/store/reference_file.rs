@@ -1,12 +1,12 @@
 //! Static equilibria of a design ([`crate::job::references`]) on disk.
 //!
 //! ```text
-//! results/<study>/references/<id>.json     {"format", "version", "physics_version", "sha256",
+//! results/<study>/references/<id>.json     {"checksum", "format", "version", "physics_version", "id",
 //!                                           "states": [[level, p, V, z_rim], …]}
 //! ```
 //!
-//! `sha256` is that of the JSON text of `states`. A stored file only saves time: if it is missing, damaged
-//! or of another version, its states are computed again when a run needs them, with the same bits.
+//! `checksum` is that of [`billow_solver::platform::seal`]. A stored file only saves time: if it is missing,
+//! damaged or of another version, its states are computed again when a run needs them, with the same bits.
 
 use std::io;
 use std::path::PathBuf;
@@ -14,18 +14,19 @@ use std::path::PathBuf;
 use billow_solver::PHYSICS_VERSION;
 use billow_solver::models::film::LadderState;
 use billow_solver::output::measures::StaticShape;
+use billow_solver::platform::seal;
 use serde::{Deserialize, Serialize};
 
 use crate::job::JobId;
-use crate::platform::error::Result;
+use crate::platform::error;
 use crate::platform::files::{self, disk_error};
-use crate::store::history_file;
 use crate::store::results::Results;
 
 /// Name of the format.
 const FORMAT: &str = "billow-reference";
-/// Version of the format that this program writes and reads. Version 1 had no levels.
-const VERSION: u32 = 2;
+/// Version of the format that this program writes and reads. Version 1 had no levels, version 2 no
+/// checksum of the whole file.
+const VERSION: u32 = 3;
 
 /// A state on disk: level, overpressure, Pa, volume, m³, mean height of the top ring, m.
 type StoredState = (i32, f64, f64, f64);
@@ -36,75 +37,119 @@ struct Stored {
     format: String,
     version: u32,
     physics_version: u32,
-    sha256: String,
+    id: String,
     /// Level ascending.
     states: Vec<StoredState>,
 }
 
-fn hash(states: &[StoredState]) -> io::Result<String> {
-    Ok(history_file::bytes_hash(&serde_json::to_vec(states).map_err(io::Error::other)?))
+/// The members that every version of the format has.
+#[derive(Deserialize)]
+struct Head {
+    version: u32,
+    physics_version: u32,
 }
 
-fn encode(states: &[LadderState]) -> io::Result<Vec<u8>> {
+/// Why a file is no reference of this program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Unread {
+    /// Of another version of the format or of the physics.
+    OtherVersion,
+    /// Not what was written.
+    Damaged(String),
+}
+
+fn encode(id: &JobId, states: &[LadderState]) -> io::Result<String> {
     let stored = |state: &LadderState| {
         let StaticShape { overpressure, volume, height } = state.shape;
         (state.level, overpressure, volume, height)
     };
-    let states: Vec<StoredState> = states.iter().map(stored).collect();
     let stored = Stored {
         format: FORMAT.to_owned(),
         version: VERSION,
         physics_version: PHYSICS_VERSION,
-        sha256: hash(&states)?,
-        states,
+        id: id.as_str().to_owned(),
+        states: states.iter().map(stored).collect(),
     };
-    let mut bytes = serde_json::to_vec(&stored).map_err(io::Error::other)?;
-    bytes.push(b'\n');
-    Ok(bytes)
+    let object = serde_json::to_string(&stored).map_err(io::Error::other)?;
+    Ok(seal::seal(&(object + "\n")))
 }
 
-fn read(bytes: &[u8]) -> Option<Vec<LadderState>> {
-    let stored: Stored = serde_json::from_slice(bytes).ok()?;
-    let current = stored.format == FORMAT
-        && stored.version == VERSION
-        && stored.physics_version == PHYSICS_VERSION;
+fn read(id: &JobId, bytes: &[u8]) -> Result<Vec<LadderState>, Unread> {
+    let damaged = |error: &dyn std::fmt::Display| Unread::Damaged(error.to_string());
+    let text = std::str::from_utf8(bytes).map_err(|error| damaged(&error))?;
+    let object = match seal::open(text) {
+        Ok(object) => object,
+        // Older versions have another checksum.
+        Err(error) => {
+            return Err(match serde_json::from_str::<Head>(text) {
+                Ok(head) if head.version < VERSION && error == seal::SealError::Missing => {
+                    Unread::OtherVersion
+                }
+                _ => damaged(&error),
+            });
+        }
+    };
+    let head: Head = serde_json::from_str(&object).map_err(|error| damaged(&error))?;
+    if (head.version, head.physics_version) != (VERSION, PHYSICS_VERSION) {
+        return Err(Unread::OtherVersion);
+    }
+    let stored: Stored = serde_json::from_str(&object).map_err(|error| damaged(&error))?;
+    if stored.format != FORMAT || stored.id != id.as_str() {
+        return Err(Unread::Damaged(format!("it belongs to {}", stored.id)));
+    }
     let state = |(level, overpressure, volume, height): StoredState| LadderState {
         level,
         shape: StaticShape { overpressure, volume, height },
     };
-    (current && hash(&stored.states).ok()? == stored.sha256)
-        .then(|| stored.states.into_iter().map(state).collect())
+    Ok(stored.states.into_iter().map(state).collect())
+}
+
+/// The references in a folder.
+#[derive(Debug, Default)]
+pub struct References {
+    /// States by the id of their design.
+    pub states: Vec<(JobId, Vec<LadderState>)>,
+    /// Files that cannot be used, and why.
+    pub unread: Vec<(PathBuf, Unread)>,
 }
 
 impl Results<'_> {
-    /// States that earlier runs stored, by design. Files that cannot be read are ignored.
-    pub fn references(&self) -> Vec<(JobId, Vec<LadderState>)> {
-        let paths = self.files().list(&self.references_path()).unwrap_or_default();
-        let known = |path: PathBuf| {
-            let id = JobId::from_digits(&path.file_stem()?.to_string_lossy())?;
-            Some((id, read(&self.files().read(&path).ok()?)?))
-        };
-        paths.into_iter().filter_map(known).collect()
-    }
-
-    /// Files in the folder of references that this program cannot read as references.
-    pub fn unread_references(&self) -> Vec<PathBuf> {
-        let paths = self.files().list(&self.references_path()).unwrap_or_default();
-        let reference =
-            |path: &PathBuf| self.files().read(path).ok().and_then(|bytes| read(&bytes));
-        paths.into_iter().filter(|path| reference(path).is_none()).collect()
+    /// The references that earlier runs stored.
+    pub fn references(&self) -> References {
+        let mut references = References::default();
+        for path in self.files().list(&self.references_path()).unwrap_or_default() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            // A temporary file is no reference yet.
+            if files::is_temporary(&path) {
+                continue;
+            }
+            let read = || -> std::result::Result<_, Unread> {
+                let damaged = |problem: String| Unread::Damaged(problem);
+                let id = name.strip_suffix(".json").and_then(JobId::from_digits);
+                let id =
+                    id.ok_or_else(|| damaged("its name is not that of a design".to_owned()))?;
+                let bytes = self.files().read(&path).map_err(|error| damaged(error.to_string()))?;
+                let states = read(&id, &bytes)?;
+                Ok((id, states))
+            };
+            match read() {
+                Ok(found) => references.states.push(found),
+                Err(problem) => references.unread.push((path, problem)),
+            }
+        }
+        references
     }
 
     /// Stores the states of a design.
     ///
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
-    pub fn write_reference(&self, id: &JobId, states: &[LadderState]) -> Result<()> {
+    pub fn write_reference(&self, id: &JobId, states: &[LadderState]) -> error::Result<()> {
         let folder = self.references_path();
         let path = folder.join(format!("{id}.json"));
         let write = || -> io::Result<()> {
             self.files().create_folder(&folder)?;
-            files::write_atomic(self.files(), &path, &encode(states)?)
+            files::write_atomic(self.files(), &path, encode(id, states)?.as_bytes())
         };
         write().map_err(|error| disk_error(&path, &error))
     }
@@ -129,27 +174,31 @@ mod tests {
         results.write_reference(&id, &reference).unwrap();
         let path = results.references_path().join(format!("{id}.json"));
         let bytes = results.files().read(&path).unwrap();
-        assert_eq!(read(&bytes), Some(reference.clone()));
-        assert_eq!(read(&bytes[..bytes.len() / 2]), None);
-        let other = String::from_utf8(bytes).unwrap().replace("0.9]", "0.91]");
-        assert_eq!(read(other.as_bytes()), None, "a changed number");
-        let other = other.replace("0.91]", "0.9]").replace("\"version\":2", "\"version\":1");
-        assert_eq!(read(other.as_bytes()), None, "another version");
-        assert!(results.unread_references().is_empty());
-        let damaged = path.with_file_name(format!("{}.json", "cd".repeat(16)));
-        files::write_atomic(&Disk, &damaged, other.as_bytes()).unwrap();
-        assert_eq!(results.unread_references(), [damaged]);
+        assert_eq!(read(&id, &bytes), Ok(reference.clone()));
+        let other = JobId::from_digits(&"cd".repeat(16)).unwrap();
+        assert!(matches!(read(&other, &bytes), Err(Unread::Damaged(_))), "of another design");
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        for damaged in [&text[..text.len() / 2], &text.replace("0.9]", "0.91]")] {
+            assert!(matches!(read(&id, damaged.as_bytes()), Err(Unread::Damaged(_))), "{damaged}");
+        }
+        let old =
+            "{\"format\":\"billow-reference\",\"version\":2,\"physics_version\":6,\"states\":[]}";
+        assert_eq!(read(&id, old.as_bytes()), Err(Unread::OtherVersion));
+        assert!(results.references().unread.is_empty());
+        let damaged = path.with_file_name(format!("{other}.json"));
+        files::write_atomic(&Disk, &damaged, &bytes).unwrap();
+        assert_eq!(results.references().unread[0].0, damaged);
         // A disk that fails at any operation leaves the old file or the new one.
-        let before = read(&results.files().read(&path).unwrap());
+        let before = read(&id, &results.files().read(&path).unwrap());
         for nth in 1..=4 {
             let failing = FailingFiles::new(nth, io::ErrorKind::StorageFull);
             let other = vec![state(64, 1.0, 0.5, 0.9)];
             let written = Results::new(&failing, folder.path()).write_reference(&id, &other);
-            let found = read(&results.files().read(&path).unwrap());
+            let found = read(&id, &results.files().read(&path).unwrap());
             assert_eq!(written.is_err(), nth < 4, "operation {nth}");
-            assert!(found == before || found == Some(other), "operation {nth}");
+            assert!(found == before || found == Ok(other), "operation {nth}");
             results.write_reference(&id, &reference).unwrap();
         }
-        assert_eq!(results.references(), [(id, reference)]);
+        assert_eq!(results.references().states, [(id, reference)]);
     }
 }

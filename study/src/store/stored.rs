@@ -36,20 +36,12 @@ pub struct Stored<'a> {
 }
 
 impl<'a> Stored<'a> {
-    /// Reads a folder.
+    /// Reads a folder. Journal lines that are not valid are skipped; they are in
+    /// [`Journal::faults`].
     ///
     /// # Errors
     /// [`Error::Disk`] when there is no study.json, or when a file cannot be read.
     pub fn read(results: Results<'a>) -> Result<Self> {
-        let (stored, faults) = Self::read_valid(results)?;
-        faults.into_iter().next().map_or(Ok(stored), Err)
-    }
-
-    /// Reads all that can be read. Journal lines that are not valid are skipped and returned as errors.
-    ///
-    /// # Errors
-    /// As [`Self::read`], except for such lines.
-    pub fn read_valid(results: Results<'a>) -> Result<(Self, Vec<Error>)> {
         if results.owner()?.is_none() {
             return Err(Error::Disk {
                 path: results.root().to_owned(),
@@ -60,10 +52,10 @@ impl<'a> Stored<'a> {
             });
         }
         let study = Study::load(&results.study_path(), &[])?;
-        let (journal, faults) = journal::examine(results.files(), &results.journal_path())?;
+        let journal = results.journal()?;
         let points = planned(&study, &journal.records);
         let units = study.display_units().clone();
-        Ok((Self { results, study, units, journal, points }, faults))
+        Ok(Self { results, study, units, journal, points })
     }
 
     /// The row of a point.
@@ -94,23 +86,29 @@ impl<'a> Stored<'a> {
         self.journal.records.get(id).or_else(|| self.journal.invalidated.get(id))
     }
 
-    /// Path of the history file of a job.
+    /// Path of the history file of a job, after a check that it is the file that its record names.
     ///
     /// # Errors
-    /// [`Error::Disk`] with the reason when the job has no history.
+    /// [`Error::Disk`] with the reason when the job has no history, or another one.
     pub fn history_path(&self, id: &JobId) -> Result<PathBuf> {
         let path = self.results.job_path(id);
-        if self.record(id).is_some_and(|record| record.file_hash.is_some()) {
-            return Ok(path);
-        }
-        let why = match (self.point(id), self.record(id)) {
-            (Some(point), None) if point.infeasible.is_some() => {
-                "the point is infeasible, so no job ran"
+        let record = self.record(id);
+        let root = self.results.root().display();
+        let (why, next) = match (self.point(id), record) {
+            (_, Some(record)) if record.file_hash.is_some() => {
+                return self.results.check_history(record).map(|()| path);
             }
-            (_, None) => "the job has not run yet",
-            (_, Some(_)) => "the job wrote no history",
+            (Some(point), None) if point.infeasible.is_some() => (
+                "the point is infeasible, so no job ran",
+                format!("billow why {} {root}", id.short()),
+            ),
+            (_, None) => {
+                ("the job has not run yet", format!("billow run, then billow status {root}"))
+            }
+            (_, Some(_)) => {
+                ("the job wrote no history", format!("billow why {} {root}", id.short()))
+            }
         };
-        let next = format!("billow why {} {}", id.short(), self.results.root().display());
         Err(Error::Disk { path, problem: format!("{why}\n  next: {next}") })
     }
 
@@ -219,7 +217,8 @@ mod tests {
             let mut cells = Cells::new(Status::Done);
             let version = i64::from(PHYSICS_VERSION) - i64::from(number != 4);
             cells.set(ColumnId::PhysicsVersion, version);
-            let record = Record { job: point.job.id.clone(), cells, file_hash: None };
+            let record =
+                Record { job: point.job.id.clone(), cells, file_hash: None, file_stamp: None };
             records.insert(record.job.clone(), record);
         }
         // Jobs 0 and 1 are planned, job 4 is of the version of today.

@@ -38,6 +38,8 @@ pub(crate) use point::StudyPoint;
 
 /// The key of the units in which quantities are shown. It changes no job.
 pub(crate) const UNITS: &str = "units";
+/// Key of the checksum of study.json. A study file has none.
+const CHECKSUM: &str = "checksum";
 
 /// A key of a study.
 #[derive(Debug, Clone)]
@@ -126,6 +128,10 @@ impl Study {
         if !matches!(tree, Json::Object(_)) {
             let problem = format!("is {}, not an object", tree.kind());
             return Err(source.error("", "", problem, "one JSON object: {\"design\": …}"));
+        }
+        if let Json::Object(members) = &mut tree {
+            // That of study.json, a study file that a run wrote.
+            members.retain(|(name, _)| name != CHECKSUM);
         }
         if tree.get("format") == Some(&Json::Text("billow-scene".to_owned())) {
             let error = source.error("format", "\"billow-scene\"", "is a scene, not a study", "");

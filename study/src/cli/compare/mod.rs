@@ -14,9 +14,7 @@ use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
 use crate::platform::error::{Error, Result};
-use crate::platform::files::Disk;
 use crate::platform::nearest::did_you_mean;
-use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
@@ -89,7 +87,7 @@ struct Comparison<'a> {
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &args.set.set)?;
-    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let stored = super::stored::read(&root)?;
     changes::note(&stored.results, args.study.study.as_deref(), &args.set.set)?;
     let table = stored.table();
     let units = args.units.of_table(&table, stored.study.display_units())?;

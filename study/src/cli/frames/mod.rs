@@ -19,7 +19,6 @@ use crate::platform::files::{Disk, Files, disk_error};
 use crate::render::filmstrip::Filmstrip;
 use crate::render::projection::View;
 use crate::store::history_file::{self, StoredFrames};
-use crate::store::results::Results;
 use crate::store::stored::Stored;
 
 mod choose;
@@ -184,7 +183,7 @@ fn source(args: &Args) -> Result<Source> {
         return Ok(Source { path: path.to_owned(), title: stem.into_owned(), out });
     }
     let root = folder_of_job(&args.job, &args.study)?;
-    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let stored = super::stored::read(&root)?;
     let id = stored.job(&args.job)?;
     Ok(Source {
         path: stored.history_path(&id)?,

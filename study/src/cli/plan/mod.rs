@@ -9,11 +9,11 @@ mod lengths;
 
 use forecast::forecast;
 
+use super::memory::Memory;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
 use super::print::{self, Heading, print_quantities, print_rows};
 use super::target::results_folder;
 use super::{Format, changes, notes, output_error};
-use super::memory::Memory;
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::Parameters;
@@ -100,7 +100,7 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Some(text) = lengths::in_use(&fitting) {
         eprintln!("{text}");
     }
-    let references = results.references().into_iter().map(|(id, _)| id).collect();
+    let references = results.references().states.into_iter().map(|(id, _)| id).collect();
     let texts = forecast(&missing, references).into_iter().chain(memory.forecast(study));
     texts.for_each(|text| eprintln!("{text}"));
     Ok(())

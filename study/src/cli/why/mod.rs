@@ -14,9 +14,7 @@ use crate::input::value::{Value, brief_number, json_value};
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
-use crate::platform::files::Disk;
 use crate::scene::summary;
-use crate::store::results::Results;
 use crate::store::stored::Stored;
 
 mod failure;
@@ -43,7 +41,7 @@ type Line = (&'static str, String);
 /// An unknown job; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(&args.job, &args.study)?;
-    let stored = Stored::read(Results::new(&Disk, &root))?;
+    let stored = super::stored::read(&root)?;
     let id = stored.job(&args.job)?;
     let cells = match (stored.point(&id), stored.record(&id)) {
         (Some(point), _) => stored.cells(point),

@@ -48,6 +48,14 @@ pub fn study_schema() -> Json {
             "additionalProperties": {"type": "string", "minLength": 1},
         }),
     );
+    properties.insert(
+        "checksum".to_owned(),
+        json!({
+            "title": "checksum",
+            "description": "That of study.json in a results folder; ignored in a study file.",
+            "type": "string",
+        }),
+    );
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "billow study",

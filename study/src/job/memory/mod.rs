@@ -3,7 +3,7 @@
 //! ```text
 //! run      mesh + contact + samples + frames
 //! after    static equilibria + history file
-//! job      the larger of the two
+//! job      the larger of the two, and of the mesh that gives the default contact distance
 //!
 //! contact  8 MB + (5.4 + 1.75 log2(1 + M/4)) kB e         statics  (2.8 + 0.19 log2(e/48)) kB e
 //! ```
@@ -11,6 +11,7 @@
 //! Symbols: e elements, M storeys. Source: peaks of a counting allocator, `tests/reference/memory.json`. The
 //! number of layers decides how many pairs of elements are near each other.
 
+use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{ModelKind, Scene};
 
 /// Mesh, film model and state, bytes per element.
@@ -23,6 +24,8 @@ const CONTACT_QUEUES: f64 = 8e6;
 const CONTACT: f64 = 5400.0;
 /// Contact for each doubling of the number of layers, bytes per element.
 const CONTACT_LAYERS: f64 = 1750.0;
+/// The mesh of 4 subdivisions that gives the default contact distance, bytes per element of it.
+const REFERENCE_GAP: f64 = 1100.0;
 /// Static equilibria, bytes per element: of a small mesh, and for each doubling of its elements.
 const STATICS: [f64; 2] = [2800.0, 190.0];
 /// Elements of the small mesh of [`STATICS`].
@@ -31,7 +34,7 @@ const SMALL_MESH: f64 = 48.0;
 const COLUMNS: f64 = 42.0;
 /// Bytes of one number of a sample: during a run, with growing lists; and afterwards, with the history file
 /// and its copy.
-const NUMBER: [f64; 2] = [26.0, 26.0];
+const NUMBER: [f64; 2] = [30.0, 36.0];
 /// A frame, bytes per element: during a run, and afterwards with the history file and its copy.
 const FRAME: [f64; 2] = [24.0, 75.0];
 /// A job without its film, bytes.
@@ -85,16 +88,21 @@ pub fn estimate(scene: &Scene) -> Estimate {
             let history = bytes(samples * COLUMNS * NUMBER[0].max(NUMBER[1]));
             Estimate { history, total: bytes(JOB).saturating_add(history), ..Estimate::default() }
         }
-        ModelKind::Film => film(&FilmSize {
-            elements: scene.design.elements(),
-            storeys: Some(scene.design.storeys),
-            contact: true,
-            statics: true,
-            motion: true,
-            samples,
-            frames: scene.outputs.frames,
-            tracks: 0,
-        }),
+        ModelKind::Film => {
+            let film = film(&FilmSize {
+                elements: scene.design.elements(),
+                storeys: Some(scene.design.storeys),
+                contact: true,
+                statics: true,
+                motion: true,
+                samples,
+                frames: scene.outputs.frames,
+                tracks: 0,
+            });
+            let gap = FoldDesign { subdivisions: 4, ..scene.design.clone() }.elements();
+            let gap = bytes(JOB + REFERENCE_GAP * gap as f64);
+            Estimate { total: film.total.max(gap), ..film }
+        }
     }
 }
 
@@ -118,7 +126,8 @@ pub fn film(size: &FilmSize) -> Estimate {
         + when(size.motion, checkpoint)
         + size.samples * columns * NUMBER[0]
         + frames * FRAME[0];
-    let after = statics + size.samples * columns * NUMBER[1] + frames * FRAME[1];
+    let still = when(!size.motion, mesh);
+    let after = still + statics + size.samples * columns * NUMBER[1] + frames * FRAME[1];
     Estimate {
         mesh: bytes(mesh),
         contact: bytes(contact),

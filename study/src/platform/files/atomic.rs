@@ -1,7 +1,7 @@
 //! Whole files: written completely or not at all.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::Files;
@@ -23,15 +23,25 @@ pub fn is_temporary(path: &Path) -> bool {
 pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<()> {
     static COUNTER: AtomicU64 = AtomicU64::new(0);
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-    let temporary =
-        path.with_file_name(format!(".{name}.{}-{number}{TEMPORARY}", std::process::id()));
-    let written = files.write_new(&temporary, bytes).and_then(|()| files.rename(&temporary, path));
-    if written.is_err() {
-        // The error of the write is reported, not an error of this removal.
+    let temporary = loop {
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let temporary =
+            path.with_file_name(format!(".{name}.{}-{number}{TEMPORARY}", std::process::id()));
+        match files.write_new(&temporary, bytes) {
+            Ok(()) => break temporary,
+            // A dead process with the same number left it.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => {
+                // The error of the write is reported, not an error of this removal.
+                let _ = files.remove(&temporary);
+                return Err(error);
+            }
+        }
+    };
+    if let Err(error) = files.rename(&temporary, path) {
         let _ = files.remove(&temporary);
+        return Err(error);
     }
-    written?;
     // The parent of a bare name is the empty path, which cannot be opened.
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     files.sync_folder(folder.unwrap_or(Path::new(".")))
@@ -51,15 +61,17 @@ pub fn write_if_changed(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Res
 }
 
 /// Removes the temporary files that killed processes left in a folder. Only for a folder to which no
-/// other process writes.
+/// other process writes. Returns their paths.
 ///
 /// # Errors
 /// The error of the system.
-pub fn remove_temporary_files(files: &dyn Files, folder: &Path) -> io::Result<()> {
-    for path in files.list(folder)?.iter().filter(|path| is_temporary(path)) {
+pub fn remove_temporary_files(files: &dyn Files, folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = files.list(folder)?;
+    paths.retain(|path| is_temporary(path));
+    for path in &paths {
         files.remove(path)?;
     }
-    Ok(())
+    Ok(paths)
 }
 
 #[cfg(test)]

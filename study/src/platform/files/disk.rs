@@ -2,9 +2,10 @@
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-use super::{Append, Files, Lock};
+use super::{Append, Files, Lock, Stamp};
 
 /// The disk of this machine.
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,6 +21,12 @@ impl Files for Disk {
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         fs::read(path)
+    }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        let found = fs::metadata(path)?;
+        let modified = format!("{}.{:09}", found.mtime(), found.mtime_nsec());
+        Ok(Stamp { size: found.len(), modified })
     }
 
     fn list(&self, path: &Path) -> io::Result<Vec<PathBuf>> {
@@ -85,6 +92,10 @@ struct DiskAppend {
 }
 
 impl Append for DiskAppend {
+    fn append_unsynced(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.file.write_all(bytes)
+    }
+
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes)?;
         self.file.sync_data()

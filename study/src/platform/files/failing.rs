@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::{Append, Disk, Files, Lock};
+use super::{Append, Disk, Files, Lock, Stamp};
 
 /// The real disk, whose n-th changing operation (write, rename, sync, append, new folder, lock) and all
 /// later ones fail. A failing write or append leaves the first half of its bytes, as a full disk does.
@@ -49,6 +49,10 @@ impl Files for FailingFiles {
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         Disk.read(path)
+    }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        Disk.stamp(path)
     }
 
     fn list(&self, path: &Path) -> io::Result<Vec<PathBuf>> {
@@ -102,6 +106,10 @@ struct FailingAppend {
 }
 
 impl Append for FailingAppend {
+    fn append_unsynced(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.append(bytes)
+    }
+
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.files.step().inspect_err(|_| {
             let _ = self.real.append(&bytes[..bytes.len() / 2]);

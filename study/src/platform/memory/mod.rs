@@ -42,8 +42,11 @@ pub struct Limit {
 /// Memory of the program beside its jobs: table, history file, libraries, bytes. Measured: 60 MB for a run of one
 /// small job, most of them before the first job.
 const PROGRAM: u64 = 48 << 20;
-/// Address space of the program beside its jobs and threads, bytes. Measured: 170 MB above its start.
-const PROGRAM_ADDRESS_SPACE: u64 = 160 << 20;
+/// Address space of the program beside its jobs and threads, bytes. Measured: a study of small jobs needs 60 MB
+/// above its start, arenas of other threads 66 MB each while there is room for them.
+const PROGRAM_ADDRESS_SPACE: u64 = 96 << 20;
+/// Memory and address space of a command without threads beside its mesh, bytes. Chosen: libraries and buffers.
+const COMMAND: u64 = 24 << 20;
 /// Address space of a thread, bytes: an arena of glibc's malloc (64 MiB) and a stack (2 MiB). Source:
 /// `HEAP_MAX_SIZE` of glibc; the standard library of Rust.
 const THREAD_ADDRESS_SPACE: u64 = 66 << 20;
@@ -63,6 +66,16 @@ impl Limit {
     /// What jobs on this number of threads may use together, bytes.
     pub fn usable(&self, threads: usize) -> u64 {
         self.free.saturating_sub(self.margin(threads))
+    }
+
+    /// What a command that computes on its first thread may use, bytes.
+    pub fn usable_alone(&self) -> u64 {
+        let arena = match self.kind {
+            LimitKind::Machine | LimitKind::ControlGroup => 0,
+            // That of the thread that waits for signals.
+            LimitKind::AddressSpace => THREAD_ADDRESS_SPACE,
+        };
+        self.free.saturating_sub(COMMAND + arena)
     }
 
     /// The largest number of threads up to `threads` that leaves half of the free memory to jobs; at least one.

@@ -78,10 +78,11 @@ fn every_group_up_to_the_root_of_the_mount_counts() {
 #[test]
 fn threads_leave_half_of_a_small_address_space_to_jobs() {
     let limit = |total| Limit { kind: LimitKind::AddressSpace, total, free: total };
-    assert_eq!(limit(700 << 20).threads(16), 2);
+    assert_eq!(limit(700 << 20).threads(16), 3);
     assert_eq!(limit(64 << 30).threads(16), 16);
     assert_eq!(limit(100 << 20).threads(16), 1);
     assert_eq!(limit(100 << 20).usable(1), 0);
+    assert_eq!(limit(100 << 20).usable_alone(), 10 << 20);
 }
 
 #[test]

@@ -71,12 +71,15 @@ pub struct Summary {
 pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let _lock = run.results.lock()?;
     run.results.remove_temporary_files()?;
-    run.results.write_study(run.name, run.study)?;
     let mut journal = run.results.journal()?;
-    for note in core::mem::take(&mut journal.notes) {
-        reporter.event(&Event::Note(note));
+    let study = run.results.write_study(run.name, run.study, &journal)?;
+    for fault in &journal.faults {
+        reporter.event(&Event::Note(fault.to_string()));
     }
+    run.results.mend_journal(&journal)?;
+    journal.faults.clear();
     let mut state = State::new(run, journal);
+    state.record_study(&study)?;
     state.invalidate()?;
     let mut finished = Vec::new();
     let mut last = None;

@@ -33,6 +33,8 @@ const MAX_MESSAGES_PER_WORKER: usize = 4;
 pub(super) struct State<'a> {
     run: &'a Run<'a>,
     writer: Writer<'a>,
+    /// The text of study.json that the journal has.
+    recorded_study: Option<String>,
     /// Old records of jobs that must run again, for comparison.
     old_records: BTreeMap<JobId, Record>,
     /// Records of the journals that are not yet checked against their files.
@@ -52,6 +54,7 @@ impl<'a> State<'a> {
         Self {
             run,
             writer: Writer::new(run.results.files(), run.results.journal_path()),
+            recorded_study: journal.study,
             old_records: journal.invalidated,
             recorded: journal.records,
             records: BTreeMap::new(),
@@ -60,6 +63,16 @@ impl<'a> State<'a> {
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
             table_outdated: true,
         }
+    }
+
+    /// Records the text of study.json, unless the journal has it.
+    pub(super) fn record_study(&mut self, text: &str) -> Result<()> {
+        if self.recorded_study.as_deref() == Some(text) {
+            return Ok(());
+        }
+        self.writer.study(text)?;
+        self.recorded_study = Some(text.to_owned());
+        Ok(())
     }
 
     /// Invalidates the finished ones of the jobs to run again.
@@ -163,13 +176,13 @@ impl<'a> State<'a> {
         let mut records = Vec::with_capacity(ended.len());
         for Ended { index, thread, cells, deployment } in ended {
             let job = &jobs[index];
-            let mut file_hash = None;
+            let (mut file_hash, mut file_stamp) = (None, None);
             if let Some(deployment) = deployment {
                 let path = self.run.results.job_path(&job.id);
                 let hash = cells.text(ColumnId::ContentHash);
                 let bytes = history_file::encode(job, &deployment, hash)
                     .map_err(|problem| Error::Disk { path, problem })?;
-                self.run.results.write_job(&job.id, &bytes)?;
+                file_stamp = Some(self.run.results.write_job(&job.id, &bytes)?);
                 file_hash = Some(history_file::bytes_hash(&bytes));
             }
             let verdict = cells.text(ColumnId::Verdict);
@@ -179,7 +192,7 @@ impl<'a> State<'a> {
                 status: cells.status(),
                 verdict: Some(verdict.to_owned()).filter(|text| !text.is_empty()),
             });
-            records.push(Record { job: job.id.clone(), cells, file_hash });
+            records.push(Record { job: job.id.clone(), cells, file_hash, file_stamp });
         }
         for (id, reference) in self.run.executor.references() {
             self.run.results.write_reference(&id, &reference)?;

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::SystemTime;
 
+use billow_solver::platform::seal;
+
 use super::*;
 use crate::input::value::Value;
 use crate::job::executor::Outcome;
@@ -250,7 +252,7 @@ fn a_missing_or_damaged_history_runs_again_with_a_note() {
     assert_eq!(executed(&executor), 3);
     let notes = log.notes();
     assert_eq!(notes.len(), 3);
-    assert!(notes[0].contains("missing; its job is run again"), "{notes:?}");
+    assert!(notes[0].contains("missing; its job runs again"), "{notes:?}");
     assert!(notes[2].contains("not the file that was written"), "{notes:?}");
     assert_eq!(histories(folder.path()), before);
 }
@@ -267,7 +269,7 @@ fn a_torn_journal_line_loses_only_its_job() {
     let mut log = EventLog(Vec::new());
     run_on(&Disk, folder.path(), 5, 1, &executor, &mut log).unwrap();
     assert_eq!(executed(&executor), 1);
-    assert!(log.notes()[0].contains("line 5 is torn"), "{:?}", log.notes());
+    assert!(log.notes()[0].contains("line 6: torn"), "{:?}", log.notes());
     assert_eq!(table(folder.path()), before);
 }
 
@@ -346,17 +348,42 @@ fn another_study_a_newer_one_and_a_second_command_are_refused() {
     };
     let path = folder.path().join("study.json");
     let valid = fs::read_to_string(&path).unwrap();
-    fs::write(&path, valid.replace("\"test\"", "\"other\"")).unwrap();
+    let object = seal::open(&valid).unwrap();
+    let other = |old: &str, new: &str| fs::write(&path, seal::seal(&object.replace(old, new)));
+    other("\"test\"", "\"other\"").unwrap();
     assert!(refused().contains("holds results of the study \"other\", not of \"test\""));
-    fs::write(&path, valid.replace("\"version\": 1", "\"version\": 2")).unwrap();
+    other("\"version\": 1", "\"version\": 2").unwrap();
     assert!(refused().contains("version 2, this program reads up to 1"));
-    fs::write(&path, "{}").unwrap();
-    assert!(refused().contains("not a study.json of billow"));
     fs::write(&path, valid).unwrap();
     let lock = Results::new(&Disk, folder.path()).lock().unwrap();
     assert!(refused().contains("another billow command is running this study"));
     drop(lock);
     run_quiet(folder.path(), 3, 1, &Scripted::new(ran));
+}
+
+#[test]
+fn a_damaged_study_json_is_written_again_and_kept() {
+    let folder = folder();
+    run_quiet(folder.path(), 3, 1, &Scripted::new(ran));
+    let path = folder.path().join("study.json");
+    let valid = fs::read_to_string(&path).unwrap();
+    let results = Results::new(&Disk, folder.path());
+    let edited = valid.replace("\"test\"", "\"other\"");
+    for (number, damaged) in [&edited, "{}", "", &valid[..20]].into_iter().enumerate() {
+        fs::write(&path, damaged).unwrap();
+        let message = results.owner().unwrap_err().to_string();
+        assert!(message.contains("damaged") && message.contains("doctor --repair"), "{message}");
+        run_quiet(folder.path(), 3, 1, &Scripted::new(ran));
+        assert_eq!(fs::read_to_string(&path).unwrap(), valid);
+        let kept = folder.path().join(format!("damaged/study.json.{number}"));
+        assert_eq!(fs::read_to_string(kept).unwrap(), *damaged);
+    }
+    // A file of another program in a folder without records is not touched.
+    let other = tempfile::tempdir().unwrap();
+    fs::write(other.path().join("study.json"), "{}").unwrap();
+    let executor = Scripted::new(ran);
+    let ended = run_on(&Disk, other.path(), 3, 1, &executor, &mut Silent);
+    assert!(ended.unwrap_err().to_string().contains("not a study.json of billow"));
 }
 
 #[test]

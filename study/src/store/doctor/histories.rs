@@ -1,11 +1,12 @@
 //! Checks the history file of every record.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::{Depth, Health, RUN_AGAIN};
+use crate::job::JobId;
 use crate::job::row::ColumnId;
-use crate::platform::error::Error;
+use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
 use crate::store::history_file;
 use crate::store::journal::{Journal, Record};
@@ -14,42 +15,76 @@ use crate::store::results::Results;
 /// Checks that the history file of every record exists and, at [`Depth::Contents`], is the recorded
 /// one.
 pub(super) fn check(results: &Results<'_>, journal: &Journal, depth: Depth, health: &mut Health) {
-    let mut listed: BTreeMap<PathBuf, BTreeSet<PathBuf>> = BTreeMap::new();
-    for record in journal.records.values() {
-        let Some(hash) = &record.file_hash else { continue };
+    let mut existing = Existing::default();
+    for record in journal.records.values().filter(|record| record.file_hash.is_some()) {
         let path = results.job_path(&record.job);
-        let folder = path.parent().unwrap_or(&path).to_owned();
-        let existing = listed.entry(folder).or_insert_with_key(|folder| {
-            results.files().list(folder).unwrap_or_default().into_iter().collect()
-        });
-        if !existing.contains(&path) {
-            health.fault(&path, "missing", RUN_AGAIN);
+        if !existing.contains(results, &path) {
+            health.fault(&path, MISSING, RUN_AGAIN);
             continue;
         }
         health.histories += 1;
         if depth == Depth::Contents {
-            match results.files().read(&path) {
-                Ok(bytes) => check_contents(&path, record, hash, &bytes, health),
-                Err(error) => health.error(&path, &disk_error(&path, &error)),
+            match problem(results, record) {
+                Ok(None) => {}
+                Ok(Some(problem)) => health.fault(&path, problem, RUN_AGAIN),
+                Err(error) => health.error(&path, &error),
             }
         }
     }
 }
 
-fn check_contents(path: &Path, record: &Record, hash: &str, bytes: &[u8], health: &mut Health) {
-    let read = history_file::read(path);
-    if history_file::bytes_hash(bytes) != hash {
+/// Jobs whose history file is missing or not the recorded one, and what is wrong with it.
+///
+/// # Errors
+/// [`Error::Disk`] when a file exists but cannot be read.
+pub(super) fn damaged(results: &Results<'_>, journal: &Journal) -> Result<Vec<(JobId, String)>> {
+    let mut existing = Existing::default();
+    let mut damaged = Vec::new();
+    for record in journal.records.values().filter(|record| record.file_hash.is_some()) {
+        let found = if existing.contains(results, &results.job_path(&record.job)) {
+            problem(results, record)?
+        } else {
+            Some(MISSING.to_owned())
+        };
+        damaged.extend(found.map(|problem| (record.job.clone(), problem)));
+    }
+    Ok(damaged)
+}
+
+/// The problem of a file that does not exist.
+const MISSING: &str = "missing";
+
+/// The files of the folders of histories, listed once per folder.
+#[derive(Default)]
+struct Existing(BTreeMap<PathBuf, BTreeSet<PathBuf>>);
+
+impl Existing {
+    fn contains(&mut self, results: &Results<'_>, path: &PathBuf) -> bool {
+        let folder = path.parent().unwrap_or(path).to_owned();
+        let listed = self.0.entry(folder).or_insert_with_key(|folder| {
+            results.files().list(folder).unwrap_or_default().into_iter().collect()
+        });
+        listed.contains(path)
+    }
+}
+
+/// What is wrong with the history file of a record; `None` for the file that was written.
+fn problem(results: &Results<'_>, record: &Record) -> Result<Option<String>> {
+    let path = results.job_path(&record.job);
+    let bytes = results.files().read(&path).map_err(|error| disk_error(&path, &error))?;
+    let read = history_file::read(&path);
+    if record.file_hash.as_ref().is_some_and(|hash| history_file::bytes_hash(&bytes) != *hash) {
         let reason = match &read {
             Err(Error::Disk { problem, .. }) => problem.split('\n').next().unwrap_or("").to_owned(),
             Err(other) => other.to_string(),
             Ok(_) => "a valid history, but another one".to_owned(),
         };
-        let problem = format!("not the file that was written ({reason})");
-        return health.fault(path, problem, RUN_AGAIN);
+        return Ok(Some(format!("not the file that was written ({reason})")));
     }
     let stored = match read {
         Ok(stored) => stored,
-        Err(error) => return health.error(path, &error),
+        Err(Error::Disk { problem, .. }) => return Ok(Some(problem)),
+        Err(other) => return Err(other),
     };
     let cells = &record.cells;
     for (what, in_file, in_journal) in [
@@ -58,8 +93,8 @@ fn check_contents(path: &Path, record: &Record, hash: &str, bytes: &[u8], health
         ("content_hash", stored.content_hash.as_str(), cells.text(ColumnId::ContentHash)),
     ] {
         if in_file != in_journal {
-            let problem = format!("its {what} is {in_file:?}, the journal has {in_journal:?}");
-            health.fault(path, problem, RUN_AGAIN);
+            return Ok(Some(format!("its {what} is {in_file:?}, the journal has {in_journal:?}")));
         }
     }
+    Ok(None)
 }

@@ -2,7 +2,7 @@
 //! unchanged, and there are no other files. It changes nothing.
 //!
 //! A *fault* is damage: a result is lost, or cannot be read. A *note* is not: a torn last line, a
-//! temporary file of a killed process, an unknown file. Each finding has a next step.
+//! temporary file of a killed process, an unknown file. Each finding has a next step. [`repair`] does it.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,17 +10,23 @@ use std::path::{Path, PathBuf};
 use crate::job::JobId;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
-use crate::store::journal::{self, Journal};
+use crate::store::journal::Journal;
+use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
 use crate::store::table::Table;
 use crate::study::Study;
 
 mod histories;
+pub mod repair;
 mod unknown_files;
 
 /// What to do about a damaged job.
-const RUN_AGAIN: &str = "run `billow run` of its study: it runs the job again";
+const RUN_AGAIN: &str =
+    "run `billow doctor --repair`, then `billow run` of its study: it runs the job again";
+
+/// What to do about a damaged file that is written again from others.
+const REPAIR: &str = "run `billow run` of its study, or `billow doctor --repair`";
 
 /// How much is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,9 +128,16 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
     }
     histories::check(results, &journal, depth, &mut health);
     unknown_files::check(results, &journal, &paths, &mut health);
-    for path in results.unread_references() {
-        let problem = "a static reference that cannot be read, or of another physics version";
-        health.note(&path, problem, "nothing; a run that needs it computes it again");
+    for (path, problem) in results.references().unread {
+        let next = "nothing; a run that needs it computes it again";
+        match problem {
+            Unread::OtherVersion => {
+                health.note(&path, "a static reference of another version", next)
+            }
+            Unread::Damaged(problem) => {
+                health.fault(&path, format!("damaged static reference: {problem}"), REPAIR);
+            }
+        }
     }
     health.records = journal.records.len();
     if let (Some(study), Some(points)) = (study, points) {
@@ -139,7 +152,10 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
 fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
     let path = results.study_path();
     let root = results.root().display();
-    let next = format!("run `billow run STUDY --results {root}`: it writes the file again");
+    let next = format!(
+        "run `billow doctor --repair {root}`, or `billow run STUDY --results {root}` with the study file: it \
+         writes the file again"
+    );
     match results.owner() {
         Err(error) => health.error(&path, &error),
         Ok(None) => health.fault(&path, "missing: nothing says which study this is", &next),
@@ -158,30 +174,38 @@ fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
 
 fn check_journal(results: &Results<'_>, health: &mut Health) -> Journal {
     let folder = results.journal_path();
-    let (journal, faults) = match journal::examine(results.files(), &folder) {
-        Ok(read) => read,
+    let journal = match results.journal() {
+        Ok(journal) => journal,
         Err(error) => {
             health.error(&folder, &error);
             return Journal::default();
         }
     };
-    for fault in &faults {
-        health.error(&folder, fault);
-    }
-    for note in &journal.notes {
-        // The name of the file stands before the first colon and space of a note.
-        let (path, text) = note.split_once(": ").unwrap_or(("", note));
-        let next = if health.running {
-            "nothing; a running command is writing it"
+    for fault in &journal.faults {
+        let problem = format!("line {}: {}; its job counts as not run", fault.line, fault.problem);
+        if !fault.torn {
+            health.fault(&fault.path, problem, REPAIR);
+        } else if health.running {
+            health.note(&fault.path, problem, "nothing; a running command is writing it");
         } else {
-            "run `billow run` of its study"
-        };
-        health.note(Path::new(path), text, next);
+            health.note(&fault.path, problem, REPAIR);
+        }
     }
     if !journal.invalidated.is_empty() {
         let number = journal.invalidated.len();
         let problem = format!("{number} jobs are invalidated and have not run again yet");
         health.note(&folder, problem, "run `billow run` of its study: it runs them");
+    }
+    if journal.unsealed > 0 {
+        let problem = format!(
+            "{} records have no checksum: they were written by an older version",
+            journal.unsealed
+        );
+        health.note(
+            &folder,
+            problem,
+            "nothing; `billow rerun` of a job writes its record with one",
+        );
     }
     journal
 }

@@ -1,30 +1,46 @@
-//! The lines of a journal: header, ended job, invalidated job.
+//! The lines of a journal: header, ended job, invalidated job, what is known of attempts, study.
 
+use billow_solver::platform::seal;
 use serde::{Deserialize, Serialize};
-use serde_json::Map;
+use serde_json::{Map, json};
 
-use super::Record;
+use super::{Death, Record};
 use crate::input::value::Value;
 use crate::job::row::{CellType, Cells, ColumnId, current_column_name};
 use crate::job::{JobId, Status};
+use crate::platform::files::Stamp;
 use crate::platform::provenance;
 
 /// Name of the format, in the header.
 pub const FORMAT: &str = "billow-journal";
 /// Version of the format that this program writes, and the newest that it reads.
-pub const VERSION: u64 = 3;
+pub const VERSION: u64 = 4;
+/// First version whose lines have checksums.
+const FIRST_SEALED_VERSION: u64 = 4;
 
 /// [`Line::kind`] of a job to run again. The line of an ended job has no kind.
 const INVALIDATED: &str = "invalidated";
 /// The same in version 2.
 const OLD_INVALIDATED: &str = "withdrawn";
+/// The process died while a job ran.
+const DIED: &str = "died";
+/// A job stored a checkpoint: its earlier deaths do not count.
+const PROGRESSED: &str = "progressed";
+/// The text of study.json.
+const STUDY: &str = "study";
 
 /// One line after the header.
 pub enum Entry {
     /// A job ended.
-    Ended(Record),
+    Ended(Box<Record>),
     /// A job must run again.
     Invalidated(JobId),
+    /// The process died while a job ran.
+    Died(Death),
+    /// A job stored a checkpoint.
+    Progressed(JobId),
+    /// The study of the folder: the text of study.json.
+    Study(String),
 }
 
 /// Why a header is refused.
@@ -48,18 +64,34 @@ struct Header {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     kind: Option<String>,
+    #[serde(default)]
     job: String,
     #[serde(default)]
     file_hash: Option<String>,
     #[serde(default)]
+    file_size: Option<u64>,
+    #[serde(default)]
+    file_time: Option<String>,
+    #[serde(default)]
     cells: Map<String, serde_json::Value>,
+    #[serde(default)]
+    process: String,
+    #[serde(default)]
+    alone: bool,
+    #[serde(default)]
+    text: String,
+}
+
+/// A value as the text of a line, sealed.
+fn line_text(line: &impl Serialize) -> serde_json::Result<String> {
+    Ok(seal::seal(&serde_json::to_string(line)?))
 }
 
 /// Text of the header of a new journal.
 pub fn header_text() -> serde_json::Result<String> {
-    serde_json::to_string(&Header {
+    line_text(&Header {
         format: FORMAT.to_owned(),
         version: VERSION,
         program_version: provenance::PROGRAM_VERSION.to_owned(),
@@ -67,9 +99,30 @@ pub fn header_text() -> serde_json::Result<String> {
     })
 }
 
-/// Checks the header line.
-pub fn parse_header(line: &[u8]) -> Result<(), HeaderError> {
-    let header: Header = serde_json::from_slice(line)
+/// Text of the header of a journal whose lines have no checksums.
+pub fn unsealed_header_text() -> serde_json::Result<String> {
+    serde_json::to_string(&json!({ "format": FORMAT, "version": FIRST_SEALED_VERSION - 1 }))
+}
+
+/// Whether a line has a checksum, valid or not.
+pub fn is_sealed(line: &[u8]) -> bool {
+    line.starts_with(b"{\"checksum\"")
+}
+
+/// The object of a line, without its checksum if it has one.
+fn object(line: &[u8], must_be_sealed: bool) -> Result<String, String> {
+    let text = std::str::from_utf8(line).map_err(|_| "not UTF-8 text".to_owned())?;
+    let text = text.strip_suffix('\n').unwrap_or(text);
+    if !must_be_sealed && !is_sealed(line) {
+        return Ok(text.to_owned());
+    }
+    seal::open(text).map_err(|error| error.to_string())
+}
+
+/// Checks the header line. Returns whether the lines after it must have checksums.
+pub fn parse_header(line: &[u8]) -> Result<bool, HeaderError> {
+    let object = object(line, false).map_err(HeaderError::Invalid)?;
+    let header: Header = serde_json::from_str(&object)
         .map_err(|_| HeaderError::Invalid("not the header of a billow journal".to_owned()))?;
     if header.format != FORMAT {
         let problem = format!("format {:?} is not {FORMAT:?}", header.format);
@@ -82,46 +135,83 @@ pub fn parse_header(line: &[u8]) -> Result<(), HeaderError> {
             header.version, header.program_version
         )));
     }
-    Ok(())
+    let sealed = header.version >= FIRST_SEALED_VERSION;
+    if sealed && !is_sealed(line) {
+        return Err(HeaderError::Invalid(seal::SealError::Missing.to_string()));
+    }
+    Ok(sealed)
 }
 
 /// Text of the line of an ended job.
 pub fn ended_text(record: &Record) -> serde_json::Result<String> {
-    let cells = record
-        .cells
-        .iter()
-        .filter(|(_, value)| **value != Value::Null)
-        .map(|(column, value)| (column.name.to_owned(), to_json(value)))
-        .collect();
-    let job = record.job.as_str().to_owned();
-    serde_json::to_string(&Line { kind: None, job, file_hash: record.file_hash.clone(), cells })
+    let present = record.cells.iter().filter(|(_, value)| **value != Value::Null);
+    let cells: Map<String, serde_json::Value> =
+        present.map(|(column, value)| (column.name.to_owned(), to_json(value))).collect();
+    let mut line = json!({ "job": record.job.as_str(), "cells": cells });
+    if let Some(hash) = &record.file_hash {
+        line["file_hash"] = hash.as_str().into();
+    }
+    if let Some(Stamp { size, modified }) = &record.file_stamp {
+        line["file_size"] = (*size).into();
+        line["file_time"] = modified.as_str().into();
+    }
+    line_text(&line)
 }
 
 /// Text of the line of an invalidated job: it has no file hash and no cells.
 pub fn invalidated_text(job: &JobId) -> serde_json::Result<String> {
-    serde_json::to_string(&serde_json::json!({ "kind": INVALIDATED, "job": job.as_str() }))
+    line_text(&json!({ "kind": INVALIDATED, "job": job.as_str() }))
+}
+
+/// Text of the line of a job that stored a checkpoint.
+pub fn progressed_text(job: &JobId) -> serde_json::Result<String> {
+    line_text(&json!({ "kind": PROGRESSED, "job": job.as_str() }))
+}
+
+/// Text of the line of a job whose process died.
+pub fn died_text(death: &Death) -> serde_json::Result<String> {
+    let Death { job, process, alone } = death;
+    line_text(&json!({ "kind": DIED, "job": job.as_str(), "process": process, "alone": alone }))
+}
+
+/// Text of the line with the text of study.json.
+pub fn study_text(text: &str) -> serde_json::Result<String> {
+    line_text(&json!({ "kind": STUDY, "text": text }))
 }
 
 /// Reads a line after the header.
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn parse(line: &[u8]) -> Result<Entry, String> {
-    let line = std::str::from_utf8(line).map_err(|_| "not UTF-8 text".to_owned())?;
-    let line: Line = serde_json::from_str(line.trim_end_matches('\n')).map_err(|error| {
+pub fn parse(line: &[u8], must_be_sealed: bool) -> Result<Entry, String> {
+    let line: Line = serde_json::from_str(&object(line, must_be_sealed)?).map_err(|error| {
         // The line number of serde is always 1 here: it would look like the line of the file.
         let error = error.to_string();
         format!("not a journal record: {}", error.split(" at line ").next().unwrap_or_default())
     })?;
-    let job = JobId::from_digits(&line.job)
-        .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))?;
+    let job = || {
+        JobId::from_digits(&line.job)
+            .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))
+    };
     match line.kind.as_deref() {
         None => {}
-        Some(INVALIDATED | OLD_INVALIDATED) => return Ok(Entry::Invalidated(job)),
+        Some(INVALIDATED | OLD_INVALIDATED) => return Ok(Entry::Invalidated(job()?)),
+        Some(PROGRESSED) => return Ok(Entry::Progressed(job()?)),
+        Some(DIED) => {
+            let death = Death { job: job()?, process: line.process, alone: line.alone };
+            return Ok(Entry::Died(death));
+        }
+        Some(STUDY) => return Ok(Entry::Study(line.text)),
         Some(other) => return Err(format!("not a journal record: unknown kind {other:?}")),
     }
     let cells = parse_cells(&line.cells)?;
-    Ok(Entry::Ended(Record { job, cells, file_hash: line.file_hash }))
+    let stamp = |(size, modified)| Stamp { size, modified };
+    Ok(Entry::Ended(Box::new(Record {
+        job: job()?,
+        cells,
+        file_hash: line.file_hash,
+        file_stamp: line.file_size.zip(line.file_time).map(stamp),
+    })))
 }
 
 /// Reads the cells of an ended job. Old names of columns and of the status are read.

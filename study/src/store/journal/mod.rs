@@ -6,26 +6,33 @@
 //! When a job has several lines, the last line of the last file counts.
 //!
 //! ```text
-//! {"format":"billow-journal","version":3,…}
-//! {"job":"<id>","file_hash":"<SHA-256 of its history file>","cells":{…}}   a job that ended
-//! {"kind":"invalidated","job":"<id>"}                                      a job to run again
+//! {"checksum":"…","format":"billow-journal","version":4,…}
+//! {"checksum":"…","job":"<id>","cells":{…},                       a job that ended
+//!     "file_hash":"<SHA-256 of its history file>","file_size":…,"file_time":"…"}
+//! {"checksum":"…","kind":"invalidated","job":"<id>"}              a job to run again
+//! {"checksum":"…","kind":"died","job":"<id>",…}                   its process died while it ran
+//! {"checksum":"…","kind":"progressed","job":"<id>"}               it stored a checkpoint
+//! {"checksum":"…","kind":"study","text":"…"}                      study.json, to restore it
 //! ```
 //!
-//! Older versions are read: version 2 says `withdrawn` for `invalidated` and has old names of columns
-//! and statuses; version 1 has no `kind`.
+//! `checksum` is that of [`billow_solver::platform::seal`]. A line that is not valid costs its own record
+//! only. Older versions are read: version 3 has no checksums, version 2 says `withdrawn` for `invalidated`
+//! and has old names of columns and statuses, version 1 has no `kind`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::job::JobId;
 use crate::job::point::Point;
 use crate::job::row::Cells;
 use crate::platform::error::{Error, Result};
-use crate::platform::files::{Files, disk_error};
+use crate::platform::files::{Files, Stamp, disk_error};
 
 mod line;
+mod mend;
 mod writer;
 
+pub use mend::mend;
 pub use writer::Writer;
 
 use line::Entry;
@@ -39,6 +46,40 @@ pub struct Record {
     pub cells: Cells,
     /// SHA-256 of the bytes of its history file; `None` for a job without one.
     pub file_hash: Option<String>,
+    /// Size and time of that file when it was written; `None` in older journals.
+    pub file_stamp: Option<Stamp>,
+}
+
+/// The death of a process while a job ran.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Death {
+    /// Id of the job.
+    pub job: JobId,
+    /// Name of the process, unique in the folder.
+    pub process: String,
+    /// Whether no other job ran.
+    pub alone: bool,
+}
+
+/// A line that is not valid.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// File.
+    pub path: PathBuf,
+    /// Number of the line, from 1.
+    pub line: usize,
+    /// What is wrong with it.
+    pub problem: String,
+    /// Whether the line is the last one, and incomplete: the program was stopped while it wrote it. Its
+    /// record did not count as written.
+    pub torn: bool,
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { path, line, problem, .. } = self;
+        write!(f, "{}: line {line}: {problem}; its job counts as not run", path.display())
+    }
 }
 
 /// The row of a point; `None` while its job has not ended.
@@ -56,8 +97,14 @@ pub struct Journal {
     pub records: BTreeMap<JobId, Record>,
     /// Last record of every job that was invalidated and has not ended again.
     pub invalidated: BTreeMap<JobId, Record>,
-    /// Torn lines, as notes for the user.
-    pub notes: Vec<String>,
+    /// Deaths of processes while a job ran that has not ended, progressed or been invalidated since.
+    pub deaths: BTreeMap<JobId, Vec<Death>>,
+    /// The text of study.json at the start of the last run.
+    pub study: Option<String>,
+    /// Number of the records without checksum, from journals of older versions.
+    pub unsealed: usize,
+    /// Lines that are not valid, in the order of the files.
+    pub faults: Vec<Fault>,
 }
 
 impl Journal {
@@ -65,45 +112,70 @@ impl Journal {
         match entry {
             Entry::Ended(record) => {
                 self.invalidated.remove(&record.job);
-                self.records.insert(record.job.clone(), record);
+                self.deaths.remove(&record.job);
+                self.records.insert(record.job.clone(), *record);
             }
             Entry::Invalidated(job) => self.invalidate(&job),
+            Entry::Died(death) => self.add_death(death),
+            Entry::Progressed(job) => {
+                self.deaths.remove(&job);
+            }
+            Entry::Study(text) => self.study = Some(text),
         }
+    }
+
+    /// Whether there is no line at all.
+    pub fn is_empty(&self) -> bool {
+        let Self { records, invalidated, deaths, study, faults, unsealed: _ } = self;
+        records.is_empty()
+            && invalidated.is_empty()
+            && deaths.is_empty()
+            && study.is_none()
+            && faults.is_empty()
     }
 
     /// Counts a job as not ended. Its record is kept in [`Self::invalidated`], for comparison.
     pub fn invalidate(&mut self, job: &JobId) {
+        self.deaths.remove(job);
         if let Some(record) = self.records.remove(job) {
             self.invalidated.insert(job.clone(), record);
         }
     }
-}
 
-/// Reads every journal in a folder. A missing folder is an empty journal.
-///
-/// # Errors
-/// [`Error::Disk`] with file and line for a line that is not valid, or a journal of a newer version.
-pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
-    let (journal, faults) = examine(files, folder)?;
-    faults.into_iter().next().map_or(Ok(journal), Err)
-}
-
-/// Reads all that can be read of every journal in a folder. Lines that are not valid are skipped and
-/// returned as errors.
-///
-/// # Errors
-/// [`Error::Disk`] when the folder cannot be listed.
-pub fn examine(files: &dyn Files, folder: &Path) -> Result<(Journal, Vec<Error>)> {
-    let mut journal = Journal::default();
-    let mut faults = Vec::new();
-    let paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
-    for path in paths.iter().filter(|path| is_journal(path)) {
-        match files.read(path) {
-            Ok(bytes) => read_file(path, &bytes, &mut journal, &mut faults),
-            Err(error) => faults.push(disk_error(path, &error)),
+    /// Adds a death. The same process counts once.
+    pub(super) fn add_death(&mut self, death: Death) {
+        let deaths = self.deaths.entry(death.job.clone()).or_default();
+        if deaths.iter().all(|known| known.process != death.process) {
+            deaths.push(death);
         }
     }
-    Ok((journal, faults))
+}
+
+/// Reads every journal in a folder. A missing folder is an empty journal. Lines that are not valid are
+/// skipped; they are in [`Journal::faults`].
+///
+/// # Errors
+/// [`Error::Disk`] when the folder or a journal cannot be read, and for a journal of a newer version.
+pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
+    let mut journal = Journal::default();
+    let paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
+    for path in paths.iter().filter(|path| is_journal(path)) {
+        let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
+        let lines = scan(path, &bytes)?;
+        let sealed = lines.iter().filter(|line| line::is_sealed(line.bytes)).count();
+        for line in lines {
+            match line.entry {
+                Ok(Some(entry)) => {
+                    let is_record = matches!(entry, Entry::Ended(_));
+                    journal.unsealed += usize::from(is_record && sealed == 0);
+                    journal.take(entry);
+                }
+                Ok(None) => {}
+                Err(fault) => journal.faults.push(fault),
+            }
+        }
+    }
+    Ok(journal)
 }
 
 /// Whether a file has the name of a journal.
@@ -111,38 +183,52 @@ pub fn is_journal(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "jsonl")
 }
 
-fn read_file(path: &Path, bytes: &[u8], journal: &mut Journal, faults: &mut Vec<Error>) {
-    let invalid = |number: usize, problem: &str| Error::Disk {
+/// One line of a journal.
+struct ScannedLine<'a> {
+    /// Its bytes, with the end of the line.
+    bytes: &'a [u8],
+    /// What it says; `None` for the header.
+    entry: std::result::Result<Option<Entry>, Fault>,
+}
+
+/// The lines of a journal.
+fn scan<'a>(path: &Path, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
+    let fault = |line: usize, problem: String, torn: bool| Fault {
         path: path.to_owned(),
-        problem: format!(
-            "line {number}: {problem}\n  next: restore the file from a copy, or move it away; the \
-             jobs that it records then run again"
-        ),
+        line,
+        problem,
+        torn,
     };
     let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+    let mut lines = Vec::new();
+    let mut must_be_sealed = false;
+    for (number, bytes) in (1..).zip(bytes[..complete].split_inclusive(|byte| *byte == b'\n')) {
+        let entry = if number == 1 {
+            match line::parse_header(bytes) {
+                Ok(sealed) => {
+                    must_be_sealed = sealed;
+                    Ok(None)
+                }
+                Err(line::HeaderError::Newer(problem)) => {
+                    return Err(Error::Disk { path: path.to_owned(), problem });
+                }
+                Err(line::HeaderError::Invalid(problem)) => Err(fault(number, problem, false)),
+            }
+        } else {
+            // Where the header is damaged, the first checksum tells the version.
+            must_be_sealed |= line::is_sealed(bytes);
+            line::parse(bytes, must_be_sealed)
+                .map(Some)
+                .map_err(|problem| fault(number, problem, false))
+        };
+        lines.push(ScannedLine { bytes, entry });
+    }
     if complete < bytes.len() {
-        let number = bytes[..complete].split(|byte| *byte == b'\n').count();
-        journal.notes.push(format!(
-            "{}: line {number} is torn (the program was stopped while it wrote the line); the job of \
-             this line runs again",
-            path.display()
-        ));
+        let problem = "torn (the program was stopped while it wrote the line)".to_owned();
+        let entry = Err(fault(lines.len() + 1, problem, true));
+        lines.push(ScannedLine { bytes: &bytes[complete..], entry });
     }
-    let mut lines = bytes[..complete].split_inclusive(|byte| *byte == b'\n');
-    let Some(header) = lines.next() else { return };
-    match line::parse_header(header) {
-        Ok(()) => {}
-        Err(line::HeaderError::Invalid(problem)) => return faults.push(invalid(1, &problem)),
-        Err(line::HeaderError::Newer(problem)) => {
-            return faults.push(Error::Disk { path: path.to_owned(), problem });
-        }
-    }
-    for (number, text) in (2..).zip(lines) {
-        match line::parse(text) {
-            Ok(entry) => journal.take(entry),
-            Err(problem) => faults.push(invalid(number, &problem)),
-        }
-    }
+    Ok(lines)
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@
 
 use std::io;
 
+use billow_solver::platform::seal;
+
 use super::line::FORMAT;
 use super::*;
 use crate::input::value::Value;
@@ -19,15 +21,23 @@ fn record(number: u32, value: f64) -> Record {
     cells.set(ColumnId::NearThreshold, true);
     cells.set(ColumnId::Reason, "line\nbreak \"quoted\"");
     let job = JobId::from_digits(&format!("{number:032x}")).unwrap();
-    Record { job, cells, file_hash: Some("00".to_owned()) }
+    Record { job, cells, file_hash: Some("00".to_owned()), file_stamp: None }
 }
 
 fn read_back(folder: &Path) -> Journal {
     read(&Disk, folder).unwrap()
 }
 
-fn problem(folder: &Path) -> String {
-    read(&Disk, folder).unwrap_err().to_string()
+fn faults(folder: &Path) -> Vec<String> {
+    read_back(folder).faults.iter().map(ToString::to_string).collect()
+}
+
+/// The lines of a journal with two records, each with its end.
+fn lines_of_two(folder: &Path) -> (PathBuf, Vec<String>) {
+    Writer::new(&Disk, folder.to_owned()).append(&[record(1, 1.0), record(2, 2.0)]).unwrap();
+    let path = Disk.list(folder).unwrap().remove(0);
+    let text = String::from_utf8(Disk.read(&path).unwrap()).unwrap();
+    (path, text.split_inclusive('\n').map(str::to_owned).collect())
 }
 
 #[test]
@@ -73,35 +83,109 @@ fn a_torn_line_loses_only_itself_and_gives_a_note() {
         let kept = ends.iter().filter(|end| **end <= length).count().saturating_sub(1);
         assert_eq!(journal.records.len(), kept, "cut at {length}");
         let torn = length > 0 && !ends.contains(&length);
-        assert_eq!(journal.notes.len(), usize::from(torn), "cut at {length}");
+        assert_eq!(journal.faults.len(), usize::from(torn), "cut at {length}");
+        assert!(journal.faults.iter().all(|fault| fault.torn), "cut at {length}");
     }
 }
 
 #[test]
-fn an_invalid_journal_is_refused_with_file_and_line() {
+fn a_line_that_is_not_valid_costs_its_own_record_only() {
     let folder = tempfile::tempdir().unwrap();
-    Writer::new(&Disk, folder.path().to_owned()).append(&[record(1, 1.0)]).unwrap();
-    let path = Disk.list(folder.path()).unwrap().remove(0);
-    let valid = String::from_utf8(Disk.read(&path).unwrap()).unwrap();
-    let broken = |text: String, expected: &str| {
+    let (path, lines) = lines_of_two(folder.path());
+    let [header, first, second] = &lines[..] else { panic!("{lines:?}") };
+    let broken = |text: String, expected: &str, kept: usize| {
         std::fs::write(&path, text).unwrap();
-        let problem = problem(folder.path());
-        assert!(problem.contains(expected), "{problem}");
-        assert!(problem.contains("000001.jsonl"), "{problem}");
+        let found = faults(folder.path());
+        assert!(found.len() == 1 && found[0].contains(expected), "{expected}: {found:?}");
+        assert!(found[0].contains("000001.jsonl: line "), "{found:?}");
+        assert_eq!(read_back(folder.path()).records.len(), kept, "{expected}");
     };
-    broken(valid.replacen("\"version\":3", "\"version\":4", 1), "version 4, this program reads");
-    broken(valid.replacen(FORMAT, "other", 1), "line 1: format \"other\"");
-    broken(format!("hello\n{valid}"), "line 1: not the header");
-    broken(format!("{valid}hello\n"), "line 3: not a journal record");
-    broken(valid.replacen("00000001", "0000000g", 1), "line 2: \"0000000000000000000000000000000g");
-    broken(valid.replacen("final_volume", "final_colour", 1), "unknown column \"final_colour\"");
-    broken(
-        valid.replacen("\"status\":\"done\"", "\"status\":\"ready\"", 1),
-        "unknown status \"ready\"",
-    );
-    broken(valid.replacen("\"steps\":7", "\"steps\":\"x\"", 1), "\"steps\" cannot hold \"x\"");
-    std::fs::write(&path, [valid.as_bytes(), b"\xff\n"].concat()).unwrap();
-    assert!(problem(folder.path()).contains("line 3: not UTF-8"));
+    let changed = "does not have the contents of its checksum";
+    let edited = first.replacen("\"final_volume\":1.0", "\"final_volume\":9.0", 1);
+    assert_ne!(&edited, first);
+    broken(format!("{header}{edited}{second}"), changed, 1);
+    broken(format!("{header}{first}hello\n{second}"), "line 3: it has no checksum", 2);
+    broken(format!("{}{first}{second}", header.replacen(FORMAT, "other", 1)), changed, 2);
+    broken(format!("hello\n{first}{second}"), "line 1: not the header", 2);
+    broken(format!("{first}{second}"), "line 1: not the header", 1);
+    let record = "{\"job\":\"00000000000000000000000000000007\",\"cells\":{\"status\":\"done\"}}\n";
+    broken(format!("{header}{first}{record}{second}"), "line 3: it has no checksum", 2);
+    std::fs::write(&path, [header.as_bytes(), b"\xff\n", second.as_bytes()].concat()).unwrap();
+    assert!(faults(folder.path())[0].contains("line 2: not UTF-8"));
+}
+
+#[test]
+fn every_flipped_bit_of_a_journal_is_found_or_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, _) = lines_of_two(folder.path());
+    let bytes = Disk.read(&path).unwrap();
+    let whole = read_back(folder.path()).records;
+    for index in 0..bytes.len() {
+        let mut changed = bytes.clone();
+        changed[index] ^= 1 << (index % 8);
+        std::fs::write(&path, &changed).unwrap();
+        let journal = read_back(folder.path());
+        assert!(!journal.faults.is_empty(), "byte {index}");
+        assert!(journal.records.iter().all(|(id, record)| whole[id] == *record), "byte {index}");
+        assert!(journal.records.len() + 2 >= whole.len(), "byte {index}");
+    }
+}
+
+#[test]
+fn a_mended_journal_has_its_valid_lines_and_the_damaged_file_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let (journal, kept) = (folder.path().join("journal"), folder.path().join("damaged"));
+    let (path, lines) = lines_of_two(&journal);
+    let damaged = format!("{}{}{}", lines[0].replacen('4', "5", 1), &lines[1][1..], lines[2]);
+    for (text, copies) in [(damaged.clone(), 1), (lines.concat() + "{\"che", 1), (damaged, 2)] {
+        std::fs::write(&path, &text).unwrap();
+        let found = read_back(&journal);
+        let records = found.records.len();
+        assert_eq!(mend(&Disk, &found.faults, &kept).unwrap(), [path.clone()]);
+        let mended = read_back(&journal);
+        assert!(mended.faults.is_empty(), "{:?}", mended.faults);
+        assert_eq!(mended.records.len(), records);
+        assert_eq!(Disk.list(&kept).unwrap().len(), copies);
+    }
+    // A journal without checksums keeps its records.
+    let old = "{\"job\":\"00000000000000000000000000000007\",\"cells\":{\"status\":\"done\"}}\n";
+    std::fs::write(&path, format!("hello\n{old}")).unwrap();
+    mend(&Disk, &read_back(&journal).faults, &kept).unwrap();
+    let mended = read_back(&journal);
+    assert!(mended.faults.is_empty() && mended.records.len() == 1, "{:?}", mended.faults);
+}
+
+#[test]
+fn old_journals_are_checked_for_their_meaning() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("000001.jsonl");
+    let header = "{\"format\":\"billow-journal\",\"version\":3}\n";
+    let line = "{\"job\":\"00000000000000000000000000000001\",\"cells\":{\"status\":\"done\",\
+                \"final_volume\":1.0,\"steps\":7}}\n";
+    let broken = |old: &str, new: &str, expected: &str| {
+        std::fs::write(&path, format!("{header}{}", line.replacen(old, new, 1))).unwrap();
+        let found = faults(folder.path());
+        assert!(found.len() == 1 && found[0].contains(expected), "{expected}: {found:?}");
+    };
+    broken("{\"job\"", "hello{\"job\"", "line 2: not a journal record");
+    broken("00000001", "0000000g", "line 2: \"0000000000000000000000000000000g");
+    broken("final_volume", "final_colour", "unknown column \"final_colour\"");
+    broken("done", "ready", "unknown status \"ready\"");
+    broken("\"steps\":7", "\"steps\":\"x\"", "\"steps\" cannot hold \"x\"");
+    let kind = "{\"kind\":\"forgotten\",\"job\"";
+    broken("{\"job\"", kind, "not a journal record: unknown kind \"forgotten\"");
+    std::fs::write(&path, format!("{header}{line}")).unwrap();
+    assert_eq!(read_back(folder.path()).unsealed, 1);
+}
+
+#[test]
+fn a_newer_journal_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("000001.jsonl");
+    let header = seal::seal("{\"format\":\"billow-journal\",\"version\":5}");
+    std::fs::write(&path, header + "\n").unwrap();
+    let problem = read(&Disk, folder.path()).unwrap_err().to_string();
+    assert!(problem.contains("version 5, this program reads up to 4"), "{problem}");
 }
 
 #[test]
@@ -168,24 +252,4 @@ fn version_2_is_read_with_its_old_names() {
     assert_eq!(drifting.text(ColumnId::StopLocation), "gas");
     let invalidated = &journal.invalidated[&record(6, 0.0).job].cells;
     assert_eq!(*invalidated.get(ColumnId::NearThreshold), Value::Bool(true));
-}
-
-#[test]
-fn valid_lines_are_read_between_invalid_ones() {
-    let folder = tempfile::tempdir().unwrap();
-    Writer::new(&Disk, folder.path().to_owned()).append(&[record(1, 1.0), record(2, 2.0)]).unwrap();
-    let path = Disk.list(folder.path()).unwrap().remove(0);
-    let text = String::from_utf8(Disk.read(&path).unwrap()).unwrap();
-    let mut lines: Vec<&str> = text.lines().collect();
-    lines.insert(2, "hello");
-    lines.push("{\"kind\":\"forgotten\",\"job\":\"00000000000000000000000000000001\"}");
-    std::fs::write(&path, lines.join("\n") + "\n").unwrap();
-    std::fs::write(folder.path().join("000002.jsonl"), "{}\n").unwrap();
-    let (journal, faults) = examine(&Disk, folder.path()).unwrap();
-    assert_eq!(journal.records.len(), 2);
-    let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
-    assert_eq!(faults.len(), 3, "{faults:?}");
-    assert!(faults[0].contains("000001.jsonl: line 3: not a journal record"), "{faults:?}");
-    assert!(faults[1].contains("line 5: not a journal record: unknown kind \"forgotten\""));
-    assert!(faults[2].contains("000002.jsonl: line 1: not the header"), "{faults:?}");
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{Record, line};
+use super::{Death, Record, line};
 use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::platform::files::{Append, Files, disk_error};
@@ -36,6 +36,30 @@ impl<'a> Writer<'a> {
     /// As [`Self::append`].
     pub fn invalidate(&mut self, jobs: &[JobId]) -> Result<()> {
         self.write(jobs.iter().map(line::invalidated_text))
+    }
+
+    /// Records that these jobs stored a checkpoint, and syncs once.
+    ///
+    /// # Errors
+    /// As [`Self::append`].
+    pub fn progress(&mut self, jobs: &[JobId]) -> Result<()> {
+        self.write(jobs.iter().map(line::progressed_text))
+    }
+
+    /// Records that a process died while these jobs ran, and syncs once.
+    ///
+    /// # Errors
+    /// As [`Self::append`].
+    pub fn deaths(&mut self, deaths: &[Death]) -> Result<()> {
+        self.write(deaths.iter().map(line::died_text))
+    }
+
+    /// Records the text of study.json, and syncs.
+    ///
+    /// # Errors
+    /// As [`Self::append`].
+    pub fn study(&mut self, text: &str) -> Result<()> {
+        self.write(std::iter::once(line::study_text(text)))
     }
 
     fn write(&mut self, lines: impl Iterator<Item = serde_json::Result<String>>) -> Result<()> {

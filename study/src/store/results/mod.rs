@@ -7,6 +7,8 @@
 //!                 references/*.json static references of the designs (crate::job::references)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
+//!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
+//!                 damaged/          files that were damaged, as they were found (crate::store::damaged)
 //!                 lock              held while a command changes the folder
 //! ```
 //!
@@ -20,7 +22,8 @@ use std::time::Duration;
 
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
-use crate::platform::files::{self, Files, Lock, disk_error};
+use crate::platform::files::{self, Files, Lock, Stamp, disk_error};
+use crate::store::attempts;
 use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::table::{Table, parquet};
@@ -28,13 +31,34 @@ use crate::store::table::{Table, parquet};
 mod study_json;
 
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 7] =
-    ["study.json", "journal", "jobs", "references", "summary.parquet", "charts", "lock"];
+pub const RESULT_NAMES: [&str; 9] = [
+    "study.json",
+    "journal",
+    "jobs",
+    "references",
+    "summary.parquet",
+    "charts",
+    attempts::NAME,
+    "damaged",
+    "lock",
+];
+/// What is wrong with a history file of other bytes.
+const OTHER_FILE: &str = "not the file that was written; its job runs again";
+/// What is wrong with a history file that does not exist.
+const MISSING_FILE: &str = "missing; its job runs again";
 /// Attempts to take the lock before it counts as held. Chosen: a command that only checks the lock
 /// holds it for much less than the sum of the pauses.
 const MAX_LOCK_ATTEMPTS: u32 = 5;
 /// Pause between two attempts.
 const LOCK_PAUSE: Duration = Duration::from_millis(10);
+
+/// A problem of a history file, with its next step.
+fn next_run(problem: &str) -> String {
+    format!(
+        "{problem}\n  next: run `billow run` of its study: it runs the job again; while a run is active, \
+         try again"
+    )
+}
 
 /// A results folder on a disk.
 #[derive(Clone)]
@@ -92,6 +116,16 @@ impl<'a> Results<'a> {
     /// Path of the summary table.
     pub fn table_path(&self) -> PathBuf {
         self.root.join("summary.parquet")
+    }
+
+    /// Path of the attempts of a running process.
+    pub fn attempts_path(&self) -> PathBuf {
+        self.root.join(attempts::NAME)
+    }
+
+    /// Path of the folder of damaged files.
+    pub fn damaged_path(&self) -> PathBuf {
+        self.root.join("damaged")
     }
 
     fn lock_path(&self) -> PathBuf {
@@ -160,22 +194,27 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// Removes temporary files of killed processes. Only for the process that holds the lock.
+    /// Removes temporary files of killed processes and returns their paths. Only for the process that holds
+    /// the lock.
     ///
     /// # Errors
     /// [`Error::Disk`].
-    pub fn remove_temporary_files(&self) -> Result<()> {
+    pub fn remove_temporary_files(&self) -> Result<Vec<PathBuf>> {
         let jobs = self.jobs_path();
         let mut folders = self.files.list(&jobs).map_err(|error| disk_error(&jobs, &error))?;
         // The folders of histories have names of two digits.
         folders
             .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
-        folders.extend([self.references_path(), self.root.clone()]);
+        let others = [self.journal_path(), self.references_path(), self.charts_path()];
+        folders.extend(others);
+        folders.push(self.root.clone());
+        let mut removed = Vec::new();
         for folder in folders {
-            files::remove_temporary_files(self.files, &folder)
+            let paths = files::remove_temporary_files(self.files, &folder)
                 .map_err(|error| disk_error(&folder, &error))?;
+            removed.extend(paths);
         }
-        Ok(())
+        Ok(removed)
     }
 
     /// Reads the journals.
@@ -186,56 +225,89 @@ impl<'a> Results<'a> {
         journal::read(self.files, &self.journal_path())
     }
 
+    /// Removes the lines of the journals that are not valid: [`journal::mend`].
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn mend_journal(&self, journal: &Journal) -> Result<Vec<PathBuf>> {
+        journal::mend(self.files, &journal.faults, &self.damaged_path())
+    }
+
     /// Why a recorded job must run again: its history file is missing, or is not the recorded one.
-    /// `None` for an undamaged file.
+    /// `None` for an undamaged file. A file with the recorded size and time counts as undamaged; its bytes
+    /// are checked by who reads it.
     ///
     /// # Errors
     /// [`Error::Disk`] when the file exists but cannot be read.
     pub fn damage(&self, record: &Record) -> Result<Option<String>> {
         let Some(hash) = &record.file_hash else { return Ok(None) };
         let path = self.job_path(&record.job);
-        match self.files.read(&path) {
-            Ok(bytes) if history_file::bytes_hash(&bytes) == *hash => Ok(None),
-            Ok(_) => Ok(Some(format!(
-                "{}: not the file that was written; its job is run again",
-                path.display()
-            ))),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                Ok(Some(format!("{}: missing; its job is run again", path.display())))
+        let again = |problem: &str| Some(format!("{}: {problem}", path.display()));
+        let found = self.files.stamp(&path);
+        match (&found, &record.file_stamp) {
+            (Ok(found), Some(recorded)) if found == recorded => return Ok(None),
+            (Ok(found), Some(recorded)) if found.size != recorded.size => {
+                return Ok(again(OTHER_FILE));
             }
+            _ => {}
+        }
+        match found.and_then(|_| self.files.read(&path)) {
+            Ok(bytes) if history_file::bytes_hash(&bytes) == *hash => Ok(None),
+            Ok(_) => Ok(again(OTHER_FILE)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(again(MISSING_FILE)),
             Err(error) => Err(disk_error(&path, &error)),
         }
     }
 
-    /// Stores a history file.
+    /// Checks that a history file holds the bytes that its record names, so that it is complete, unchanged,
+    /// and that of its job.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] with the reason.
+    pub fn check_history(&self, record: &Record) -> Result<()> {
+        let path = self.job_path(&record.job);
+        let bytes = self.files.read(&path).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => {
+                Error::Disk { path: path.clone(), problem: next_run("missing") }
+            }
+            _ => disk_error(&path, &error),
+        })?;
+        if record.file_hash.as_ref().is_none_or(|hash| history_file::bytes_hash(&bytes) == *hash) {
+            return Ok(());
+        }
+        let problem = next_run("not the history that was written for this job");
+        Err(Error::Disk { path, problem })
+    }
+
+    /// Stores a history file. Returns its size and time.
     ///
     /// # Errors
     /// [`Error::Disk`].
-    pub fn write_job(&self, id: &JobId, bytes: &[u8]) -> Result<()> {
+    pub fn write_job(&self, id: &JobId, bytes: &[u8]) -> Result<Stamp> {
         let path = self.job_path(id);
         let jobs = self.jobs_path();
         let folder = path.parent().unwrap_or(&jobs);
-        let write = || -> io::Result<()> {
+        let write = || -> io::Result<Stamp> {
             if self.files.create_folder(folder)? {
                 self.files.sync_folder(&jobs)?;
                 self.files.sync_folder(&self.root)?;
             }
-            files::write_atomic(self.files, &path, bytes)
+            files::write_atomic(self.files, &path, bytes)?;
+            self.files.stamp(&path)
         };
         write().map_err(|error| disk_error(&path, &error))
     }
 
-    /// Stores the summary table. An equal file is not written again.
+    /// Stores the summary table. An equal file is not written again. Returns whether it was written.
     ///
     /// # Errors
     /// [`Error::Disk`].
-    pub fn write_table(&self, table: &Table) -> Result<()> {
+    pub fn write_table(&self, table: &Table) -> Result<bool> {
         let path = self.table_path();
         let bytes = parquet::encode(table)
             .map_err(|problem| Error::Disk { path: path.clone(), problem })?;
         files::write_if_changed(self.files, &path, &bytes)
-            .map_err(|error| disk_error(&path, &error))?;
-        Ok(())
+            .map_err(|error| disk_error(&path, &error))
     }
 
     /// Reads the summary table.

@@ -1,8 +1,12 @@
-//! study.json: which study a results folder belongs to. It is the resolved study, a study file.
+//! study.json: which study a results folder belongs to. It is the resolved study, a study file, with a
+//! checksum ([`billow_solver::platform::seal`]). Files of older versions have none.
+//!
+//! The journal holds the text too, so that a damaged file can be restored.
 
 use std::collections::BTreeMap;
 use std::io;
 
+use billow_solver::platform::seal;
 use serde::Deserialize;
 
 use super::Results;
@@ -10,6 +14,8 @@ use crate::input::study_file::Json;
 use crate::input::units::DisplayUnits;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};
+use crate::store::damaged;
+use crate::store::journal::Journal;
 use crate::study::{Study, UNITS};
 
 /// Name of the format.
@@ -28,15 +34,22 @@ struct Owner {
     units: BTreeMap<String, String>,
 }
 
-/// The bytes of study.json for a resolved study.
-fn study_bytes(name: &str, study: &Json) -> io::Result<Vec<u8>> {
+/// What is on disk.
+enum State {
+    Missing,
+    Valid(Owner),
+    /// Not the text that was written.
+    Damaged(String),
+}
+
+/// The text of study.json for a resolved study.
+fn study_text(name: &str, study: &Json) -> io::Result<String> {
     let mut study = study.clone();
     study.set("format", Json::Text(FORMAT.to_owned()));
     study.set("version", Json::Integer(VERSION.cast_signed()));
     study.set("name", Json::Text(name.to_owned()));
-    let mut bytes = serde_json::to_vec_pretty(&study).map_err(io::Error::other)?;
-    bytes.push(b'\n');
-    Ok(bytes)
+    let object = serde_json::to_string_pretty(&study).map_err(io::Error::other)?;
+    Ok(seal::seal(&(object + "\n")))
 }
 
 /// A resolved study without the units in which its quantities are shown.
@@ -69,14 +82,45 @@ impl Results<'_> {
     }
 
     fn read_owner(&self) -> Result<Option<Owner>> {
+        match self.study_state()? {
+            State::Missing => Ok(None),
+            State::Valid(owner) => Ok(Some(owner)),
+            State::Damaged(problem) => {
+                let root = self.root().display();
+                Err(Error::Disk {
+                    path: self.study_path(),
+                    problem: format!(
+                        "damaged: {problem}\n  next: `billow doctor --repair {root}`, or `billow run \
+                         STUDY --results {root}` with the study file: it writes the file again"
+                    ),
+                })
+            }
+        }
+    }
+
+    /// The state of study.json.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] when it cannot be read, belongs to another program, or is of a newer version.
+    fn study_state(&self) -> Result<State> {
         let path = self.study_path();
         let bytes = match self.files().read(&path) {
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(State::Missing),
             Err(error) => return Err(disk_error(&path, &error)),
         };
-        let owner: Owner = serde_json::from_slice(&bytes)
-            .map_err(|error| self.refused(&format!("not a study.json of billow: {error}")))?;
+        let Ok(text) = String::from_utf8(bytes) else {
+            return Ok(State::Damaged("it is not UTF-8 text".to_owned()));
+        };
+        if seal::open(&text) == Err(seal::SealError::Changed) {
+            return Ok(State::Damaged(seal::SealError::Changed.to_string()));
+        }
+        let owner = match serde_json::from_str::<Owner>(&text) {
+            Ok(owner) => owner,
+            Err(error) => {
+                return Ok(State::Damaged(format!("not a study.json of billow: {error}")));
+            }
+        };
         if owner.format != FORMAT {
             return Err(self.refused(&format!("format {:?} is not {FORMAT:?}", owner.format)));
         }
@@ -86,7 +130,7 @@ impl Results<'_> {
                 owner.version
             )));
         }
-        Ok(Some(owner))
+        Ok(State::Valid(owner))
     }
 
     fn refused(&self, problem: &str) -> Error {
@@ -96,20 +140,60 @@ impl Results<'_> {
         }
     }
 
-    /// Writes study.json. An equal file is not written again. `study` is the resolved study, an
-    /// object.
+    /// Writes study.json and returns its text. An equal file is not written again. A damaged file is kept in
+    /// the folder `damaged`. `study` is the resolved study, an object; `journal` is that of the folder.
     ///
     /// # Errors
     /// [`Error::Disk`] when the folder belongs to another study, or to a newer program.
-    pub fn write_study(&self, name: &str, study: &Json) -> Result<()> {
-        if let Some(owner) = self.owner()?.filter(|owner| owner != name) {
+    pub fn write_study(&self, name: &str, study: &Json, journal: &Journal) -> Result<String> {
+        let path = self.study_path();
+        let owner = match self.study_state()? {
+            State::Missing => journal.study_owner(),
+            State::Valid(owner) => Some(owner.name),
+            // Without a record the file may be one of another program.
+            State::Damaged(problem) if journal.is_empty() => return Err(self.refused(&problem)),
+            State::Damaged(_) => {
+                let bytes = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
+                damaged::keep(self.files(), &self.damaged_path(), &path, &bytes)?;
+                journal.study_owner()
+            }
+        };
+        if let Some(owner) = owner.filter(|owner| owner != name) {
             return Err(self.refused(&format!(
                 "the folder holds results of the study {owner:?}, not of {name:?}"
             )));
         }
+        let text = study_text(name, study).map_err(|error| disk_error(&path, &error))?;
+        self.write_study_text(&text)?;
+        Ok(text)
+    }
+
+    /// Writes study.json again as the journal has it, if it is damaged or missing and the journal has it. The
+    /// damaged file is kept in the folder `damaged`. Returns whether it was written.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn restore_study(&self, journal: &Journal) -> Result<bool> {
+        let Some(text) = &journal.study else { return Ok(false) };
         let path = self.study_path();
-        let bytes = study_bytes(name, study).map_err(|error| disk_error(&path, &error))?;
-        files::write_if_changed(self.files(), &path, &bytes)
+        match self.study_state()? {
+            State::Valid(_) => return Ok(false),
+            State::Missing => {}
+            State::Damaged(_) => {
+                let bytes = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
+                damaged::keep(self.files(), &self.damaged_path(), &path, &bytes)?;
+            }
+        }
+        self.write_study_text(text).map(|()| true)
+    }
+
+    /// Writes the text of study.json. An equal file is not written again.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn write_study_text(&self, text: &str) -> Result<()> {
+        let path = self.study_path();
+        files::write_if_changed(self.files(), &path, text.as_bytes())
             .map_err(|error| disk_error(&path, &error))?;
         Ok(())
     }
@@ -122,14 +206,21 @@ impl Results<'_> {
     pub fn holds(&self, name: &str, study: &Json) -> Result<bool> {
         let path = self.study_path();
         let stored = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
-        let bytes = |name: &str, study: &Json| {
-            study_bytes(name, study).map_err(|error| disk_error(&path, &error))
+        let text = |name: &str, study: &Json| {
+            study_text(name, study).map_err(|error| disk_error(&path, &error))
         };
-        if stored == bytes(name, study)? {
+        if stored == text(name, study)?.as_bytes() {
             return Ok(true);
         }
         let Ok(stored) = Study::load(&path, &[]) else { return Ok(false) };
-        let stored = bytes(&stored.name, &without_units(stored.resolved()))?;
-        Ok(stored == bytes(name, &without_units(study.clone()))?)
+        let stored = text(&stored.name, &without_units(stored.resolved()))?;
+        Ok(stored == text(name, &without_units(study.clone()))?)
+    }
+}
+
+impl Journal {
+    /// Name of the study in the journal's copy of study.json.
+    fn study_owner(&self) -> Option<String> {
+        Some(serde_json::from_str::<Owner>(self.study.as_deref()?).ok()?.name)
     }
 }

@@ -16,7 +16,7 @@ fn built() -> Table {
     for number in [4, 0] {
         let job = &points[number].job;
         let cells = Cells::of(job, &fixture::ran(u32::try_from(number).unwrap()), None).unwrap();
-        let record = Record { job: job.id.clone(), cells, file_hash: None };
+        let record = Record { job: job.id.clone(), cells, file_hash: None, file_stamp: None };
         records.insert(job.id.clone(), record);
     }
     Table::build(&points, &records, &|name| if name == "N" { "1".into() } else { "kg/s".into() })

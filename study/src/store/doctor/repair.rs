@@ -1,0 +1,88 @@
+//! Repairs a results folder: what is damaged is restored from other files, or set aside so that its jobs run
+//! again. Nothing is deleted but temporary files and the summary table, which is built again; damaged files
+//! are kept in the folder `damaged`.
+
+use std::path::{Path, PathBuf};
+
+use super::histories;
+use crate::job::JobId;
+use crate::platform::error::Result;
+use crate::platform::files::disk_error;
+use crate::store::journal::{Journal, Writer};
+use crate::store::reference_file::Unread;
+use crate::store::results::Results;
+use crate::store::stored::Stored;
+use crate::store::{attempts, damaged};
+
+/// Something that was repaired.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Repaired {
+    /// File or folder.
+    pub path: PathBuf,
+    /// What was done.
+    pub action: String,
+}
+
+/// Repairs a results folder under its lock. Returns what was done, in order.
+///
+/// # Errors
+/// [`crate::platform::error::Error::Disk`] when the folder is locked or cannot be read or written. What was repaired until then stays
+/// repaired.
+pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
+    let _lock = results.lock()?;
+    let mut repaired = Vec::new();
+    let mut add = |path: &Path, action: &str| {
+        repaired.push(Repaired { path: path.to_owned(), action: action.to_owned() });
+    };
+    for path in results.remove_temporary_files()? {
+        add(&path, "removed: a temporary file of a process that died");
+    }
+    let journal = results.journal()?;
+    if results.restore_study(&journal)? {
+        add(&results.study_path(), "restored from the journal");
+    }
+    for path in results.mend_journal(&journal)? {
+        add(&path, "written again without the lines that are not valid; their jobs are pending");
+    }
+    let mut journal = results.journal()?;
+    let mut writer = Writer::new(results.files(), results.journal_path());
+    attempts::take_deaths(results, &mut journal, &mut writer)?;
+    for (job, problem) in histories::damaged(results, &journal)? {
+        let path = results.job_path(&job);
+        set_aside(results, &path)?;
+        invalidate(&mut writer, &mut journal, &job)?;
+        add(&path, &format!("set aside: {problem}; its job is pending"));
+    }
+    for (path, problem) in results.references().unread {
+        if let Unread::Damaged(problem) = problem {
+            set_aside(results, &path)?;
+            add(&path, &format!("set aside: {problem}; a run computes it again"));
+        }
+    }
+    if let Ok(Some(_)) = results.owner()
+        && let Ok(stored) = Stored::read(results.clone())
+        && results.write_table(&stored.table())?
+    {
+        add(&results.table_path(), "written again from plan and journal");
+    }
+    Ok(repaired)
+}
+
+fn invalidate(writer: &mut Writer<'_>, journal: &mut Journal, job: &JobId) -> Result<()> {
+    writer.invalidate(std::slice::from_ref(job))?;
+    journal.invalidate(job);
+    Ok(())
+}
+
+/// Moves a damaged file, if it exists, into the folder `damaged`.
+fn set_aside(results: &Results<'_>, path: &Path) -> Result<()> {
+    let files = results.files();
+    match files.read(path) {
+        Ok(bytes) => {
+            damaged::keep(files, &results.damaged_path(), path, &bytes)?;
+            files.remove(path).map_err(|error| disk_error(path, &error))
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(disk_error(path, &error)),
+    }
+}
