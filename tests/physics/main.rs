@@ -10,6 +10,7 @@
 )]
 
 mod allocation;
+mod checkpoints;
 mod closures;
 mod conservation;
 mod contact_bits;

@@ -4,6 +4,7 @@
 
 mod bench;
 mod chart;
+mod checkpoints;
 mod command_options;
 mod compare_and_answer;
 mod contact_scenes;
@@ -18,6 +19,7 @@ mod instruction_sets;
 mod interruption;
 mod invalid_studies;
 mod keys;
+mod memory;
 mod mistakes;
 mod monitor_detects_faults;
 mod old_results;

@@ -9,6 +9,7 @@
 
 use crate::models::film::{Ladder, LadderState};
 use crate::models::run::Observer;
+use crate::output::checkpoint::CheckpointError;
 use crate::output::outcome::Deployment;
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
@@ -31,10 +32,36 @@ struct ModelEntry {
     reference: Option<ReferenceEntry>,
     /// [`solve`].
     solve: SolveFn,
+    /// [`resume`]; `None` for a model without checkpoints.
+    resume: Option<ResumeFn>,
 }
 
 /// A run of a scene: [`solve`].
 type SolveFn = fn(InstructionSet, &Scene, &mut dyn Observer) -> Result<Deployment, SceneError>;
+
+/// The rest of a run: [`resume`].
+type ResumeFn =
+    fn(InstructionSet, &Scene, &Stored<'_>, &mut dyn Observer) -> Result<Deployment, ResumeError>;
+
+/// A checkpoint that was stored.
+#[derive(Debug, Clone, Copy)]
+pub struct Stored<'a> {
+    /// Fingerprint of its scene.
+    pub fingerprint: &'a str,
+    /// Its text.
+    pub text: &'a str,
+}
+
+/// Why a run cannot be resumed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ResumeError {
+    /// The scene cannot be started either.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The checkpoint is damaged, or another one; the run can start from its beginning.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+}
 
 /// The static equilibria of a model.
 struct ReferenceEntry {
@@ -115,4 +142,27 @@ pub fn solve(
     observer: &mut dyn Observer,
 ) -> Result<Deployment, SceneError> {
     (entry(scene.solver.model).solve)(instruction_set, scene, observer)
+}
+
+/// Whether the model of a scene has checkpoints.
+pub fn has_checkpoints(scene: &Scene) -> bool {
+    entry(scene.solver.model).resume.is_some()
+}
+
+/// Continues a run from a checkpoint, with the bits of a run that was never stopped.
+///
+/// # Errors
+/// [`ResumeError`].
+pub fn resume(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    stored: &Stored<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, ResumeError> {
+    let ModelEntry { name, resume, .. } = entry(scene.solver.model);
+    let Some(resume) = resume else {
+        let problem = format!("model `{name}` has no checkpoints");
+        return Err(CheckpointError::Invalid(problem).into());
+    };
+    resume(instruction_set, scene, stored, observer)
 }

@@ -28,6 +28,20 @@ pub struct Deployment {
 }
 
 impl Deployment {
+    /// A run that was ended before its first sample.
+    pub fn cancelled() -> Self {
+        Self {
+            history: History::new(),
+            tracks: Vec::new(),
+            frames: None,
+            measures: Measures::default(),
+            audit: Audit::default(),
+            stop: Stop::Cancelled,
+            steps: 0,
+            elements: 0,
+        }
+    }
+
     /// The values of the track of that name; empty if there is none.
     pub fn followed(&self, name: &str) -> &[f64] {
         let track = self.tracks.iter().find(|track| track.name == name);

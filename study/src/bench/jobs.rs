@@ -10,13 +10,14 @@ use super::{Effort, INTERRUPTED, Line};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::executor::Solver;
+use crate::job::limits::JobLimits;
 use crate::job::references::References;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::scratch::Scratch;
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::event::Silent;
-use crate::run::runner::{self, Run};
+use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run};
 use crate::store::results::Results;
 use crate::study::plan;
 use crate::study::{Limits, Study};
@@ -92,6 +93,8 @@ pub fn measure(
             executor: &Solver { instruction_set, references: References::default() },
             results: Results::new(&Disk, &folder.path().join("results")),
             threads: NonZero::new(threads as usize),
+            limits: JobLimits::default(),
+            checkpoint_interval: CHECKPOINT_INTERVAL,
             stop: stop.clone(),
             rerun: None,
         },

@@ -10,7 +10,7 @@ use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
 use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::{Study, UNITS};
+use crate::study::{JOB_LIMITS, Study, UNITS};
 
 /// Says on stderr in which keys the given study file, with its overrides `set`, differs from the study of
 /// the results.
@@ -40,8 +40,9 @@ fn between(from: &Study, to: &Study) -> Vec<String> {
     let values = |study: &Study| -> BTreeMap<String, String> {
         let mut json = serde_json::to_value(study.resolved()).unwrap_or_default();
         // The grid is named as a whole.
-        // How a number is shown is no change.
+        // How a number is shown is no change, nor are the limits of jobs.
         json.as_object_mut().and_then(|keys| keys.remove(UNITS));
+        json.as_object_mut().and_then(|keys| keys.remove(JOB_LIMITS));
         let grid = json.as_object_mut().and_then(|keys| keys.remove("grid")).unwrap_or_default();
         let rows = summary::rows(&json).into_iter();
         rows.map(|row| (row[0].to_string(), row[1].to_string()))

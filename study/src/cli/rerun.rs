@@ -26,6 +26,9 @@ pub struct Args {
     /// instead of ids.
     #[arg(long = "where", value_name = "CONDITION")]
     pub condition: Option<String>,
+    /// Run the jobs with this status, as in --status timeout, instead of ids; can be repeated.
+    #[arg(long, value_name = "STATUS")]
+    pub status: Vec<String>,
     /// List the jobs; run nothing.
     #[arg(long)]
     pub dry_run: bool,
@@ -45,11 +48,16 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let given = StudyArgs { study: study.map(PathBuf::from), results: args.results.clone() };
     let root = folder(&given, &[])?;
     let stored = super::stored::read(&root)?;
-    let jobs = match (&args.condition, ids) {
-        (Some(condition), []) => matching(&stored, condition)?,
-        (None, [_, ..]) => named(&stored, ids)?,
-        (Some(_), _) => return Err(refused("", "jobs are named both by id and by --where")),
-        (None, []) => return Err(refused("", "no job is named")),
+    let jobs = match (&args.condition, args.status.as_slice(), ids) {
+        (Some(condition), [], []) => matching(&stored, condition)?,
+        (None, [_, ..], []) => with_status(&stored, &args.status)?,
+        (None, [], [_, ..]) => named(&stored, ids)?,
+        (None, [], []) => return Err(refused("", "no job is named")),
+        (Some(_), [], _) => return Err(refused("", "jobs are named both by id and by --where")),
+        (_, [_, ..], _) => {
+            let problem = "jobs are named by --status and by ids or --where";
+            return Err(refused("", problem));
+        }
     };
     if args.dry_run || jobs.is_empty() {
         return list(&stored, &jobs, &args.options, out);
@@ -79,7 +87,7 @@ fn refused(value: &str, problem: &str) -> Error {
         "billow rerun",
         value,
         problem,
-        "billow rerun JOB… [RESULTS], or billow rerun [RESULTS] --where CONDITION",
+        "billow rerun JOB… [RESULTS], or billow rerun [RESULTS] with --where CONDITION or --status STATUS",
         "billow rerun … --dry-run lists the jobs",
     )
 }
@@ -101,6 +109,24 @@ fn named(stored: &Stored<'_>, ids: &[String]) -> Result<BTreeSet<JobId>> {
         };
     }
     Ok(jobs)
+}
+
+/// Jobs with one of these statuses.
+fn with_status(stored: &Stored<'_>, names: &[String]) -> Result<BTreeSet<JobId>> {
+    let mut statuses = Vec::new();
+    for name in names {
+        let known = Status::all().filter(|status| status.has_job());
+        let found = Status::from_name(name.trim()).filter(|status| status.has_job());
+        statuses.push(found.ok_or_else(|| {
+            let allowed: Vec<&str> = known.map(Status::name).collect();
+            let problem = "is not a status of jobs";
+            let next = "billow status lists the statuses of a study";
+            Error::invalid_option("--status", name, problem, allowed.join(", "), next)
+        })?);
+    }
+    let points = stored.points.iter().filter(|point| point.infeasible.is_none());
+    let chosen = points.filter(|point| statuses.contains(&stored.cells(point).status()));
+    Ok(chosen.map(|point| point.job.id.clone()).collect())
 }
 
 /// Jobs of the rows for which a condition holds; infeasible points have no job.

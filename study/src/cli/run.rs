@@ -1,10 +1,12 @@
 //! `billow run`: runs the jobs of a study that are not finished.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use billow_solver::models::film::LadderState;
+use billow_solver::output::outcome::FailureKind;
 
 use super::memory::Memory;
 use super::options::{
@@ -15,6 +17,7 @@ use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
+use crate::job::limits::JobLimits;
 use crate::job::references::References;
 use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
@@ -22,11 +25,12 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::progress;
-use crate::run::runner::{self, Run, Summary};
+use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::study::Study;
+use crate::study::job_limits::with_options;
 use crate::study::plan;
 
 /// Arguments of `billow run`.
@@ -49,6 +53,10 @@ pub(super) struct RunOptions {
     units: UnitsOption,
     #[command(flatten)]
     threads: ThreadsOption,
+    /// Limit every job: `wall_time`, `steps` or `memory`, for example --job-limit `wall_time`="2 h"; `none`
+    /// removes the limit of the study; can be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    job_limit: Vec<String>,
     #[command(flatten)]
     pub(super) output: OutputOptions,
     #[command(flatten)]
@@ -95,6 +103,7 @@ pub(super) fn run_study(
     })?;
     let instruction_set = super::instruction_set::selected()?;
     let (threads, note) = memory::threads(options.threads.count()?);
+    let limits = with_options(study.job_limits(), &options.job_limit)?;
     if !options.progress.quiet {
         // Before the run: a reader may want to change the study.
         notes::print(study);
@@ -115,16 +124,28 @@ pub(super) fn run_study(
             },
             results: results.clone(),
             threads,
+            limits,
+            checkpoint_interval: CHECKPOINT_INTERVAL,
             stop,
             rerun: again,
         },
         progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
+    if let Some(error) = interrupted(&summary) {
+        // The program ends soon after a signal, whatever the size of the study.
+        return Err(error);
+    }
     let mut stored = Stored::read(results)?;
     stored.units = units;
     let answer = Answer::of(&stored);
     print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
-    result(&summary, root)
+    result(&summary, &limits, root)
+}
+
+/// The error of a run that a signal stopped. A signal after the last job has stopped nothing.
+fn interrupted(summary: &Summary) -> Option<Error> {
+    let open = summary.counts.of(Status::Pending) > 0;
+    summary.signal.filter(|_| open).map(Error::Signal)
 }
 
 /// The static references that can be used. Says on stderr which files are damaged.
@@ -139,12 +160,7 @@ fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
 }
 
 /// The error of a run, if it has one.
-fn result(summary: &Summary, root: &Path) -> Result<()> {
-    // A signal after the last job has stopped nothing.
-    let open = summary.counts.of(Status::Pending) > 0;
-    if let Some(signal) = summary.signal.filter(|_| open) {
-        return Err(Error::Signal(signal));
-    }
+fn result(summary: &Summary, limits: &JobLimits, root: &Path) -> Result<()> {
     if !summary.different.is_empty() {
         return Err(Error::JobsFailed(format!(
             "{} gave different bits than before: {}\n  next: billow show JOB; compare \
@@ -156,11 +172,43 @@ fn result(summary: &Summary, root: &Path) -> Result<()> {
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed\n  next: billow table {} --columns job,status,reason,stop_time,stop_location",
+            "{} failed{}\n  next: billow table {} --columns job,status,reason,stop_time,stop_location{}",
             count(failed, "job"),
-            root.display()
+            limited(&summary.counts.failures()),
+            root.display(),
+            next_of_limited(summary, limits, root),
         ))),
     }
+}
+
+/// Statuses of jobs that can go on or run again, with the option that changes what stopped them.
+const RERUN: [(Status, &str); 4] = [
+    (Status::Timeout, " --job-limit wall_time=…"),
+    (Status::Failed(FailureKind::StepLimit), " --job-limit steps=…"),
+    (Status::OutOfMemory, " --job-limit memory=…"),
+    (Status::Crashed, ""),
+];
+
+/// The failures by status, where a limit or a crash is one of them.
+fn limited(failures: &BTreeMap<String, usize>) -> String {
+    let step_limit = Status::Failed(FailureKind::StepLimit);
+    let names = RERUN.iter().filter(|(status, _)| *status != step_limit);
+    let any = names.map(|(status, _)| status.name()).any(|name| failures.contains_key(name));
+    if any { format!(" ({})", listed(failures)) } else { String::new() }
+}
+
+/// The commands that run such jobs again.
+fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String {
+    let mut text = String::new();
+    for (status, option) in RERUN {
+        // Without job_limits.steps it is solver.step_limit that was reached.
+        let by_limit = status != Status::Failed(FailureKind::StepLimit) || limits.steps.is_some();
+        if by_limit && summary.counts.of(status) > 0 {
+            let root = root.display();
+            let _ = write!(text, "; billow rerun {root} --status {status}{option}");
+        }
+    }
+    text
 }
 
 fn print(

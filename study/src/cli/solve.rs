@@ -32,10 +32,11 @@ pub struct Args {
     /// Store the whole state in this file; --resume continues from it with the same bits.
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
-    /// Number of steps between two checkpoints [default: a checkpoint only at a stop].
+    /// Number of steps between two checkpoints, with contact up to 49 more [default: a checkpoint only at
+    /// a stop].
     #[arg(long, value_name = "STEPS", requires = "checkpoint", value_parser = clap::value_parser!(u64).range(1..))]
     pub every: Option<u64>,
-    /// Store a checkpoint after this number of steps and stop.
+    /// Store a checkpoint after this number of steps, with contact up to 49 more, and stop.
     #[arg(long, value_name = "STEPS", requires = "checkpoint", value_parser = clap::value_parser!(u64).range(1..))]
     pub stop_after: Option<u64>,
     /// Continue from this checkpoint of the same scene.

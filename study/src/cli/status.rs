@@ -11,8 +11,9 @@ use super::print::{count, duration, print_rows};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
 use super::{Format, changes, output_error};
-use crate::job::Status as JobStatus;
+use crate::input::value::brief_number;
 use crate::job::row::{ColumnId, Counts};
+use crate::job::{JobId, Status as JobStatus};
 use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::platform::quote;
@@ -43,6 +44,8 @@ struct Status<'a> {
     timed: usize,
     /// Number of threads for the estimate of the remaining time.
     threads: usize,
+    /// Jobs with a checkpoint, and its simulated time, s.
+    checkpoints: Vec<(JobId, Option<f64>)>,
 }
 
 /// One line: its topic and its text.
@@ -83,7 +86,11 @@ impl<'a> Status<'a> {
                 timed += 1;
             }
         }
-        Self { stored, health, counts, seconds, timed, threads }
+        let results = &stored.results;
+        let with_checkpoint = results.checkpoints().unwrap_or_default().into_iter();
+        let checkpoints = with_checkpoint.map(|id| (id.clone(), results.checkpoint_time(&id)));
+        let checkpoints = checkpoints.collect();
+        Self { stored, health, counts, seconds, timed, threads, checkpoints }
     }
 
     /// Numbers of finished jobs of other versions of the physics, by version.
@@ -125,6 +132,9 @@ impl<'a> Status<'a> {
             "mean_job_seconds": self.mean_seconds(),
             "remaining_seconds": self.remaining_seconds(),
             "threads": self.threads,
+            "checkpoints": self.checkpoints.iter()
+                .map(|(id, time)| json!({"job": id.as_str(), "time": time}))
+                .collect::<Vec<_>>(),
             "broken": self.health.faults(),
             "findings": self.health.findings.iter()
                 .map(|finding| format!("{}: {}", finding.path.display(), finding.problem))
@@ -146,6 +156,7 @@ impl<'a> Status<'a> {
         lines.extend(self.job_lines());
         lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
         lines.extend(self.time_lines());
+        lines.extend(self.checkpoint_line());
         lines.push(("broken", self.broken()));
         lines.push(("results", self.stored.results.root().display().to_string()));
         for (topic, text) in &lines {
@@ -217,6 +228,19 @@ impl<'a> Status<'a> {
             lines.push(("remaining", text));
         }
         lines
+    }
+
+    /// Jobs that continue from a checkpoint.
+    fn checkpoint_line(&self) -> Option<Line> {
+        const MAX_SHOWN: usize = 4;
+        let shown = self.checkpoints.iter().take(MAX_SHOWN).map(|(id, time)| {
+            let at = time.map_or_else(String::new, |time| format!(" at {} s", brief_number(time)));
+            format!("{}{at}", id.short())
+        });
+        let shown: Vec<String> = shown.collect();
+        let jobs = count(self.checkpoints.len(), "job");
+        (!shown.is_empty())
+            .then(|| ("stored", format!("{jobs} with a checkpoint: {}", shown.join(", "))))
     }
 
     /// The first fault, or that there is none.

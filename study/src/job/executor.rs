@@ -3,17 +3,19 @@
 use std::cell::RefCell;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
-use std::time::Instant;
 
-use billow_solver::models;
 use billow_solver::models::film::LadderState;
-use billow_solver::models::run::{Observer, Progress};
+use billow_solver::models::{self, ResumeError, Stored};
+use billow_solver::output::checkpoint::CheckpointError;
 use billow_solver::output::measures::{self, NoReference};
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::timeline::Timeline;
 
+use crate::job::attempt::{Attempt, Ending};
+use crate::job::control::Task;
+use crate::job::limits::Limit;
 use crate::job::references::References;
 use crate::job::{Job, JobId};
 
@@ -30,14 +32,9 @@ pub trait Executor: Sync {
         Vec::new()
     }
 
-    /// Runs a batch and returns one outcome per job, in the order of `jobs`. `observer` gets the
-    /// index of a job in the batch and its progress; when it returns `false`, the job must end as
-    /// cancelled.
-    fn execute(&self, jobs: &[&Job], observer: &ProgressObserver<'_>) -> Vec<Outcome>;
+    /// Runs a batch and returns one outcome per task, in the order of `tasks`.
+    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome>;
 }
-
-/// Receives the progress of running jobs and can cancel them: see [`Executor::execute`].
-pub type ProgressObserver<'a> = dyn Fn(usize, Progress) -> bool + Sync + 'a;
 
 /// How a job ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,13 +43,20 @@ pub enum Outcome {
     Ran {
         /// The result.
         deployment: Box<Deployment>,
-        /// Wall time of the run without its static equilibria, s. It decides nothing.
+        /// Wall time of the run without its static equilibria, s, since its last start or resume. It
+        /// decides nothing.
         seconds: f64,
+        /// Steps in that time.
+        steps: u64,
     },
     /// The model refused the scene.
     Refused(SceneError),
     /// The program panicked with this message.
     Panicked(String),
+    /// The job reached a limit of the study.
+    Limited(Limit),
+    /// The process died in two attempts at the job, in the last one without another job beside it.
+    Crashed,
     /// The job was cancelled. Nothing of it is a result.
     Cancelled,
 }
@@ -71,50 +75,59 @@ impl Executor for Solver {
         self.references.take_new()
     }
 
-    fn execute(&self, jobs: &[&Job], observer: &ProgressObserver<'_>) -> Vec<Outcome> {
-        let run = |(index, job): (usize, &&Job)| {
-            let start = Instant::now();
-            let mut samples = JobObserver { index, observer };
-            let mut deployment = match models::solve(self.instruction_set, &job.scene, &mut samples)
-            {
-                Ok(deployment) => deployment,
-                Err(error) => return Outcome::Refused(error),
-            };
-            let seconds = start.elapsed().as_secs_f64();
-            if deployment.stop == Stop::Cancelled
-                || self.judge(job, &mut deployment, &|progress| observer(index, progress))
-                    == Err(NoReference::Stopped)
-            {
-                return Outcome::Cancelled;
-            }
-            Outcome::Ran { deployment: Box::new(deployment), seconds }
-        };
-        jobs.iter().enumerate().map(run).collect()
+    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome> {
+        tasks.iter().map(|task| self.run(task)).collect()
     }
 }
 
 impl Solver {
+    fn run(&self, task: &Task<'_>) -> Outcome {
+        let mut attempt = Attempt::new(task);
+        let mut deployment = match self.solve(task, &mut attempt) {
+            Ok(deployment) => deployment,
+            Err(error) => return Outcome::Refused(error),
+        };
+        let (seconds, steps) = attempt.cost(deployment.steps);
+        if deployment.stop == Stop::Cancelled
+            || self.judge(task.job, &mut deployment, &mut || attempt.continues())
+                == Err(NoReference::Stopped)
+        {
+            return match attempt.ending() {
+                Some(Ending::Limited(limit)) => Outcome::Limited(limit),
+                Some(Ending::Stopped) | None => Outcome::Cancelled,
+            };
+        }
+        Outcome::Ran { deployment: Box::new(deployment), seconds, steps }
+    }
+
+    /// Runs the model: from the checkpoint if there is a valid one, else from the start.
+    fn solve(&self, task: &Task<'_>, attempt: &mut Attempt<'_>) -> Result<Deployment, SceneError> {
+        let Job { id, scene, .. } = task.job;
+        if let Some(text) = &task.checkpoint {
+            let stored = Stored { fingerprint: id.as_str(), text };
+            match models::resume(self.instruction_set, scene, &stored, attempt) {
+                Ok(deployment) => return Ok(deployment),
+                Err(ResumeError::Scene(error)) => return Err(error),
+                Err(ResumeError::Checkpoint(error)) => task.control.note(unusable(id, &error)),
+            }
+        }
+        models::solve(self.instruction_set, scene, attempt)
+    }
+
     /// Compares a run with the static equilibria of its design. A failed run has no final shape, and needs
     /// the design shape only.
     ///
     /// # Errors
-    /// [`NoReference::Stopped`] if `observer` ended the search.
+    /// [`NoReference::Stopped`] if `continues` returned `false`.
     fn judge(
         &self,
         job: &Job,
         deployment: &mut Deployment,
-        observer: &dyn Fn(Progress) -> bool,
+        continues: &mut dyn FnMut() -> bool,
     ) -> Result<(), NoReference> {
         let timeline = Timeline::new(&job.scene);
-        let ended = Progress {
-            time: job.scene.solver.end_time,
-            end_time: job.scene.solver.end_time,
-            z_centre: deployment.history.column("z_centre").last().copied().unwrap_or(0.0),
-            pressure: deployment.measures.final_pressure.unwrap_or(0.0),
-        };
         let overpressure = measures::final_overpressure(&deployment.history, &timeline)
             .filter(|_| deployment.stop == Stop::Done);
-        let continues = &mut || observer(ended);
         let found =
             self.references.of(self.instruction_set, &job.scene, overpressure, continues)?;
         if let Some(reference) = found {
@@ -124,40 +137,23 @@ impl Solver {
     }
 }
 
-/// Gives the samples of one job to the observer of its batch.
-struct JobObserver<'a> {
-    index: usize,
-    observer: &'a ProgressObserver<'a>,
-}
-
-impl Observer for JobObserver<'_> {
-    fn sample(&mut self, progress: Progress) -> bool {
-        (self.observer)(self.index, progress)
-    }
+/// The note about a checkpoint that cannot be used.
+fn unusable(id: &JobId, error: &CheckpointError) -> String {
+    format!("checkpoint of job {}: {error}; the job starts from its beginning", id.short())
 }
 
 /// Runs a batch and turns panics into outcomes. When a batch of several jobs panics, its jobs are
 /// run again one by one, so that only the jobs that panic are lost.
-pub fn execute_guarded(
-    executor: &dyn Executor,
-    jobs: &[&Job],
-    observer: &ProgressObserver<'_>,
-) -> Vec<Outcome> {
-    match catch_panic(|| executor.execute(jobs, observer)) {
-        Ok(outcomes) if outcomes.len() == jobs.len() => outcomes,
+pub fn execute_guarded(executor: &dyn Executor, tasks: &[Task<'_>]) -> Vec<Outcome> {
+    match catch_panic(|| executor.execute(tasks)) {
+        Ok(outcomes) if outcomes.len() == tasks.len() => outcomes,
         Ok(outcomes) => {
             let message =
-                format!("executor returned {} outcomes for {} jobs", outcomes.len(), jobs.len());
-            vec![Outcome::Panicked(message); jobs.len()]
+                format!("executor returned {} outcomes for {} jobs", outcomes.len(), tasks.len());
+            vec![Outcome::Panicked(message); tasks.len()]
         }
-        Err(message) if jobs.len() == 1 => vec![Outcome::Panicked(message)],
-        Err(_) => {
-            let alone = |(index, job): (usize, &&Job)| {
-                let observer = |_: usize, progress| observer(index, progress);
-                execute_guarded(executor, &[*job], &observer)
-            };
-            jobs.iter().enumerate().flat_map(alone).collect()
-        }
+        Err(message) if tasks.len() == 1 => vec![Outcome::Panicked(message)],
+        Err(_) => tasks.chunks(1).flat_map(|task| execute_guarded(executor, task)).collect(),
     }
 }
 

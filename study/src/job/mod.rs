@@ -1,8 +1,12 @@
 //! A job: one scene to run. Its id is the hash of all that decides its result.
 
+pub mod attempt;
+pub mod control;
 pub mod executor;
 pub mod id;
+pub mod limits;
 pub mod memory;
+pub mod pace;
 pub mod point;
 pub mod references;
 pub mod row;

@@ -5,7 +5,8 @@
 //! without everything that does not change them.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
 
 use billow_solver::models;
 use billow_solver::models::film::{Ladder, LadderState};
@@ -55,7 +56,7 @@ impl References {
         let Some(scene) = models::reference_scene(scene) else { return Ok(None) };
         let id = JobId::of(&scene);
         let slot = Arc::clone(locked(&self.slots).entry(id.clone()).or_default());
-        let mut slot = locked(&slot);
+        let Some(mut slot) = wait_for(&slot, continues) else { return Err(NoReference::Stopped) };
         if slot.is_none() {
             let known = self.stored.get(&id).map_or(&[][..], Vec::as_slice);
             match models::ladder(instruction_set, &scene, known) {
@@ -103,6 +104,25 @@ impl References {
             && let Some(ladder) = locked(&slot).as_mut()
         {
             ladder.forget_positions();
+        }
+    }
+}
+
+/// Time between two attempts to get the equilibria of a design that another job computes. Chosen: short
+/// against a search.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// The equilibria of a design, once no other job computes; `None` if `continues` returned `false` before.
+fn wait_for<'a, T>(
+    mutex: &'a Mutex<T>,
+    continues: &mut dyn FnMut() -> bool,
+) -> Option<MutexGuard<'a, T>> {
+    loop {
+        match mutex.try_lock() {
+            Ok(guard) => return Some(guard),
+            Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) if !continues() => return None,
+            Err(TryLockError::WouldBlock) => std::thread::sleep(PAUSE),
         }
     }
 }

@@ -81,6 +81,11 @@ impl Status {
         Self::all().find(|status| status.name() == name)
     }
 
+    /// Whether a job of a study can have it.
+    pub fn has_job(self) -> bool {
+        !matches!(self, Self::Infeasible | Self::Cancelled | Self::Paused | Self::NoEquilibrium)
+    }
+
     /// Whether a job with this status failed: it will not give a result, though its point has a
     /// pattern.
     pub fn is_failure(self) -> bool {

@@ -32,7 +32,8 @@ pub enum Error {
     JobsFailed(String),
     /// A signal ended the command: exit code 128 + its number.
     #[error(
-        "stopped by signal {0}; finished jobs are kept, the same command runs the remaining ones"
+        "stopped by signal {0}; finished jobs are kept, the same command runs the remaining ones and continues \
+         those that have a checkpoint"
     )]
     Signal(i32),
     /// A signal ended a single run: exit code 128 + its number.

@@ -54,10 +54,11 @@ pub const EXIT_CODES: [ExitCode; 4] = [
     ExitCode {
         number: "128 + n",
         name: "signal",
-        brief: "signal n stopped the command (130: Ctrl-C, 143: SIGTERM)",
-        meaning: "Signal n stopped the command: 130 for Ctrl-C (SIGINT, n = 2), 143 for SIGTERM \
-                  (n = 15). `run` and `rerun` keep the finished jobs and the same command resumes; \
-                  `validate` prints the cases that have finished.",
+        brief: "signal n stopped the command (129: SIGHUP, 130: Ctrl-C, 138: SIGUSR1, 143: SIGTERM)",
+        meaning: "Signal n stopped the command within 2 s: 129 for SIGHUP (n = 1), 130 for Ctrl-C \
+                  (SIGINT, n = 2), 138 for SIGUSR1 (n = 10), 143 for SIGTERM (n = 15). `run` and \
+                  `rerun` keep the finished jobs and checkpoints of the running ones, and the same \
+                  command continues them; `validate` prints the cases that have finished.",
     },
 ];
 
@@ -100,6 +101,12 @@ mod tests {
         }
         assert_eq!(Exit::Signal(2).code(), 130);
         assert_eq!(Exit::Signal(15).code(), 143);
+        for (signal, name) in crate::platform::stop::STOPPING_SIGNALS {
+            let row = Exit::Signal(signal).row();
+            let code = Exit::Signal(signal).code().to_string();
+            assert!(row.meaning.contains(name) && row.meaning.contains(&code), "{name}");
+            assert!(row.brief.contains(&code), "{name}");
+        }
         assert!(Exit::Signal(15).row().meaning.contains("143"));
     }
 }

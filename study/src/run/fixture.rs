@@ -16,7 +16,8 @@ use billow_solver::scene::{
 };
 
 use crate::input::value::Value;
-use crate::job::executor::{Executor, Outcome, ProgressObserver};
+use crate::job::control::{Order, Task};
+use crate::job::executor::{Executor, Outcome};
 use crate::job::point::{Infeasible, Point};
 use crate::job::{Job, JobId};
 use crate::study::plan::Generation;
@@ -179,7 +180,7 @@ impl<S: Fn(u32) -> Outcome + Sync> Scripted<S> {
 
 /// The outcome of a job that ran, with seven samples.
 pub fn ran(number: u32) -> Outcome {
-    Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5 }
+    Outcome::Ran { deployment: Box::new(deployment(number, 7)), seconds: 0.5, steps: 100 }
 }
 
 impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
@@ -187,15 +188,16 @@ impl<S: Fn(u32) -> Outcome + Sync> Executor for Scripted<S> {
         self.batch
     }
 
-    fn execute(&self, jobs: &[&Job], observer: &ProgressObserver<'_>) -> Vec<Outcome> {
-        let run = |(index, job): (usize, &&Job)| {
+    fn execute(&self, tasks: &[Task<'_>]) -> Vec<Outcome> {
+        let run = |task: &Task<'_>| {
             self.executed.fetch_add(1, Ordering::SeqCst);
             let progress = Progress { time: 0.5, end_time: 1.0, z_centre: 0.3, pressure: 50.0 };
-            if !observer(index, progress) {
+            task.control.progress(progress);
+            if task.control.order() == Order::End {
                 return Outcome::Cancelled;
             }
-            (self.script)(u32::try_from(job.scene.seed).unwrap())
+            (self.script)(u32::try_from(task.job.scene.seed).unwrap())
         };
-        jobs.iter().enumerate().map(run).collect()
+        tasks.iter().map(run).collect()
     }
 }

@@ -5,7 +5,7 @@
 //! alone always starts: at the latest when no other runs. No result depends on the order.
 
 use std::collections::VecDeque;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use crate::platform::memory::{self, Limit};
@@ -34,46 +34,30 @@ struct State {
     waiting: VecDeque<u64>,
 }
 
-/// The reserved memory of a job, released on drop.
+/// The reserved memory of jobs, released on drop.
 #[derive(Debug)]
-pub struct Reservation<'a> {
-    reservations: &'a Reservations,
+pub struct Reservation {
+    reservations: Arc<Reservations>,
     bytes: u64,
 }
 
-/// Why a job does not start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refusal {
-    /// It needs more than all jobs may use together.
-    TooLarge(Limit),
-    /// The run ends.
-    Ending,
-}
-
 impl Reservations {
-    /// The memory that this process may use now for jobs on this number of threads.
-    pub fn new(threads: usize) -> Self {
-        Self::of(memory::smallest(&memory::limits(), threads), threads)
-    }
-
-    /// The memory that a limit leaves to jobs on this number of threads.
-    pub fn of(limit: Option<Limit>, threads: usize) -> Self {
+    /// The memory that the smallest of these limits leaves to jobs on this number of threads.
+    pub fn of(limits: &[Limit], threads: usize) -> Arc<Self> {
+        let limit = memory::smallest(limits, threads);
         let usable = limit.map_or(u64::MAX, |limit| limit.usable(threads));
-        Self { limit, usable, state: Mutex::default(), released: Condvar::new() }
+        Arc::new(Self { limit, usable, state: Mutex::default(), released: Condvar::new() })
     }
 
-    /// Reserves the memory of a job (bytes). Waits while others hold too much, until `ending` returns `true`.
-    ///
-    /// # Errors
-    /// [`Refusal`].
-    pub fn reserve(
-        &self,
-        bytes: u64,
-        ending: &dyn Fn() -> bool,
-    ) -> Result<Reservation<'_>, Refusal> {
-        if let Some(limit) = self.limit.filter(|_| bytes > self.usable) {
-            return Err(Refusal::TooLarge(limit));
-        }
+    /// The limit that a job of this estimate (bytes) exceeds even alone.
+    pub fn refuses(&self, bytes: u64) -> Option<Limit> {
+        self.limit.filter(|_| bytes > self.usable)
+    }
+
+    /// Reserves memory (bytes; at most all that is usable). Waits while others hold too much; `None` when
+    /// `ending` returns `true`.
+    pub fn reserve(self: &Arc<Self>, bytes: u64, ending: &dyn Fn() -> bool) -> Option<Reservation> {
+        let bytes = bytes.min(self.usable);
         let mut state = self.state();
         let number = state.next;
         state.next += 1;
@@ -82,14 +66,14 @@ impl Reservations {
             if ending() {
                 state.waiting.retain(|waiting| *waiting != number);
                 self.released.notify_all();
-                return Err(Refusal::Ending);
+                return None;
             }
             let first = state.waiting.front() == Some(&number);
             if first && bytes <= self.usable - state.reserved {
                 state.waiting.pop_front();
                 state.reserved += bytes;
                 self.released.notify_all();
-                return Ok(Reservation { reservations: self, bytes });
+                return Some(Reservation { reservations: Arc::clone(self), bytes });
             }
             let waited = self.released.wait_timeout(state, MAX_WAIT);
             state = waited.unwrap_or_else(PoisonError::into_inner).0;
@@ -101,7 +85,7 @@ impl Reservations {
     }
 }
 
-impl Drop for Reservation<'_> {
+impl Drop for Reservation {
     fn drop(&mut self) {
         self.reservations.state().reserved -= self.bytes;
         self.reservations.released.notify_all();
@@ -117,9 +101,10 @@ mod tests {
     use super::*;
     use crate::platform::memory::LimitKind;
 
-    fn reservations(usable: u64) -> Reservations {
+    fn reservations(usable: u64) -> Arc<Reservations> {
         let limit = Limit { kind: LimitKind::ControlGroup, total: 700_000_000, free: 0 };
-        Reservations { usable, ..Reservations::of(Some(limit), 1) }
+        let (state, released) = (Mutex::default(), Condvar::new());
+        Arc::new(Reservations { limit: Some(limit), usable, state, released })
     }
 
     #[test]
@@ -178,15 +163,15 @@ mod tests {
     #[test]
     fn what_never_fits_is_refused_at_once_and_a_stop_ends_the_wait() {
         let all = reservations(100);
-        let limit = all.limit.unwrap();
-        assert_eq!(all.reserve(101, &|| false).unwrap_err(), Refusal::TooLarge(limit));
+        assert_eq!(all.refuses(101), all.limit);
+        assert_eq!(all.refuses(100), None);
         let _held = all.reserve(60, &|| false).unwrap();
         let start = Instant::now();
         let ending = || start.elapsed() > Duration::from_millis(20);
-        assert_eq!(all.reserve(60, &ending).unwrap_err(), Refusal::Ending);
+        assert!(all.reserve(60, &ending).is_none());
         assert!(start.elapsed() < Duration::from_millis(500));
         // The stopped job holds up no other.
-        assert!(all.reserve(40, &|| false).is_ok());
-        assert!(Reservations::of(None, 1).reserve(u64::MAX, &|| false).is_ok());
+        assert!(all.reserve(40, &|| false).is_some());
+        assert_eq!(Reservations::of(&[], 1).refuses(u64::MAX), None);
     }
 }

@@ -1,17 +1,19 @@
 //! Solves one scene: motion, with checkpoints, or static equilibrium.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
+use billow_solver::integrators::explicit::State;
 use billow_solver::models::film::FilmRun;
-use billow_solver::models::run::{Model, Observer, Progress, Run};
+use billow_solver::models::run::{Answer, Model, Observer, Pause, Progress, Run};
 use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
 use billow_solver::output::outcome::{Deployment, FailureKind, Stop as End};
 use billow_solver::scene::timeline::Timeline;
 use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolution};
 
 use crate::job::Status;
+use crate::job::pace::Pace;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Files, disk_error, write_atomic};
 use crate::platform::stop::Stop;
@@ -51,9 +53,6 @@ pub enum Ended {
     /// Static equilibrium was not found.
     NoEquilibrium(statics::StaticFailure),
 }
-
-/// Number of steps between two checks for a signal (chosen: a fraction of a second).
-const STEPS_PER_CHECK: u64 = 2_000;
 
 /// Solves a scene on this number of threads; the result does not depend on it. A signal ends the run,
 /// after a checkpoint where one is asked for.
@@ -110,13 +109,78 @@ fn refused(value: &str, key: &str, problem: &str, hint: &str) -> InputError {
     }
 }
 
-/// Reports every sample to the caller.
-struct Reporting<'a>(&'a mut dyn FnMut(Progress));
+/// Observes a run: reports its samples, stores its state, ends it.
+struct Pausing<'a> {
+    scene: &'a SceneFile,
+    pauses: &'a Pauses,
+    files: &'a dyn Files,
+    stop: &'a Stop,
+    report: &'a mut dyn FnMut(Progress),
+    pace: Pace,
+    /// Steps since time 0 at the start of this call, at the last checkpoint, at the last pause.
+    first: u64,
+    stored: u64,
+    now: u64,
+    /// Why the run ended at a pause.
+    ended: Option<PauseEnd>,
+}
 
-impl Observer for Reporting<'_> {
+/// Why a run ended at a pause.
+enum PauseEnd {
+    /// The number of steps of this call is reached.
+    StopAfter,
+    /// A signal arrived.
+    Signal(i32),
+    /// The checkpoint cannot be written.
+    Failed(Error),
+}
+
+impl Observer for Pausing<'_> {
     fn sample(&mut self, progress: Progress) -> bool {
-        (self.0)(progress);
+        (self.report)(progress);
         true
+    }
+
+    fn steps(&mut self) -> u64 {
+        let remaining = |limit: Option<u64>, since: u64| {
+            limit.map(|limit| limit.saturating_sub(self.now - since))
+        };
+        let (stop_after, every) = (self.pauses.stop_after, self.pauses.every);
+        let limits = [remaining(stop_after, self.first), remaining(every, self.stored)];
+        limits.into_iter().flatten().fold(self.pace.steps(), u64::min)
+    }
+
+    fn pause(&mut self, steps: u64) -> Answer {
+        self.pace.asked();
+        self.now = steps;
+        let reached = |limit: Option<u64>, since: u64| limit.is_some_and(|n| steps - since >= n);
+        self.ended = match self.stop.requested() {
+            Some(signal) => Some(PauseEnd::Signal(signal)),
+            None => reached(self.pauses.stop_after, self.first).then_some(PauseEnd::StopAfter),
+        };
+        let due = self.ended.is_some() || reached(self.pauses.every, self.stored);
+        match (due, &self.pauses.checkpoint) {
+            (true, Some(_)) => Answer::Store,
+            _ if self.ended.is_some() => Answer::End,
+            _ => Answer::Continue,
+        }
+    }
+
+    fn store(&mut self, pause: &Pause<'_>) -> bool {
+        (self.now, self.stored) = (pause.steps, pause.steps);
+        if let (Some(path), Some(text)) =
+            (&self.pauses.checkpoint, (pause.text)(&self.scene.fingerprint))
+        {
+            let failed = |problem: String| Error::Disk { path: path.clone(), problem };
+            let written = text.map_err(|error| failed(error.to_string())).and_then(|text| {
+                write_atomic(self.files, path, text.as_bytes())
+                    .map_err(|error| disk_error(path, &error))
+            });
+            if let Err(error) = written {
+                self.ended = Some(PauseEnd::Failed(error));
+            }
+        }
+        self.ended.is_none()
     }
 }
 
@@ -128,30 +192,19 @@ fn motion(
     report: &mut dyn FnMut(Progress),
 ) -> Result<(Status, Ended)> {
     let timeline = Timeline::of_film(&scene.film);
-    let (mut model, mut run) = begin(scene, pauses, files)?;
+    let (mut model, run) = begin(scene, pauses, files)?;
     let first = model.steps();
-    let mut observer = Reporting(report);
-    let mut stored = first;
-    let end = loop {
-        let taken = model.steps() - first;
-        let remaining =
-            |limit: Option<u64>, since: u64| limit.map(|limit| limit.saturating_sub(since));
-        let steps =
-            [remaining(pauses.stop_after, taken), remaining(pauses.every, model.steps() - stored)]
-                .into_iter()
-                .flatten()
-                .fold(STEPS_PER_CHECK, u64::min);
-        if let Some(end) = run.advance(&mut model, &timeline, steps, &mut observer) {
-            break Some(end);
-        }
-        let due = pauses.every.is_some_and(|every| model.steps() - stored >= every);
-        let over = pauses.stop_after.is_some_and(|limit| model.steps() - first >= limit);
-        let signal = stop.requested();
-        if let (true, Some(path)) = (due || over || signal.is_some(), &pauses.checkpoint) {
-            store(scene, &model, &run, files, path)?;
-            stored = model.steps();
-        }
-        if let Some(signal) = signal {
+    let pace = Pace::new();
+    let (now, stored) = (first, first);
+    let mut observer =
+        Pausing { scene, pauses, files, stop, report, pace, first, stored, now, ended: None };
+    let mut deployment = run.complete(&mut model, &timeline, &mut observer);
+    // A run that ended before its checkpoint needs none.
+    let ended = observer.ended.filter(|_| deployment.stop == End::Cancelled);
+    let paused = matches!(ended, Some(PauseEnd::StopAfter));
+    match ended {
+        Some(PauseEnd::Failed(error)) => return Err(error),
+        Some(PauseEnd::Signal(signal)) => {
             let next = match &pauses.checkpoint {
                 Some(path) => {
                     let (steps, path) = (model.steps(), path.display());
@@ -161,12 +214,8 @@ fn motion(
             };
             return Err(Error::Interrupted { signal, next });
         }
-        if over {
-            break None;
-        }
-    };
-    let paused = end.is_none();
-    let mut deployment = run.finish(&model, &timeline, end.unwrap_or(End::Cancelled));
+        Some(PauseEnd::StopAfter) | None => {}
+    }
     scene.recorded.name(&mut deployment.tracks);
     let status = match &deployment.stop {
         _ if paused => Status::Paused,
@@ -195,7 +244,8 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
     })?;
     let text = String::from_utf8(bytes)
         .map_err(|_| refuse("is not a checkpoint: not UTF-8".to_owned()))?;
-    let checkpoint = Checkpoint::from_text(&text, &scene.fingerprint).map_err(|error| {
+    let stored = Checkpoint::<State, Run>::from_text(&text, &scene.fingerprint);
+    let checkpoint = stored.map_err(|error| {
         let next = match error {
             CheckpointError::Scene => {
                 "\n  next: resume with the scene, files and --set of the checkpoint"
@@ -210,18 +260,4 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
     let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(invalid)?;
     model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
     Ok((model, checkpoint.run))
-}
-
-fn store(
-    scene: &SceneFile,
-    model: &FilmRun,
-    run: &Run,
-    files: &dyn Files,
-    path: &Path,
-) -> Result<()> {
-    let checkpoint = Checkpoint::new(&scene.fingerprint, &model.film.state, run);
-    let text = checkpoint
-        .to_text()
-        .map_err(|error| Error::Disk { path: path.to_owned(), problem: error.to_string() })?;
-    write_atomic(files, path, text.as_bytes()).map_err(|error| disk_error(path, &error))
 }

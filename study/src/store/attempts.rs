@@ -34,6 +34,8 @@ pub struct Attempts<'a> {
     files: &'a dyn Files,
     path: PathBuf,
     open: Option<Box<dyn Append>>,
+    /// Whether no attempt counts any more.
+    ended: bool,
 }
 
 #[derive(Deserialize)]
@@ -48,7 +50,7 @@ struct Line {
 impl<'a> Attempts<'a> {
     /// The attempts of a process that holds the lock of the results, after [`take_deaths`].
     pub fn new(results: &Results<'a>) -> Self {
-        Self { files: results.files(), path: results.attempts_path(), open: None }
+        Self { files: results.files(), path: results.attempts_path(), open: None, ended: false }
     }
 
     /// Records that these jobs are about to start. When this returns, a death of the process cannot undo
@@ -57,6 +59,9 @@ impl<'a> Attempts<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`]; the jobs must not start then.
     pub fn start(&mut self, jobs: &[&JobId]) -> Result<()> {
+        if self.ended {
+            return Ok(());
+        }
         let mut text = String::new();
         let mut write = |open: &mut Option<Box<dyn Append>>| -> io::Result<()> {
             let file = match open {
@@ -79,12 +84,20 @@ impl<'a> Attempts<'a> {
     }
 }
 
-impl Drop for Attempts<'_> {
-    fn drop(&mut self) {
-        if self.open.is_some() {
+impl Attempts<'_> {
+    /// Removes the file: the process ends in order, and later attempts of it do not count either.
+    pub fn end(&mut self) {
+        self.ended = true;
+        if self.open.take().is_some() {
             // If it cannot be removed, the next run counts deaths that were none.
             let _ = self.files.remove(&self.path);
         }
+    }
+}
+
+impl Drop for Attempts<'_> {
+    fn drop(&mut self) {
+        self.end();
     }
 }
 

@@ -1,7 +1,8 @@
-//! What a study stores on disk: journal, history files, static references, summary table; and the
-//! check of a results folder.
+//! What a study stores on disk: journal, history files, static references, checkpoints, summary table;
+//! and the check of a results folder.
 
 pub mod attempts;
+pub mod checkpoint_file;
 pub mod damaged;
 pub mod doctor;
 pub mod history_file;

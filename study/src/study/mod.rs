@@ -11,6 +11,7 @@ mod expand;
 mod fold;
 mod grid;
 pub(crate) mod ground;
+pub mod job_limits;
 mod limits;
 pub mod plan;
 mod point;
@@ -30,6 +31,7 @@ use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
+use crate::job::limits::JobLimits;
 use crate::platform::error::{InputError, Result as BillowResult};
 use base::Base;
 use grid::Grid;
@@ -40,6 +42,9 @@ pub(crate) use point::StudyPoint;
 pub(crate) const UNITS: &str = "units";
 /// Key of the checksum of study.json. A study file has none.
 const CHECKSUM: &str = "checksum";
+
+/// The section of the limits of jobs. It changes no job.
+pub(crate) const JOB_LIMITS: &str = "job_limits";
 
 /// A key of a study.
 #[derive(Debug, Clone)]
@@ -216,6 +221,11 @@ impl Study {
         let column = target::find(name, name, &Json::Null, &self.base, &source).ok()?;
         let (key, value) = (column.target.key(), column.target.value(&self.base));
         Some(StudyKey { name: column.name, key, value })
+    }
+
+    /// The limits of its jobs.
+    pub fn job_limits(&self) -> JobLimits {
+        job_limits::of(|key| self.base.settings.value(key).clone())
     }
 
     /// The resolved study: units converted, defaults written out, axes as lists. It is a study file

@@ -91,7 +91,7 @@ fn written_in_section(path: &str, json: &Json, units: &mut DisplayUnits) {
     match json {
         Json::Object(members) => {
             for (name, value) in members {
-                if path.is_empty() && matches!(name.as_str(), "grid" | "units") {
+                if path.is_empty() && matches!(name.as_str(), "grid" | "units" | "job_limits") {
                     continue;
                 }
                 let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };

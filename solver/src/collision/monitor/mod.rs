@@ -77,6 +77,11 @@ impl TunnellingMonitor {
         }
     }
 
+    /// Whether every step so far is tested.
+    pub fn is_block_start(&self) -> bool {
+        self.recorded == 1
+    }
+
     /// Records the positions (m) after a step. Tests the block if this was its last step.
     pub fn record_step(&mut self, mesh: &CollisionMesh, positions: &Field) {
         self.frames[self.recorded].copy_from(positions);

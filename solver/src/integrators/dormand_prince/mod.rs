@@ -77,6 +77,8 @@ pub struct Integrator<const N: usize, B> {
     scales: [f64; N],
     /// Next step of the controller, s; 0 before the first.
     next_step: f64,
+    /// Rates at the end of the last step, if the integration was paused there.
+    paused_rates: Option<[f64; N]>,
 }
 
 /// First trial step over the time to the first target. Chosen.
@@ -92,7 +94,16 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
     /// An integration at this time (s), with this state and its branch. `scales`: initial error scale of each
     /// group; 0 if there is none.
     pub fn new(time: f64, state: [f64; N], branch: B, scales: [f64; N]) -> Self {
-        Self { time, state, branch, steps: 0, carry: [0.0; N], scales, next_step: 0.0 }
+        Self {
+            time,
+            state,
+            branch,
+            steps: 0,
+            carry: [0.0; N],
+            scales,
+            next_step: 0.0,
+            paused_rates: None,
+        }
     }
 
     /// Integrates to exactly `target` (s) and calls `accepted` with the state after every step.
@@ -108,12 +119,34 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         control: &Control,
         accepted: &mut dyn FnMut(&[f64; N]),
     ) -> Result<(), Failure> {
-        let mut rates = system.rates(self.branch, &self.state);
+        self.advance_at_most(system, target, control, &mut u64::MAX.clone(), accepted).map(|_| ())
+    }
+
+    /// Integrates towards `target` (s) by at most `steps` accepted steps, and subtracts the steps taken from
+    /// `steps`. Returns whether it reached the target. A pause changes no bit.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    pub fn advance_at_most<S: System<N, Branch = B>>(
+        &mut self,
+        system: &S,
+        target: f64,
+        control: &Control,
+        steps: &mut u64,
+        accepted: &mut dyn FnMut(&[f64; N]),
+    ) -> Result<bool, Failure> {
+        let paused = self.paused_rates.take();
+        let mut rates = paused.unwrap_or_else(|| system.rates(self.branch, &self.state));
         while self.time < target {
+            if *steps == 0 {
+                self.paused_rates = Some(rates);
+                return Ok(false);
+            }
             if self.steps >= control.step_limit {
                 let place = format!("after {} accepted steps", self.steps);
                 return Err(self.failure(FailureKind::StepLimit, place));
             }
+            *steps -= 1;
             let mut trial = self.trial(system, &rates, target, control)?;
             let leaves = system.margin(self.branch, &trial.state) < 0.0;
             if leaves {
@@ -132,7 +165,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
             };
             accepted(&self.state);
         }
-        Ok(())
+        Ok(true)
     }
 
     /// A finite step that meets the tolerance (adaptive) or has the given length (fixed).

@@ -150,7 +150,8 @@ impl Explicit {
     }
 
     /// Advances towards `target` (s) under a phase by at most `steps` steps, and subtracts the steps taken
-    /// from `steps`. Returns whether it reached the target. A pause changes no bit of the run.
+    /// from `steps`. Returns whether it reached the target. A pause changes no bit of the run: the monitor
+    /// tests its block when it is complete.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -181,8 +182,6 @@ impl Explicit {
         while let Some(end) = interval.next_end() {
             if *steps == 0 {
                 self.state.step_interval = Some(interval);
-                stopwatch.begins(Stage::Audit);
-                self.monitor_interval()?;
                 return Ok(false);
             }
             if self.state.steps >= self.parameters.step_limit {
@@ -206,6 +205,12 @@ impl Explicit {
         stopwatch.begins(Stage::Audit);
         self.monitor_interval()?;
         Ok(true)
+    }
+
+    /// Whether a run that is resumed from the state now reports a passage of film at the same step as this
+    /// one: the tunnelling monitor has tested every step so far.
+    pub fn is_monitored(&self) -> bool {
+        self.monitor.as_ref().is_none_or(TunnellingMonitor::is_block_start)
     }
 
     fn no_advance(&self) -> Failure {

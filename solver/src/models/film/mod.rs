@@ -20,25 +20,28 @@ use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::integrators::explicit::{Explicit, PressureLoad, State};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping;
-use crate::models::run::{self, Model, Observer};
+use crate::models::run::{CheckpointText, Model, Run};
+use crate::output::checkpoint::Checkpoint;
 use crate::output::frames::Frame;
 use crate::output::history::{Sample, Track};
-use crate::output::outcome::{Deployment, Failure};
+use crate::output::outcome::Failure;
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
 use crate::scene::film_scene::{FilmContact, FilmScene};
-use crate::scene::timeline::{Phase, Timeline};
+use crate::scene::timeline::Phase;
 use crate::scene::{Scene, Stepping};
 
 pub mod capsule;
 mod imperfection;
 mod ladder;
 pub mod reference_gap;
+mod solve;
 mod statics;
 mod tracks;
 
 pub use crate::statics::Relaxation;
 pub use ladder::{Ladder, LadderState};
+pub use solve::{resume_scene, solve, solve_scene};
 pub use statics::{Erected, StaticState, erected, reference_scene, static_states};
 pub use tracks::{CONTACT as CONTACT_COLUMNS, FILM_STRESS_99};
 
@@ -49,35 +52,8 @@ pub(super) const ENTRY: ModelEntry = ModelEntry {
     cost,
     reference: Some(ReferenceEntry { scene: reference_scene, ladder: Ladder::new }),
     solve: solve_scene,
+    resume: Some(resume_scene),
 };
-
-/// Runs a scene as film with this contact and CFL number.
-///
-/// # Errors
-/// [`SceneError`] if the scene cannot be started.
-pub fn solve(
-    instruction_set: InstructionSet,
-    scene: &Scene,
-    cfl: f64,
-    contact: Option<FilmContact>,
-    observer: &mut dyn Observer,
-) -> Result<Deployment, SceneError> {
-    let mut run = FilmRun::from_scene(instruction_set, scene, cfl, contact)?;
-    Ok(run::run(&mut run, &Timeline::new(scene), observer))
-}
-
-/// Runs a scene with the contact and the CFL number of the scene.
-///
-/// # Errors
-/// As [`check`], or if the capsule cannot be built.
-pub fn solve_scene(
-    instruction_set: InstructionSet,
-    scene: &Scene,
-    observer: &mut dyn Observer,
-) -> Result<Deployment, SceneError> {
-    let contact = FilmContact::of(&scene.contact);
-    solve(instruction_set, scene, cfl_of(scene)?, Some(contact), observer)
-}
 
 /// Checks a scene for this model, as far as possible without its fold pattern.
 ///
@@ -218,11 +194,8 @@ impl FilmRun {
         cfl: f64,
         contact: Option<FilmContact>,
     ) -> Result<Self, SceneError> {
-        let stowed = Shape::Stowed(scene.design.stowed_height);
-        let (film, mesh) = capsule::film_scene(instruction_set, scene, stowed, cfl)?;
-        let resolved = |contact| capsule::resolved_contact(contact, &scene.design);
-        let film = FilmScene { contact: contact.map(resolved).transpose()?, ..film };
-        Self::of(&film, Some(Rings::of(&mesh, scene.design.stowed_height)))
+        let (film, rings) = solve::stowed(instruction_set, scene, cfl, contact)?;
+        Self::of(&film, Some(rings))
     }
 
     /// Force on the lid while packed, N.
@@ -355,5 +328,13 @@ impl Model for FilmRun {
 
     fn passages(&self) -> u64 {
         self.film.monitor.as_ref().map_or(0, |monitor| monitor.passages)
+    }
+
+    fn can_store(&self) -> bool {
+        self.film.is_monitored()
+    }
+
+    fn checkpoint(&self, fingerprint: &str, run: &Run) -> Option<CheckpointText> {
+        Some(Checkpoint::text(fingerprint, &self.film.state, run))
     }
 }

@@ -50,6 +50,7 @@ pub(super) const ENTRY: ModelEntry = ModelEntry {
     cost: |_| Ok(Cost { elements: 0, steps: 0 }),
     reference: None,
     solve: |_, scene, observer| solve(scene, observer),
+    resume: None,
 };
 
 /// Runs a scene as a piston.

@@ -215,6 +215,15 @@ impl PistonRun {
 
 impl Model for PistonRun {
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
+        self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
+    }
+
+    fn advance_at_most(
+        &mut self,
+        target: f64,
+        phase: &Phase,
+        steps: &mut u64,
+    ) -> Result<bool, Failure> {
         let piston = &self.piston;
         let film_stress = &mut self.film_stress;
         let motion = Motion { piston, phase, min_volume: self.min_volume };
@@ -225,7 +234,7 @@ impl Model for PistonRun {
             let overpressure = pressure - piston.gas.ambient_pressure;
             *film_stress = film_stress.max(piston.end.stress(z, overpressure));
         };
-        self.integrator.advance(&motion, target, &self.control, &mut accepted)
+        self.integrator.advance_at_most(&motion, target, &self.control, steps, &mut accepted)
     }
 
     fn sample(&self, phase: &Phase) -> Sample {

@@ -1,11 +1,13 @@
 //! The run loop, the same for every model: advance, sample, audit, stop.
 //!
-//! [`run`] goes from start to end in one call. A [`Run`] is the same loop as a value: a caller can pause it
-//! after any step, store it ([`crate::output::checkpoint`]) and continue it with the same bits.
+//! [`run`] goes from start to end in one call. Its [`Observer`] is asked every few steps whether the run goes
+//! on, and can ask for a checkpoint ([`crate::output::checkpoint`]). A [`Run`] is the same loop as a value:
+//! read from a checkpoint it continues with the same bits.
 
 use serde::{Deserialize, Serialize};
 
 use crate::output::audit::{self, Audit};
+use crate::output::checkpoint::CheckpointError;
 use crate::output::frames::{Frame, Frames};
 use crate::output::history::{History, Sample, Track};
 use crate::output::measures::{self, Measures, Reference};
@@ -85,7 +87,22 @@ pub trait Model {
     fn passages(&self) -> u64 {
         0
     }
+
+    /// Whether a checkpoint of the state now continues with the same bits, also those of a failure. If not,
+    /// a state within the next steps is.
+    fn can_store(&self) -> bool {
+        true
+    }
+
+    /// The checkpoint of a run in the state now, as text, for the scene with this fingerprint; `None` for a
+    /// model without checkpoints.
+    fn checkpoint(&self, _fingerprint: &str, _run: &Run) -> Option<CheckpointText> {
+        None
+    }
 }
+
+/// A checkpoint as text, or why the state cannot be stored.
+pub type CheckpointText = Result<String, CheckpointError>;
 
 /// Runs a model from time 0 to the end of its timeline.
 ///
@@ -93,12 +110,7 @@ pub trait Model {
 /// with [`FailureKind::EnergyDrift`]. This is decided at the end, when the divisor of the residual is known;
 /// so the history is complete, but there is no verdict.
 pub fn run(model: &mut dyn Model, timeline: &Timeline, observer: &mut dyn Observer) -> Deployment {
-    let mut run = Run::default();
-    loop {
-        if let Some(stop) = run.advance(model, timeline, u64::MAX, observer) {
-            return run.finish(model, timeline, stop);
-        }
-    }
+    Run::default().complete(model, timeline, observer)
 }
 
 /// Progress of a run. Together with the model's state it determines the rest of the run.
@@ -116,6 +128,51 @@ pub struct Run {
 }
 
 impl Run {
+    /// Continues to the end of the timeline, as [`run`] does.
+    pub fn complete(
+        mut self,
+        model: &mut dyn Model,
+        timeline: &Timeline,
+        observer: &mut dyn Observer,
+    ) -> Deployment {
+        let stop = loop {
+            let steps = observer.steps();
+            if let Some(stop) = self.advance(model, timeline, steps, observer) {
+                break stop;
+            }
+            match observer.pause(model.steps()) {
+                Answer::Continue => {}
+                Answer::End => break Stop::Cancelled,
+                Answer::Store => {
+                    if let Some(stop) = self.advance_until_storable(model, timeline, observer) {
+                        break stop;
+                    }
+                    let text = |fingerprint: &str| model.checkpoint(fingerprint, &self);
+                    let pause = Pause { time: self.time, steps: model.steps(), text: &text };
+                    if !observer.store(&pause) {
+                        break Stop::Cancelled;
+                    }
+                }
+            }
+        };
+        self.finish(model, timeline, stop)
+    }
+
+    /// Advances until a checkpoint is possible. Returns how the run ended, if it ended before.
+    fn advance_until_storable(
+        &mut self,
+        model: &mut dyn Model,
+        timeline: &Timeline,
+        observer: &mut dyn Observer,
+    ) -> Option<Stop> {
+        while !model.can_store() {
+            if let Some(stop) = self.advance(model, timeline, 1, observer) {
+                return Some(stop);
+            }
+        }
+        None
+    }
+
     /// Advances by at most `steps` steps of the model. Returns how the run ended, or `None` if it pauses. A
     /// pause changes no bit of the run.
     pub fn advance(
@@ -218,10 +275,55 @@ fn next_breakpoint(breakpoints: &[f64], time: f64, end: f64) -> f64 {
     breakpoints.iter().copied().find(|at| *at > time).unwrap_or(end)
 }
 
-/// Observes a run. It can stop the run but never change it.
+/// Observes a run. It can end the run but never change it.
 pub trait Observer {
     /// Called at every sample. Returning `false` ends the run with [`Stop::Cancelled`].
     fn sample(&mut self, progress: Progress) -> bool;
+
+    /// Called between the parts of the preparation of a run, as mesh and first search for contact. Returning
+    /// `false` ends the run with [`Stop::Cancelled`].
+    fn prepares(&mut self) -> bool {
+        true
+    }
+
+    /// Number of steps until the next call of [`Self::pause`]. 0 asks before the next step.
+    fn steps(&mut self) -> u64 {
+        u64::MAX
+    }
+
+    /// Called between two steps, after this number of accepted steps since time 0.
+    fn pause(&mut self, _steps: u64) -> Answer {
+        Answer::Continue
+    }
+
+    /// Receives the state asked for by [`Answer::Store`]. Returning `false` ends the run with
+    /// [`Stop::Cancelled`].
+    fn store(&mut self, _pause: &Pause<'_>) -> bool {
+        true
+    }
+}
+
+/// What an observer wants at a pause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// The run goes on.
+    Continue,
+    /// The run ends with [`Stop::Cancelled`].
+    End,
+    /// The run gives its state to [`Observer::store`], at once or a few steps later
+    /// ([`Model::can_store`]).
+    Store,
+}
+
+/// A run between two steps.
+#[derive(Clone, Copy)]
+pub struct Pause<'a> {
+    /// Last breakpoint or sample time reached, s.
+    pub time: f64,
+    /// Accepted steps since time 0.
+    pub steps: u64,
+    /// [`Model::checkpoint`] of the run, by the fingerprint of its scene.
+    pub text: &'a dyn Fn(&str) -> Option<CheckpointText>,
 }
 
 /// Where a run is.

@@ -48,7 +48,8 @@ pub(super) fn explanation(
                     windows of the strategy; their times count from the start of the run";
         return (lines, next.to_owned());
     }
-    (lines, next_step(status, short_id, root))
+    let has_history = !cells.text(ColumnId::ContentHash).is_empty();
+    (lines, next_step(status, has_history, short_id, root))
 }
 
 /// What a status means.
@@ -70,14 +71,16 @@ fn meaning(status: Status) -> &'static str {
             "the enclosed volume became zero or negative"
         }
         Status::Failed(FailureKind::StepLimit) => {
-            "the run used all steps of solver.step_limit before its end time"
+            "the run used all steps that solver.step_limit or job_limits.steps allows before its end time"
         }
         Status::Failed(FailureKind::Interpenetrated) => {
             "film passed through film, or intersects film"
         }
-        Status::Timeout => "the job reached its limit of wall time (job_limits.wall_time)",
+        Status::Timeout => "the attempt reached its limit of wall time (job_limits.wall_time)",
         Status::OutOfMemory => "the job needs more memory than it may use",
-        Status::Crashed => "the program died twice while this job ran",
+        Status::Crashed => {
+            "the process died in two attempts at this job; it runs again only on request"
+        }
         Status::Pending
         | Status::Done
         | Status::Cancelled
@@ -87,7 +90,7 @@ fn meaning(status: Status) -> &'static str {
 }
 
 /// What to do about a failure.
-fn next_step(status: Status, short_id: &str, root: &str) -> String {
+fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> String {
     let show = format!("billow show {short_id} {root} --history");
     match status {
         Status::Infeasible => {
@@ -96,7 +99,11 @@ fn next_step(status: Status, short_id: &str, root: &str) -> String {
         Status::Invalid => "change the key that the reason names".to_owned(),
         Status::Panicked => format!("report the reason with {root}/study.json and the job id"),
         Status::Failed(FailureKind::StepLimit) => {
-            format!("{show}: see how the time advanced; then raise solver.step_limit")
+            let rerun = format!("billow rerun {short_id} {root} --job-limit steps=…");
+            match has_history {
+                true => format!("{show}: see how the time advanced; then raise solver.step_limit"),
+                false => format!("{rerun}: the job resumes from its checkpoint"),
+            }
         }
         Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {
             format!("{show}; then a smaller step: billow keys cfl")
@@ -106,9 +113,18 @@ fn next_step(status: Status, short_id: &str, root: &str) -> String {
              pressure times radius over E t is the strain"
                 .to_owned()
         }
-        Status::Timeout | Status::OutOfMemory | Status::Crashed => {
-            format!("billow rerun {short_id} {root}")
-        }
+        Status::Timeout => format!(
+            "billow rerun {short_id} {root} --job-limit wall_time=…: the job resumes from its checkpoint, if \
+             it has one"
+        ),
+        Status::OutOfMemory => format!(
+            "a coarser mesh (design.subdivisions), or billow rerun {short_id} {root} --job-limit memory=… \
+             where the machine has it"
+        ),
+        Status::Crashed => format!(
+            "look for the cause in the messages of the system (memory, a signal of a batch system), then \
+             billow rerun {short_id} {root}"
+        ),
         _ => show,
     }
 }

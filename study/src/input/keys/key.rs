@@ -180,9 +180,11 @@ impl Key {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// Whether a grid may vary it: every key except those that name the file and the study.
+    /// Whether a grid may vary it: every key except those that name the file and the study, and those that
+    /// change no job.
     pub fn varies(&self) -> bool {
-        !matches!(self.path, "format" | "version" | "name" | "question")
+        let names = matches!(self.path, "format" | "version" | "name" | "question");
+        !names && !self.path.starts_with("job_limits.")
     }
 
     /// The default as a value; `Null` where there is none.

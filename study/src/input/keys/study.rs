@@ -28,6 +28,11 @@ pub const SECTIONS: &[(&str, &str)] = &[
     ("solver.stepping", "How the step is chosen: adaptive (a tolerance) or fixed (a step)."),
     ("outputs", "What is stored."),
     ("outputs.thresholds", "Thresholds of the verdict."),
+    (
+        "job_limits",
+        "Limits of every job. A job that reaches one has a row without measures and can go on with a \
+         higher limit; they change no result and no job id.",
+    ),
 ];
 
 /// Keys of a study that hold more than one value, beside the sections, and their meanings.
@@ -280,6 +285,16 @@ pub static KEYS: &[Key] = &[
     key("outputs.thresholds.near_threshold_margin", from(Dimension::Number, 0.0, 1.0), Number(0.02), "0.02",
         "A verdict with a smaller margin is marked near_threshold.")
         .to(|draft, value| draft.scene.outputs.thresholds.near_threshold_margin = number(value))
+        .study_only(),
+
+    key("job_limits.wall_time", likely(above(Dimension::Time, 0.0, 1e9), 1.0, 1e7), Absent("no limit"), "\"2 h\"",
+        "Wall time of one attempt at a job; then its status is timeout.")
+        .study_only(),
+    key("job_limits.steps", KeyKind::Integer(1, MAX_EXACT_INTEGER), Absent("no limit"), "1000000",
+        "Steps of a job; then its status is step_limit. A job within 50 steps of its end may finish.")
+        .study_only(),
+    key("job_limits.memory", likely(above(Dimension::Memory, 0.0, 1e15), 1e6, 1e13), Absent("no limit"), "\"2 GB\"",
+        "Memory of a job, by its estimate; a job that needs more has the status out_of_memory.")
         .study_only(),
 
     key("seed", KeyKind::Integer(0, MAX_EXACT_INTEGER), Integer(0), "1",

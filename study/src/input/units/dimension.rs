@@ -1,10 +1,10 @@
 //! Dimensions of quantities, as powers of the base units.
 
-/// Powers of m, kg, s, K, rad.
-pub type Powers = [i8; 5];
+/// Powers of m, kg, s, K, rad, B.
+pub type Powers = [i8; 6];
 
 /// Base units, in the order of [`Powers`].
-const BASE: [&str; 5] = ["m", "kg", "s", "K", "rad"];
+const BASE: [&str; 6] = ["m", "kg", "s", "K", "rad", "B"];
 
 /// The dimensions a key can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,11 +47,13 @@ pub enum Dimension {
     SpecificHeat,
     /// Heat per time, area and temperature.
     HeatTransfer,
+    /// Memory of a computer.
+    Memory,
 }
 
 impl Dimension {
     /// Every dimension.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Number,
         Self::Length,
         Self::Area,
@@ -71,30 +73,32 @@ impl Dimension {
         Self::Force,
         Self::SpecificHeat,
         Self::HeatTransfer,
+        Self::Memory,
     ];
 
     /// Powers of the base units.
     pub fn powers(self) -> Powers {
         match self {
-            Self::Number => [0, 0, 0, 0, 0],
-            Self::Length => [1, 0, 0, 0, 0],
-            Self::Area => [2, 0, 0, 0, 0],
-            Self::Volume => [3, 0, 0, 0, 0],
-            Self::Mass => [0, 1, 0, 0, 0],
-            Self::Time => [0, 0, 1, 0, 0],
-            Self::Temperature => [0, 0, 0, 1, 0],
-            Self::Angle => [0, 0, 0, 0, 1],
-            Self::Pressure => [-1, 1, -2, 0, 0],
-            Self::Density => [-3, 1, 0, 0, 0],
-            Self::MassFlowRate => [0, 1, -1, 0, 0],
-            Self::Velocity => [1, 0, -1, 0, 0],
-            Self::Acceleration => [1, 0, -2, 0, 0],
-            Self::Energy => [2, 1, -2, 0, 0],
-            Self::Frequency => [0, 0, -1, 0, 0],
-            Self::AngularVelocity => [0, 0, -1, 0, 1],
-            Self::Force => [1, 1, -2, 0, 0],
-            Self::SpecificHeat => [2, 0, -2, -1, 0],
-            Self::HeatTransfer => [0, 1, -3, -1, 0],
+            Self::Number => [0, 0, 0, 0, 0, 0],
+            Self::Length => [1, 0, 0, 0, 0, 0],
+            Self::Area => [2, 0, 0, 0, 0, 0],
+            Self::Volume => [3, 0, 0, 0, 0, 0],
+            Self::Mass => [0, 1, 0, 0, 0, 0],
+            Self::Time => [0, 0, 1, 0, 0, 0],
+            Self::Temperature => [0, 0, 0, 1, 0, 0],
+            Self::Angle => [0, 0, 0, 0, 1, 0],
+            Self::Pressure => [-1, 1, -2, 0, 0, 0],
+            Self::Density => [-3, 1, 0, 0, 0, 0],
+            Self::MassFlowRate => [0, 1, -1, 0, 0, 0],
+            Self::Velocity => [1, 0, -1, 0, 0, 0],
+            Self::Acceleration => [1, 0, -2, 0, 0, 0],
+            Self::Energy => [2, 1, -2, 0, 0, 0],
+            Self::Frequency => [0, 0, -1, 0, 0, 0],
+            Self::AngularVelocity => [0, 0, -1, 0, 1, 0],
+            Self::Force => [1, 1, -2, 0, 0, 0],
+            Self::SpecificHeat => [2, 0, -2, -1, 0, 0],
+            Self::HeatTransfer => [0, 1, -3, -1, 0, 0],
+            Self::Memory => [0, 0, 0, 0, 0, 1],
         }
     }
 
@@ -120,6 +124,7 @@ impl Dimension {
             Self::Force => "a force",
             Self::SpecificHeat => "a specific heat",
             Self::HeatTransfer => "a heat transfer coefficient",
+            Self::Memory => "a size of memory",
         }
     }
 
@@ -145,6 +150,7 @@ impl Dimension {
             Self::Force => &["N", "mN", "kN"],
             Self::SpecificHeat => &["J/(kg K)", "kJ/(kg K)"],
             Self::HeatTransfer => &["W/(m2 K)", "mW/(cm2 K)"],
+            Self::Memory => &["B", "kB", "MB", "GB", "KiB", "MiB", "GiB"],
         }
     }
 

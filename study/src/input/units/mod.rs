@@ -1,6 +1,6 @@
 //! Quantities with units: a number is SI, a text carries its unit ("5 g/s", "40 mm", "30 deg").
 //!
-//! A unit is a product of base units m, kg, s, K, rad to whole powers, times a scale. A decimal scale
+//! A unit is a product of base units m, kg, s, K, rad, B to whole powers, times a scale. A decimal scale
 //! (`mm`, `g`, `bar`, `%`, and also `atm`, `in`, `h` in the numerator) is applied to the decimal digits
 //! as written, and the result is rounded once: "40 mm" is 0.04 and "25.4 um" is 25.4e-6, bit for bit.
 //! `deg` is converted in twice the working precision. Only a unit in the denominator that is not a

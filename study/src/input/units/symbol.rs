@@ -15,7 +15,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    const ONE: Self = Self { powers: [0; 5], exponent: 0, factor: 1, divisor: 1, degrees: 0 };
+    const ONE: Self = Self { powers: [0; 6], exponent: 0, factor: 1, divisor: 1, degrees: 0 };
 
     /// `value` × (π/180)^degrees.
     pub fn apply_degrees(&self, value: f64) -> f64 {
@@ -50,33 +50,42 @@ impl Scale {
     }
 }
 
-/// Symbol, powers of m kg s K rad, factor, power of ten, whether it may have an SI prefix.
+/// Symbol, powers of m kg s K rad B, factor, power of ten, whether it may have an SI prefix.
 type Known = (&'static str, Powers, u64, i32, bool);
 
 /// Every known unit without a prefix; `kg` is `g` with a prefix.
 const KNOWN: &[Known] = &[
-    ("m", [1, 0, 0, 0, 0], 1, 0, true),
-    ("g", [0, 1, 0, 0, 0], 1, -3, true),
-    ("s", [0, 0, 1, 0, 0], 1, 0, true),
-    ("K", [0, 0, 0, 1, 0], 1, 0, true),
-    ("rad", [0, 0, 0, 0, 1], 1, 0, true),
-    ("Pa", [-1, 1, -2, 0, 0], 1, 0, true),
-    ("N", [1, 1, -2, 0, 0], 1, 0, true),
-    ("J", [2, 1, -2, 0, 0], 1, 0, true),
-    ("W", [2, 1, -3, 0, 0], 1, 0, true),
-    ("Hz", [0, 0, -1, 0, 0], 1, 0, true),
-    ("bar", [-1, 1, -2, 0, 0], 1, 5, true),
-    ("l", [3, 0, 0, 0, 0], 1, -3, true),
-    ("L", [3, 0, 0, 0, 0], 1, -3, true),
-    ("t", [0, 1, 0, 0, 0], 1, 3, false),
-    ("min", [0, 0, 1, 0, 0], 60, 0, false),
-    ("h", [0, 0, 1, 0, 0], 3600, 0, false),
-    ("atm", [-1, 1, -2, 0, 0], 101_325, 0, false),
-    ("in", [1, 0, 0, 0, 0], 254, -4, false),
-    ("mil", [1, 0, 0, 0, 0], 254, -7, false),
-    ("ft", [1, 0, 0, 0, 0], 3048, -4, false),
-    ("%", [0, 0, 0, 0, 0], 1, -2, false),
-    ("1", [0, 0, 0, 0, 0], 1, 0, false),
+    ("m", [1, 0, 0, 0, 0, 0], 1, 0, true),
+    ("g", [0, 1, 0, 0, 0, 0], 1, -3, true),
+    ("s", [0, 0, 1, 0, 0, 0], 1, 0, true),
+    ("K", [0, 0, 0, 1, 0, 0], 1, 0, true),
+    ("rad", [0, 0, 0, 0, 1, 0], 1, 0, true),
+    ("Pa", [-1, 1, -2, 0, 0, 0], 1, 0, true),
+    ("N", [1, 1, -2, 0, 0, 0], 1, 0, true),
+    ("J", [2, 1, -2, 0, 0, 0], 1, 0, true),
+    ("W", [2, 1, -3, 0, 0, 0], 1, 0, true),
+    ("Hz", [0, 0, -1, 0, 0, 0], 1, 0, true),
+    ("bar", [-1, 1, -2, 0, 0, 0], 1, 5, true),
+    ("l", [3, 0, 0, 0, 0, 0], 1, -3, true),
+    ("L", [3, 0, 0, 0, 0, 0], 1, -3, true),
+    ("t", [0, 1, 0, 0, 0, 0], 1, 3, false),
+    ("min", [0, 0, 1, 0, 0, 0], 60, 0, false),
+    ("h", [0, 0, 1, 0, 0, 0], 3600, 0, false),
+    ("atm", [-1, 1, -2, 0, 0, 0], 101_325, 0, false),
+    ("in", [1, 0, 0, 0, 0, 0], 254, -4, false),
+    ("mil", [1, 0, 0, 0, 0, 0], 254, -7, false),
+    ("ft", [1, 0, 0, 0, 0, 0], 3048, -4, false),
+    ("B", [0, 0, 0, 0, 0, 1], 1, 0, false),
+    ("kB", [0, 0, 0, 0, 0, 1], 1, 3, false),
+    ("MB", [0, 0, 0, 0, 0, 1], 1, 6, false),
+    ("GB", [0, 0, 0, 0, 0, 1], 1, 9, false),
+    ("TB", [0, 0, 0, 0, 0, 1], 1, 12, false),
+    ("KiB", [0, 0, 0, 0, 0, 1], 1 << 10, 0, false),
+    ("MiB", [0, 0, 0, 0, 0, 1], 1 << 20, 0, false),
+    ("GiB", [0, 0, 0, 0, 0, 1], 1 << 30, 0, false),
+    ("TiB", [0, 0, 0, 0, 0, 1], 1 << 40, 0, false),
+    ("%", [0, 0, 0, 0, 0, 0], 1, -2, false),
+    ("1", [0, 0, 0, 0, 0, 0], 1, 0, false),
 ];
 
 /// SI prefixes and their powers of ten.
@@ -99,7 +108,7 @@ const PREFIXES: &[(&str, i32)] = &[
 /// One symbol, with its prefix.
 fn symbol(name: &str) -> Option<Scale> {
     if matches!(name, "deg" | "°") {
-        return Some(Scale { powers: [0, 0, 0, 0, 1], degrees: 1, ..Scale::ONE });
+        return Some(Scale { powers: [0, 0, 0, 0, 1, 0], degrees: 1, ..Scale::ONE });
     }
     let found = |&(_, powers, factor, exponent, _): &Known, prefix: i32| Scale {
         powers,
@@ -130,7 +139,7 @@ pub(super) fn symbols(powers: Powers) -> Vec<String> {
             symbols.extend(PREFIXES.iter().map(|(prefix, _)| format!("{prefix}{symbol}")));
         }
     }
-    if powers == [0, 0, 0, 0, 1] {
+    if powers == [0, 0, 0, 0, 1, 0] {
         symbols.extend(["deg", "°"].map(str::to_owned));
     }
     symbols

@@ -315,7 +315,7 @@ columns! {
         "height of the solved pattern, erected"
         end => end.pattern(|pattern| pattern.height);
     Reason "reason" Text [""] Outcome Neither
-        "why the point is infeasible, the job is invalid or panicked, or a done job has no verdict"
+        "why the point is infeasible, the job has no result, or a done job has no verdict"
         end => end.reason();
     Nearest "nearest" Text [""] Outcome Neither
         "nearest feasible values (SI), each for a change of that key alone"
@@ -336,7 +336,7 @@ columns! {
         "SHA-256 of names, lengths and values of history and frames"
         end => end.content_hash.map(str::to_owned);
     WallSeconds "wall_seconds" Number ["s"] Cost Neither
-        "wall time of the job"
+        "wall time of the job without its static equilibria; of a resumed job, since it was resumed"
         end => end.seconds();
     NsPerElementStep "ns_per_element_step" Number ["ns"] Cost Neither
         "wall time over elements and steps; null without elements"

@@ -11,6 +11,11 @@ use billow_solver::scene::error::SceneError;
 use crate::job::executor::Outcome;
 use crate::job::{Job, Status};
 
+/// The reason of a job in quarantine.
+const CRASHED: &str = "the process died in two attempts at this job, in the last one with no other job \
+                       beside it (memory, a signal, an error in the program); next: billow rerun --status \
+                       crashed";
+
 /// A job that ended, as the table of columns sees it. The methods return `None` for what this job
 /// does not have; its cell is then null.
 pub struct JobEnd<'a> {
@@ -36,10 +41,12 @@ impl<'a> JobEnd<'a> {
             Outcome::Refused(SceneError::Fold(FoldError::Infeasible { .. })) => Status::Infeasible,
             Outcome::Refused(_) => Status::Invalid,
             Outcome::Panicked(_) => Status::Panicked,
+            Outcome::Limited(limit) => limit.status(),
+            Outcome::Crashed => Status::Crashed,
         };
-        // A job that panicked may have panicked in the solution of its pattern.
+        // A job that panicked or crashed may have done so in the solution of its pattern.
         let pattern = match outcome {
-            Outcome::Panicked(_) => None,
+            Outcome::Panicked(_) | Outcome::Crashed => None,
             _ => FoldPattern::new(&job.scene.design).ok(),
         };
         Some(Self { job, outcome, status, pattern, content_hash })
@@ -49,7 +56,7 @@ impl<'a> JobEnd<'a> {
     pub fn deployment(&self) -> Option<&'a Deployment> {
         match self.outcome {
             Outcome::Ran { deployment, .. } => Some(deployment),
-            Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+            _ => None,
         }
     }
 
@@ -94,10 +101,10 @@ impl<'a> JobEnd<'a> {
         samples.reduce(|largest, sample| if sample[0] > largest[0] { sample } else { largest })
     }
 
-    /// A threshold of the verdict. A job that panicked shows none.
+    /// A threshold of the verdict. A job that panicked or crashed shows none.
     pub fn threshold(&self, threshold: fn(&Thresholds) -> f64) -> Option<f64> {
-        let panicked = matches!(self.outcome, Outcome::Panicked(_));
-        (!panicked).then(|| threshold(&self.job.scene.outputs.thresholds))
+        let unknown = matches!(self.outcome, Outcome::Panicked(_) | Outcome::Crashed);
+        (!unknown).then(|| threshold(&self.job.scene.outputs.thresholds))
     }
 
     /// A dimension of the solved fold pattern.
@@ -122,6 +129,8 @@ impl<'a> JobEnd<'a> {
             }
             Outcome::Refused(error) => Some(error.to_string()),
             Outcome::Panicked(message) => Some(message.clone()),
+            Outcome::Limited(limit) => Some(limit.reason()),
+            Outcome::Crashed => Some(CRASHED.to_owned()),
             Outcome::Cancelled => None,
         }
     }
@@ -130,15 +139,14 @@ impl<'a> JobEnd<'a> {
     pub fn seconds(&self) -> Option<f64> {
         match self.outcome {
             Outcome::Ran { seconds, .. } => Some(*seconds),
-            Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+            _ => None,
         }
     }
 
-    /// Wall time over elements and accepted steps, ns.
+    /// Wall time over elements and accepted steps, ns. Both count from the last start or resume.
     pub fn ns_per_element_step(&self) -> Option<f64> {
-        let run = self.deployment()?;
-        let element_steps = run.steps as f64 * run.elements as f64;
-        let seconds = self.seconds()?;
+        let Outcome::Ran { deployment, seconds, steps } = self.outcome else { return None };
+        let element_steps = *steps as f64 * deployment.elements as f64;
         (element_steps > 0.0).then(|| seconds * 1e9 / element_steps)
     }
 }

@@ -160,6 +160,11 @@ pub fn scan_at_most(path: &Path, limit: u64, visit: &mut dyn FnMut(&[u8])) -> io
 /// Length of a part of [`scan_at_most`], bytes. Chosen: large against the cost of a call.
 const PART: usize = 64 << 10;
 
+/// The text of /proc/self/status; `None` where the system has none.
+pub fn process_status() -> Option<String> {
+    fs::read_to_string("/proc/self/status").ok()
+}
+
 /// The path in the same folder whose name is nearest to that of a path that does not exist; also with
 /// the ending `.json` added.
 pub fn nearest_name(path: &Path) -> Option<String> {

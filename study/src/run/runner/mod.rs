@@ -1,19 +1,22 @@
 //! Runs a study: plans, skips finished jobs, runs the others, stores every job as it ends.
 //!
-//! The workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. Only
-//! the calling thread touches the disk (`state`). It stores the history file of a job first and its
-//! journal record second, so a record always has its file. A job that was interrupted in between runs
-//! again and gives the same bits.
+//! The workers (one rayon pool, over jobs only) take batches of jobs in plan order and compute. The
+//! calling thread stores results (`state`): the history file of a job first and its journal record
+//! second, so a record always has its file. A job that was interrupted in between runs again and gives
+//! the same bits. A worker writes only the line of its attempt and the checkpoints of its job
+//! (`attempt_log`).
 //!
 //! A job that is run again ([`Run::rerun`]) is invalidated first. Its new history is compared with
 //! the hash of the old one.
 
 use std::collections::BTreeSet;
 use std::num::NonZero;
+use std::time::Duration;
 
 use crate::input::study_file::Json;
 use crate::job::JobId;
 use crate::job::executor::Executor;
+use crate::job::limits::JobLimits;
 use crate::job::row::Counts;
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
@@ -21,10 +24,16 @@ use crate::run::event::{Event, Reporter};
 use crate::store::results::Results;
 use crate::study::plan::{FinishedRow, Generation};
 
+mod attempt_log;
+mod quarantine;
 mod state;
 mod workers;
 
+use attempt_log::AttemptLog;
 use state::State;
+
+/// Time between two checkpoints of a job, at least. Chosen: a crash loses little, and a short job has none.
+pub const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(30);
 
 /// What to run, and with what.
 pub struct Run<'a> {
@@ -42,6 +51,10 @@ pub struct Run<'a> {
     pub results: Results<'a>,
     /// Number of threads; `None` for one per core.
     pub threads: Option<NonZero<usize>>,
+    /// Limits of every job.
+    pub limits: JobLimits,
+    /// Time between two checkpoints of a job, at least: [`CHECKPOINT_INTERVAL`].
+    pub checkpoint_interval: Duration,
     /// Requests an early stop.
     pub stop: Stop,
     /// Runs only these jobs, also finished ones; `None` runs every job that is not finished.
@@ -78,9 +91,11 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     }
     run.results.mend_journal(&journal)?;
     journal.faults.clear();
-    let mut state = State::new(run, journal);
+    let log = AttemptLog::new(&run.results, &mut journal)?;
+    let mut state = State::new(run, &log, journal);
     state.record_study(&study)?;
     state.invalidate()?;
+    state.remove_checkpoints()?;
     let mut finished = Vec::new();
     let mut last = None;
     while run.stop.requested().is_none()
@@ -89,7 +104,7 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     {
         last = Some(generation.number);
         let missing = state.begin_generation(generation, reporter)?;
-        state.run_jobs(&missing, reporter)?;
+        state.run_jobs(missing, reporter)?;
         finished = state.finished();
     }
     state.write_table()?;
@@ -97,6 +112,8 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     Ok(state.summary())
 }
 
+#[cfg(test)]
+mod attempt_tests;
 #[cfg(test)]
 mod rerun_tests;
 #[cfg(test)]

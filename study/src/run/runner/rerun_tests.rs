@@ -41,6 +41,8 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         executor: &executor,
         results: Results::new(files, root),
         threads: NonZero::new(1),
+        limits: JobLimits::default(),
+        checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
         rerun: ids.as_ref(),
     };
@@ -54,7 +56,7 @@ fn history(root: &Path, number: u32) -> Vec<u8> {
 
 /// The same job with one more sample: other bits.
 fn other_bits(number: u32) -> Outcome {
-    Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5 }
+    Outcome::Ran { deployment: Box::new(fixture::deployment(number, 8)), seconds: 0.5, steps: 100 }
 }
 
 #[test]

@@ -6,15 +6,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use super::workers::{self, Ended, Message};
+use super::attempt_log::AttemptLog;
+use super::quarantine::{self, Deaths};
+use super::workers::{self, Ended, Message, WorkerPool};
 use super::{Run, Summary};
+use billow_solver::output::outcome::FailureKind;
+
 use crate::job::point::Point;
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
 use crate::platform::error::{Error, Result};
+use crate::platform::memory::limits;
 use crate::run::event::{Event, Reporter};
+use crate::run::reservation::Reservations;
 use crate::store::history_file;
-use crate::store::journal::{self, Journal, Record, Writer};
+use crate::store::journal::{self, Journal, Record};
 use crate::store::table::Table;
 use crate::study::plan::{FinishedRow, Generation};
 
@@ -30,9 +36,9 @@ const MAX_JOBS_PER_SYNC: usize = 64;
 const MAX_MESSAGES_PER_WORKER: usize = 4;
 
 /// State of a run.
-pub(super) struct State<'a> {
+pub(super) struct State<'a, 'w> {
     run: &'a Run<'a>,
-    writer: Writer<'a>,
+    log: &'a AttemptLog<'w>,
     /// The text of study.json that the journal has.
     recorded_study: Option<String>,
     /// Old records of jobs that must run again, for comparison.
@@ -41,6 +47,8 @@ pub(super) struct State<'a> {
     recorded: BTreeMap<JobId, Record>,
     /// Records of planned jobs, with undamaged files.
     records: BTreeMap<JobId, Record>,
+    /// Deaths of earlier processes.
+    deaths: Deaths,
     /// Every point planned so far.
     points: Vec<Point>,
     summary: Summary,
@@ -48,16 +56,17 @@ pub(super) struct State<'a> {
     table_outdated: bool,
 }
 
-impl<'a> State<'a> {
+impl<'a, 'w> State<'a, 'w> {
     /// The state at the start, with the journals of earlier runs.
-    pub(super) fn new(run: &'a Run<'a>, journal: Journal) -> Self {
+    pub(super) fn new(run: &'a Run<'a>, log: &'a AttemptLog<'w>, journal: Journal) -> Self {
         Self {
             run,
-            writer: Writer::new(run.results.files(), run.results.journal_path()),
+            log,
             recorded_study: journal.study,
             old_records: journal.invalidated,
             recorded: journal.records,
             records: BTreeMap::new(),
+            deaths: Deaths::new(journal.deaths),
             points: Vec::new(),
             summary: Summary::default(),
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
@@ -70,7 +79,7 @@ impl<'a> State<'a> {
         if self.recorded_study.as_deref() == Some(text) {
             return Ok(());
         }
-        self.writer.study(text)?;
+        self.log.writer().study(text)?;
         self.recorded_study = Some(text.to_owned());
         Ok(())
     }
@@ -81,10 +90,21 @@ impl<'a> State<'a> {
         let finished = rerun.iter().filter(|job| self.recorded.contains_key(*job));
         let finished: Vec<JobId> = finished.cloned().collect();
         if !finished.is_empty() {
-            self.writer.invalidate(&finished)?;
+            self.log.writer().invalidate(&finished)?;
         }
         for job in finished {
+            self.deaths.forget(&job);
             self.old_records.extend(self.recorded.remove_entry(&job));
+        }
+        Ok(())
+    }
+
+    /// Removes the checkpoints of jobs that have ended: those of a process that died in between.
+    pub(super) fn remove_checkpoints(&self) -> Result<()> {
+        for id in self.log.stored() {
+            if self.recorded.get(&id).is_some_and(|record| !reached_limit(record)) {
+                self.log.remove(&id)?;
+            }
         }
         Ok(())
     }
@@ -116,10 +136,15 @@ impl<'a> State<'a> {
                 },
             }
         }
-        let finished = seen.len() - missing.len();
-        if let Some(rerun) = self.run.rerun {
-            missing.retain(|job| rerun.contains(&job.id));
+        match self.run.rerun {
+            Some(rerun) => missing.retain(|job| rerun.contains(&job.id)),
+            None => self.quarantine(&mut missing, reporter)?,
         }
+        let suspects = missing.iter().filter(|job| self.deaths.is_suspect(&job.id));
+        if let Some(note) = quarantine::suspects_note(suspects) {
+            reporter.event(&Event::Note(note));
+        }
+        let finished = seen.iter().filter(|id| self.records.contains_key(*id)).count();
         let jobs = finished + missing.len();
         reporter.event(&Event::GenerationStarted { number: generation.number, jobs, finished });
         self.points.extend(generation.points);
@@ -127,39 +152,88 @@ impl<'a> State<'a> {
         Ok(missing)
     }
 
-    /// Runs jobs and stores them as they end.
-    pub(super) fn run_jobs(&mut self, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
-        if jobs.is_empty() {
+    /// Takes the jobs in quarantine out of the missing ones and records their rows.
+    fn quarantine(&mut self, missing: &mut Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
+        let quarantined: Vec<Job> =
+            missing.extract_if(.., |job| self.deaths.is_quarantined(&job.id)).collect();
+        let root = self.run.results.root().display().to_string();
+        let Some(note) = quarantine::quarantine_note(quarantined.iter(), &root) else {
             return Ok(());
+        };
+        reporter.event(&Event::Note(note));
+        let records: Vec<Record> = quarantined.iter().filter_map(quarantine::record).collect();
+        self.log.writer().append(&records)?;
+        self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
+        Ok(())
+    }
+
+    /// Runs jobs and stores them as they end: suspects last, each with no other job beside it.
+    pub(super) fn run_jobs(&mut self, jobs: Vec<Job>, reporter: &mut dyn Reporter) -> Result<()> {
+        let (suspects, others): (Vec<Job>, Vec<Job>) =
+            jobs.into_iter().partition(|job| self.deaths.is_suspect(&job.id));
+        if !others.is_empty() {
+            self.run_on(self.run.threads.map_or(0, NonZero::get), &others, reporter)?;
         }
+        for suspect in suspects {
+            if self.run.stop.requested().is_none() {
+                self.run_on(1, &[suspect], reporter)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs jobs on this number of threads; 0 for one thread per core.
+    fn run_on(&mut self, threads: usize, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
+        // Before the threads start: what they take is in the margin.
+        let free = limits();
         let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.run.threads.map_or(0, NonZero::get))
+            .num_threads(threads)
             .thread_name(|thread| format!("billow-{thread}"))
             .build()
             .map_err(|error| Error::Disk {
                 path: "threads".into(),
                 problem: format!("cannot start: {error}\n  next: ask for fewer with --threads N"),
             })?;
+        let memory = Reservations::of(&free, pool.current_num_threads());
         let capacity = MAX_MESSAGES_PER_WORKER * pool.current_num_threads();
         let (sender, receiver) = mpsc::sync_channel(capacity);
         let abort = AtomicBool::new(false);
-        let stop = &self.run.stop;
-        let ending = || abort.load(Ordering::Relaxed) || stop.requested().is_some();
-        let executor = self.run.executor;
+        let (stop, log) = (&self.run.stop, self.log);
+        let ending = || {
+            let stopped = stop.requested().is_some();
+            if stopped {
+                log.stop();
+            }
+            abort.load(Ordering::Relaxed) || stopped
+        };
+        let workers = WorkerPool {
+            pool: &pool,
+            executor: self.run.executor,
+            jobs,
+            limits: self.run.limits,
+            memory: &memory,
+            log,
+            checkpoint_interval: self.run.checkpoint_interval,
+            ending: &ending,
+        };
         std::thread::scope(|scope| {
-            scope.spawn(|| workers::work(&pool, executor, jobs, &ending, sender));
+            scope.spawn(|| workers.work(sender));
             let mut stored = Ok(());
             while let Some((messages, ended)) = receive(&receiver) {
-                for message in &messages {
-                    if let Some(event) = workers::event(message, jobs) {
+                ending();
+                for message in messages {
+                    if let Some(event) = workers::event(&message, jobs) {
                         reporter.event(&event);
+                    }
+                    if let (Message::Failed(error), Ok(())) = (message, &stored) {
+                        stored = Err(error);
                     }
                 }
                 if stored.is_ok() {
                     stored = self.store(jobs, ended, reporter);
-                    // After an error the workers stop. Jobs that end meanwhile run again next time.
-                    abort.store(stored.is_err(), Ordering::Relaxed);
                 }
+                // After an error the workers stop. Jobs that end meanwhile run again next time.
+                abort.store(stored.is_err(), Ordering::Relaxed);
             }
             stored
         })
@@ -174,7 +248,7 @@ impl<'a> State<'a> {
     ) -> Result<()> {
         let mut events = Vec::with_capacity(ended.len());
         let mut records = Vec::with_capacity(ended.len());
-        for Ended { index, thread, cells, deployment } in ended {
+        for Ended { index, thread, cells, deployment, reservation } in ended {
             let job = &jobs[index];
             let (mut file_hash, mut file_stamp) = (None, None);
             if let Some(deployment) = deployment {
@@ -193,16 +267,22 @@ impl<'a> State<'a> {
                 verdict: Some(verdict.to_owned()).filter(|text| !text.is_empty()),
             });
             records.push(Record { job: job.id.clone(), cells, file_hash, file_stamp });
+            drop(reservation);
         }
         for (id, reference) in self.run.executor.references() {
             self.run.results.write_reference(&id, &reference)?;
         }
         if !records.is_empty() {
-            self.writer.append(&records)?;
+            self.log.writer().append(&records)?;
             self.summary.ran += records.len();
             self.table_outdated = true;
             for record in &records {
                 self.compare_with_old(record);
+            }
+            for record in &records {
+                if !reached_limit(record) {
+                    self.log.remove(&record.job)?;
+                }
             }
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
@@ -218,6 +298,10 @@ impl<'a> State<'a> {
     /// Compares status and content hash of a job that ran again with its old record.
     fn compare_with_old(&mut self, record: &Record) {
         let Some(old) = self.old_records.remove(&record.job) else { return };
+        if reached_limit(&old) || reached_limit(record) {
+            // There are no bits to compare.
+            return;
+        }
         let hash = |record: &Record| record.cells.text(ColumnId::ContentHash).to_owned();
         if old.cells.status() == record.cells.status() && hash(&old) == hash(record) {
             self.summary.same += 1;
@@ -256,6 +340,15 @@ impl<'a> State<'a> {
         }
         summary
     }
+}
+
+/// Whether a job was ended by a limit, or crashed. Its checkpoint is kept, so that it can go on.
+fn reached_limit(record: &Record) -> bool {
+    let limits = [Status::Timeout, Status::OutOfMemory, Status::Crashed];
+    let status = record.cells.status();
+    // A run that used up solver.step_limit has a history.
+    let steps = status == Status::Failed(FailureKind::StepLimit) && record.file_hash.is_none();
+    limits.contains(&status) || steps
 }
 
 /// Messages since the last call, ended jobs apart; `None` when no worker remains.

@@ -69,6 +69,8 @@ fn run_on(
         executor,
         results: Results::new(files, root),
         threads: NonZero::new(threads),
+        limits: JobLimits::default(),
+        checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
         rerun: None,
     };
@@ -292,6 +294,8 @@ fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
         executor: &executor,
         results: Results::new(&Disk, folder.path()),
         threads: NonZero::new(1),
+        limits: JobLimits::default(),
+        checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: stop.clone(),
         rerun: None,
     };
@@ -328,6 +332,8 @@ fn a_resumed_study_plans_its_generations_again() {
             executor: &executor,
             results: Results::new(&Disk, folder.path()),
             threads: NonZero::new(2),
+            limits: JobLimits::default(),
+            checkpoint_interval: CHECKPOINT_INTERVAL,
             stop: Stop::new(),
             rerun: None,
         };

@@ -1,22 +1,31 @@
-//! The workers of a run: they compute and send messages. They do not touch the disk.
+//! The workers of a run: they compute and send messages.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::SyncSender;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use billow_solver::models::run::Progress;
 use billow_solver::output::outcome::Deployment;
 use rayon::ThreadPool;
 
+use super::attempt_log::AttemptLog;
+use crate::job::control::{Control, Order, Task};
 use crate::job::executor::{Executor, Outcome, execute_guarded};
+use crate::job::limits::{JobLimits, Limit};
+use crate::job::memory::estimate;
 use crate::job::row::Cells;
 use crate::job::{self, Job};
+use crate::platform::error::{Error, Result};
 use crate::run::event::Event;
+use crate::run::reservation::{Reservation, Reservations};
 use crate::store::history_file;
 
 /// Time between two progress messages of one thread, at least. Chosen: faster than a reader notices.
 const MIN_SAMPLE_INTERVAL: Duration = Duration::from_millis(100);
+/// Time between two checkpoints of a job over the time that one takes, at least. Chosen: checkpoints then
+/// cost at most 1 % of a run.
+const MIN_CHECKPOINT_RATIO: u32 = 100;
 
 /// A message of a worker.
 pub enum Message {
@@ -34,8 +43,12 @@ pub enum Message {
         /// Simulated time, height and pressure.
         progress: Progress,
     },
+    /// A message for the user.
+    Note(String),
     /// A job ended. A cancelled job gives no message.
     Ended(Box<Ended>),
+    /// The attempt at a job cannot be recorded, so the worker ended.
+    Failed(Error),
 }
 
 /// A job that ended.
@@ -48,6 +61,8 @@ pub struct Ended {
     pub cells: Cells,
     /// The result of a job that ran.
     pub deployment: Option<Box<Deployment>>,
+    /// The memory of its batch, held until the result is stored.
+    pub reservation: Arc<Reservation>,
 }
 
 /// The event of a message; `None` for an ended job, whose event follows when it is stored.
@@ -61,65 +76,200 @@ pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
         Message::Sample { thread, progress } => {
             Some(Event::JobSample { thread: *thread, progress: *progress })
         }
-        Message::Ended(_) => None,
+        Message::Note(text) => Some(Event::Note(text.clone())),
+        Message::Ended(_) | Message::Failed(_) => None,
     }
 }
 
-/// Runs all jobs on a pool, batch by batch in their order, until all are done or `ending` returns
-/// `true`. The dropped sender signals to the receiver that no message follows.
-pub fn work(
-    pool: &ThreadPool,
-    executor: &dyn Executor,
-    jobs: &[Job],
-    ending: &(dyn Fn() -> bool + Sync),
-    sender: SyncSender<Message>,
-) {
-    let next = AtomicUsize::new(0);
-    let batch = executor.batch().max(1);
-    pool.broadcast(|context| {
-        let thread = context.index();
-        while !ending() {
-            let first = next.fetch_add(batch, Ordering::Relaxed);
-            let Some(rest) = jobs.get(first..).filter(|rest| !rest.is_empty()) else { break };
-            let refs: Vec<&Job> = rest.iter().take(batch).collect();
-            // Sending fails when the receiver stopped after an error.
-            if sender.send(Message::Started { index: first, thread }).is_err() {
-                break;
-            }
-            let last_sample = Mutex::new(Instant::now());
-            let observer = |_: usize, progress: Progress| {
-                let mut last_sample = last_sample.lock().unwrap_or_else(PoisonError::into_inner);
-                if last_sample.elapsed() >= MIN_SAMPLE_INTERVAL {
-                    *last_sample = Instant::now();
-                    // A sample is dropped when the channel is full.
-                    let _ = sender.try_send(Message::Sample { thread, progress });
-                }
-                !ending()
-            };
-            let outcomes = execute_guarded(executor, &refs, &observer);
-            for (offset, outcome) in outcomes.into_iter().enumerate() {
-                let Some(ended) = finish(first + offset, thread, refs[offset], outcome) else {
-                    continue;
+/// What the workers compute, and with what.
+pub struct WorkerPool<'a, 'w> {
+    /// The threads.
+    pub pool: &'a ThreadPool,
+    /// Computes the jobs.
+    pub executor: &'a dyn Executor,
+    /// The jobs.
+    pub jobs: &'a [Job],
+    /// Their limits.
+    pub limits: JobLimits,
+    /// The memory that they share.
+    pub memory: &'a Arc<Reservations>,
+    /// Their attempts and checkpoints.
+    pub log: &'a AttemptLog<'w>,
+    /// Time between two checkpoints of a job, at least.
+    pub checkpoint_interval: Duration,
+    /// Whether the run ends now.
+    pub ending: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl WorkerPool<'_, '_> {
+    /// Runs all jobs on the pool, batch by batch in their order, until all are done or the run ends. The
+    /// dropped sender signals to the receiver that no message follows.
+    pub fn work(&self, sender: SyncSender<Message>) {
+        let next = AtomicUsize::new(0);
+        let batch = self.executor.batch().max(1);
+        self.pool.broadcast(|context| {
+            let thread = context.index();
+            while !(self.ending)() {
+                let first = next.fetch_add(batch, Ordering::Relaxed);
+                let Some(rest) = self.jobs.get(first..).filter(|rest| !rest.is_empty()) else {
+                    break;
                 };
-                if sender.send(Message::Ended(Box::new(ended))).is_err() {
-                    return;
+                let jobs = &rest[..batch.min(rest.len())];
+                let Some((refused, reservation)) = self.admit(jobs) else { break };
+                let reservation = Arc::new(reservation);
+                // Sending fails when the receiver stopped after an error.
+                if sender.send(Message::Started { index: first, thread }).is_err() {
+                    break;
                 }
+                match self.run(jobs, refused, thread, &sender) {
+                    Ok(outcomes) => {
+                        for (offset, outcome) in outcomes.into_iter().enumerate() {
+                            let Some((cells, deployment)) = finish(&jobs[offset], outcome) else {
+                                continue;
+                            };
+                            let (index, reservation) = (first + offset, Arc::clone(&reservation));
+                            let ended = Ended { index, thread, cells, deployment, reservation };
+                            if sender.send(Message::Ended(Box::new(ended))).is_err() {
+                                return;
+                            }
+                        }
+                    }
+                    Err(error) => {
+                        let _ = sender.send(Message::Failed(error));
+                        return;
+                    }
+                }
+            }
+        });
+        drop(sender);
+    }
+
+    /// Runs the jobs of a batch that are not refused, after their attempts are recorded.
+    fn run(
+        &self,
+        jobs: &[Job],
+        refused: Vec<Option<Outcome>>,
+        thread: usize,
+        sender: &SyncSender<Message>,
+    ) -> Result<Vec<Outcome>> {
+        let control =
+            |job| JobControl { workers: self, job, thread, sender, clock: Clock::start() };
+        let controls: Vec<_> = jobs.iter().map(control).collect();
+        let mut tasks = Vec::with_capacity(jobs.len());
+        for (control, refused) in controls.iter().zip(&refused) {
+            if refused.is_none() {
+                let job = control.job;
+                self.log.start(&job.id)?;
+                let checkpoint = self.log.checkpoint(&job.id).unwrap_or_else(|error| {
+                    control.note(format!("{error}; the job starts from its beginning"));
+                    None
+                });
+                tasks.push(Task { job, limits: self.limits, checkpoint, control });
             }
         }
-    });
-    drop(sender);
+        let mut outcomes = execute_guarded(self.executor, &tasks).into_iter();
+        let outcome = |refused: Option<Outcome>| refused.or_else(|| outcomes.next());
+        Ok(refused.into_iter().filter_map(outcome).collect())
+    }
+
+    /// Reserves the memory of a batch, and says how those of its jobs ended that do not run. `None` when the run
+    /// ends.
+    fn admit(&self, jobs: &[Job]) -> Option<(Vec<Option<Outcome>>, Reservation)> {
+        let mut reserved = 0_u64;
+        let refused = jobs.iter().map(|job| {
+            let needed = estimate(&job.scene).total;
+            let given = self.limits.memory.filter(|limit| needed > *limit);
+            let given = given.map(|limit| Limit::Memory { limit, needed });
+            let available = || self.memory.refuses(needed);
+            let limit = given.or_else(|| Some(Limit::Available { limit: available()?, needed }));
+            if limit.is_none() {
+                reserved = reserved.saturating_add(needed);
+            }
+            limit.map(Outcome::Limited)
+        });
+        let refused = refused.collect();
+        Some((refused, self.memory.reserve(reserved, self.ending)?))
+    }
+}
+
+/// The runner of one job.
+struct JobControl<'a, 'w> {
+    workers: &'a WorkerPool<'a, 'w>,
+    job: &'a Job,
+    thread: usize,
+    sender: &'a SyncSender<Message>,
+    clock: Mutex<Clock>,
+}
+
+/// When a job was last asked for something.
+struct Clock {
+    sample: Instant,
+    checkpoint: Instant,
+    /// Time that the last checkpoint took.
+    cost: Duration,
+}
+
+impl Clock {
+    fn start() -> Mutex<Self> {
+        let now = Instant::now();
+        Mutex::new(Self { sample: now, checkpoint: now, cost: Duration::ZERO })
+    }
+}
+
+impl JobControl<'_, '_> {
+    fn clock(&self) -> MutexGuard<'_, Clock> {
+        self.clock.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Control for JobControl<'_, '_> {
+    fn order(&self) -> Order {
+        if (self.workers.ending)() {
+            return Order::End;
+        }
+        let mut clock = self.clock();
+        let pause = self.workers.checkpoint_interval.max(clock.cost * MIN_CHECKPOINT_RATIO);
+        if clock.checkpoint.elapsed() < pause {
+            return Order::Continue;
+        }
+        clock.checkpoint = Instant::now();
+        Order::Store
+    }
+
+    fn progress(&self, progress: Progress) {
+        let mut clock = self.clock();
+        if clock.sample.elapsed() >= MIN_SAMPLE_INTERVAL {
+            clock.sample = Instant::now();
+            // A sample is dropped when the channel is full.
+            let _ = self.sender.try_send(Message::Sample { thread: self.thread, progress });
+        }
+    }
+
+    fn store(&self, text: &str, _time: f64) {
+        if let Err(error) = self.workers.log.store(&self.job.id, text) {
+            self.note(format!("{error}; the job goes on"));
+        }
+        let mut clock = self.clock();
+        clock.cost = clock.checkpoint.elapsed();
+        clock.checkpoint = Instant::now();
+    }
+
+    fn note(&self, text: String) {
+        // Not worth waiting for when the channel is full.
+        let _ = self.sender.try_send(Message::Note(text));
+    }
 }
 
 /// Row and result of a job that ended; `None` for a cancelled one.
-fn finish(index: usize, thread: usize, job: &Job, outcome: Outcome) -> Option<Ended> {
+fn finish(job: &Job, outcome: Outcome) -> Option<(Cells, Option<Box<Deployment>>)> {
     let hash = match &outcome {
         Outcome::Ran { deployment, .. } => Some(history_file::content_hash(deployment)),
-        Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+        _ => None,
     };
     let cells = Cells::of(job, &outcome, hash.as_deref())?;
     let deployment = match outcome {
         Outcome::Ran { deployment, .. } => Some(deployment),
-        Outcome::Refused(_) | Outcome::Panicked(_) | Outcome::Cancelled => None,
+        _ => None,
     };
-    Some(Ended { index, thread, cells, deployment })
+    Some((cells, deployment))
 }

@@ -5,6 +5,7 @@
 //!                 journal/*.jsonl   which jobs ended, and how (crate::store::journal)
 //!                 jobs/<ab>/<id>.h5 histories (crate::store::history_file)
 //!                 references/*.json static references of the designs (crate::job::references)
+//!                 checkpoints/*.json states of jobs that have not ended (crate::store::checkpoint_file)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
@@ -31,11 +32,12 @@ use crate::store::table::{Table, parquet};
 mod study_json;
 
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 9] = [
+pub const RESULT_NAMES: [&str; 10] = [
     "study.json",
     "journal",
     "jobs",
     "references",
+    "checkpoints",
     "summary.parquet",
     "charts",
     attempts::NAME,
@@ -205,7 +207,12 @@ impl<'a> Results<'a> {
         // The folders of histories have names of two digits.
         folders
             .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
-        let others = [self.journal_path(), self.references_path(), self.charts_path()];
+        let others = [
+            self.journal_path(),
+            self.references_path(),
+            self.checkpoints_path(),
+            self.charts_path(),
+        ];
         folders.extend(others);
         folders.push(self.root.clone());
         let mut removed = Vec::new();

@@ -16,7 +16,7 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};
 use crate::store::damaged;
 use crate::store::journal::Journal;
-use crate::study::{Study, UNITS};
+use crate::study::{JOB_LIMITS, Study, UNITS};
 
 /// Name of the format.
 const FORMAT: &str = "billow-study";
@@ -52,10 +52,10 @@ fn study_text(name: &str, study: &Json) -> io::Result<String> {
     Ok(seal::seal(&(object + "\n")))
 }
 
-/// A resolved study without the units in which its quantities are shown.
+/// A resolved study without the units in which its quantities are shown, and the limits of its jobs.
 fn without_units(mut study: Json) -> Json {
     if let Json::Object(members) = &mut study {
-        members.retain(|(name, _)| name != UNITS);
+        members.retain(|(name, _)| name != UNITS && name != JOB_LIMITS);
     }
     study
 }
@@ -199,7 +199,8 @@ impl Results<'_> {
     }
 
     /// Whether the folder was last run for this resolved study. A study.json with old names of keys
-    /// is compared by its meaning. The units in which quantities are shown do not count.
+    /// is compared by its meaning. The units in which quantities are shown, and the limits
+    /// of jobs, do not count.
     ///
     /// # Errors
     /// [`Error::Disk`] when study.json cannot be read.

@@ -1,0 +1,87 @@
+//! Runs of a capsule: from the start, or from a checkpoint.
+
+use super::{FilmRun, Rings, capsule, cfl_of};
+use crate::geometry::mesh::Shape;
+use crate::integrators::explicit::State;
+use crate::models::run::{self, Observer, Run};
+use crate::models::{ResumeError, Stored};
+use crate::output::checkpoint::Checkpoint;
+use crate::output::outcome::Deployment;
+use crate::platform::simd::InstructionSet;
+use crate::scene::Scene;
+use crate::scene::error::SceneError;
+use crate::scene::film_scene::{FilmContact, FilmScene};
+use crate::scene::timeline::Timeline;
+
+/// Runs a scene as film with this contact and CFL number.
+///
+/// # Errors
+/// [`SceneError`] if the scene cannot be started.
+pub fn solve(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    cfl: f64,
+    contact: Option<FilmContact>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, SceneError> {
+    let (film, rings) = stowed(instruction_set, scene, cfl, contact)?;
+    if !observer.prepares() {
+        return Ok(Deployment::cancelled());
+    }
+    let mut model = FilmRun::of(&film, Some(rings))?;
+    if !observer.prepares() {
+        return Ok(Deployment::cancelled());
+    }
+    Ok(run::run(&mut model, &Timeline::new(scene), observer))
+}
+
+/// Runs a scene with the contact and the CFL number of the scene.
+///
+/// # Errors
+/// As [`super::check`], or if the capsule cannot be built.
+pub fn solve_scene(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, SceneError> {
+    let contact = FilmContact::of(&scene.contact);
+    solve(instruction_set, scene, cfl_of(scene)?, Some(contact), observer)
+}
+
+/// Continues a run of [`solve_scene`] from its checkpoint.
+///
+/// # Errors
+/// [`ResumeError`].
+pub fn resume_scene(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    stored: &Stored<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Deployment, ResumeError> {
+    let checkpoint = Checkpoint::<State, Run>::from_text(stored.text, stored.fingerprint)?;
+    let contact = FilmContact::of(&scene.contact);
+    let (film, rings) = stowed(instruction_set, scene, cfl_of(scene)?, Some(contact))?;
+    if !observer.prepares() {
+        return Ok(Deployment::cancelled());
+    }
+    let mut model = FilmRun::resume(&film, Some(rings), checkpoint.state)?;
+    if !observer.prepares() {
+        return Ok(Deployment::cancelled());
+    }
+    Ok(checkpoint.run.complete(&mut model, &Timeline::new(scene), observer))
+}
+
+/// The stowed capsule of a scene, with this contact, as a film with rings. Contact without a distance has
+/// the default one of the design.
+pub(super) fn stowed(
+    instruction_set: InstructionSet,
+    scene: &Scene,
+    cfl: f64,
+    contact: Option<FilmContact>,
+) -> Result<(FilmScene, Rings), SceneError> {
+    let height = scene.design.stowed_height;
+    let (film, mesh) = capsule::film_scene(instruction_set, scene, Shape::Stowed(height), cfl)?;
+    let resolved = |contact| capsule::resolved_contact(contact, &scene.design);
+    let film = FilmScene { contact: contact.map(resolved).transpose()?, ..film };
+    Ok((film, Rings::of(&mesh, height)))
+}

@@ -1,0 +1,120 @@
+//! Checkpoints of running jobs: `checkpoints/<job id>.json`, the text of
+//! [`billow_solver::output::checkpoint`]. The fingerprint of the scene is the job id.
+//!
+//! A checkpoint only saves time: without it, or where it is damaged, a job gives the same result.
+
+use std::io;
+use std::path::PathBuf;
+
+use serde::Deserialize;
+
+use crate::job::JobId;
+use crate::platform::error::Result;
+use crate::platform::files::{self, disk_error};
+use crate::store::results::Results;
+
+/// The part of a checkpoint that says how far the run is.
+#[derive(Deserialize)]
+struct Head {
+    state: State,
+}
+
+#[derive(Deserialize)]
+struct State {
+    time: f64,
+}
+
+impl Results<'_> {
+    /// Simulated time of a job's checkpoint, s; `None` without a readable one.
+    pub fn checkpoint_time(&self, id: &JobId) -> Option<f64> {
+        let text = self.read_checkpoint(id).ok()??;
+        serde_json::from_str::<Head>(&text).ok().map(|head| head.state.time)
+    }
+
+    /// Path of the checkpoints.
+    pub fn checkpoints_path(&self) -> PathBuf {
+        self.root().join("checkpoints")
+    }
+
+    /// Path of a job's checkpoint.
+    pub fn checkpoint_path(&self, id: &JobId) -> PathBuf {
+        self.checkpoints_path().join(format!("{id}.json"))
+    }
+
+    /// Jobs that have a checkpoint.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`] when the folder cannot be listed.
+    pub fn checkpoints(&self) -> Result<Vec<JobId>> {
+        let folder = self.checkpoints_path();
+        let paths = self.files().list(&folder).map_err(|error| disk_error(&folder, &error))?;
+        let named = paths.iter().filter(|path| path.extension().is_some_and(|end| end == "json"));
+        Ok(named.filter_map(|path| JobId::from_digits(path.file_stem()?.to_str()?)).collect())
+    }
+
+    /// The text of a job's checkpoint; `None` without one. The checksum in the text shows damage.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`] when the file exists but cannot be read.
+    pub fn read_checkpoint(&self, id: &JobId) -> Result<Option<String>> {
+        let path = self.checkpoint_path(id);
+        match self.files().read(&path) {
+            Ok(bytes) => Ok(Some(String::from_utf8_lossy(&bytes).into_owned())),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(disk_error(&path, &error)),
+        }
+    }
+
+    /// Stores the checkpoint of a job in place of its last one.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn write_checkpoint(&self, id: &JobId, text: &str) -> Result<()> {
+        let (folder, path) = (self.checkpoints_path(), self.checkpoint_path(id));
+        let write = || -> io::Result<()> {
+            if self.files().create_folder(&folder)? {
+                self.files().sync_folder(self.root())?;
+            }
+            files::write_atomic(self.files(), &path, text.as_bytes())
+        };
+        write().map_err(|error| disk_error(&path, &error))
+    }
+
+    /// Removes the checkpoint of a job that has ended.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn remove_checkpoint(&self, id: &JobId) -> Result<()> {
+        let path = self.checkpoint_path(id);
+        match self.files().remove(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(disk_error(&path, &error)),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::files::Disk;
+
+    #[test]
+    fn a_checkpoint_is_listed_read_replaced_and_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let results = Results::new(&Disk, folder.path());
+        let id = JobId::from_digits(&"ab".repeat(16)).unwrap();
+        assert_eq!(results.read_checkpoint(&id).unwrap(), None);
+        assert!(results.checkpoints().unwrap().is_empty());
+        for text in ["first", "second"] {
+            results.write_checkpoint(&id, text).unwrap();
+            assert_eq!(results.read_checkpoint(&id).unwrap().as_deref(), Some(text));
+        }
+        assert_eq!(results.checkpoints().unwrap(), [id.clone()]);
+        assert_eq!(results.checkpoint_time(&id), None);
+        results.write_checkpoint(&id, r#"{"scene":"x","state":{"time":0.25,"steps":7}}"#).unwrap();
+        assert_eq!(results.checkpoint_time(&id), Some(0.25));
+        results.remove_checkpoint(&id).unwrap();
+        results.remove_checkpoint(&id).unwrap();
+        assert_eq!(results.read_checkpoint(&id).unwrap(), None);
+    }
+}

@@ -1,0 +1,181 @@
+//! Jobs that end early: signals, kills, limits. They continue with the same bits.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::interruption::signal;
+use crate::support::{TestFolder, histories, ids, stderr, without_costs};
+
+/// One long film job on the coarsest mesh, packed at first, and a short one.
+fn study() -> Value {
+    json!({
+        "design": {
+            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m",
+            "subdivisions": 2
+        },
+        "solver": {"model": "film"},
+        "strategies": {"packed": {"release_time": "5 ms"}},
+        "strategy": "packed",
+        "gas": {"mass_flow_rate": "5 g/s"},
+        "outputs": {"frames": 5},
+        "grid": {"end_time": ["20 ms", "600 ms"]}
+    })
+}
+
+fn rows(folder: &TestFolder) -> Vec<Value> {
+    without_costs(folder.rows("results/grid"))
+}
+
+fn undisturbed() -> TestFolder {
+    let folder = TestFolder::new(&study());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    folder
+}
+
+/// The same rows and histories.
+fn assert_same_bits(folder: &TestFolder, whole: &TestFolder) {
+    assert_eq!(rows(folder), rows(whole));
+    assert_eq!(histories(&folder.results()), histories(&whole.results()));
+}
+
+fn files(folder: &TestFolder, name: &str) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder.results().join(name)) else { return Vec::new() };
+    entries.map(|entry| entry.unwrap().path()).collect()
+}
+
+fn wait_until(child: &mut Child, what: &str, reached: impl Fn() -> bool) {
+    while !reached() {
+        assert!(child.try_wait().unwrap().is_none(), "the run ended before {what}");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// Number of lines of the attempts of a running process; one is its header.
+fn attempts(folder: &TestFolder) -> usize {
+    let text = fs::read_to_string(folder.results().join("attempts.jsonl")).unwrap_or_default();
+    text.lines().count()
+}
+
+#[test]
+fn a_signal_stores_the_running_job_which_then_continues_with_the_same_bits() {
+    let whole = undisturbed();
+    for (name, code) in [("-USR1", 138), ("-HUP", 129)] {
+        let folder = TestFolder::new(&study());
+        let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+        wait_until(&mut child, "its second job", || attempts(&folder) == 3);
+        sleep(Duration::from_millis(150));
+        let start = Instant::now();
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        assert!(start.elapsed() < Duration::from_secs(2));
+        assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
+        assert_eq!(files(&folder, "checkpoints").len(), 1);
+        assert!(!folder.results().join("attempts.jsonl").exists());
+        let status = stderr(&folder.run(&["status", "results/grid"]));
+        let status = status + &folder.stdout(&["status", "results/grid"]);
+        assert!(status.contains("checkpoint"), "{status}");
+        folder.stdout(&["run", "grid.json", "-q"]);
+        assert!(files(&folder, "checkpoints").is_empty());
+        assert_same_bits(&folder, &whole);
+    }
+}
+
+#[test]
+fn a_damaged_checkpoint_costs_time_only() {
+    let whole = undisturbed();
+    let folder = TestFolder::new(&study());
+    let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+    wait_until(&mut child, "its second job", || attempts(&folder) == 3);
+    sleep(Duration::from_millis(150));
+    signal(&child, "-TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    let path = files(&folder, "checkpoints").remove(0);
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replacen("0.0", "0.1", 1)).unwrap();
+    let output = folder.run(&["run", "grid.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("checkpoint of job") && said.contains("from its beginning"), "{said}");
+    assert_same_bits(&folder, &whole);
+}
+
+#[test]
+fn a_job_that_is_killed_twice_is_quarantined_and_runs_again_on_request() {
+    let whole = undisturbed();
+    let folder = TestFolder::new(&study());
+    for _ in 0..2 {
+        let mut child = folder.billow(&["run", "grid.json", "-q"]).spawn().unwrap();
+        // The second run has one job left, the suspect.
+        let wanted = if files(&folder, "journal").is_empty() { 3 } else { 2 };
+        wait_until(&mut child, "the long job", || attempts(&folder) == wanted);
+        let short = || files(&folder, "jobs").len() == 1;
+        wait_until(&mut child, "the end of the short job", short);
+        sleep(Duration::from_millis(30));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    let output = folder.run(&["run", "grid.json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.contains("1 crashed") && said.contains("rerun results/grid --status crashed"),
+        "{said}"
+    );
+    let crashed = ids(&folder, "crashed");
+    assert_eq!((crashed.len(), ids(&folder, "done").len()), (1, 1));
+    let why = folder.stdout(&["why", &crashed[0][..8], "results/grid"]);
+    assert!(why.contains("died in two attempts") && why.contains("billow rerun"), "{why}");
+    folder.stdout(&["rerun", "results/grid", "--status", "crashed", "-q"]);
+    assert_same_bits(&folder, &whole);
+}
+
+#[test]
+fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
+    let whole = undisturbed();
+    let mut limited = study();
+    limited["job_limits"] = json!({"steps": 2000});
+    let folder = TestFolder::new(&limited);
+    let output = folder.run(&["run", "grid.json", "-q"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("--status step_limit --job-limit steps=…"), "{said}");
+    let failed = ids(&folder, "step_limit");
+    assert_eq!((failed.len(), files(&folder, "checkpoints").len()), (1, 1));
+    let row = folder.rows("results/grid").pop().unwrap();
+    assert!(row["reason"].as_str().unwrap().starts_with("job_limits.steps of 2000 is reached"));
+    assert!(row["final_volume"].is_null() && row["content_hash"].is_null(), "{row}");
+    let why = folder.stdout(&["why", &failed[0][..8], "results/grid"]);
+    assert!(why.contains("--job-limit steps=…"), "{why}");
+
+    // An attempt of a moment; then one without any limit.
+    let timeout = ["--job-limit", "steps=none", "--job-limit", "wall_time=0.05", "-q"];
+    let again = ["rerun", "results/grid", "--status", "step_limit"];
+    let output = folder.run(&[&again[..], &timeout].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert_eq!(ids(&folder, "timeout"), failed);
+    let again = ["rerun", "results/grid", "--status", "timeout", "--job-limit", "steps=none", "-q"];
+    folder.stdout(&again);
+    assert_same_bits(&folder, &whole);
+    // The limits are no change of the study.
+    let said = stderr(&folder.run(&["run", "grid.json", "--job-limit", "steps=9"]));
+    assert!(!said.contains("job_limits"), "{said}");
+}
+
+#[test]
+fn a_hangup_does_not_end_a_run_that_ignores_it() {
+    let folder = TestFolder::new(&study());
+    let script = format!("trap '' HUP; exec {} run grid.json -q", env!("CARGO_BIN_EXE_billow"));
+    let mut command = Command::new("sh");
+    command.args(["-c", &script]).current_dir(folder.path());
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    wait_until(&mut child, "its second job", || attempts(&folder) == 3);
+    signal(&child, "-HUP");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(ids(&folder, "done").len(), 2);
+}
