@@ -61,8 +61,3 @@ pub fn peak<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let result = work();
     (result, PEAK.load(Ordering::Relaxed) - before)
 }
-
-/// Bytes in use.
-pub fn used() -> usize {
-    USED.load(Ordering::Relaxed)
-}

@@ -38,7 +38,7 @@ fn a_job_that_does_not_fit_is_a_row_and_the_others_run() {
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("note: 1 of 3 points (subdivisions 200) will end as out_of_memory"),
+        said.contains("note: 1 of 3 points (subdivisions=200) will end as out_of_memory"),
         "{said}"
     );
     let rows = folder.rows("results/grid");

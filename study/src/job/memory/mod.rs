@@ -5,11 +5,13 @@
 //! after    static equilibria + history file
 //! job      the larger of the two, and of the mesh that gives the default contact distance
 //!
-//! contact  8 MB + (5.4 + 1.75 log2(1 + M/4)) kB e         statics  (2.8 + 0.19 log2(e/48)) kB e
+//! contact  8 MB + (5.4 + 1.75 log2(1 + M/4) + 0.13 (N - 6)) kB e
+//! statics  (2.8 + 0.19 log2(e/48)) kB e
 //! ```
 //!
-//! Symbols: e elements, M storeys. Source: peaks of a counting allocator, `tests/reference/memory.json`. The
-//! number of layers decides how many pairs of elements are near each other.
+//! Symbols: e elements, M storeys, N panels. Source: peaks of a counting allocator, `tests/reference/memory.json`. The
+//! number of layers, and of panels that overlap in a layer, decide how many pairs of elements are near each
+//! other.
 
 use billow_solver::geometry::fold::FoldDesign;
 use billow_solver::scene::{ModelKind, Scene};
@@ -26,6 +28,8 @@ const CONTACT: f64 = 5400.0;
 const CONTACT_LAYERS: f64 = 1750.0;
 /// The mesh of 4 subdivisions that gives the default contact distance, bytes per element of it.
 const REFERENCE_GAP: f64 = 1100.0;
+/// Contact for each panel beyond 6, bytes per element.
+const CONTACT_PANELS: f64 = 130.0;
 /// Static equilibria, bytes per element: of a small mesh, and for each doubling of its elements.
 const STATICS: [f64; 2] = [2800.0, 190.0];
 /// Elements of the small mesh of [`STATICS`].
@@ -39,8 +43,9 @@ const NUMBER: [f64; 2] = [30.0, 36.0];
 const FRAME: [f64; 2] = [24.0, 75.0];
 /// A job without its film, bytes.
 const JOB: f64 = 1e6;
-/// Storeys for which contact is estimated in film that is not a capsule. Chosen: film packed in some layers.
-const OTHER_LAYERS: f64 = 8.0;
+/// Panels and storeys for which contact is estimated in film that is not a folded capsule. Chosen: film packed in
+/// some layers.
+const OTHER_STACK: [u32; 2] = [6, 8];
 
 /// Estimated memory of a job and its parts, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -64,8 +69,8 @@ pub struct Estimate {
 pub struct FilmSize {
     /// Number of elements.
     pub elements: u64,
-    /// Storeys of a folded capsule; `None` for other film.
-    pub storeys: Option<u32>,
+    /// Panels and storeys of a folded capsule; `None` for other film.
+    pub stack: Option<[u32; 2]>,
     /// Whether it has contact.
     pub contact: bool,
     /// Whether static equilibria are computed.
@@ -91,7 +96,7 @@ pub fn estimate(scene: &Scene) -> Estimate {
         ModelKind::Film => {
             let film = film(&FilmSize {
                 elements: scene.design.elements(),
-                storeys: Some(scene.design.storeys),
+                stack: Some([scene.design.panels, scene.design.storeys]),
                 contact: true,
                 statics: true,
                 motion: true,
@@ -110,9 +115,10 @@ pub fn estimate(scene: &Scene) -> Estimate {
 pub fn film(size: &FilmSize) -> Estimate {
     let elements = size.elements as f64;
     let when = |condition: bool, bytes: f64| if condition { bytes } else { 0.0 };
-    let layers = size.storeys.map_or(OTHER_LAYERS, f64::from);
-    let contact =
-        CONTACT_QUEUES + elements * (CONTACT + CONTACT_LAYERS * libm::log2(1.0 + layers / 4.0));
+    let [panels, storeys] = size.stack.unwrap_or(OTHER_STACK).map(f64::from);
+    let layers = CONTACT_LAYERS * libm::log2(1.0 + storeys / 4.0);
+    let panels = CONTACT_PANELS * (panels - 6.0).max(0.0);
+    let contact = CONTACT_QUEUES + elements * (CONTACT + layers + panels);
     let doublings = libm::log2((elements / SMALL_MESH).max(1.0));
     let statics = elements * (STATICS[0] + STATICS[1] * doublings);
     let columns = COLUMNS + size.tracks as f64;

@@ -6,7 +6,7 @@ use crate::run::fixture;
 fn film_of(elements: u64, storeys: u32) -> Estimate {
     film(&FilmSize {
         elements,
-        storeys: Some(storeys),
+        stack: Some([6, storeys]),
         contact: true,
         statics: true,
         motion: true,

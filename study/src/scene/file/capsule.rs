@@ -23,8 +23,8 @@ pub(super) fn read(draft: &Draft, needs: Needs, source: &Source) -> Result<Shape
     let design = &draft.scene.design;
     let erected = draft.film_scene.erected.unwrap_or(draft.film_scene.statics);
     check(design, erected, source)?;
-    let storeys = (!erected).then_some(design.storeys);
-    needs.check_capsule(design.elements(), storeys, design.subdivisions, source)?;
+    let stack = (!erected).then_some([design.panels, design.storeys]);
+    needs.check_capsule(design.elements(), stack, design.subdivisions, source)?;
     let fold_error = |error: FoldError| fold_error(error, source);
     let pattern = FoldPattern::new(design).map_err(fold_error)?;
     let stowed = State::Stowed(design.stowed_height);

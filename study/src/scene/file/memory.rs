@@ -23,25 +23,24 @@ pub(super) struct Needs {
 }
 
 impl Needs {
-    /// The estimate for film of this number of elements; `storeys` of a folded capsule. Bytes.
-    fn film(self, elements: u64, storeys: Option<u32>) -> u64 {
+    /// The estimate for film of this number of elements; `stack`: panels and storeys of a folded capsule. Bytes.
+    fn film(self, elements: u64, stack: Option<[u32; 2]>) -> u64 {
         let Self { contact, statics } = self;
         let motion = !statics;
         let contact = contact && motion;
         let (samples, frames, tracks) = (0.0, 0, 0);
-        film(&FilmSize { elements, storeys, contact, statics, motion, samples, frames, tracks })
-            .total
+        film(&FilmSize { elements, stack, contact, statics, motion, samples, frames, tracks }).total
     }
 
     /// Refuses a capsule of this number of elements.
     pub fn check_capsule(
         self,
         elements: u64,
-        storeys: Option<u32>,
+        stack: Option<[u32; 2]>,
         subdivisions: u32,
         source: &Source,
     ) -> Result<(), InputError> {
-        let needed = self.film(elements, storeys).saturating_add(ELEMENT.saturating_mul(elements));
+        let needed = self.film(elements, stack).saturating_add(ELEMENT.saturating_mul(elements));
         let mesh = || format!("makes a capsule of {elements} elements");
         check(needed, "design.subdivisions", &subdivisions.to_string(), mesh, source)
     }
@@ -74,7 +73,7 @@ pub(super) fn check_outputs(film_scene: &FilmScene, source: &Source) -> Result<(
     let samples = samples(solver.end_time, outputs.sample_interval);
     let estimate = film(&FilmSize {
         elements: film_scene.shell.triangles.len() as u64,
-        storeys: None,
+        stack: None,
         contact: film_scene.contact.is_some(),
         statics: solver.statics,
         motion: !solver.statics,
