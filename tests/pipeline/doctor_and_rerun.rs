@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use billow_solver::platform::seal;
 use serde_json::{Value, json};
 
 use crate::support::{
@@ -26,7 +27,7 @@ fn doctor_reports_a_sound_folder_and_changes_nothing() {
 type Damage = fn(&TestFolder, &str);
 
 /// Kinds of damage: name, function, whether `doctor` fails, part of its message.
-const DAMAGES: [(&str, Damage, bool, &str); 12] = [
+const DAMAGES: [(&str, Damage, bool, &str); 16] = [
     (
         "missing history",
         |folder, id| fs::remove_file(file_of(folder, id)).unwrap(),
@@ -87,7 +88,7 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
             fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
         },
         true,
-        "line 17 is torn",
+        "line 18: torn",
     ),
     (
         "leftover",
@@ -133,9 +134,64 @@ const DAMAGES: [(&str, Damage, bool, &str); 12] = [
             fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
         },
         true,
-        "not a study.json of billow",
+        "damaged: it does not have the contents",
+    ),
+    (
+        "edited measure",
+        |folder, id| {
+            edit_journal(folder, |line| {
+                let peak = line.contains(id).then(|| line.find("\"peak_vz\":"))??;
+                Some(format!("{}9{}", &line[..peak + 10], &line[peak + 10..]))
+            });
+        },
+        true,
+        "it does not have the contents of its checksum: the file was changed or damaged; its job",
+    ),
+    (
+        "edited study",
+        |folder, _| {
+            let path = folder.results().join("study.json");
+            let text = fs::read_to_string(&path).unwrap();
+            fs::write(&path, text.replacen("\"end_time\": 0.6", "\"end_time\": 0.7", 1)).unwrap();
+        },
+        true,
+        "damaged: it does not have the contents of its checksum",
+    ),
+    (
+        "line deleted",
+        |folder, id| {
+            edit_journal(folder, |line| line.contains(id).then(String::new));
+        },
+        true,
+        "differs from the journal in 1 rows",
+    ),
+    (
+        "same size and time",
+        |folder, id| {
+            let path = file_of(folder, id);
+            let file = fs::OpenOptions::new().read(true).write(true).open(&path).unwrap();
+            let time = file.metadata().unwrap().modified().unwrap();
+            let mut bytes = fs::read(&path).unwrap();
+            bytes[3000] ^= 1;
+            fs::write(&path, bytes).unwrap();
+            file.set_modified(time).unwrap();
+        },
+        true,
+        "not the file that was written",
     ),
 ];
+
+/// Changes lines of the journal: those for which `change` gives a new line.
+fn edit_journal(folder: &TestFolder, change: impl Fn(&str) -> Option<String>) {
+    let path = folder.results().join("journal/000001.jsonl");
+    let text = fs::read_to_string(&path).unwrap();
+    let lines: Vec<String> = text
+        .split_inclusive('\n')
+        .map(|line| change(line).unwrap_or_else(|| line.to_owned()))
+        .collect();
+    assert_ne!(lines.concat(), text);
+    fs::write(&path, lines.concat()).unwrap();
+}
 
 /// `doctor` reports each damage with the next step, and the next run repairs what it can.
 #[test]
@@ -152,11 +208,12 @@ fn doctor_finds_every_damage_and_run_repairs_it() {
         let line = said.lines().find(|line| line.contains(expected)).unwrap();
         assert!(line.contains("; next: "), "{name}: {line}");
         assert_eq!(output.status.code(), Some(i32::from(broken)), "{name}: {said}");
-        if name == "study.json cut" {
-            // The folder may belong to another study and is not overwritten.
-            let refused = folder.run(&["run", "grid.json", "-q"]);
-            assert_eq!(refused.status.code(), Some(2));
-            continue;
+        if broken {
+            // After a repair nothing is broken; at most jobs are pending.
+            let repaired = folder.run(&["doctor", "--repair"]);
+            let said = String::from_utf8_lossy(&repaired.stdout);
+            assert_eq!(repaired.status.code(), Some(0), "{name}: {said}");
+            assert!(stderr(&repaired).contains("repaired: "), "{name}: {}", stderr(&repaired));
         }
         folder.stdout(&["run", "grid.json", "-q"]);
         let repaired = folder.run(&["doctor"]);
@@ -170,6 +227,11 @@ fn doctor_finds_every_damage_and_run_repairs_it() {
     }
 }
 
+/// The first line of a text, and the rest of it from the end of the line on.
+fn first_line(text: &str) -> (&str, &str) {
+    text.split_at(text.find('\n').unwrap())
+}
+
 #[test]
 fn files_of_a_newer_version_are_refused() {
     let folder = ran();
@@ -178,14 +240,17 @@ fn files_of_a_newer_version_are_refused() {
     for (path, from, to, expected) in [
         (
             &journal,
-            "\"version\":3",
             "\"version\":4",
-            "journal of version 4, this program reads up to 3",
+            "\"version\":5",
+            "journal of version 5, this program reads up to 4",
         ),
         (&study, "\"version\": 1", "\"version\": 2", "version 2, this program reads up to 1"),
     ] {
         let sound = fs::read_to_string(path).unwrap();
-        fs::write(path, sound.replacen(from, to, 1)).unwrap();
+        // The newer program wrote its checksum.
+        let (first, rest) = if *path == study { (&sound[..], "") } else { first_line(&sound) };
+        let newer = seal::seal(&seal::open(first).unwrap().replacen(from, to, 1));
+        fs::write(path, newer + rest).unwrap();
         let output = folder.run(&["doctor"]);
         assert_eq!(output.status.code(), Some(1));
         let said = String::from_utf8(output.stdout).unwrap();
@@ -239,9 +304,12 @@ fn different_bits_are_an_error() {
     let journal = folder.results().join("journal/000001.jsonl");
     let row =
         folder.rows("results/grid").into_iter().find(|row| row["job"] == id.as_str()).unwrap();
-    let text = fs::read_to_string(&journal).unwrap();
     let hash = row["content_hash"].as_str().unwrap();
-    fs::write(&journal, text.replace(hash, &"0".repeat(64))).unwrap();
+    let text = fs::read_to_string(&journal).unwrap();
+    // As if another program had stored the job.
+    let sealed =
+        |line: &str| seal::seal(&seal::open(line).unwrap().replace(hash, &"0".repeat(64))) + "\n";
+    fs::write(&journal, text.lines().map(sealed).collect::<String>()).unwrap();
     let output = folder.run(&["rerun", id, "-q"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use billow_solver::platform::seal;
 use billow_study::platform::files::{Disk, Files};
 use serde_json::{Value, json};
 
@@ -32,8 +33,8 @@ fn status_counts_agree_with_the_table() {
     let journal = folder.results().join("journal/000001.jsonl");
     let text = fs::read_to_string(&journal).unwrap();
     let id = &ids(&folder, "done")[0];
-    let line = format!("{{\"kind\":\"invalidated\",\"job\":\"{id}\"}}\n");
-    fs::write(&journal, format!("{text}{line}")).unwrap();
+    let line = seal::seal(&format!("{{\"kind\":\"invalidated\",\"job\":\"{id}\"}}"));
+    fs::write(&journal, format!("{text}{line}\n")).unwrap();
     let status = json_of(&folder, &["status", "--threads", "1"]);
     assert_eq!(
         (&status["done"], &status["pending"], &status["invalidated"]),
@@ -74,7 +75,7 @@ fn status_reports_damage_in_one_line_and_counts_the_rest() {
     let status = json_of(&folder, &["status"]);
     assert_eq!((&status["done"], &status["broken"]), (&json!(16), &json!(2)));
     let said = folder.stdout(&["status"]);
-    assert!(said.contains("line 18: not a journal record"), "{said}");
+    assert!(said.contains("line 19: it has no checksum"), "{said}");
     assert!(said.contains("and 1 more; next: billow doctor results/grid"), "{said}");
 }
 

@@ -14,7 +14,7 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, Files, disk_error};
-use crate::store::history_file::{self, StoredHistory};
+use crate::store::history_file::StoredHistory;
 use crate::store::results::Results;
 use crate::store::table::Table;
 
@@ -81,7 +81,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     let mut target = target::open(&args.study, &args.set.set, &args.units)?;
     target.add_keys(&[], args.condition.as_deref())?;
-    let Target { results, table, .. } = target;
+    let Target { results, table, records, .. } = target;
     let name = study_name(&results);
     let source = source(args, &name, &table)?;
     let standard = asked.is_none();
@@ -89,7 +89,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         Some(kind) => vec![kind],
         None => standard_kinds(&source, args.quiet.quiet),
     };
-    let read = |id: &JobId| history_file::read(&results.job_path(id));
+    let read = |id: &JobId| results.read_history(id, records.get(id));
     let mut written: Vec<PathBuf> = Vec::new();
     for kind in &kinds {
         match draw(&source, kind, range, &read) {

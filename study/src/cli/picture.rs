@@ -58,7 +58,7 @@ pub fn write(path: &Path, svg: &str) -> Result<()> {
         Picture::Png => png::encode(svg, png::PRINT_RESOLUTION)
             .map_err(|problem| Error::Disk { path: path.to_owned(), problem })?,
     };
-    files::write_atomic(&Disk, path, &bytes).map_err(|error| disk_error(path, &error))
+    files::write_output(&Disk, path, &bytes).map_err(|error| disk_error(path, &error))
 }
 
 /// A time on the command line, s: a number, or a number with a unit.

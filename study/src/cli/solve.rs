@@ -11,7 +11,7 @@ use super::print::print_rows;
 use super::{Format, instruction_set, output_error};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
-use crate::platform::files::{Disk, check_output_path, disk_error, write_atomic};
+use crate::platform::files::{Disk, check_output_path, disk_error, write_output};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 use crate::scene::solve::{self, Ended, Pauses, Solved};
@@ -130,7 +130,7 @@ fn check_files(args: &Args, scene: &SceneFile) -> Result<()> {
 
 fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
     let write = |path: &PathBuf, bytes: &[u8]| {
-        write_atomic(&Disk, path, bytes).map_err(|error| disk_error(path, &error))
+        write_output(&Disk, path, bytes).map_err(|error| disk_error(path, &error))
     };
     if let (Some(path), Ended::Motion(motion)) = (&args.out, &solved.end)
         && solved.status != Status::Paused

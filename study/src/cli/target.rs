@@ -1,23 +1,26 @@
 //! The results folder that a command reads, and the rows of its table.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::changes;
 use super::options::{ResultsOption, UnitsOption};
+use super::stored::note_faults;
 use super::study_keys;
 use crate::input::expression::{Expression, Type, Variable};
 use crate::input::units::{Dimension, DisplayUnits};
 use crate::input::value::Value;
+use crate::job::JobId;
 use crate::job::id::common_prefix_length;
 use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note};
 use crate::job::status::{RENAMED_STATUSES, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{self, Disk, Files};
 use crate::platform::nearest::did_you_mean;
+use crate::store::journal::{Journal, Record};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::store::table::{Column, Table};
+use crate::store::table::{Column, Table, agreement};
 use crate::study::Study;
 
 /// Which results a command reads.
@@ -38,6 +41,8 @@ pub struct Target {
     pub table: Table,
     /// The units in which it is shown.
     pub units: DisplayUnits,
+    /// Records of the journal.
+    pub records: BTreeMap<JobId, Record>,
 }
 
 impl Target {
@@ -60,12 +65,9 @@ impl Target {
 /// When there are no results, or their table cannot be read; units that do not fit.
 pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, set)?);
-    // A run that was stopped before it wrote its table has a plan and a journal.
-    let table = if !results.table_path().exists() && results.owner()?.is_some() {
-        Stored::read(results.clone())?.table()
-    } else {
-        results.read_table()?
-    };
+    let journal = results.journal()?;
+    note_faults(&journal, results.root());
+    let table = table(&results, &journal)?;
     changes::note(&results, given.study.as_deref(), set)?;
     changes::note_other_physics(&table);
     let display = match given.study.as_deref().filter(|path| path.is_file()) {
@@ -74,7 +76,37 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
     };
     let units = units.of_table(&table, &display)?;
     let table = table.shown_in(&units);
-    Ok(Target { results, table, units })
+    Ok(Target { results, table, units, records: journal.records })
+}
+
+/// The stored table if it says what the journal says, else the table of plan and journal.
+fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
+    // A run that was stopped before it wrote its table has a plan and a journal.
+    let written = results.table_path().exists();
+    let stored = match results.read_table() {
+        Ok(table) if agreement::agrees(&table, &journal.records) => return Ok(table),
+        stored => stored,
+    };
+    if results.owner()?.is_none() {
+        return stored;
+    }
+    match stored {
+        Err(Error::Disk { path, problem }) if written => {
+            let problem = problem.split('\n').next().unwrap_or_default();
+            eprintln!("billow: {}: {problem}; the journal is read instead", path.display());
+        }
+        Ok(_) if journal.faults.is_empty() && !results.is_locked()? => {
+            let path = results.table_path();
+            eprintln!(
+                "billow: {}: differs from the journal; the journal is read instead\n  next: billow doctor \
+                 {}",
+                path.display(),
+                results.root().display()
+            );
+        }
+        _ => {}
+    }
+    Ok(Stored::read(results.clone())?.table())
 }
 
 /// The results folder: the given folder, or the folder of the given study file, or the only folder under

@@ -15,7 +15,7 @@ use billow_solver::statics::{self, StaticError, StaticFailureKind, StaticSolutio
 use crate::job::Status;
 use crate::job::pace::Pace;
 use crate::platform::error::{Error, InputError, Result};
-use crate::platform::files::{Files, disk_error, write_atomic};
+use crate::platform::files::{Files, disk_error, write_output};
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 
@@ -173,7 +173,7 @@ impl Observer for Pausing<'_> {
         {
             let failed = |problem: String| Error::Disk { path: path.clone(), problem };
             let written = text.map_err(|error| failed(error.to_string())).and_then(|text| {
-                write_atomic(self.files, path, text.as_bytes())
+                write_output(self.files, path, text.as_bytes())
                     .map_err(|error| disk_error(path, &error))
             });
             if let Err(error) = written {

@@ -6,17 +6,31 @@
 use std::io;
 use std::path::PathBuf;
 
+use billow_solver::platform::seal;
 use serde::Deserialize;
 
 use crate::job::JobId;
-use crate::platform::error::Result;
+use crate::platform::error;
 use crate::platform::files::{self, disk_error};
 use crate::store::results::Results;
 
-/// The part of a checkpoint that says how far the run is.
+/// The part of a checkpoint that says whose it is and how far the run is.
 #[derive(Deserialize)]
 struct Head {
+    scene: String,
     state: State,
+}
+
+impl Head {
+    fn read(id: &JobId, text: &str) -> Result<Self, String> {
+        let object = seal::open(text).map_err(|error| error.to_string())?;
+        let head: Self = serde_json::from_str(&object).map_err(|error| error.to_string())?;
+        if head.scene == id.as_str() {
+            Ok(head)
+        } else {
+            Err(format!("it belongs to the job {}", head.scene))
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -28,7 +42,24 @@ impl Results<'_> {
     /// Simulated time of a job's checkpoint, s; `None` without a readable one.
     pub fn checkpoint_time(&self, id: &JobId) -> Option<f64> {
         let text = self.read_checkpoint(id).ok()??;
-        serde_json::from_str::<Head>(&text).ok().map(|head| head.state.time)
+        Head::read(id, &text).ok().map(|head| head.state.time)
+    }
+
+    /// Checkpoints that are damaged or belong to another job, and what is wrong with them.
+    ///
+    /// # Errors
+    /// [`error::Error::Disk`].
+    pub fn damaged_checkpoints(&self) -> error::Result<Vec<(PathBuf, String)>> {
+        let mut damaged = Vec::new();
+        for id in self.checkpoints()? {
+            let problem = match self.read_checkpoint(&id) {
+                Ok(None) => None,
+                Ok(Some(text)) => Head::read(&id, &text).err(),
+                Err(error) => Some(error.to_string()),
+            };
+            damaged.extend(problem.map(|problem| (self.checkpoint_path(&id), problem)));
+        }
+        Ok(damaged)
     }
 
     /// Path of the checkpoints.
@@ -44,8 +75,8 @@ impl Results<'_> {
     /// Jobs that have a checkpoint.
     ///
     /// # Errors
-    /// [`crate::platform::error::Error::Disk`] when the folder cannot be listed.
-    pub fn checkpoints(&self) -> Result<Vec<JobId>> {
+    /// [`error::Error::Disk`] when the folder cannot be listed.
+    pub fn checkpoints(&self) -> error::Result<Vec<JobId>> {
         let folder = self.checkpoints_path();
         let paths = self.files().list(&folder).map_err(|error| disk_error(&folder, &error))?;
         let named = paths.iter().filter(|path| path.extension().is_some_and(|end| end == "json"));
@@ -55,8 +86,8 @@ impl Results<'_> {
     /// The text of a job's checkpoint; `None` without one. The checksum in the text shows damage.
     ///
     /// # Errors
-    /// [`crate::platform::error::Error::Disk`] when the file exists but cannot be read.
-    pub fn read_checkpoint(&self, id: &JobId) -> Result<Option<String>> {
+    /// [`error::Error::Disk`] when the file exists but cannot be read.
+    pub fn read_checkpoint(&self, id: &JobId) -> error::Result<Option<String>> {
         let path = self.checkpoint_path(id);
         match self.files().read(&path) {
             Ok(bytes) => Ok(Some(String::from_utf8_lossy(&bytes).into_owned())),
@@ -68,8 +99,8 @@ impl Results<'_> {
     /// Stores the checkpoint of a job in place of its last one.
     ///
     /// # Errors
-    /// [`crate::platform::error::Error::Disk`].
-    pub fn write_checkpoint(&self, id: &JobId, text: &str) -> Result<()> {
+    /// [`error::Error::Disk`].
+    pub fn write_checkpoint(&self, id: &JobId, text: &str) -> error::Result<()> {
         let (folder, path) = (self.checkpoints_path(), self.checkpoint_path(id));
         let write = || -> io::Result<()> {
             if self.files().create_folder(&folder)? {
@@ -83,8 +114,8 @@ impl Results<'_> {
     /// Removes the checkpoint of a job that has ended.
     ///
     /// # Errors
-    /// [`crate::platform::error::Error::Disk`].
-    pub fn remove_checkpoint(&self, id: &JobId) -> Result<()> {
+    /// [`error::Error::Disk`].
+    pub fn remove_checkpoint(&self, id: &JobId) -> error::Result<()> {
         let path = self.checkpoint_path(id);
         match self.files().remove(&path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(disk_error(&path, &error)),
@@ -109,10 +140,15 @@ mod tests {
             results.write_checkpoint(&id, text).unwrap();
             assert_eq!(results.read_checkpoint(&id).unwrap().as_deref(), Some(text));
         }
-        assert_eq!(results.checkpoints().unwrap(), [id.clone()]);
+        assert_eq!(results.checkpoints().unwrap(), std::slice::from_ref(&id));
         assert_eq!(results.checkpoint_time(&id), None);
-        results.write_checkpoint(&id, r#"{"scene":"x","state":{"time":0.25,"steps":7}}"#).unwrap();
+        assert_eq!(results.damaged_checkpoints().unwrap().len(), 1);
+        let object = format!(r#"{{"scene":"{id}","state":{{"time":0.25,"steps":7}}}}"#);
+        results.write_checkpoint(&id, &seal::seal(&object)).unwrap();
         assert_eq!(results.checkpoint_time(&id), Some(0.25));
+        assert!(results.damaged_checkpoints().unwrap().is_empty());
+        results.write_checkpoint(&id, &seal::seal(&object).replace("0.25", "0.26")).unwrap();
+        assert_eq!(results.damaged_checkpoints().unwrap()[0].0, results.checkpoint_path(&id));
         results.remove_checkpoint(&id).unwrap();
         results.remove_checkpoint(&id).unwrap();
         assert_eq!(results.read_checkpoint(&id).unwrap(), None);

@@ -140,6 +140,19 @@ impl Results<'_> {
         references
     }
 
+    /// Moves damaged references into the folder `damaged`. Only for the process that holds the lock.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn set_aside_references(&self) -> error::Result<()> {
+        for (path, problem) in self.references().unread {
+            if matches!(problem, Unread::Damaged(_)) {
+                self.set_aside(&path)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Stores the states of a design.
     ///
     /// # Errors

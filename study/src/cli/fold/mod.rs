@@ -16,7 +16,7 @@ use crate::input::keys;
 use crate::input::study_file::Json as Typed;
 use crate::input::value::Value;
 use crate::platform::error::{Error, InputError, Result};
-use crate::platform::files::{Disk, Files, disk_error, write_atomic};
+use crate::platform::files::{Disk, Files, disk_error, write_output};
 use crate::platform::memory;
 use crate::render::crease_pattern;
 
@@ -312,7 +312,7 @@ fn write_files(
     files.create_folder(folder).map_err(|error| disk_error(folder, &error))?;
     for (name, text) in &texts {
         let path = folder.join(name);
-        write_atomic(files, &path, text.as_bytes()).map_err(|error| disk_error(&path, &error))?;
+        write_output(files, &path, text.as_bytes()).map_err(|error| disk_error(&path, &error))?;
     }
     if !quiet {
         let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();

@@ -99,10 +99,11 @@ fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> S
         Status::Invalid => "change the key that the reason names".to_owned(),
         Status::Panicked => format!("report the reason with {root}/study.json and the job id"),
         Status::Failed(FailureKind::StepLimit) => {
-            let rerun = format!("billow rerun {short_id} {root} --job-limit steps=…");
-            match has_history {
-                true => format!("{show}: see how the time advanced; then raise solver.step_limit"),
-                false => format!("{rerun}: the job resumes from its checkpoint"),
+            if has_history {
+                format!("{show}: see how the time advanced; then raise solver.step_limit")
+            } else {
+                let rerun = format!("billow rerun {short_id} {root} --job-limit steps=…");
+                format!("{rerun}: the job resumes from its checkpoint")
             }
         }
         Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {

@@ -13,10 +13,14 @@ const MIN_GROWTH: f64 = 0.02;
 /// still moves. Chosen as [`MIN_GROWTH`].
 const MIN_MOTION: f64 = 0.05;
 
-/// How a job moved in the last tenth of its run; `None` when it did not, or when its history cannot be
-/// read.
+/// How a job moved in the last tenth of its run; `None` when it did not, or has no history.
 pub(super) fn at_the_end(stored: &Stored<'_>, id: &JobId) -> Option<String> {
-    let history = history_file::read(&stored.history_path(id).ok()?).ok()?.history;
+    stored.record(id)?.file_hash.as_ref()?;
+    let read = stored.history_path(id).and_then(|path| history_file::read(&path));
+    let history = match read {
+        Ok(stored) => stored.history,
+        Err(error) => return Some(format!("unknown: {error}").replace("\n  next: ", "; next: ")),
+    };
     let column = |name: &str| history.column(name);
     let (time, volume, energy) = (column("time"), column("volume"), column("kinetic_energy"));
     let end = time.last()?;

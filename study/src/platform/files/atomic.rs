@@ -47,6 +47,50 @@ pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<
     files.sync_folder(folder.unwrap_or(Path::new(".")))
 }
 
+/// Writes a whole file that the user named, as [`write_atomic`]. Temporary files of this name that dead
+/// processes left are removed first.
+///
+/// # Errors
+/// As [`write_atomic`].
+pub fn write_output(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let begin = format!(".{name}.");
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    // A folder that cannot be listed may still be written to.
+    let mut stale = files.list(folder.unwrap_or(Path::new("."))).unwrap_or_default();
+    stale.retain(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(&begin) && is_stale(path)
+    });
+    for path in stale {
+        // What cannot be removed is no obstacle: the new temporary file has another name.
+        let _ = files.remove(&path);
+    }
+    write_atomic(files, path, bytes)
+}
+
+/// Whether a temporary file belongs to a process that does not run: `.NAME.PROCESS-NUMBER.tmp`.
+fn is_stale(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let middle = name.strip_suffix(TEMPORARY).and_then(|name| name.rsplit('.').next());
+    let process = middle.and_then(|text| text.split_once('-')?.0.parse::<u32>().ok());
+    is_temporary(path) && process.is_some_and(|id| !Path::new(&format!("/proc/{id}")).exists())
+}
+
+/// Removes the temporary files that dead processes left in a folder to which other processes may write.
+/// Returns their paths.
+///
+/// # Errors
+/// The error of the system.
+pub fn remove_stale_files(files: &dyn Files, folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = files.list(folder)?;
+    paths.retain(|path| is_stale(path));
+    for path in &paths {
+        files.remove(path)?;
+    }
+    Ok(paths)
+}
+
 /// Writes a whole file unless it holds these bytes already. Returns whether it wrote.
 ///
 /// # Errors
@@ -101,6 +145,24 @@ mod tests {
         let enough = FailingFiles::new(4, io::ErrorKind::StorageFull);
         write_atomic(&enough, &path, b"new").unwrap();
         assert_eq!(enough.operations(), 3);
+    }
+
+    #[test]
+    fn temporary_files_of_dead_processes_are_no_obstacle_and_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state.json");
+        let own = std::process::id();
+        // A dead process had the number of this one.
+        for number in 0..200 {
+            fs::write(folder.path().join(format!(".state.json.{own}-{number}.tmp")), "x").unwrap();
+        }
+        let dead = folder.path().join(".state.json.4194999-0.tmp");
+        let other = folder.path().join(".other.json.4194999-0.tmp");
+        fs::write(&dead, "x").and_then(|()| fs::write(&other, "x")).unwrap();
+        write_output(&Disk, &path, b"new").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert!(!dead.exists() && other.exists());
+        assert_eq!(remove_stale_files(&Disk, folder.path()).unwrap(), [other]);
     }
 
     #[test]

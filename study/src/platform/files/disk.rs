@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
-use std::os::unix::fs::MetadataExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
 use super::{Append, Files, Lock, Stamp};
@@ -65,25 +65,38 @@ impl Files for Disk {
     }
 
     fn try_lock(&self, path: &Path) -> io::Result<Option<Lock>> {
-        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        let mut options = OpenOptions::new();
+        options.write(true).create(true).truncate(false).custom_flags(libc::O_NOFOLLOW);
+        let file = options.open(path).map_err(|error| no_link(&error))?;
         match file.try_lock() {
-            Ok(()) => Ok(Some(Lock { _file: file })),
+            Ok(()) => Ok(Some(Lock { file })),
             Err(TryLockError::WouldBlock) => Ok(None),
             Err(TryLockError::Error(error)) => Err(error),
         }
     }
 
     fn is_locked(&self, path: &Path) -> io::Result<bool> {
-        let file = match File::open(path) {
+        let opened = OpenOptions::new().read(true).custom_flags(libc::O_NOFOLLOW).open(path);
+        let file = match opened {
             Ok(file) => file,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
-            Err(error) => return Err(error),
+            Err(error) => return Err(no_link(&error)),
         };
         match file.try_lock_shared() {
             Ok(()) => Ok(false),
             Err(TryLockError::WouldBlock) => Ok(true),
             Err(TryLockError::Error(error)) => Err(error),
         }
+    }
+}
+
+/// The error of a lock that is a symbolic link, in words; any other error as it is.
+fn no_link(error: &io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(libc::ELOOP) => {
+            io::Error::other("a symbolic link, not a lock\n  next: remove the link")
+        }
+        _ => io::Error::new(error.kind(), error.to_string()),
     }
 }
 
@@ -105,6 +118,24 @@ impl Append for DiskAppend {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_lock_does_not_follow_a_symbolic_link_and_notices_another_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, target] = ["lock", "target"].map(|name| folder.path().join(name));
+        std::os::unix::fs::symlink(&target, &path).unwrap();
+        for error in [Disk.try_lock(&path).map(|_| ()), Disk.is_locked(&path).map(|_| ())] {
+            assert!(error.unwrap_err().to_string().contains("a symbolic link"));
+        }
+        assert!(!target.exists());
+        fs::remove_file(&path).unwrap();
+        let lock = Disk.try_lock(&path).unwrap().unwrap();
+        assert!(lock.is_file(&path).unwrap());
+        fs::remove_file(&path).unwrap();
+        assert!(!lock.is_file(&path).unwrap());
+        fs::write(&path, "").unwrap();
+        assert!(!lock.is_file(&path).unwrap());
+    }
 
     #[test]
     fn a_lock_is_held_once_and_released() {

@@ -9,6 +9,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, Read};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use crate::platform::error::Error;
@@ -19,7 +20,10 @@ mod disk;
 pub mod failing;
 pub mod scratch;
 
-pub use atomic::{is_temporary, remove_temporary_files, write_atomic, write_if_changed};
+pub use atomic::{
+    is_temporary, remove_stale_files, remove_temporary_files, write_atomic, write_if_changed,
+    write_output,
+};
 pub use disk::Disk;
 
 /// The disk operations of the program.
@@ -120,7 +124,22 @@ pub trait Append: Send {
 /// A held lock, released on drop.
 #[derive(Debug)]
 pub struct Lock {
-    _file: File,
+    file: File,
+}
+
+impl Lock {
+    /// Whether the locked file is the file of this path; `false` if there is none.
+    ///
+    /// # Errors
+    /// The error of the system.
+    pub fn is_file(&self, path: &Path) -> io::Result<bool> {
+        let locked = self.file.metadata()?;
+        match fs::symlink_metadata(path) {
+            Ok(found) => Ok((found.dev(), found.ino()) == (locked.dev(), locked.ino())),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
 }
 
 /// Names of a folder that are compared with a mistyped one, at most (chosen: a folder of a million
@@ -211,7 +230,8 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
             "\n  next: it is a file and not a folder; choose another with --results DIR or --out"
         }
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
-            "\n  next: name a file in an existing folder"
+            "\n  next: name a file in an existing folder; in a results folder, `billow doctor --repair` moves \
+             what is in the way"
         }
         _ => "",
     };

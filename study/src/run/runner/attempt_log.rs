@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::job::JobId;
 use crate::platform::error::Result;
+use crate::platform::files::Lock;
 use crate::store::attempts::{self, Attempts};
 use crate::store::journal::{Journal, Writer};
 use crate::store::results::Results;
@@ -15,6 +16,7 @@ use crate::store::results::Results;
 /// Attempts and checkpoints of this process.
 pub struct AttemptLog<'a> {
     results: &'a Results<'a>,
+    lock: &'a Lock,
     writer: Mutex<Writer<'a>>,
     attempts: Mutex<Attempts<'a>>,
     /// Jobs with a checkpoint on disk.
@@ -29,16 +31,25 @@ impl<'a> AttemptLog<'a> {
     ///
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
-    pub fn new(results: &'a Results<'a>, journal: &mut Journal) -> Result<Self> {
+    pub fn new(results: &'a Results<'a>, lock: &'a Lock, journal: &mut Journal) -> Result<Self> {
         let mut writer = Writer::new(results.files(), results.journal_path());
         attempts::take_deaths(results, journal, &mut writer)?;
         Ok(Self {
             results,
+            lock,
             writer: Mutex::new(writer),
             attempts: Mutex::new(Attempts::new(results)),
             stored: Mutex::new(results.checkpoints()?.into_iter().collect()),
             stopped: AtomicBool::new(false),
         })
+    }
+
+    /// Checks that the results folder is still the one that was locked.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn check_folder(&self) -> Result<()> {
+        self.results.check_lock(self.lock)
     }
 
     /// The journal of this process.
@@ -68,6 +79,7 @@ impl<'a> AttemptLog<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`]; the job has its last checkpoint then.
     pub fn store(&self, id: &JobId, text: &str) -> Result<()> {
+        self.check_folder()?;
         self.results.write_checkpoint(id, text)?;
         locked(&self.stored).insert(id.clone());
         self.writer().progress(std::slice::from_ref(id))

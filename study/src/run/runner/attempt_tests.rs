@@ -1,7 +1,5 @@
 //! Attempts, checkpoints and quarantine with scripted executors.
 
-#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
-
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -82,7 +82,7 @@ pub struct Summary {
 /// [`crate::platform::error::Error::Disk`] when results cannot be read or stored. Jobs that were
 /// stored before are kept.
 pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
-    let _lock = run.results.lock()?;
+    let lock = run.results.lock()?;
     run.results.remove_temporary_files()?;
     let mut journal = run.results.journal()?;
     let study = run.results.write_study(run.name, run.study, &journal)?;
@@ -90,8 +90,9 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
         reporter.event(&Event::Note(fault.to_string()));
     }
     run.results.mend_journal(&journal)?;
+    run.results.set_aside_references()?;
     journal.faults.clear();
-    let log = AttemptLog::new(&run.results, &mut journal)?;
+    let log = AttemptLog::new(&run.results, &lock, &mut journal)?;
     let mut state = State::new(run, &log, journal);
     state.record_study(&study)?;
     state.invalidate()?;

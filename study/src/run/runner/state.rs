@@ -130,6 +130,10 @@ impl<'a, 'w> State<'a, 'w> {
                     }
                     Some(note) => {
                         reporter.event(&Event::Note(note));
+                        let path = self.run.results.job_path(id);
+                        if path.is_dir() {
+                            self.run.results.set_aside(&path)?;
+                        }
                         self.old_records.insert(id.clone(), record);
                         missing.push(point.job.clone());
                     }
@@ -246,6 +250,9 @@ impl<'a, 'w> State<'a, 'w> {
         ended: Vec<Ended>,
         reporter: &mut dyn Reporter,
     ) -> Result<()> {
+        if !ended.is_empty() {
+            self.log.check_folder()?;
+        }
         let mut events = Vec::with_capacity(ended.len());
         let mut records = Vec::with_capacity(ended.len());
         for Ended { index, thread, cells, deployment, reservation } in ended {
@@ -313,6 +320,7 @@ impl<'a, 'w> State<'a, 'w> {
     /// Writes the table when it is outdated.
     pub(super) fn write_table(&mut self) -> Result<()> {
         if self.table_outdated {
+            self.log.check_folder()?;
             let table = Table::build(&self.points, &self.records, self.run.unit);
             self.run.results.write_table(&table)?;
             self.table_outdated = false;

@@ -71,6 +71,9 @@ impl Existing {
 /// What is wrong with the history file of a record; `None` for the file that was written.
 fn problem(results: &Results<'_>, record: &Record) -> Result<Option<String>> {
     let path = results.job_path(&record.job);
+    if path.is_dir() {
+        return Ok(Some("a folder where a file must be".to_owned()));
+    }
     let bytes = results.files().read(&path).map_err(|error| disk_error(&path, &error))?;
     let read = history_file::read(&path);
     if record.file_hash.as_ref().is_some_and(|hash| history_file::bytes_hash(&bytes) != *hash) {

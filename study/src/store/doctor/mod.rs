@@ -14,10 +14,11 @@ use crate::store::journal::Journal;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
-use crate::store::table::Table;
+use crate::store::table::{Table, agreement};
 use crate::study::Study;
 
 mod histories;
+mod kinds;
 pub mod repair;
 mod unknown_files;
 
@@ -27,6 +28,9 @@ const RUN_AGAIN: &str =
 
 /// What to do about a damaged file that is written again from others.
 const REPAIR: &str = "run `billow run` of its study, or `billow doctor --repair`";
+
+/// What to do about what only a repair changes.
+const REPAIR_ONLY: &str = "run `billow doctor --repair`";
 
 /// How much is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,6 +117,13 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
         Ok(running) => health.running = running,
         Err(error) => health.error(results.root(), &error),
     }
+    let misplaced = kinds::misplaced(results);
+    if !misplaced.is_empty() {
+        for (path, problem) in misplaced {
+            health.fault(&path, problem, REPAIR_ONLY);
+        }
+        return health;
+    }
     let study = check_study(results, &mut health);
     let journal = check_journal(results, &mut health);
     let points = study.as_ref().map(|study| stored::planned(study, &journal.records));
@@ -138,6 +149,14 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
                 health.fault(&path, format!("damaged static reference: {problem}"), REPAIR);
             }
         }
+    }
+    match results.damaged_checkpoints() {
+        Ok(damaged) => {
+            for (path, problem) in damaged {
+                health.fault(&path, format!("damaged checkpoint: {problem}"), REPAIR);
+            }
+        }
+        Err(error) => health.error(&results.checkpoints_path(), &error),
     }
     health.records = journal.records.len();
     if let (Some(study), Some(points)) = (study, points) {
@@ -252,12 +271,9 @@ pub fn different_rows(a: &Table, b: &Table) -> usize {
     if a.rows() != b.rows() || names(a) != names(b) {
         return rows;
     }
-    // Compared as text, too: NaN is not equal to NaN.
     let differs = |row: &usize| {
-        a.columns.iter().zip(&b.columns).any(|(a, b)| {
-            a.cells[*row] != b.cells[*row]
-                && format!("{:?}", a.cells[*row]) != format!("{:?}", b.cells[*row])
-        })
+        let mut columns = a.columns.iter().zip(&b.columns);
+        columns.any(|(a, b)| !agreement::same(&a.cells[*row], &b.cells[*row]))
     };
     (0..rows).filter(differs).count()
 }

@@ -4,15 +4,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::histories;
+use super::{histories, kinds};
 use crate::job::JobId;
 use crate::platform::error::Result;
-use crate::platform::files::disk_error;
+use crate::store::attempts;
 use crate::store::journal::{Journal, Writer};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
-use crate::store::{attempts, damaged};
 
 /// Something that was repaired.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,6 +33,10 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
     let mut add = |path: &Path, action: &str| {
         repaired.push(Repaired { path: path.to_owned(), action: action.to_owned() });
     };
+    for (path, problem) in kinds::misplaced(results) {
+        results.set_aside(&path)?;
+        add(&path, &format!("set aside: {problem}"));
+    }
     for path in results.remove_temporary_files()? {
         add(&path, "removed: a temporary file of a process that died");
     }
@@ -49,15 +52,19 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
     attempts::take_deaths(results, &mut journal, &mut writer)?;
     for (job, problem) in histories::damaged(results, &journal)? {
         let path = results.job_path(&job);
-        set_aside(results, &path)?;
+        results.set_aside(&path)?;
         invalidate(&mut writer, &mut journal, &job)?;
         add(&path, &format!("set aside: {problem}; its job is pending"));
     }
     for (path, problem) in results.references().unread {
         if let Unread::Damaged(problem) = problem {
-            set_aside(results, &path)?;
+            results.set_aside(&path)?;
             add(&path, &format!("set aside: {problem}; a run computes it again"));
         }
+    }
+    for (path, problem) in results.damaged_checkpoints()? {
+        results.set_aside(&path)?;
+        add(&path, &format!("set aside: {problem}; its job starts from its beginning"));
     }
     if let Ok(Some(_)) = results.owner()
         && let Ok(stored) = Stored::read(results.clone())
@@ -72,17 +79,4 @@ fn invalidate(writer: &mut Writer<'_>, journal: &mut Journal, job: &JobId) -> Re
     writer.invalidate(std::slice::from_ref(job))?;
     journal.invalidate(job);
     Ok(())
-}
-
-/// Moves a damaged file, if it exists, into the folder `damaged`.
-fn set_aside(results: &Results<'_>, path: &Path) -> Result<()> {
-    let files = results.files();
-    match files.read(path) {
-        Ok(bytes) => {
-            damaged::keep(files, &results.damaged_path(), path, &bytes)?;
-            files.remove(path).map_err(|error| disk_error(path, &error))
-        }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(disk_error(path, &error)),
-    }
 }

@@ -25,7 +25,7 @@ use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Files, Lock, Stamp, disk_error};
 use crate::store::attempts;
-use crate::store::history_file;
+use crate::store::history_file::{self, StoredHistory};
 use crate::store::journal::{self, Journal, Record};
 use crate::store::table::{Table, parquet};
 
@@ -137,8 +137,8 @@ impl<'a> Results<'a> {
     /// Creates the folder if it is missing, and takes its lock.
     ///
     /// # Errors
-    /// [`Error::Disk`] when the folder cannot be created, holds other files than results, or when
-    /// another command holds the lock.
+    /// [`Error::Disk`] when the folder cannot be created, holds other files than results, when another
+    /// command holds the lock, or when the lock is a symbolic link.
     pub fn lock(&self) -> Result<Lock> {
         let created =
             self.files.create_folder(&self.root).map_err(|error| disk_error(&self.root, &error))?;
@@ -158,6 +158,24 @@ impl<'a> Results<'a> {
             path: self.root.clone(),
             problem: "another billow command is running this study\n  next: wait until it has \
                       ended, or choose another folder with --results DIR"
+                .to_owned(),
+        })
+    }
+
+    /// Checks that a held lock is still that of this folder, so that nothing is written into a folder that
+    /// was deleted or replaced.
+    ///
+    /// # Errors
+    /// [`Error::Disk`].
+    pub fn check_lock(&self, lock: &Lock) -> Result<()> {
+        let path = self.lock_path();
+        if lock.is_file(&path).map_err(|error| disk_error(&path, &error))? {
+            return Ok(());
+        }
+        Err(Error::Disk {
+            path: self.root.clone(),
+            problem: "the folder was deleted or replaced while a command was writing into it\n  next: run \
+                      the same command again; what was stored before is gone with the folder"
                 .to_owned(),
         })
     }
@@ -207,15 +225,17 @@ impl<'a> Results<'a> {
         // The folders of histories have names of two digits.
         folders
             .retain(|path| path.is_dir() && path.file_name().is_some_and(|name| name.len() == 2));
-        let others = [
+        let written_under_lock = [
             self.journal_path(),
             self.references_path(),
             self.checkpoints_path(),
-            self.charts_path(),
+            self.root.clone(),
         ];
-        folders.extend(others);
-        folders.push(self.root.clone());
-        let mut removed = Vec::new();
+        folders.extend(written_under_lock);
+        // Commands without the lock write pictures.
+        let charts = self.charts_path();
+        let mut removed = files::remove_stale_files(self.files, &charts)
+            .map_err(|error| disk_error(&charts, &error))?;
         for folder in folders {
             let paths = files::remove_temporary_files(self.files, &folder)
                 .map_err(|error| disk_error(&folder, &error))?;
@@ -286,6 +306,22 @@ impl<'a> Results<'a> {
         Err(Error::Disk { path, problem })
     }
 
+    /// Reads the history of a job, after [`Self::check_history`]. Without a record only its job is checked.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] with the reason.
+    pub fn read_history(&self, id: &JobId, record: Option<&Record>) -> Result<StoredHistory> {
+        let recorded = record.filter(|record| record.file_hash.is_some());
+        recorded.map_or(Ok(()), |record| self.check_history(record))?;
+        let path = self.job_path(id);
+        let stored = history_file::read(&path)?;
+        if recorded.is_some() || stored.job == *id {
+            return Ok(stored);
+        }
+        let problem = next_run(&format!("it is the history of the job {}", stored.job));
+        Err(Error::Disk { path, problem })
+    }
+
     /// Stores a history file. Returns its size and time.
     ///
     /// # Errors
@@ -311,6 +347,9 @@ impl<'a> Results<'a> {
     /// [`Error::Disk`].
     pub fn write_table(&self, table: &Table) -> Result<bool> {
         let path = self.table_path();
+        if path.is_dir() {
+            self.set_aside(&path)?;
+        }
         let bytes = parquet::encode(table)
             .map_err(|problem| Error::Disk { path: path.clone(), problem })?;
         files::write_if_changed(self.files, &path, &bytes)

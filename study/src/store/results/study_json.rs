@@ -14,7 +14,6 @@ use crate::input::study_file::Json;
 use crate::input::units::DisplayUnits;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, disk_error};
-use crate::store::damaged;
 use crate::store::journal::Journal;
 use crate::study::{JOB_LIMITS, Study, UNITS};
 
@@ -153,8 +152,7 @@ impl Results<'_> {
             // Without a record the file may be one of another program.
             State::Damaged(problem) if journal.is_empty() => return Err(self.refused(&problem)),
             State::Damaged(_) => {
-                let bytes = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
-                damaged::keep(self.files(), &self.damaged_path(), &path, &bytes)?;
+                self.set_aside(&path)?;
                 journal.study_owner()
             }
         };
@@ -175,14 +173,10 @@ impl Results<'_> {
     /// [`Error::Disk`].
     pub fn restore_study(&self, journal: &Journal) -> Result<bool> {
         let Some(text) = &journal.study else { return Ok(false) };
-        let path = self.study_path();
         match self.study_state()? {
             State::Valid(_) => return Ok(false),
             State::Missing => {}
-            State::Damaged(_) => {
-                let bytes = self.files().read(&path).map_err(|error| disk_error(&path, &error))?;
-                damaged::keep(self.files(), &self.damaged_path(), &path, &bytes)?;
-            }
+            State::Damaged(_) => self.set_aside(&self.study_path())?,
         }
         self.write_study_text(text).map(|()| true)
     }

@@ -16,6 +16,7 @@ use crate::job::row::{COLUMNS, CellType, Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
+pub mod agreement;
 pub mod parquet;
 pub mod same_job;
 

@@ -4,16 +4,20 @@
 //! Columns are written one after the other on the calling thread. So the bytes do not depend on the
 //! machine, and polars starts no threads.
 //!
+//! The metadata have a checksum of names and cells too. Tables of older versions have none.
+//!
 //! Tables with old names of columns and statuses are read with the current names.
 
 use std::io::Cursor;
 use std::path::Path;
 
+use billow_solver::platform::seal::hexadecimal;
 use polars::prelude::{
     AnyValue, Column as PolarsColumn, DataFrame, DataType, KeyValueMetadata, ParallelStrategy,
     ParquetCompression, ParquetReader, ParquetWriter, PolarsResult, SerReader,
 };
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::{Column, Table, row_column_name};
 use crate::input::units::DisplayUnit;
@@ -33,6 +37,9 @@ const VERSION: u64 = 1;
 struct Metadata {
     format: String,
     version: u64,
+    /// [`checksum`] of the table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    checksum: Option<String>,
     #[serde(default)]
     columns: Vec<ColumnMetadata>,
 }
@@ -58,9 +65,34 @@ pub fn encode(table: &Table) -> std::result::Result<Vec<u8>, String> {
             meaning: column.meaning.clone(),
         })
         .collect();
-    let metadata = Metadata { format: FORMAT.to_owned(), version: VERSION, columns };
+    let checksum = Some(checksum(table));
+    let metadata = Metadata { format: FORMAT.to_owned(), version: VERSION, checksum, columns };
     let metadata = serde_json::to_string(&metadata).map_err(|error| error.to_string())?;
     write(table, metadata).map_err(|error| error.to_string())
+}
+
+/// SHA-256 of the names, units, meanings and cells of a table, in lower-case hexadecimal digits.
+fn checksum(table: &Table) -> String {
+    let mut hash = Sha256::new();
+    let mut add = |bytes: &[u8]| {
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    for column in &table.columns {
+        for text in [&column.name, &column.unit, &column.meaning] {
+            add(text.as_bytes());
+        }
+        for cell in &column.cells {
+            match cell {
+                Value::Null => add(b"n"),
+                Value::Bool(value) => add(&[u8::from(*value)]),
+                Value::Integer(value) => add(&value.to_le_bytes()),
+                Value::Number(value) => add(&value.to_bits().to_le_bytes()),
+                Value::Text(value) => add(value.as_bytes()),
+            }
+        }
+    }
+    hexadecimal(&hash.finalize())
 }
 
 fn write(table: &Table, metadata: String) -> PolarsResult<Vec<u8>> {
@@ -155,6 +187,9 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
         );
     }
     let mut table = Table { columns };
+    if metadata.checksum.is_some_and(|stored| stored != checksum(&table)) {
+        return Err(broken("it does not have the contents of its checksum".to_owned()));
+    }
     use_current_names(&mut table);
     Ok(table)
 }

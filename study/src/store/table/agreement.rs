@@ -1,0 +1,64 @@
+//! Whether a stored table says what the journal says.
+
+use std::collections::BTreeMap;
+
+use super::Table;
+use crate::input::value::Value;
+use crate::job::row::COLUMNS;
+use crate::job::{JobId, Status};
+use crate::store::journal::Record;
+
+/// Whether every row has the cells of its job's record, and no row without a record has results. Columns that
+/// the table does not have are not compared: it may be one of an older version.
+pub fn agrees(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
+    let Some(jobs) = table.column("job") else { return false };
+    jobs.cells.iter().enumerate().all(|(row, job)| {
+        let Value::Text(job) = job else { return false };
+        let record = JobId::from_digits(job).and_then(|id| records.get(&id));
+        match (table.status(row), record) {
+            (Some(Status::Infeasible | Status::Pending), None) => true,
+            (Some(_), Some(record)) => COLUMNS.iter().all(|column| {
+                let stored = table.value(column.id, row);
+                stored.is_none_or(|stored| same(stored, record.cells.get(column.id)))
+            }),
+            (None, _) | (_, None) => false,
+        }
+    })
+}
+
+/// Whether two values are the same; NaN is the same as NaN.
+pub fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => a.to_bits() == b.to_bits() || a == b,
+        _ => a == b,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::row::{Cells, ColumnId};
+    use crate::run::fixture;
+
+    #[test]
+    fn a_table_agrees_until_a_cell_or_a_record_changes() {
+        let points = fixture::generation(4).points;
+        let mut records = BTreeMap::new();
+        for (number, point) in points.iter().enumerate().filter(|(number, _)| *number != 2) {
+            let mut cells = Cells::new(Status::Done);
+            cells.set(ColumnId::FinalVolume, if number == 3 { f64::NAN } else { 0.1 });
+            let job = point.job.id.clone();
+            let record = Record { job: job.clone(), cells, file_hash: None, file_stamp: None };
+            records.insert(job, record);
+        }
+        let table = Table::build(&points, &records, &|_| String::new());
+        assert!(agrees(&table, &records));
+        let mut changed = table.clone();
+        let name = ColumnId::FinalVolume.name();
+        let column = changed.columns.iter_mut().find(|column| column.name == name).unwrap();
+        column.cells[0] = Value::Number(0.2);
+        assert!(!agrees(&changed, &records));
+        records.remove(&points[1].job.id);
+        assert!(!agrees(&table, &records), "a result without a record");
+    }
+}
