@@ -19,6 +19,7 @@ mod instruction_sets;
 mod interruption;
 mod invalid_studies;
 mod keys;
+mod memory;
 mod mistakes;
 mod monitor_detects_faults;
 mod old_results;

@@ -3,7 +3,6 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 
-use billow_study::bench::machine;
 use serde_json::json;
 
 use crate::support::{TestFolder, ran, small_grid, stderr};
@@ -221,26 +220,4 @@ fn a_study_and_a_scene_are_distinguished() {
     let scene = folder.run(&["run", "scene.json"]);
     assert_eq!(scene.status.code(), Some(2));
     assert!(stderr(&scene).contains("next: billow solve scene.json"), "{}", stderr(&scene));
-}
-
-#[test]
-fn a_mesh_larger_than_memory_is_refused_before_anything_is_written() {
-    if machine::memory().is_none_or(|memory| memory as f64 > 264e9) {
-        return;
-    }
-    let mut study = small_grid();
-    study["solver"]["model"] = json!("film");
-    let folder = TestFolder::new(&study);
-    // 1000 is the largest allowed value: 36 to 48 million elements of 5.5 kB.
-    let flags = ["--set", "design.subdivisions=1000"];
-    let output = folder.run(&[&["run", "grid.json"], &flags[..]].concat());
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(
-        said.contains("design.subdivisions: a mesh of 48 million elements needs at least 264 GB"),
-        "{said}"
-    );
-    assert!(!folder.results().exists());
-    let planned = folder.run(&[&["plan", "grid.json"], &flags[..]].concat());
-    assert!(planned.status.success() && stderr(&planned).contains("a mesh of 48 million"));
 }

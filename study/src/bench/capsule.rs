@@ -15,6 +15,7 @@ use billow_solver::scene::timeline::Timeline;
 use super::{Line, interrupted, machine};
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
+use crate::platform::memory;
 use crate::platform::stop::Stop;
 use crate::scene::file::SceneFile;
 
@@ -200,7 +201,7 @@ pub fn run_to_marks(
                 core_seconds,
                 ledger_residual: audit.ledger_residual,
                 passages: audit.passages,
-                peak_memory: machine::peak_memory(),
+                peak_memory: memory::peak_resident(),
             });
         }
     }

@@ -149,19 +149,3 @@ const MIN_WALL_TIME: f64 = 0.1;
 pub fn core_share(core: Option<f64>, wall: f64) -> Option<f64> {
     core.filter(|_| wall >= MIN_WALL_TIME).map(|core| core / wall)
 }
-
-/// Memory of this machine, bytes; `None` if the system does not report it.
-pub fn memory() -> Option<u64> {
-    kibibytes("/proc/meminfo", "MemTotal")
-}
-
-/// Peak memory of this process, bytes; `None` if the system does not report it.
-pub fn peak_memory() -> Option<u64> {
-    kibibytes("/proc/self/status", "VmHWM")
-}
-
-/// The value of a line `name : value kB` in a file of the system, bytes.
-fn kibibytes(file: &str, name: &str) -> Option<u64> {
-    let kibibytes: u64 = system_value(file, name)?.strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes << 10)
-}

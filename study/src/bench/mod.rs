@@ -13,6 +13,7 @@ use billow_solver::platform::simd::InstructionSet;
 
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
+use crate::platform::memory;
 use crate::platform::stop::Stop;
 
 pub mod capsule;
@@ -247,7 +248,7 @@ pub fn run(plan: &Plan, stop: &Stop, progress: &mut dyn FnMut(&str)) -> Result<R
             report.jobs.push(jobs::measure(threads, plan.instruction_set, plan.effort, stop)?);
         }
     }
-    report.machine.peak_memory = machine::peak_memory();
+    report.machine.peak_memory = memory::peak_resident();
     Ok(report)
 }
 

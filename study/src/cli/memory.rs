@@ -1,73 +1,107 @@
-//! Whether a film job fits into the memory of this machine. A clear error is better than a process that
-//! the operating system kills.
-//!
-//! ```text
-//! bytes ≥ 5.5e3 e        e elements of the mesh
-//! ```
+//! Notes on the memory of the jobs of a study: what a job needs, and which jobs this process has no memory
+//! for. Those end as `out_of_memory`; the others run.
 
-use billow_solver::scene::ModelKind;
+use std::num::NonZero;
 
-use crate::bench::machine;
-use crate::input::value::brief_number;
-use crate::platform::error::{Error, InputError, Result};
-use crate::study::Study;
+use billow_solver::scene::Scene;
 
-/// Least memory per element, bytes. Measured on the stowed capsule with contact; film with many contacts
-/// needs up to four times as much.
-const MIN_BYTES_PER_ELEMENT: f64 = 5.5e3;
+use super::print::count;
+use crate::job::{self, memory};
+use crate::platform::memory::{Limit, limits, size, smallest};
+use crate::study::{Study, StudyPoint};
 
-/// Refuses a study with a mesh that needs more memory than this machine has. `file` is the study file.
-///
-/// # Errors
-/// [`Error::Input`].
-pub fn check(file: &str, study: &Study) -> Result<()> {
-    let runs = study.points().iter().filter(|point| point.infeasible.is_none());
-    let scenes = runs.map(|point| &point.scene);
-    let film = scenes.filter(|scene| scene.solver.model == ModelKind::Film);
-    let elements = film.map(|scene| scene.design.elements()).max().unwrap_or(0);
-    match machine::memory().and_then(|memory| excess(elements, memory)) {
-        None => Ok(()),
-        Some([problem, allowed]) => Err(Error::Input(InputError {
-            file: file.to_owned(),
-            key: "design.subdivisions".to_owned(),
-            value: String::new(),
-            problem,
-            allowed,
-            hint: "use a coarser mesh: n = 5 to 16 is enough for a study (README, Models)"
-                .to_owned(),
-        })),
+/// Names of jobs in a note, at most. Chosen: one line.
+const MAX_NAMES: usize = 3;
+
+/// The memory of this process for jobs on a number of threads.
+pub struct Memory {
+    limit: Option<Limit>,
+    threads: usize,
+}
+
+impl Memory {
+    /// The memory for jobs on this number of threads; `None` for one per core.
+    pub fn new(threads: Option<NonZero<usize>>) -> Self {
+        let threads = number(threads);
+        Self { limit: smallest(&limits(), threads), threads }
+    }
+
+    /// What all jobs may use together, bytes.
+    fn usable(&self) -> u64 {
+        self.limit.map_or(u64::MAX, |limit| limit.usable(self.threads))
+    }
+
+    /// Whether a job of this scene fits, if it runs alone.
+    pub fn fits(&self, scene: &Scene) -> bool {
+        memory::estimate(scene).total <= self.usable()
+    }
+
+    /// A note on the jobs that do not fit; `None` without one.
+    pub fn note(&self, study: &Study) -> Option<String> {
+        let limit = self.limit?;
+        let large: Vec<&StudyPoint> =
+            feasible(study).filter(|point| !self.fits(&point.scene)).collect();
+        let needs = large.iter().map(|point| memory::estimate(&point.scene).total).max()?;
+        let mut names: Vec<String> =
+            large.iter().take(MAX_NAMES).map(|point| job::label(&point.parameters)).collect();
+        if large.len() > MAX_NAMES {
+            names.push(format!("{} more", large.len() - MAX_NAMES));
+        }
+        names.retain(|name| !name.is_empty());
+        let names =
+            if names.is_empty() { String::new() } else { format!(" ({})", names.join("; ")) };
+        Some(format!(
+            "note: {} of {}{names} will end as out_of_memory: up to {} needed, {} usable of {limit}\n  \
+             next: a coarser mesh (design.subdivisions 5 to 16 is enough for a study), or a larger limit",
+            large.len(),
+            count(feasible(study).count(), "point"),
+            size(needs),
+            size(self.usable()),
+        ))
+    }
+
+    /// What the largest job that fits needs, as text; `None` without a job that needs more than the program
+    /// itself.
+    pub fn forecast(&self, study: &Study) -> Option<String> {
+        let fitting = feasible(study).filter(|point| self.fits(&point.scene));
+        let largest = fitting.map(|point| memory::estimate(&point.scene).total).max()?;
+        let limit = self.limit.filter(|_| largest >= MIN_SHOWN)?;
+        let together = usize::try_from(self.usable() / largest).unwrap_or(usize::MAX).max(1);
+        let usable = size(self.usable());
+        Some(if together < self.threads {
+            format!(
+                "memory: up to {} a job; {together} of {} threads compute such jobs at a time ({usable} usable of \
+                 {limit})",
+                size(largest),
+                self.threads
+            )
+        } else {
+            format!("memory: up to {} a job ({usable} usable of {limit})", size(largest))
+        })
     }
 }
 
-/// The problem and what is allowed, as texts, when this number of elements needs more than `memory`
-/// bytes.
-fn excess(elements: u64, memory: u64) -> Option<[String; 2]> {
-    let (elements, memory) = (elements as f64, memory as f64);
-    let problem = || {
-        format!(
-            "a mesh of {} million elements needs at least {} GB of memory; this machine has {} GB",
-            brief_number(1e-6 * elements),
-            brief_number(1e-9 * elements * MIN_BYTES_PER_ELEMENT),
-            brief_number(1e-9 * memory)
-        )
-    };
-    let allowed = || {
-        let most = 1e-6 * memory / MIN_BYTES_PER_ELEMENT;
-        format!("up to {} million elements on this machine", brief_number(most))
-    };
-    (elements * MIN_BYTES_PER_ELEMENT > memory).then(|| [problem(), allowed()])
+/// Memory of a job below which `plan` says nothing, bytes. Chosen: every machine has it.
+const MIN_SHOWN: u64 = 50_000_000;
+
+fn feasible(study: &Study) -> impl Iterator<Item = &StudyPoint> {
+    study.points().iter().filter(|point| point.infeasible.is_none())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn number(threads: Option<NonZero<usize>>) -> usize {
+    threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
+}
 
-    #[test]
-    fn only_a_mesh_that_cannot_fit_is_refused() {
-        let memory = 24 << 30;
-        assert_eq!(excess(49_152, memory), None);
-        assert_eq!(excess(4_000_000, memory), None);
-        let [problem, _] = excess(12_000_000, memory).expect("too many elements");
-        assert!(problem.starts_with("a mesh of 12 million elements needs at least 66 GB"));
+/// The number of threads for which this process has memory, and a note if it is below the number asked for.
+pub fn threads(asked: Option<NonZero<usize>>) -> (Option<NonZero<usize>>, Option<String>) {
+    let wanted = number(asked);
+    let fitting = limits().into_iter().map(|limit| (limit.threads(wanted), limit));
+    match fitting.min_by_key(|(threads, _)| *threads) {
+        Some((threads, limit)) if threads < wanted => {
+            let note =
+                format!("note: {limit} has room for {} of {wanted}", count(threads, "thread"));
+            (NonZero::new(threads), Some(note))
+        }
+        _ => (asked, None),
     }
 }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use billow_solver::models::film::LadderState;
 use billow_solver::output::outcome::FailureKind;
 
+use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
@@ -69,7 +70,6 @@ pub(super) struct RunOptions {
 /// An invalid study, a disk error, jobs that failed, a signal.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
-    memory::check(&args.study.display().to_string(), &study)?;
     let root = results_folder(&args.results, &study);
     if !args.options.progress.quiet {
         notes::print_warnings(&study);
@@ -102,11 +102,13 @@ pub(super) fn run_study(
         unit.or(column.map(|column| column.unit)).map(str::to_owned)
     })?;
     let instruction_set = super::instruction_set::selected()?;
-    let threads = options.threads.count()?;
+    let (threads, note) = memory::threads(options.threads.count()?);
     let limits = with_options(study.job_limits(), &options.job_limit)?;
     if !options.progress.quiet {
         // Before the run: a reader may want to change the study.
         notes::print(study);
+        let memory = Memory::new(threads);
+        note.into_iter().chain(memory.note(study)).for_each(|note| eprintln!("{note}"));
     }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);

@@ -2,6 +2,7 @@
 //! reaches one has a row without measures.
 
 use crate::job::Status;
+use crate::platform::memory::{Limit as MemoryLimit, size};
 
 /// Limits of every job of a study. `None`: no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -28,6 +29,13 @@ pub enum Limit {
         /// What the job needs.
         needed: u64,
     },
+    /// The memory that this process may use, and the estimate of the job, bytes.
+    Available {
+        /// What limits it.
+        limit: MemoryLimit,
+        /// What the job needs.
+        needed: u64,
+    },
 }
 
 impl Limit {
@@ -38,7 +46,7 @@ impl Limit {
             Self::Steps(_) => {
                 Status::Failed(billow_solver::output::outcome::FailureKind::StepLimit)
             }
-            Self::Memory { .. } => Status::OutOfMemory,
+            Self::Memory { .. } | Self::Available { .. } => Status::OutOfMemory,
         }
     }
 
@@ -60,6 +68,11 @@ impl Limit {
                 megabytes(needed),
                 megabytes(limit),
                 next("memory")
+            ),
+            Self::Available { limit, needed } => format!(
+                "the job needs about {} of memory, and {limit} leaves less; next: a coarser mesh, or billow rerun \
+                 --status out_of_memory with more memory",
+                size(needed)
             ),
         }
     }

@@ -5,6 +5,7 @@ pub mod control;
 pub mod executor;
 pub mod id;
 pub mod limits;
+pub mod memory;
 pub mod pace;
 pub mod point;
 pub mod references;

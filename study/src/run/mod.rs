@@ -4,4 +4,5 @@ pub mod event;
 #[cfg(test)]
 pub(crate) mod fixture;
 pub mod progress;
+pub mod reservation;
 pub mod runner;

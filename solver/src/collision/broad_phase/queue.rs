@@ -2,6 +2,10 @@
 //!
 //! The length, for example a path length or an approach bound, only grows.
 
+/// Number of pairs for which an empty bin keeps memory, at most. Chosen: most bins are smaller, so that few
+/// pushes allocate.
+const MAX_KEPT_CAPACITY: usize = 64;
+
 /// Pairs that are pending until a growing length reaches their due length.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PairQueue {
@@ -75,10 +79,19 @@ impl PairQueue {
                 return;
             }
             let slot = self.slot(self.next_bin);
-            due.append(&mut self.ring[slot]);
+            empty(&mut self.ring[slot], due);
             self.next_bin += 1;
         }
         self.next_bin = self.next_bin.max(last_bin + 1);
+    }
+}
+
+/// Moves the pairs of a bin to `due`. A bin that was large gives its memory back: the last bin, which holds all
+/// pairs beyond the ring, is another one whenever a bin has been emptied.
+fn empty(bin: &mut Vec<[u32; 2]>, due: &mut Vec<[u32; 2]>) {
+    due.append(bin);
+    if bin.capacity() > MAX_KEPT_CAPACITY {
+        *bin = Vec::new();
     }
 }
 

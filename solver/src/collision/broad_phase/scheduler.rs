@@ -72,6 +72,10 @@ const QUEUE_BINS: usize = 32;
 /// again; without it their number would only grow.
 const RESTART_BINS: f64 = 128.0;
 
+/// Number of candidates after which they are measured, before others are collected. Chosen: large against
+/// the cost of a batch, small against the memory of a film.
+const MAX_BATCH: usize = 16_384;
+
 /// All candidates of a film, pending until they may have met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CandidateScheduler {
@@ -215,8 +219,22 @@ impl CandidateScheduler {
     ) {
         let ProximityQuery { max_displacement, radius, bound_factor } = query;
         let reach = 2.0 * max_displacement;
-        self.refine(mesh, positions, &self.uniform_reach(reach), radius, bound_factor);
-        self.measure(&mut distances);
+        let uniform = self.uniform_reach(reach);
+        self.refine(mesh, positions, &uniform, radius, bound_factor, |scheduler| {
+            scheduler.measure(&mut distances);
+            scheduler.take_due(reach, radius, bound_factor, &mut take);
+        });
+    }
+
+    /// Gives the due candidates that can come within `radius` (m) while the film approaches by `reach` (m) to
+    /// `take`, and makes the other pairs pending again.
+    fn take_due(
+        &mut self,
+        reach: f64,
+        radius: f64,
+        bound_factor: f64,
+        take: &mut impl FnMut(CandidateKind, [u32; 2], f64),
+    ) {
         let kinds = self.kind.candidate_kinds();
         let mut start = [0; 2];
         let due_pairs = core::mem::take(&mut self.due_pairs);
@@ -277,8 +295,15 @@ impl CandidateScheduler {
         mut distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
         mut visit: impl FnMut(CandidateKind, [u32; 2]),
     ) {
-        self.refine(mesh, positions, reach, 0.0, 1.0);
-        self.measure(&mut distances);
+        self.refine(mesh, positions, reach, 0.0, 1.0, |scheduler| {
+            scheduler.measure(&mut distances);
+            scheduler.visit_due(reach, &mut visit);
+        });
+    }
+
+    /// Gives the due candidates that are no farther apart than their reach to `visit`, and makes all pairs
+    /// pending again.
+    fn visit_due(&mut self, reach: &Reach, visit: &mut impl FnMut(CandidateKind, [u32; 2])) {
         let kinds = self.kind.candidate_kinds();
         let mut start = [0; 2];
         let due_pairs = core::mem::take(&mut self.due_pairs);
@@ -320,6 +345,9 @@ impl CandidateScheduler {
     /// Finds the pairs of elements that can come within `radius` (m) of each other while the film
     /// approaches by `reach`, and collects their candidates. Due pairs of tree nodes that stay
     /// farther apart are pushed again; the others are refined into pairs of children.
+    ///
+    /// Calls `resolve` whenever [`MAX_BATCH`] candidates are collected, and at the end. A batch ends between two
+    /// pairs of clusters, so each queue gets its pairs in the same order whatever the batches.
     fn refine(
         &mut self,
         mesh: &CollisionMesh,
@@ -327,12 +355,16 @@ impl CandidateScheduler {
         reach: &Reach,
         radius: f64,
         bound_factor: f64,
+        mut resolve: impl FnMut(&mut Self),
     ) {
-        self.due_pairs.clear();
-        self.candidates.iter_mut().for_each(Vec::clear);
+        self.clear_due();
         self.kdops.fit(&mesh.hierarchy, positions);
         for clusters in 0..self.queues.len() {
             self.refine_clusters(mesh, clusters, reach.clusters[clusters], radius, bound_factor);
+            if self.candidates.iter().map(Vec::len).sum::<usize>() > MAX_BATCH {
+                resolve(self);
+                self.clear_due();
+            }
         }
         let Self { kind, adjacent, due_pairs, candidates, .. } = self;
         adjacent.pop_due(mesh.adjacent_pairs(*kind), &reach.nodes, |node, pair, adjacent| {
@@ -342,6 +374,13 @@ impl CandidateScheduler {
             let ends = [candidates[0].len(), candidates[1].len()];
             due_pairs.push((PendingPair::Adjacent { pair, node }, ends));
         });
+        resolve(self);
+    }
+
+    /// Forgets the due pairs.
+    fn clear_due(&mut self) {
+        self.due_pairs.clear();
+        self.candidates.iter_mut().for_each(Vec::clear);
     }
 
     /// The part of [`Self::refine`] for one pair of motion clusters.

@@ -41,6 +41,11 @@ const RELEASE_PATH: f64 = 0.75;
 /// Chosen: longer intervals put more pairs into the queues, shorter ones query more often.
 const MIN_QUERY_INTERVAL: f64 = 1.0 / 20.0;
 
+/// Upper bound of that path length, as a multiple of the contact distance. Chosen: in a stack of many layers an
+/// edge is far longer than the distance of two layers. A query then reaches about ten layers, not all
+/// of them, so that the number of pairs grows with the number of layers and not with its square.
+const MAX_QUERY_INTERVAL: f64 = 256.0;
+
 /// Path length between two rebuilds of the list without history, in mean edge lengths. Chosen: pairs
 /// that were close once and are now far apart leave the queues then; without rebuilds their number
 /// would only grow.
@@ -91,6 +96,11 @@ fn queue_index(kind: PairKind) -> usize {
     }
 }
 
+/// Smallest path length between two queries of the broad phase, m.
+fn query_interval(model: &ContactModel) -> f64 {
+    (MIN_QUERY_INTERVAL * model.edge_length).min(MAX_QUERY_INTERVAL * model.distance)
+}
+
 impl ContactModel {
     /// Path length until a pair with this gap (m) can matter, m; negative if it may matter already.
     fn free_path_length(&self, kind: PairKind, gap: f64) -> f64 {
@@ -105,7 +115,7 @@ impl ContactModel {
 impl CandidateList {
     /// The list at these positions (m) and this path length (m).
     pub fn build(model: &ContactModel, positions: &Field, path_length: f64) -> Self {
-        let bin_width = 0.5 * MIN_QUERY_INTERVAL * model.edge_length;
+        let bin_width = 0.5 * query_interval(model);
         let queue =
             || PairQueue::new(PENDING_BIN_WIDTH * model.distance, PENDING_BINS, path_length);
         let mut list = Self {
@@ -181,7 +191,7 @@ impl CandidateList {
                 admit_or_defer(pending, kind, *pair, *gap);
             }
         }
-        let max_displacement = (MIN_QUERY_INTERVAL * model.edge_length).max(2.0 * (to - from));
+        let max_displacement = query_interval(model).max(2.0 * (to - from));
         if to > self.query_valid_until {
             scheduler.advance(&model.mesh, &self.query_positions, positions);
             self.query_positions.copy_from(positions);

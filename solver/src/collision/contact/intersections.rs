@@ -19,10 +19,6 @@ use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
 
-/// Width of a bin of the scheduler, as a share of the size of the film. Chosen: a pair is looked at
-/// again at the earliest when the film has approached by this much.
-const BIN_WIDTH: f64 = 2e-3;
-
 /// Every edge and element that intersect at these positions (m) and share no node, in order.
 pub fn intersections(mesh: &CollisionMesh, positions: &Field) -> Vec<(u32, u32)> {
     let kdops = KDops::new(&mesh.hierarchy, positions);
@@ -51,7 +47,7 @@ pub struct IntersectionCounter {
 impl IntersectionCounter {
     /// Counts the intersections at these positions (m).
     pub fn new(mesh: &CollisionMesh, positions: &Field, instruction_set: InstructionSet) -> Self {
-        let bin_width = BIN_WIDTH * positions.size();
+        let bin_width = mesh.bin_width(positions);
         let kind = QueryKind::Intersection;
         let mut counter = Self {
             scheduler: CandidateScheduler::new(kind, mesh, bin_width, instruction_set),

@@ -27,10 +27,6 @@ use crate::platform::simd::InstructionSet;
 use crate::scene::monitor_settings::MonitorSettings;
 use passages::{Passage, candidate_passage, passages};
 
-/// Width of a bin of the scheduler, as a share of the size of the film. Chosen: a pair is looked at
-/// again at the earliest when the film has approached by this much.
-const BIN_WIDTH: f64 = 2e-3;
-
 /// Counts the passages of film through film in a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TunnellingMonitor {
@@ -62,7 +58,7 @@ impl TunnellingMonitor {
         instruction_set: InstructionSet,
     ) -> Self {
         let frames = vec![positions.clone(); settings.block as usize + 1];
-        let bin_width = BIN_WIDTH * positions.size();
+        let bin_width = mesh.bin_width(positions);
         let kind = QueryKind::Collision;
         let mut scheduler = CandidateScheduler::new(kind, mesh, bin_width, instruction_set);
         // A first query of all pairs here, so that the first block costs no more than the others.

@@ -14,8 +14,8 @@ use crate::job::point::Point;
 const MAX_DESIGNS: usize = 100;
 
 /// The lengths in use, as text: one value each, or their range over the jobs; `None` without film jobs.
-pub(super) fn in_use(points: &[Point]) -> Option<String> {
-    let film = |point: &&Point| {
+pub(super) fn in_use(points: &[&Point]) -> Option<String> {
+    let film = |point: &&&Point| {
         point.infeasible.is_none() && point.job.scene.solver.model == ModelKind::Film
     };
     // The lengths depend on these parts of the scene only, and on the seed by whether it is 0.

@@ -9,10 +9,11 @@ mod lengths;
 
 use forecast::forecast;
 
+use super::memory::Memory;
 use super::options::{OutputOptions, QuietOption, ResultsOption, SetOption, UnitsOption};
 use super::print::{self, Heading, print_quantities, print_rows};
 use super::target::results_folder;
-use super::{Format, changes, memory, notes, output_error};
+use super::{Format, changes, notes, output_error};
 use crate::input::units::{DisplayUnit, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::Parameters;
@@ -90,17 +91,18 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     if let Some(note) = changes::other_physics(&other_physics(&generation.points, &records)) {
         eprintln!("{}: {note}", root.display());
     }
-    if let Err(error) = memory::check(&args.study.display().to_string(), study) {
-        eprintln!("{error}");
-        return Ok(());
-    }
-    if let Some(text) = lengths::in_use(&generation.points) {
+    let memory = Memory::new(None);
+    memory.note(study).into_iter().for_each(|note| eprintln!("{note}"));
+    // What does not fit is not built either.
+    let fits = |point: &&Point| memory.fits(&point.job.scene);
+    let missing: Vec<&Point> = missing.into_iter().filter(fits).collect();
+    let fitting: Vec<&Point> = generation.points.iter().filter(fits).collect();
+    if let Some(text) = lengths::in_use(&fitting) {
         eprintln!("{text}");
     }
     let references = results.references().states.into_iter().map(|(id, _)| id).collect();
-    if let Some(text) = forecast(&missing, references) {
-        eprintln!("{text}");
-    }
+    let texts = forecast(&missing, references).into_iter().chain(memory.forecast(study));
+    texts.for_each(|text| eprintln!("{text}"));
     Ok(())
 }
 

@@ -160,7 +160,7 @@ impl<'a, 'w> State<'a, 'w> {
         }
         let mut events = Vec::with_capacity(ended.len());
         let mut records = Vec::with_capacity(ended.len());
-        for Ended { index, thread, cells, deployment } in ended {
+        for Ended { index, thread, cells, deployment, reservation } in ended {
             let job = &jobs[index];
             let (mut file_hash, mut file_stamp) = (None, None);
             if let Some(deployment) = deployment {
@@ -179,6 +179,7 @@ impl<'a, 'w> State<'a, 'w> {
                 verdict: Some(verdict.to_owned()).filter(|text| !text.is_empty()),
             });
             records.push(Record { job: job.id.clone(), cells, file_hash, file_stamp });
+            drop(reservation);
         }
         for (id, reference) in self.run.executor.references() {
             self.run.results.write_reference(&id, &reference)?;

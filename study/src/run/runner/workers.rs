@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::SyncSender;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use billow_solver::models::run::Progress;
@@ -12,11 +12,13 @@ use rayon::ThreadPool;
 use super::attempt_log::AttemptLog;
 use crate::job::control::{Control, Order, Task};
 use crate::job::executor::{Executor, Outcome, execute_guarded};
-use crate::job::limits::JobLimits;
+use crate::job::limits::{JobLimits, Limit};
+use crate::job::memory::estimate;
 use crate::job::row::Cells;
 use crate::job::{self, Job};
 use crate::platform::error::{Error, Result};
 use crate::run::event::Event;
+use crate::run::reservation::{Reservation, Reservations};
 use crate::store::history_file;
 
 /// Time between two progress messages of one thread, at least. Chosen: faster than a reader notices.
@@ -59,6 +61,8 @@ pub struct Ended {
     pub cells: Cells,
     /// The result of a job that ran.
     pub deployment: Option<Box<Deployment>>,
+    /// The memory of its batch, held until the result is stored.
+    pub reservation: Arc<Reservation>,
 }
 
 /// The event of a message; `None` for an ended job, whose event follows when it is stored.
@@ -87,6 +91,8 @@ pub struct WorkerPool<'a, 'w> {
     pub jobs: &'a [Job],
     /// Their limits.
     pub limits: JobLimits,
+    /// The memory that they share.
+    pub memory: &'a Arc<Reservations>,
     /// Their attempts and checkpoints.
     pub log: &'a AttemptLog<'w>,
     /// Time between two checkpoints of a job, at least.
@@ -109,15 +115,20 @@ impl WorkerPool<'_, '_> {
                     break;
                 };
                 let jobs = &rest[..batch.min(rest.len())];
+                let Some((refused, reservation)) = self.admit(jobs) else { break };
+                let reservation = Arc::new(reservation);
                 // Sending fails when the receiver stopped after an error.
                 if sender.send(Message::Started { index: first, thread }).is_err() {
                     break;
                 }
-                match self.run(jobs, thread, &sender) {
+                match self.run(jobs, refused, thread, &sender) {
                     Ok(outcomes) => {
                         for (offset, outcome) in outcomes.into_iter().enumerate() {
-                            let ended = finish(first + offset, thread, &jobs[offset], outcome);
-                            let Some(ended) = ended else { continue };
+                            let Some((cells, deployment)) = finish(&jobs[offset], outcome) else {
+                                continue;
+                            };
+                            let (index, reservation) = (first + offset, Arc::clone(&reservation));
+                            let ended = Ended { index, thread, cells, deployment, reservation };
                             if sender.send(Message::Ended(Box::new(ended))).is_err() {
                                 return;
                             }
@@ -133,19 +144,17 @@ impl WorkerPool<'_, '_> {
         drop(sender);
     }
 
-    /// Runs a batch, after its attempts are recorded.
+    /// Runs the jobs of a batch that are not refused, after their attempts are recorded.
     fn run(
         &self,
         jobs: &[Job],
+        refused: Vec<Option<Outcome>>,
         thread: usize,
         sender: &SyncSender<Message>,
     ) -> Result<Vec<Outcome>> {
-        let mut refused: Vec<Option<Outcome>> = Vec::with_capacity(jobs.len());
-        let mut controls = Vec::with_capacity(jobs.len());
-        for job in jobs {
-            refused.push(self.admit(job));
-            controls.push(JobControl { workers: self, job, thread, sender, clock: Clock::start() });
-        }
+        let control =
+            |job| JobControl { workers: self, job, thread, sender, clock: Clock::start() };
+        let controls: Vec<_> = jobs.iter().map(control).collect();
         let mut tasks = Vec::with_capacity(jobs.len());
         for (control, refused) in controls.iter().zip(&refused) {
             if refused.is_none() {
@@ -163,10 +172,23 @@ impl WorkerPool<'_, '_> {
         Ok(refused.into_iter().filter_map(outcome).collect())
     }
 
-    /// Admits a job before its attempt, or returns how it ended without one.
-    #[expect(clippy::unused_self, reason = "the memory limit is checked here")]
-    fn admit(&self, _job: &Job) -> Option<Outcome> {
-        None
+    /// Reserves the memory of a batch, and says how those of its jobs ended that do not run. `None` when the run
+    /// ends.
+    fn admit(&self, jobs: &[Job]) -> Option<(Vec<Option<Outcome>>, Reservation)> {
+        let mut reserved = 0_u64;
+        let refused = jobs.iter().map(|job| {
+            let needed = estimate(&job.scene).total;
+            let given = self.limits.memory.filter(|limit| needed > *limit);
+            let given = given.map(|limit| Limit::Memory { limit, needed });
+            let available = || self.memory.refuses(needed);
+            let limit = given.or_else(|| Some(Limit::Available { limit: available()?, needed }));
+            if limit.is_none() {
+                reserved = reserved.saturating_add(needed);
+            }
+            limit.map(Outcome::Limited)
+        });
+        let refused = refused.collect();
+        Some((refused, self.memory.reserve(reserved, self.ending)?))
     }
 }
 
@@ -239,7 +261,7 @@ impl Control for JobControl<'_, '_> {
 }
 
 /// Row and result of a job that ended; `None` for a cancelled one.
-fn finish(index: usize, thread: usize, job: &Job, outcome: Outcome) -> Option<Ended> {
+fn finish(job: &Job, outcome: Outcome) -> Option<(Cells, Option<Box<Deployment>>)> {
     let hash = match &outcome {
         Outcome::Ran { deployment, .. } => Some(history_file::content_hash(deployment)),
         _ => None,
@@ -249,5 +271,5 @@ fn finish(index: usize, thread: usize, job: &Job, outcome: Outcome) -> Option<En
         Outcome::Ran { deployment, .. } => Some(deployment),
         _ => None,
     };
-    Some(Ended { index, thread, cells, deployment })
+    Some((cells, deployment))
 }

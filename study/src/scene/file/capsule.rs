@@ -8,6 +8,7 @@ use billow_solver::geometry::shell::Shell;
 use billow_solver::models::film::Rings;
 use billow_solver::models::film::capsule::{imperfect, part_nodes};
 
+use super::memory::Needs;
 use super::shape::{Numbering, Shape};
 use crate::input::keys::draft::Draft;
 use crate::input::source::Source;
@@ -18,10 +19,12 @@ use crate::platform::error::InputError;
 const MAX_ELEMENTS: u64 = 4_000_000;
 
 /// Reads the film of a design.
-pub(super) fn read(draft: &Draft, source: &Source) -> Result<Shape, InputError> {
+pub(super) fn read(draft: &Draft, needs: Needs, source: &Source) -> Result<Shape, InputError> {
     let design = &draft.scene.design;
     let erected = draft.film_scene.erected.unwrap_or(draft.film_scene.statics);
     check(design, erected, source)?;
+    let stack = (!erected).then_some([design.panels, design.storeys]);
+    needs.check_capsule(design.elements(), stack, design.subdivisions, source)?;
     let fold_error = |error: FoldError| fold_error(error, source);
     let pattern = FoldPattern::new(design).map_err(fold_error)?;
     let stowed = State::Stowed(design.stowed_height);

@@ -9,6 +9,7 @@ mod capsule;
 mod conflicts;
 mod contact;
 mod filling;
+mod memory;
 mod mesh;
 mod motion;
 mod object;
@@ -43,6 +44,7 @@ use crate::job::canonical_json;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::history_file::bytes_hash;
+use memory::Needs;
 use reader::Reader;
 use shape::Shape;
 
@@ -118,7 +120,8 @@ impl SceneFile {
         refuse_study(&tree, &file, &source)?;
         let notes = overrides::apply(&mut tree, sets, &SCENE, &mut source)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let mut reader = Reader { source, folder, hashes: BTreeMap::new() };
+        let mut reader =
+            Reader { source, folder, hashes: BTreeMap::new(), needs: Needs::default() };
         Self::read(&tree, notes, &mut reader, instruction_set)
     }
 
@@ -136,9 +139,11 @@ impl SceneFile {
         let wanted = |key: &Key| has_design || !key.path.starts_with("design.");
         let draft = settings.draft(wanted, &reader.source)?;
         let statics = draft.film_scene.statics;
+        let contact = contact::read(tree, &draft, &reader.source);
+        reader.needs = Needs { contact: matches!(contact, Ok(Some(_))), statics };
         let mut shape = match tree.get("mesh") {
             Some(json) => mesh::read(json, reader)?,
-            None => capsule::read(&draft, &reader.source)?,
+            None => capsule::read(&draft, reader.needs, &reader.source)?,
         };
         let supports = supports::read(tree, &draft, &shape, &reader.source)?;
         let filling =
@@ -156,7 +161,7 @@ impl SceneFile {
         if !statics {
             outputs::check_samples(outputs.sample_interval, end_time, &reader.source);
         }
-        let contact = contact::read(tree, &draft, &reader.source)?;
+        let contact = contact?;
         if contact.is_none() && !statics && shape.folded {
             notes
                 .push("contact is off: film passes through film, and it is not counted".to_owned());
@@ -180,6 +185,7 @@ impl SceneFile {
             outputs,
             contact,
         };
+        memory::check_outputs(&film, &reader.source)?;
         mesh::check_closure(&film, &shape.numbering, &reader.source)?;
         contact::check_plates(&film, &reader.source)?;
         notes.extend(without_effect(&film, &draft));

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
+use billow_solver::geometry::mesh_io::obj_size::ObjSize;
+
+use super::memory::Needs;
 use crate::input::source::Source;
 use crate::platform::error::{Error, Result};
 use crate::platform::files;
@@ -23,6 +26,8 @@ pub(crate) struct Reader {
     pub folder: PathBuf,
     /// Hash of each file read, by the name that the scene gives it.
     pub hashes: BTreeMap<String, String>,
+    /// What decides the memory of the scene.
+    pub needs: Needs,
 }
 
 impl Reader {
@@ -30,7 +35,13 @@ impl Reader {
     pub fn text(&mut self, key: &str, name: &str) -> Result<String> {
         let path = self.folder.join(name);
         let disk = |problem: String| Error::Disk { path: path.clone(), problem };
-        let bytes = files::read_at_most(&path, MAX_MESH_SIZE)
+        let mut size = ObjSize::default();
+        let scanned = files::scan_at_most(&path, MAX_MESH_SIZE, &mut |part| size.add(part));
+        if matches!(scanned, Ok(true)) {
+            self.needs.check_file(&size.finish(), key, name, &self.source)?;
+        }
+        let bytes = scanned
+            .and_then(|_| files::read_at_most(&path, MAX_MESH_SIZE))
             .map_err(|error| {
                 let near =
                     files::nearest_name(&path).filter(|_| error.kind() == ErrorKind::NotFound);

@@ -8,7 +8,9 @@ use std::time::Duration;
 use super::State;
 use crate::job::Job;
 use crate::platform::error::{Error, Result};
+use crate::platform::memory::limits;
 use crate::run::event::{Event, Reporter};
+use crate::run::reservation::Reservations;
 use crate::run::runner::quarantine;
 use crate::run::runner::workers::{self, Ended, Message, WorkerPool};
 use crate::store::journal::Record;
@@ -62,6 +64,8 @@ impl State<'_, '_> {
 
     /// Runs jobs on this number of threads; 0 for one thread per core.
     fn run_on(&mut self, threads: usize, jobs: &[Job], reporter: &mut dyn Reporter) -> Result<()> {
+        // Before the threads start: what they take is in the margin.
+        let free = limits();
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|thread| format!("billow-{thread}"))
@@ -70,6 +74,7 @@ impl State<'_, '_> {
                 path: "threads".into(),
                 problem: format!("cannot start: {error}\n  next: ask for fewer with --threads N"),
             })?;
+        let memory = Reservations::of(&free, pool.current_num_threads());
         let capacity = MAX_MESSAGES_PER_WORKER * pool.current_num_threads();
         let (sender, receiver) = mpsc::sync_channel(capacity);
         let abort = AtomicBool::new(false);
@@ -81,6 +86,7 @@ impl State<'_, '_> {
             executor: self.run.executor,
             jobs,
             limits: self.run.limits,
+            memory: &memory,
             log,
             checkpoint_interval: self.run.checkpoint_interval,
             ending: &ending,
