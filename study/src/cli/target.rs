@@ -87,13 +87,17 @@ fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
         Ok(table) if agreement::agrees(&table, &journal.records) => return Ok(table),
         stored => stored,
     };
-    if results.owner()?.is_none() {
+    if results.owner()?.is_none() || (written && journal.is_empty()) {
         return stored;
     }
     match stored {
         Err(Error::Disk { path, problem }) if written => {
             let problem = problem.split('\n').next().unwrap_or_default();
-            eprintln!("billow: {}: {problem}; the journal is read instead", path.display());
+            eprintln!(
+                "billow: {}: {problem}; the journal is read instead\n  next: run `billow run` of its study: \
+                 it writes the table again",
+                path.display()
+            );
         }
         Ok(_) if journal.faults.is_empty() && !results.is_locked()? => {
             let path = results.table_path();
