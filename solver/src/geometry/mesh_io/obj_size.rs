@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn vertices_faces_and_elements_are_counted_wherever_a_part_ends() {
+    fn vertices_faces_and_elements_are_counted_at_any_end_of_a_part() {
         let text = b"# f 1 2 3\nv 0 0 0\n  v 1 0 0\r\nvn 0 0 1\nf 1/1 2/2 3/3 4/4 # x y\r\nf\t1 2 3\ng f 1 2\n";
         for length in 1..text.len() {
             let mut size = ObjSize::default();
