@@ -55,13 +55,12 @@ impl ObjSize {
                     Place::Space
                 }
                 (Place::Space | Place::Word, b' ' | b'\t' | b'\r') => Place::Space,
-                (Place::Space | Place::Word, b'#' | b'\\') => Place::Ignored,
-                (Place::Space, _) => {
+                (Place::Space, byte) if !is_end(*byte) => {
                     self.words += 1;
                     Place::Word
                 }
-                (Place::Word, _) => Place::Word,
-                (Place::Start | Place::Keyword(_) | Place::Ignored, _) => Place::Ignored,
+                (Place::Word, byte) if !is_end(*byte) => Place::Word,
+                _ => Place::Ignored,
             };
         }
     }
@@ -81,6 +80,11 @@ impl ObjSize {
         self.words = 0;
         self.place = Place::Start;
     }
+}
+
+/// Whether a byte ends the numbers of a line: a comment, or a continuation.
+fn is_end(byte: u8) -> bool {
+    matches!(byte, b'#' | b'\\')
 }
 
 #[cfg(test)]
