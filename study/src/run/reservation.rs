@@ -1,7 +1,7 @@
 //! Memory of the running jobs: each reserves its estimate before it starts, and waits while the others hold
 //! too much.
 //!
-//! Jobs start in the order in which they ask, so a large one is not overtaken for ever. A job that fits
+//! Jobs start in the order in which they ask, so a large one never waits without end. A job that fits
 //! alone always starts: at the latest when no other runs. No result depends on the order.
 
 use std::collections::VecDeque;
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_job_is_not_overtaken_for_ever() {
+    fn a_large_job_is_not_overtaken() {
         let all = reservations(100);
         let small = all.reserve(50, &|| false).unwrap();
         let large_runs = AtomicBool::new(false);

@@ -45,7 +45,7 @@ impl CollisionMesh {
         let height = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|node| positions.get(node as usize));
             let edges = [b - a, c - b, a - c];
-            let longest = edges.iter().map(|edge| edge.norm()).fold(0.0, f64::max);
+            let longest = edges.iter().fold(0.0, |longest: f64, edge| longest.max(edge.norm()));
             if longest > 0.0 { edges[0].cross(&edges[1]).norm() / longest } else { 0.0 }
         };
         let triangles = &self.topology.triangles;

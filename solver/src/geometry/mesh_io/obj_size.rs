@@ -55,13 +55,12 @@ impl ObjSize {
                     Place::Space
                 }
                 (Place::Space | Place::Word, b' ' | b'\t' | b'\r') => Place::Space,
-                (Place::Space | Place::Word, b'#' | b'\\') => Place::Ignored,
-                (Place::Space, _) => {
+                (Place::Space, byte) if !is_end(*byte) => {
                     self.words += 1;
                     Place::Word
                 }
-                (Place::Word, _) => Place::Word,
-                (Place::Start | Place::Keyword(_) | Place::Ignored, _) => Place::Ignored,
+                (Place::Word, byte) if !is_end(*byte) => Place::Word,
+                _ => Place::Ignored,
             };
         }
     }
@@ -83,12 +82,17 @@ impl ObjSize {
     }
 }
 
+/// Whether a byte ends the numbers of a line: a comment, or a continuation.
+fn is_end(byte: u8) -> bool {
+    matches!(byte, b'#' | b'\\')
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn vertices_faces_and_elements_are_counted_wherever_a_part_ends() {
+    fn vertices_faces_and_elements_are_counted_at_any_end_of_a_part() {
         let text = b"# f 1 2 3\nv 0 0 0\n  v 1 0 0\r\nvn 0 0 1\nf 1/1 2/2 3/3 4/4 # x y\r\nf\t1 2 3\ng f 1 2\n";
         for length in 1..text.len() {
             let mut size = ObjSize::default();

@@ -28,8 +28,8 @@ const CONTACT: f64 = 5400.0;
 const CONTACT_LAYERS: f64 = 1750.0;
 /// The mesh of 4 subdivisions that gives the default contact distance, bytes per element of it.
 const REFERENCE_GAP: f64 = 1100.0;
-/// Contact for each panel beyond 6, bytes per element.
-const CONTACT_PANELS: f64 = 130.0;
+/// Contact and static equilibria for each panel beyond 6, bytes per element.
+const PANELS: [f64; 2] = [130.0, 8.0];
 /// Static equilibria, bytes per element: of a small mesh, and for each doubling of its elements.
 const STATICS: [f64; 2] = [2800.0, 190.0];
 /// Elements of the small mesh of [`STATICS`].
@@ -117,10 +117,10 @@ pub fn film(size: &FilmSize) -> Estimate {
     let when = |condition: bool, bytes: f64| if condition { bytes } else { 0.0 };
     let [panels, storeys] = size.stack.unwrap_or(OTHER_STACK).map(f64::from);
     let layers = CONTACT_LAYERS * libm::log2(1.0 + storeys / 4.0);
-    let panels = CONTACT_PANELS * (panels - 6.0).max(0.0);
-    let contact = CONTACT_QUEUES + elements * (CONTACT + layers + panels);
+    let panels = PANELS.map(|bytes| bytes * (panels - 6.0).max(0.0));
+    let contact = CONTACT_QUEUES + elements * (CONTACT + layers + panels[0]);
     let doublings = libm::log2((elements / SMALL_MESH).max(1.0));
-    let statics = elements * (STATICS[0] + STATICS[1] * doublings);
+    let statics = elements * (STATICS[0] + STATICS[1] * doublings + panels[1]);
     let columns = COLUMNS + size.tracks as f64;
     let frames = elements * f64::from(size.frames);
     let mesh = MESH * elements;

@@ -67,7 +67,7 @@ fn every_group_up_to_the_root_of_the_mount_counts() {
               36 31 0:33 / /sys/fs/cgroup/cpu rw,relatime - cgroup cgroup rw,cpu\n";
     let paths = ["/sys/fs/cgroup/memory/job", "/sys/fs/cgroup/memory"];
     assert_eq!(folders("5:cpu:/x\n4:memory:/job\n0::/\n", v1), paths.map(PathBuf::from));
-    // A container that mounts its own group, but is told the path of the host.
+    // A container that mounts its own group, and names the path of the host.
     let container = "35 31 0:32 /docker/abc /sys/fs/cgroup/memory ro - cgroup cgroup rw,memory\n";
     let paths = ["/sys/fs/cgroup/memory"];
     assert_eq!(folders("4:memory:/docker/abc\n", container), paths.map(PathBuf::from));
