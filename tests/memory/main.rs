@@ -3,6 +3,8 @@
 //! `BILLOW_UPDATE_REFERENCE=1 cargo test --release -p billow-study --test memory` measures all again: one
 //! to two minutes.
 
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
+
 mod counting;
 
 use std::fs;

@@ -28,9 +28,6 @@ use crate::platform::files::{Append, Files, disk_error};
 use crate::store::journal::{Death, Journal, Writer};
 use crate::store::results::Results;
 
-/// Name of the file.
-pub const NAME: &str = "attempts.jsonl";
-
 /// The attempts of this process. The file is created by the first attempt and removed on drop.
 pub struct Attempts<'a> {
     files: &'a dyn Files,
@@ -67,24 +64,19 @@ impl<'a> Attempts<'a> {
             return Ok(());
         }
         let mut text = String::new();
-        let mut write = |open: &mut Option<Box<dyn Append>>| -> io::Result<()> {
-            let file = match open {
-                Some(file) => file,
-                None => {
-                    let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-                    let time = time.map_or(0, |time| time.as_nanos());
-                    let process = format!("{}-{time}", std::process::id());
-                    text = seal::seal(&json!({ "process": process }).to_string()) + "\n";
-                    open.insert(self.files.create_append(&self.path)?)
-                }
-            };
-            for job in jobs {
-                text += &seal::seal(&json!({ "job": job.as_str() }).to_string());
-                text.push('\n');
-            }
-            file.append_unsynced(text.as_bytes())
-        };
-        write(&mut self.open).map_err(|error| disk_error(&self.path, &error))
+        let at = |error: io::Error| disk_error(&self.path, &error);
+        if self.open.is_none() {
+            let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+            let time = time.map_or(0, |time| time.as_nanos());
+            let process = format!("{}-{time}", std::process::id());
+            text += &line(&json!({ "process": process }));
+            self.open = Some(self.files.create_append(&self.path).map_err(at)?);
+        }
+        for job in jobs {
+            text += &line(&json!({ "job": job.as_str() }));
+        }
+        let Some(file) = &mut self.open else { return Ok(()) };
+        file.append_unsynced(text.as_bytes()).map_err(at)
     }
 }
 
@@ -95,9 +87,8 @@ impl Attempts<'_> {
     /// [`crate::platform::error::Error::Disk`].
     pub fn progress(&mut self, job: &JobId) -> Result<()> {
         let Some(file) = &mut self.open else { return Ok(()) };
-        let line = seal::seal(&json!({ "job": job.as_str(), "progressed": true }).to_string());
-        file.append_unsynced((line + "\n").as_bytes())
-            .map_err(|error| disk_error(&self.path, &error))
+        let line = line(&json!({ "job": job.as_str(), "progressed": true }));
+        file.append_unsynced(line.as_bytes()).map_err(|error| disk_error(&self.path, &error))
     }
 
     /// Removes the file: the process ends in order, and later attempts of it do not count either.
@@ -108,6 +99,11 @@ impl Attempts<'_> {
             let _ = self.files.remove(&self.path);
         }
     }
+}
+
+/// A line of the file.
+fn line(value: &serde_json::Value) -> String {
+    seal::seal(&value.to_string()) + "\n"
 }
 
 impl Drop for Attempts<'_> {

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use crate::platform::error::Result;
 use crate::platform::files::{Files, disk_error};
-use crate::store::results::Results;
 
 /// Stores the bytes of a damaged file under its name and a number that is not used yet.
 ///
@@ -19,7 +18,10 @@ pub fn keep(files: &dyn Files, folder: &Path, path: &Path, bytes: &[u8]) -> Resu
 }
 
 /// A path in the folder that is not used yet: the name of `path` and a number. Creates the folder.
-fn free_path(files: &dyn Files, folder: &Path, path: &Path) -> Result<PathBuf> {
+///
+/// # Errors
+/// [`crate::platform::error::Error::Disk`].
+pub fn free_path(files: &dyn Files, folder: &Path, path: &Path) -> Result<PathBuf> {
     let at_folder = |error: io::Error| disk_error(folder, &error);
     files.create_folder(folder).map_err(at_folder)?;
     let used: BTreeSet<PathBuf> = files.list(folder).map_err(at_folder)?.into_iter().collect();
@@ -27,21 +29,4 @@ fn free_path(files: &dyn Files, folder: &Path, path: &Path) -> Result<PathBuf> {
     let paths = (0_u64..).map(|number| folder.join(format!("{name}.{number}")));
     let mut free = paths.filter(|path| !used.contains(path));
     Ok(free.next().unwrap_or_else(|| unreachable!("there are more numbers than files")))
-}
-
-impl Results<'_> {
-    /// Moves a damaged file or folder into the folder `damaged`, if it exists. Only for the process that holds
-    /// the lock.
-    ///
-    /// # Errors
-    /// [`crate::platform::error::Error::Disk`].
-    pub fn set_aside(&self, path: &Path) -> Result<()> {
-        if path.symlink_metadata().is_err() {
-            return Ok(());
-        }
-        let (files, folder) = (self.files(), self.damaged_path());
-        let kept = free_path(files, &folder, path)?;
-        files.rename(path, &kept).map_err(|error| disk_error(path, &error))?;
-        files.sync_folder(&folder).map_err(|error| disk_error(&folder, &error))
-    }
 }

@@ -151,10 +151,10 @@ mod tests {
     fn temporary_files_of_dead_processes_are_no_obstacle_and_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state.json");
-        let own = std::process::id();
+        let this = std::process::id();
         // A dead process had the number of this one.
         for number in 0..200 {
-            fs::write(folder.path().join(format!(".state.json.{own}-{number}.tmp")), "x").unwrap();
+            fs::write(folder.path().join(format!(".state.json.{this}-{number}.tmp")), "x").unwrap();
         }
         let dead = folder.path().join(".state.json.4194999-0.tmp");
         let other = folder.path().join(".other.json.4194999-0.tmp");

@@ -143,7 +143,7 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
         let next = "nothing; a run that needs it computes it again";
         match problem {
             Unread::OtherVersion => {
-                health.note(&path, "a static reference of another version", next)
+                health.note(&path, "a static reference of another version", next);
             }
             Unread::Damaged(problem) => {
                 health.fault(&path, format!("damaged static reference: {problem}"), REPAIR);

@@ -215,7 +215,7 @@ fn scan<'a>(path: &Path, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
                 Err(line::HeaderError::Invalid(problem)) => Err(fault(number, problem, false)),
             }
         } else {
-            // Where the header is damaged, the first checksum tells the version.
+            // Where the header is damaged, the first checksum shows the version.
             must_be_sealed |= line::is_sealed(bytes);
             line::parse(bytes, must_be_sealed)
                 .map(Some)

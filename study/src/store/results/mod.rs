@@ -24,13 +24,15 @@ use std::time::Duration;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Files, Lock, Stamp, disk_error};
-use crate::store::attempts;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::journal::{self, Journal, Record};
 use crate::store::table::{Table, parquet};
 
+mod set_aside;
 mod study_json;
 
+/// Name of the file of a run's attempts.
+const ATTEMPTS: &str = "attempts.jsonl";
 /// Names that a run writes into a results folder.
 pub const RESULT_NAMES: [&str; 10] = [
     "study.json",
@@ -40,7 +42,7 @@ pub const RESULT_NAMES: [&str; 10] = [
     "checkpoints",
     "summary.parquet",
     "charts",
-    attempts::NAME,
+    ATTEMPTS,
     "damaged",
     "lock",
 ];
@@ -122,7 +124,7 @@ impl<'a> Results<'a> {
 
     /// Path of the attempts of a running process.
     pub fn attempts_path(&self) -> PathBuf {
-        self.root.join(attempts::NAME)
+        self.root.join(ATTEMPTS)
     }
 
     /// Path of the folder of damaged files.

@@ -29,7 +29,9 @@ pub fn agrees(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
 /// Whether two values are the same; NaN is the same as NaN.
 pub fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
-        (Value::Number(a), Value::Number(b)) => a.to_bits() == b.to_bits() || a == b,
+        (Value::Number(a), Value::Number(b)) => {
+            a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+        }
         _ => a == b,
     }
 }
