@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use crate::platform::error::Result;
+use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
 use crate::store::journal::Journal;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
+use crate::store::table::{Table, agreement};
 
 /// Journal lines that are named, at most.
 const MAX_SHOWN: usize = 3;
@@ -38,4 +39,42 @@ pub fn note_faults(journal: &Journal, root: &Path) {
             "  next: run `billow run` of the study: it runs these jobs again; `billow doctor {root}`"
         );
     }
+}
+
+/// The stored table if it says what the journal says, else the table of plan and journal, with a
+/// message on stderr.
+///
+/// # Errors
+/// When neither can be read.
+pub fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
+    // A run that was stopped before it wrote its table has a plan and a journal.
+    let written = results.table_path().exists();
+    let stored = match results.read_table() {
+        Ok(table) if agreement::agrees(&table, &journal.records) => return Ok(table),
+        stored => stored,
+    };
+    if results.owner()?.is_none() || (written && journal.is_empty()) {
+        return stored;
+    }
+    match stored {
+        Err(Error::Disk { path, problem }) if written => {
+            let problem = problem.split('\n').next().unwrap_or_default();
+            eprintln!(
+                "billow: {}: {problem}; the journal is read instead\n  next: run `billow run` of its study: \
+                 it writes the table again",
+                path.display()
+            );
+        }
+        Ok(_) if journal.faults.is_empty() && !results.is_locked()? => {
+            let path = results.table_path();
+            eprintln!(
+                "billow: {}: differs from the journal; the journal is read instead\n  next: billow doctor \
+                 {}",
+                path.display(),
+                results.root().display()
+            );
+        }
+        _ => {}
+    }
+    Ok(Stored::read(results.clone())?.table())
 }

@@ -3,10 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::changes;
 use super::options::{ResultsOption, UnitsOption};
-use super::stored::note_faults;
-use super::study_keys;
+use super::{changes, stored, study_keys};
 use crate::input::expression::{Expression, Type, Variable};
 use crate::input::units::{Dimension, DisplayUnits};
 use crate::input::value::Value;
@@ -17,10 +15,9 @@ use crate::job::status::{RENAMED_STATUSES, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{self, Disk, Files};
 use crate::platform::nearest::did_you_mean;
-use crate::store::journal::{Journal, Record};
+use crate::store::journal::Record;
 use crate::store::results::Results;
-use crate::store::stored::Stored;
-use crate::store::table::{Column, Table, agreement};
+use crate::store::table::{Column, Table};
 use crate::study::Study;
 
 /// Which results a command reads.
@@ -66,8 +63,8 @@ impl Target {
 pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, set)?);
     let journal = results.journal()?;
-    note_faults(&journal, results.root());
-    let table = table(&results, &journal)?;
+    stored::note_faults(&journal, results.root());
+    let table = stored::table(&results, &journal)?;
     changes::note(&results, given.study.as_deref(), set)?;
     changes::note_other_physics(&table);
     let display = match given.study.as_deref().filter(|path| path.is_file()) {
@@ -77,40 +74,6 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
     let units = units.of_table(&table, &display)?;
     let table = table.shown_in(&units);
     Ok(Target { results, table, units, records: journal.records })
-}
-
-/// The stored table if it says what the journal says, else the table of plan and journal.
-fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
-    // A run that was stopped before it wrote its table has a plan and a journal.
-    let written = results.table_path().exists();
-    let stored = match results.read_table() {
-        Ok(table) if agreement::agrees(&table, &journal.records) => return Ok(table),
-        stored => stored,
-    };
-    if results.owner()?.is_none() || (written && journal.is_empty()) {
-        return stored;
-    }
-    match stored {
-        Err(Error::Disk { path, problem }) if written => {
-            let problem = problem.split('\n').next().unwrap_or_default();
-            eprintln!(
-                "billow: {}: {problem}; the journal is read instead\n  next: run `billow run` of its study: \
-                 it writes the table again",
-                path.display()
-            );
-        }
-        Ok(_) if journal.faults.is_empty() && !results.is_locked()? => {
-            let path = results.table_path();
-            eprintln!(
-                "billow: {}: differs from the journal; the journal is read instead\n  next: billow doctor \
-                 {}",
-                path.display(),
-                results.root().display()
-            );
-        }
-        _ => {}
-    }
-    Ok(Stored::read(results.clone())?.table())
 }
 
 /// The results folder: the given folder, or the folder of the given study file, or the only folder under
