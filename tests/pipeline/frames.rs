@@ -184,7 +184,7 @@ fn invalid_requests_give_one_error() {
     fs::write(&path, &bytes).unwrap();
     refused(&[&job, results], &[&job, "next: "]);
     fs::remove_file(&path).unwrap();
-    refused(&[&job, results], &[&job, "no such file"]);
+    refused(&[&job, results], &[&job, "missing", "next: "]);
     assert!(!folder.results().join("charts").exists(), "nothing was drawn");
 }
 
