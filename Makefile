@@ -2,6 +2,7 @@
 # make test     the quick tier of the tests and of the reference cases (what CI runs)
 # make test-all the quick tier, the long ones, every reference case, and the Python readers
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
+# make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make bench    what billow costs on this machine, a few minutes
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
@@ -18,7 +19,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study test test-all test-long contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: study test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -40,6 +41,10 @@ test-long: deps reader-deps
 # Runs it has finished are not run again.
 contact-matrix: build reader-deps
 	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW)
+
+# Its options, as in: make torture TORTURE="--only kill9,signals --trials 0.1 --seed 7"
+torture: deps
+	$(CARGO) test --release --locked -p billow-study --test torture -- $(TORTURE)
 
 # Opens two small studies, fresh, with h5py, xarray, pandas, pyarrow and vtk.
 readers: build reader-deps

@@ -33,6 +33,7 @@ mod status_why_show;
 mod streams;
 mod study_files;
 mod support;
+mod torture_short;
 mod units;
 mod validate;
 mod verdict;

@@ -344,7 +344,7 @@ pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
                     .map_or_else(String::new, |near| format!("did you mean {near}? Otherwise "));
                 format!("\n  next: {near}give the path of a {what}, as {example}")
             }
-            _ => String::new(),
+            _ => "\n  next: make the file readable and run the same command again".to_owned(),
         };
         let problem = match error.kind() {
             std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
@@ -353,7 +353,9 @@ pub fn read(path: &Path, what: &str, example: &str) -> Result<Vec<u8>> {
         disk(format!("cannot read the {what}: {problem}{next}"))
     };
     files::read_at_most(path, MAX_FILE_SIZE).map_err(unreadable)?.ok_or_else(|| {
-        disk(format!("is larger than {} MiB, the limit of a {what}", MAX_FILE_SIZE >> 20))
+        let limit = MAX_FILE_SIZE >> 20;
+        let next = format!("give the path of a {what}, as {example}");
+        disk(format!("is larger than {limit} MiB, the limit of a {what}\n  next: {next}"))
     })
 }
 

@@ -54,6 +54,9 @@ pub enum Ended {
     NoEquilibrium(statics::StaticFailure),
 }
 
+/// The next step for a checkpoint that cannot be used.
+const START_AGAIN: &str = "\n  next: start again without --resume";
+
 /// Solves a scene on this number of threads; the result does not depend on it. A signal ends the run,
 /// after a checkpoint where one is asked for.
 ///
@@ -243,7 +246,7 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         refuse(format!("cannot read the checkpoint: {error}\n  next: {next}"))
     })?;
     let text = String::from_utf8(bytes)
-        .map_err(|_| refuse("is not a checkpoint: not UTF-8".to_owned()))?;
+        .map_err(|_| refuse(format!("is not a checkpoint: not UTF-8{START_AGAIN}")))?;
     let stored = Checkpoint::<State, Run>::from_text(&text, &scene.fingerprint);
     let checkpoint = stored.map_err(|error| {
         let next = match error {
@@ -253,7 +256,7 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
             CheckpointError::Version { .. } | CheckpointError::Physics { .. } => {
                 "\n  next: resume with the billow that wrote it, or start again without --resume"
             }
-            CheckpointError::Invalid(_) => "\n  next: start again without --resume",
+            CheckpointError::Invalid(_) => START_AGAIN,
         };
         refuse(format!("{error}{next}"))
     })?;

@@ -216,6 +216,9 @@ pub fn check_output_path(path: &Path) -> io::Result<()> {
     }
 }
 
+/// Error numbers of the system for too many open files: ENFILE (of the machine), EMFILE (of the process).
+const TOO_MANY_FILES: [i32; 2] = [23, 24];
+
 /// A disk error with path, cause and next step.
 pub fn disk_error(path: &Path, error: &io::Error) -> Error {
     let next = match error.kind() {
@@ -233,7 +236,23 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
             "\n  next: name a file in an existing folder; in a results folder, `billow doctor --repair` moves \
              what is in the way"
         }
-        _ => "",
+        _ if error.raw_os_error().is_some_and(|code| TOO_MANY_FILES.contains(&code)) => {
+            "\n  next: raise the limit of open files (ulimit -n), or use fewer --threads"
+        }
+        _ => "\n  next: run the same command again; if the error remains, check the disk",
     };
     Error::Disk { path: path.to_owned(), problem: format!("{error}{next}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_disk_error_has_a_next_step() {
+        for code in [1, 2, 4, 5, 13, 17, 20, 21, 23, 24, 27, 28, 30, 40, 122] {
+            let text = disk_error(Path::new("a"), &io::Error::from_raw_os_error(code)).to_string();
+            assert!(text.contains("a: ") && text.contains("\n  next: "), "{text}");
+        }
+    }
 }

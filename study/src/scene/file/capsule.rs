@@ -87,7 +87,7 @@ fn check(design: &FoldDesign, erected: bool, source: &Source) -> Result<(), Inpu
 fn fold_error(error: FoldError, source: &Source) -> InputError {
     match error {
         FoldError::Invalid { key, problem } => {
-            source.error(&format!("design.{key}"), "", problem, "")
+            source.error(&format!("design.{key}"), "", problem, "what `billow keys design` lists")
         }
         FoldError::Infeasible { reason, nearest } => {
             let near: Vec<String> = nearest
@@ -95,7 +95,7 @@ fn fold_error(error: FoldError, source: &Source) -> InputError {
                 .map(|near| format!("{} {}", near.key, short_number(near.value)))
                 .collect();
             let allowed = if near.is_empty() {
-                String::new()
+                "a feasible design; try others with `billow fold`".to_owned()
             } else {
                 format!("a feasible design; nearest, each change alone: {}", near.join(", "))
             };

@@ -48,10 +48,14 @@ impl Reader {
                 let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
                 disk(format!("cannot read the file of {key}: {error}{RELATIVE}{near}"))
             })?
-            .ok_or_else(|| disk(format!("is larger than {} MiB", MAX_MESH_SIZE >> 20)))?;
+            .ok_or_else(|| {
+                let limit = MAX_MESH_SIZE >> 20;
+                disk(format!("is larger than {limit} MiB\n  next: give a coarser mesh"))
+            })?;
         self.hashes.insert(name.to_owned(), bytes_hash(&bytes));
         String::from_utf8(bytes).map_err(|error| {
-            disk(format!("is not UTF-8 from byte {} on", error.utf8_error().valid_up_to()))
+            let byte = error.utf8_error().valid_up_to();
+            disk(format!("is not UTF-8 from byte {byte} on\n  next: save it as UTF-8"))
         })
     }
 }
