@@ -205,6 +205,9 @@ fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String
         let by_limit = status != Status::Failed(FailureKind::StepLimit) || limits.steps.is_some();
         if by_limit && summary.counts.of(status) > 0 {
             let root = root.display();
+            // Without job_limits.memory it is the machine's memory, or a limit of the process.
+            let by_machine = status == Status::OutOfMemory && limits.memory.is_none();
+            let option = if by_machine { ", with more memory or a coarser mesh" } else { option };
             let _ = write!(text, "; billow rerun {root} --status {status}{option}");
         }
     }

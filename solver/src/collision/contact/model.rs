@@ -68,10 +68,6 @@ pub const DISTANCE_PER_GAP: f64 = 0.4;
 /// gap is the height of an element, which is far too large for a contact distance.
 const MAX_DISTANCE_PER_EDGE: f64 = 0.02;
 
-/// Radii in which the smallest gap is searched, each four times the one before. Chosen: the smallest is a
-/// thousandth of the largest.
-const RADIUS_LEVELS: u32 = 6;
-
 impl ContactModel {
     /// Contact of a film at `positions` (m), without plates, friction and adhesion.
     ///
@@ -139,8 +135,11 @@ impl ContactModel {
 
     /// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
     pub fn pairs_within(&self, positions: &Field, radius: f64, mut visit: impl FnMut(Pair, f64)) {
-        let wanted = |kind| self.edge_contacts || kind == PairKind::NodeElement;
-        pairs_within(&self.mesh, positions, radius, wanted, &mut visit);
+        pairs_within(&self.mesh, positions, radius, |pair, gap| {
+            if self.edge_contacts || pair.kind == PairKind::NodeElement {
+                visit(pair, gap);
+            }
+        });
     }
 
     /// Appends the gaps (m) of pairs of one kind at these positions (m) to `gaps`. If edges cannot be
@@ -169,20 +168,13 @@ impl ContactModel {
 /// and an element, but at most 0.02 of the mean edge length.
 pub fn default_distance(mesh: &CollisionMesh, positions: &Field) -> f64 {
     let max_distance = MAX_DISTANCE_PER_EDGE * mean_edge_length(mesh, positions);
-    let radius = max_distance / DISTANCE_PER_GAP;
-    // Many pairs lie within the whole radius where thin elements meet, and few within the smallest gap.
-    let radii = (0..RADIUS_LEVELS).rev().map(|level| radius / f64::from(1 << (2 * level)));
-    for radius in radii {
-        let mut smallest_gap = f64::INFINITY;
-        let is_gap = |kind| kind == PairKind::NodeElement;
-        pairs_within(mesh, positions, radius, is_gap, |_, gap| {
+    let mut smallest_gap = f64::INFINITY;
+    pairs_within(mesh, positions, max_distance / DISTANCE_PER_GAP, |pair, gap| {
+        if pair.kind == PairKind::NodeElement {
             smallest_gap = smallest_gap.min(gap);
-        });
-        if smallest_gap < radius {
-            return (DISTANCE_PER_GAP * smallest_gap).min(max_distance);
         }
-    }
-    max_distance
+    });
+    (DISTANCE_PER_GAP * smallest_gap).min(max_distance)
 }
 
 /// Mean edge length, m.
@@ -193,22 +185,16 @@ fn mean_edge_length(mesh: &CollisionMesh, positions: &Field) -> f64 {
     edges.iter().map(length).sum::<f64>() / edges.len() as f64
 }
 
-/// Calls `visit` with every pair of a kind that `wanted` takes, closer than `radius` (m) at these positions
-/// (m), and its gap (m).
+/// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
 fn pairs_within(
     mesh: &CollisionMesh,
     positions: &Field,
     radius: f64,
-    wanted: impl Fn(PairKind) -> bool,
     mut visit: impl FnMut(Pair, f64),
 ) {
     let kdops = KDops::new(&mesh.hierarchy, positions);
     pairs_within_bounds(QueryKind::Collision, mesh, &kdops, radius, |kind, [first, second]| {
-        let kind = pair_kind(kind);
-        if !wanted(kind) {
-            return;
-        }
-        let pair = Pair { kind, first, second };
+        let pair = Pair { kind: pair_kind(kind), first, second };
         let gap = pair.closest(&vectors_of(positions, pair.nodes(&mesh.topology))).squared.sqrt();
         if gap < radius {
             visit(pair, gap);

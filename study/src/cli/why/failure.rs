@@ -119,8 +119,8 @@ fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> S
              it has one"
         ),
         Status::OutOfMemory => format!(
-            "a coarser mesh (design.subdivisions), or billow rerun {short_id} {root} --job-limit memory=… \
-             where the machine has it"
+            "a coarser mesh (design.subdivisions), or billow rerun {short_id} {root} where there is more memory; \
+             with --job-limit memory=… if the reason names job_limits.memory"
         ),
         Status::Crashed => format!(
             "look for the cause in the messages of the system (memory, a signal of a batch system), then \
