@@ -71,6 +71,10 @@ impl Kind for Signals {
         let subject = &self.subjects[subject];
         let (name, code) = SIGNALS[number % SIGNALS.len()];
         let mut trial = Trial::new(format!("SIG{name}, {}", subject.name));
+        if name == "HUP" && hangup_ignored() {
+            trial.skipped = Some("SIGHUP is ignored here, as under nohup".to_owned());
+            return trial;
+        }
         place.write_study(&subject.study);
         let command = program::billow(place, &studies::run_arguments());
         let mut running = program::start(place, command);
@@ -113,6 +117,13 @@ impl Kind for Signals {
     fn note(&self) -> String {
         "time from the signal to the end".to_owned()
     }
+}
+
+/// Whether this process ignores SIGHUP; then so does every program that it starts.
+fn hangup_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).is_ok_and(|mask| mask & 1 == 1))
 }
 
 /// Waits until the run has taken its lock: it then answers to signals.

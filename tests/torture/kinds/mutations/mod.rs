@@ -21,7 +21,7 @@ mod obj;
 /// Number of mutated inputs.
 const TRIALS: usize = 10_000;
 /// Time after which a command counts as hanging.
-const LIMIT: Duration = Duration::from_secs(10);
+const LIMIT: Duration = Duration::from_secs(60);
 /// Time after which a run of a mutated study is asked to stop. Chosen: some jobs of it are finished.
 const RUN_TIME: Duration = Duration::from_millis(300);
 /// Limit of the address space, in kB. Chosen: enough for every shipped file, and two fit on a small machine.
