@@ -330,3 +330,40 @@ fn rerun_selects_failed_jobs_by_condition() {
     assert_eq!(none.status.code(), Some(0));
     assert!(stderr(&none).contains("0 jobs would run"), "{}", stderr(&none));
 }
+
+/// A results folder and its study.json name the study and its folder, also after a move.
+#[test]
+fn run_takes_a_results_folder() {
+    let folder = ran();
+    let copy = folder.path().join("copy");
+    fs::rename(folder.results(), &copy).unwrap();
+    let id = ids_of(&copy);
+    for argument in ["copy", "copy/study.json"] {
+        fs::remove_file(copy.join(format!("jobs/{}/{id}.h5", &id[..2]))).unwrap();
+        let said = folder.stdout(&["run", argument, "-q"]);
+        assert!(said.starts_with("grid: 1 job run") && said.contains("results  copy"), "{said}");
+    }
+    assert!(!folder.results().exists());
+    assert_eq!(folder.run(&["doctor", "copy"]).status.code(), Some(0));
+}
+
+/// The id of a job with a history in a results folder.
+fn ids_of(results: &std::path::Path) -> String {
+    let mut folders = fs::read_dir(results.join("jobs")).unwrap();
+    let first = folders.next().unwrap().unwrap().path();
+    let file = fs::read_dir(first).unwrap().next().unwrap().unwrap().path();
+    file.file_stem().unwrap().to_str().unwrap().to_owned()
+}
+
+/// Without its journal nothing confirms a table: a repair keeps it.
+#[test]
+fn a_repair_keeps_a_table_that_it_writes_again() {
+    let folder = ran();
+    let table = fs::read(folder.results().join("summary.parquet")).unwrap();
+    fs::remove_dir_all(folder.results().join("journal")).unwrap();
+    let output = folder.run(&["table"]);
+    assert!(stderr(&output).contains("nothing confirms the table"), "{}", stderr(&output));
+    folder.run(&["doctor", "--repair"]);
+    let kept = folder.results().join("damaged/summary.parquet.0");
+    assert_eq!(fs::read(kept).unwrap(), table);
+}

@@ -242,7 +242,7 @@ fn invalid_flags_are_refused() {
         (&["scene.json", "--threads", "0"], "", "--threads"),
         (&["gone.json"], "", "scenes/sphere.json"),
         (&["scene.json", "--out", "none/a.h5"], "", "next: name a file in an existing folder"),
-        (&["scene.json", "--checkpoint", "."], "", "next: name a file in an existing folder"),
+        (&["scene.json", "--checkpoint", "."], "", "next: move the folder away, or name a file"),
     ] {
         let output = solve(folder.path(), arguments, simd);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

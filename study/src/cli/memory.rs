@@ -7,6 +7,7 @@ use billow_solver::scene::Scene;
 
 use super::print::count;
 use crate::job::{self, memory};
+use crate::platform::error::{Error, Result};
 use crate::platform::memory::{Limit, limits, size, smallest};
 use crate::study::{Study, StudyPoint};
 
@@ -31,6 +32,20 @@ impl Memory {
         self.limit.map_or(u64::MAX, |limit| limit.usable(self.threads))
     }
 
+    /// Refuses a process that has no memory for any job.
+    ///
+    /// # Errors
+    /// [`Error::Disk`] with the limit.
+    pub fn check(&self) -> Result<()> {
+        let Some(limit) = self.limit.filter(|limit| limit.usable(1) == 0) else { return Ok(()) };
+        Err(Error::Disk {
+            path: "memory".into(),
+            problem: format!(
+                "{limit} leaves nothing for a job: the program itself needs all of it\n  next: raise the limit"
+            ),
+        })
+    }
+
     /// Whether a job of this scene fits, if it runs alone.
     pub fn fits(&self, scene: &Scene) -> bool {
         memory::estimate(scene).total <= self.usable()
@@ -38,6 +53,10 @@ impl Memory {
 
     /// A note on the jobs that do not fit; `None` without one.
     pub fn note(&self, study: &Study) -> Option<String> {
+        self.machine_note(study).or_else(|| limited_note(study))
+    }
+
+    fn machine_note(&self, study: &Study) -> Option<String> {
         let limit = self.limit?;
         let large: Vec<&StudyPoint> =
             feasible(study).filter(|point| !self.fits(&point.scene)).collect();
@@ -79,6 +98,21 @@ impl Memory {
             format!("memory: up to {} a job ({usable} usable of {limit})", size(largest))
         })
     }
+}
+
+/// A note on the jobs above the limit of the study; `None` without one.
+fn limited_note(study: &Study) -> Option<String> {
+    let limit = study.job_limits().memory?;
+    let needs = feasible(study).map(|point| memory::estimate(&point.scene).total);
+    let above: Vec<u64> = needs.filter(|needed| *needed > limit).collect();
+    let largest = above.iter().max()?;
+    Some(format!(
+        "note: {} of {} will end as out_of_memory: job_limits.memory is {}, up to {} needed",
+        above.len(),
+        count(feasible(study).count(), "point"),
+        size(limit),
+        size(*largest),
+    ))
 }
 
 /// Memory of a job below which `plan` says nothing, bytes. Chosen: every machine has it.

@@ -36,7 +36,7 @@ use crate::study::plan;
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Study file.
+    /// Study file, or a results folder.
     pub study: PathBuf,
     #[command(flatten)]
     results: ResultsOption,
@@ -69,8 +69,11 @@ pub(super) struct RunOptions {
 /// # Errors
 /// An invalid study, a disk error, jobs that failed, a signal.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let study = Study::load(&args.study, &args.set.set)?;
-    let root = results_folder(&args.results, &study);
+    let (file, folder) = study_of_results(&args.study)?;
+    let study = Study::load(&file, &args.set.set)?;
+    let root = folder
+        .filter(|_| args.results.results.is_none())
+        .unwrap_or_else(|| results_folder(&args.results, &study));
     if !args.options.progress.quiet {
         notes::print_warnings(&study);
         let results = Results::new(&Disk, &root);
@@ -82,6 +85,27 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
     }
     run_study(&study, &root, None, &args.options, out)
+}
+
+/// The study file that an argument names, and its results folder if it is that folder or its study.json.
+///
+/// # Errors
+/// [`Error::Disk`] for a damaged study.json.
+fn study_of_results(path: &Path) -> Result<(PathBuf, Option<PathBuf>)> {
+    let is_stored = path.file_name().is_some_and(|name| name == "study.json");
+    let folder = if path.is_dir() {
+        path
+    } else {
+        match path.parent() {
+            Some(folder) if is_stored => folder,
+            _ => return Ok((path.to_owned(), None)),
+        }
+    };
+    let results = Results::new(&Disk, folder);
+    if !results.journal_path().is_dir() || results.owner()?.is_none() {
+        return Ok((path.to_owned(), None));
+    }
+    Ok((results.study_path(), Some(folder.to_owned())))
 }
 
 /// Runs the unfinished jobs of a study, or the jobs `again`, and prints the result.
@@ -104,10 +128,11 @@ pub(super) fn run_study(
     let instruction_set = super::instruction_set::selected()?;
     let (threads, note) = memory::threads(options.threads.count()?);
     let limits = with_options(study.job_limits(), &options.job_limit)?;
+    let memory = Memory::new(threads);
+    memory.check()?;
     if !options.progress.quiet {
         // Before the run: a reader may want to change the study.
         notes::print(study);
-        let memory = Memory::new(threads);
         note.into_iter().chain(memory.note(study)).for_each(|note| eprintln!("{note}"));
     }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;

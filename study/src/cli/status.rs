@@ -237,7 +237,10 @@ impl<'a> Status<'a> {
             let at = time.map_or_else(String::new, |time| format!(" at {} s", brief_number(time)));
             format!("{}{at}", id.short())
         });
-        let shown: Vec<String> = shown.collect();
+        let mut shown: Vec<String> = shown.collect();
+        if self.checkpoints.len() > MAX_SHOWN {
+            shown.push(format!("and {} more", self.checkpoints.len() - MAX_SHOWN));
+        }
         let jobs = count(self.checkpoints.len(), "job");
         (!shown.is_empty())
             .then(|| ("stored", format!("{jobs} with a checkpoint: {}", shown.join(", "))))

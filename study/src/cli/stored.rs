@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
-use crate::store::journal::Journal;
+use crate::store::journal::{Fault, Journal};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::{Table, agreement};
@@ -18,14 +18,16 @@ const MAX_SHOWN: usize = 3;
 /// As [`Stored::read`].
 pub fn read(root: &Path) -> Result<Stored<'static>> {
     let stored = Stored::read(Results::new(&Disk, root))?;
-    note_faults(&stored.journal, root);
+    note_faults(&stored.journal, &stored.results);
     Ok(stored)
 }
 
-/// Names the lines of the journal that are not valid. A torn last line is what a running or stopped process
-/// leaves, and no damage.
-pub fn note_faults(journal: &Journal, root: &Path) {
-    let mut faults = journal.faults.iter().filter(|fault| !fault.torn);
+/// Names the lines of the journal that are not valid. A torn last line is what a running process writes.
+pub fn note_faults(journal: &Journal, results: &Results<'_>) {
+    let running = results.is_locked().unwrap_or(false);
+    let shown: Vec<&Fault> =
+        journal.faults.iter().filter(|fault| !(fault.torn && running)).collect();
+    let mut faults = shown.iter();
     for fault in faults.by_ref().take(MAX_SHOWN) {
         eprintln!("billow: damaged: {fault}");
     }
@@ -33,8 +35,8 @@ pub fn note_faults(journal: &Journal, root: &Path) {
     if more > 0 {
         eprintln!("billow: damaged: {more} more lines of the journal");
     }
-    if journal.faults.iter().any(|fault| !fault.torn) {
-        let root = root.display();
+    if !shown.is_empty() {
+        let root = results.root().display();
         eprintln!(
             "  next: run `billow run` of the study: it runs these jobs again; `billow doctor {root}`"
         );
@@ -49,11 +51,21 @@ pub fn note_faults(journal: &Journal, root: &Path) {
 pub fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
     // A run that was stopped before it wrote its table has a plan and a journal.
     let written = results.table_path().exists();
-    let stored = match results.read_table() {
-        Ok(table) if agreement::agrees(&table, &journal.records) => return Ok(table),
-        stored => stored,
-    };
+    let stored = results.read_table();
     if results.owner()?.is_none() || (written && journal.is_empty()) {
+        if stored.is_ok() {
+            let root = results.root().display();
+            eprintln!(
+                "billow: {root}: no journal: nothing confirms the table\n  next: billow doctor {root}"
+            );
+        }
+        return stored;
+    }
+    let truth = Stored::read(results.clone())?.table();
+    if let Ok(table) = &stored
+        && (agreement::different_rows(table, &truth) == 0
+            || agreement::is_of_other_physics(table, &journal.records))
+    {
         return stored;
     }
     match stored {
@@ -76,5 +88,5 @@ pub fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
         }
         _ => {}
     }
-    Ok(Stored::read(results.clone())?.table())
+    Ok(truth)
 }

@@ -63,7 +63,7 @@ impl Target {
 pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Target> {
     let results = Results::new(&Disk, &folder(given, set)?);
     let journal = results.journal()?;
-    stored::note_faults(&journal, results.root());
+    stored::note_faults(&journal, &results);
     let table = stored::table(&results, &journal)?;
     changes::note(&results, given.study.as_deref(), set)?;
     changes::note_other_physics(&table);

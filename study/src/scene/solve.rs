@@ -260,7 +260,8 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         };
         refuse(format!("{error}{next}"))
     })?;
-    let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state).map_err(invalid)?;
+    let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state)
+        .map_err(|error| refuse(format!("{error}{START_AGAIN}")))?;
     model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
     Ok((model, checkpoint.run))
 }

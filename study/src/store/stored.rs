@@ -43,13 +43,15 @@ impl<'a> Stored<'a> {
     /// [`Error::Disk`] when there is no study.json, or when a file cannot be read.
     pub fn read(results: Results<'a>) -> Result<Self> {
         if results.owner()?.is_none() {
-            return Err(Error::Disk {
-                path: results.root().to_owned(),
-                problem:
-                    "no results here: no study.json\n  next: run `billow run STUDY` first, or \
-                          name the folder of its results"
-                        .to_owned(),
-            });
+            let root = results.root().display();
+            let problem = if results.journal_path().is_dir() {
+                format!("study.json is missing\n  next: billow doctor --repair {root}")
+            } else {
+                "no results here: no study.json\n  next: run `billow run STUDY` first, or name the folder of its \
+                 results"
+                    .to_owned()
+            };
+            return Err(Error::Disk { path: results.root().to_owned(), problem });
         }
         let study = Study::load(&results.study_path(), &[])?;
         let journal = results.journal()?;

@@ -222,6 +222,7 @@ const TOO_MANY_FILES: [i32; 2] = [23, 24];
 /// A disk error with path, cause and next step.
 pub fn disk_error(path: &Path, error: &io::Error) -> Error {
     let next = match error.kind() {
+        _ if error.to_string().contains("\n  next: ") => "",
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "\n  next: free some space and run the same command again; finished jobs are kept"
         }
@@ -232,7 +233,10 @@ pub fn disk_error(path: &Path, error: &io::Error) -> Error {
         io::ErrorKind::AlreadyExists => {
             "\n  next: it is a file and not a folder; choose another with --results DIR or --out"
         }
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => {
+        io::ErrorKind::IsADirectory => {
+            "\n  next: move the folder away, or name a file; `billow doctor RESULTS` checks a results folder"
+        }
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
             "\n  next: name a file in an existing folder; in a results folder, `billow doctor --repair` moves \
              what is in the way"
         }

@@ -6,8 +6,8 @@
 //! the same bits. A worker writes only the line of its attempt and the checkpoints of its job
 //! (`attempt_log`).
 //!
-//! A job that is run again ([`Run::rerun`]) is invalidated first. Its new history is compared with
-//! the hash of the old one.
+//! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
+//! compared with the hash of the old one.
 
 use std::collections::BTreeSet;
 use std::num::NonZero;
@@ -95,7 +95,6 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let log = AttemptLog::new(&run.results, &lock, &mut journal)?;
     let mut state = State::new(run, &log, journal);
     state.record_study(&study)?;
-    state.invalidate()?;
     state.remove_checkpoints()?;
     let mut finished = Vec::new();
     let mut last = None;

@@ -9,6 +9,7 @@ use std::sync::atomic::Ordering;
 
 use super::*;
 use crate::job::executor::Outcome;
+use crate::job::limits::Limit;
 use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
@@ -96,6 +97,23 @@ fn an_invalidated_job_that_did_not_end_runs_next_and_is_compared() {
     );
     let (ended, executed) = run_on(&Disk, folder.path(), None, ran);
     assert_eq!((executed, ended.unwrap().same), (1, 1));
+}
+
+#[test]
+fn a_rerun_that_is_stopped_or_reaches_a_limit_keeps_the_results() {
+    let folder = folder();
+    run_on(&Disk, folder.path(), None, ran).0.unwrap();
+    let results = Results::new(&Disk, folder.path());
+    let (table, journal) = (fs::read(results.table_path()).unwrap(), results.journal().unwrap());
+    for outcome in [Outcome::Cancelled, Outcome::Limited(Limit::WallTime(1.0))] {
+        let (ended, executed) = run_on(&Disk, folder.path(), Some(&[1, 3]), |_| outcome.clone());
+        let summary = ended.unwrap();
+        assert_eq!((executed, summary.counts.status["done"]), (2, 4), "{outcome:?}");
+        assert_eq!(results.journal().unwrap().records, journal.records);
+        assert_eq!(fs::read(results.table_path()).unwrap(), table);
+        let (_, executed) = run_on(&Disk, folder.path(), None, ran);
+        assert_eq!(executed, 0, "every job is finished");
+    }
 }
 
 #[test]

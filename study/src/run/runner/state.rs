@@ -76,21 +76,6 @@ impl<'a, 'w> State<'a, 'w> {
         Ok(())
     }
 
-    /// Invalidates the finished ones of the jobs to run again.
-    pub(super) fn invalidate(&mut self) -> Result<()> {
-        let Some(rerun) = self.run.rerun else { return Ok(()) };
-        let finished = rerun.iter().filter(|job| self.recorded.contains_key(*job));
-        let finished: Vec<JobId> = finished.cloned().collect();
-        if !finished.is_empty() {
-            self.log.writer().invalidate(&finished)?;
-        }
-        for job in finished {
-            self.deaths.forget(&job);
-            self.old_records.extend(self.recorded.remove_entry(&job));
-        }
-        Ok(())
-    }
-
     /// Removes the checkpoints of jobs that have ended: those of a process that died in between.
     pub(super) fn remove_checkpoints(&self) -> Result<()> {
         for id in self.log.stored() {
@@ -118,6 +103,11 @@ impl<'a, 'w> State<'a, 'w> {
                 None => missing.push(point.job.clone()),
                 Some(record) => match self.run.results.damage(&record)? {
                     None => {
+                        // The record of a job to run again counts until its new one is there.
+                        if self.run.rerun.is_some_and(|rerun| rerun.contains(id)) {
+                            self.old_records.insert(id.clone(), record.clone());
+                            missing.push(point.job.clone());
+                        }
                         self.records.insert(id.clone(), record);
                     }
                     Some(note) => {
@@ -133,14 +123,21 @@ impl<'a, 'w> State<'a, 'w> {
             }
         }
         match self.run.rerun {
-            Some(rerun) => missing.retain(|job| rerun.contains(&job.id)),
+            Some(rerun) => {
+                missing.retain(|job| rerun.contains(&job.id));
+                for job in &missing {
+                    self.deaths.forget(&job.id);
+                }
+            }
             None => self.quarantine(&mut missing, reporter)?,
         }
         let suspects = missing.iter().filter(|job| self.deaths.is_suspect(&job.id));
         if let Some(note) = quarantine::suspects_note(suspects) {
             reporter.event(&Event::Note(note));
         }
-        let finished = seen.iter().filter(|id| self.records.contains_key(*id)).count();
+        let to_run: BTreeSet<&JobId> = missing.iter().map(|job| &job.id).collect();
+        let is_finished = |id: &&JobId| self.records.contains_key(*id) && !to_run.contains(id);
+        let finished = seen.iter().filter(is_finished).count();
         let jobs = finished + missing.len();
         reporter.event(&Event::GenerationStarted { number: generation.number, jobs, finished });
         self.points.extend(generation.points);
@@ -157,6 +154,13 @@ impl<'a, 'w> State<'a, 'w> {
     ) -> Result<()> {
         if !ended.is_empty() {
             self.log.check_folder()?;
+        }
+        let ended = self.without_limited_reruns(jobs, ended, reporter);
+        let replaced = ended.iter().map(|ended| &jobs[ended.index].id);
+        let replaced: Vec<JobId> =
+            replaced.filter(|id| self.records.contains_key(*id)).cloned().collect();
+        if !replaced.is_empty() {
+            self.log.writer().invalidate(&replaced)?;
         }
         let mut events = Vec::with_capacity(ended.len());
         let mut records = Vec::with_capacity(ended.len());
@@ -205,6 +209,29 @@ impl<'a, 'w> State<'a, 'w> {
             self.write_table()?;
         }
         Ok(())
+    }
+
+    /// Leaves out jobs that ran again and reached a limit, where an earlier attempt reached none: that result
+    /// is kept.
+    fn without_limited_reruns(
+        &self,
+        jobs: &[Job],
+        mut ended: Vec<Ended>,
+        reporter: &mut dyn Reporter,
+    ) -> Vec<Ended> {
+        ended.retain(|ended| {
+            let id = &jobs[ended.index].id;
+            let old = self.records.get(id).filter(|old| !reached_limit(old));
+            let kept =
+                old.is_some() && ended.deployment.is_none() && is_limit(ended.cells.status());
+            if kept {
+                let reason = ended.cells.text(ColumnId::Reason);
+                let id = id.short();
+                reporter.event(&Event::Note(format!("job {id} keeps its result; again: {reason}")));
+            }
+            !kept
+        });
+        ended
     }
 
     /// Compares status and content hash of a job that ran again with its old record.
@@ -259,9 +286,12 @@ impl<'a, 'w> State<'a, 'w> {
 
 /// Whether a job was ended by a limit, or crashed. Its checkpoint is kept, so that it can go on.
 fn reached_limit(record: &Record) -> bool {
-    let limits = [Status::Timeout, Status::OutOfMemory, Status::Crashed];
-    let status = record.cells.status();
     // A run that used up solver.step_limit has a history.
-    let steps = status == Status::Failed(FailureKind::StepLimit) && record.file_hash.is_none();
-    limits.contains(&status) || steps
+    record.file_hash.is_none() && is_limit(record.cells.status())
+}
+
+/// Whether a job of this status, without a history, was ended by a limit, or crashed.
+fn is_limit(status: Status) -> bool {
+    let step_limit = Status::Failed(FailureKind::StepLimit);
+    [Status::Timeout, Status::OutOfMemory, Status::Crashed, step_limit].contains(&status)
 }

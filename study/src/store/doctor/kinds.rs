@@ -12,8 +12,17 @@ pub(super) fn misplaced(results: &Results<'_>) -> Vec<(PathBuf, &'static str)> {
         results.references_path(),
         results.charts_path(),
         results.checkpoints_path(),
+        results.damaged_path(),
     ];
-    let files = [results.study_path(), results.table_path(), results.attempts_path()];
+    let mut files = vec![
+        results.study_path(),
+        results.table_path(),
+        results.attempts_path(),
+        results.lock_path(),
+    ];
+    for folder in [results.journal_path(), results.references_path(), results.checkpoints_path()] {
+        files.extend(results.files().list(&folder).unwrap_or_default());
+    }
     let folders = folders.into_iter().filter(|path| path.exists() && !path.is_dir());
     let files = files.into_iter().filter(|path| path.is_dir());
     folders

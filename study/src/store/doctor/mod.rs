@@ -14,7 +14,7 @@ use crate::store::journal::Journal;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{self, Stored};
-use crate::store::table::{Table, agreement};
+use crate::store::table::agreement;
 use crate::study::Study;
 
 mod histories;
@@ -100,6 +100,16 @@ impl Health {
 
 /// Checks a results folder.
 pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
+    let mut health = examined(results, depth);
+    let root = results.root().display();
+    for finding in &mut health.findings {
+        let repair = format!("`billow doctor --repair {root}`");
+        finding.next = finding.next.replace("`billow doctor --repair`", &repair);
+    }
+    health
+}
+
+fn examined(results: &Results<'_>, depth: Depth) -> Health {
     let mut health = Health::default();
     let paths = match results.files().list(results.root()) {
         Ok(paths) => paths,
@@ -120,7 +130,10 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
     let misplaced = kinds::misplaced(results);
     if !misplaced.is_empty() {
         for (path, problem) in misplaced {
-            health.fault(&path, problem, REPAIR_ONLY);
+            // A repair needs these two itself.
+            let needed = [results.lock_path(), results.damaged_path()];
+            let next = if needed.contains(&path) { "move it away" } else { REPAIR_ONLY };
+            health.fault(&path, format!("{problem}; other files are not checked"), next);
         }
         return health;
     }
@@ -232,7 +245,8 @@ fn check_journal(results: &Results<'_>, health: &mut Health) -> Journal {
 /// Compares the summary table with plan and journal.
 fn check_table(stored: &Stored<'_>, health: &mut Health) {
     let path = stored.results.table_path();
-    let write_again = "run `billow run` of its study: it writes the table again";
+    let write_again =
+        "run `billow run` of its study, or `billow doctor --repair`: it writes the table again";
     let table = match stored.results.read_table() {
         Ok(table) => table,
         Err(_) if !path.exists() => {
@@ -251,8 +265,11 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
         }
         Err(other) => return health.error(&path, &other),
     };
-    let different = different_rows(&table, &stored.table());
-    if different > 0 {
+    let different = agreement::different_rows(&table, &stored.table());
+    if agreement::is_of_other_physics(&table, &stored.journal.records) {
+        let next = "nothing; `billow run` of its study computes its jobs again";
+        health.note(&path, "rows of another physics version", next);
+    } else if different > 0 {
         let problem = format!("differs from the journal in {different} rows");
         if health.running {
             health.note(&path, problem, "nothing; the running command writes it from time to time");
@@ -260,20 +277,4 @@ fn check_table(stored: &Stored<'_>, health: &mut Health) {
             health.fault(&path, problem, write_again);
         }
     }
-}
-
-/// Number of rows in which two tables differ; all rows when their columns differ.
-pub fn different_rows(a: &Table, b: &Table) -> usize {
-    let names = |table: &Table| -> Vec<String> {
-        table.columns.iter().map(|column| column.name.clone()).collect()
-    };
-    let rows = a.rows().max(b.rows());
-    if a.rows() != b.rows() || names(a) != names(b) {
-        return rows;
-    }
-    let differs = |row: &usize| {
-        let mut columns = a.columns.iter().zip(&b.columns);
-        columns.any(|(a, b)| !agreement::same(&a.cells[*row], &b.cells[*row]))
-    };
-    (0..rows).filter(differs).count()
 }

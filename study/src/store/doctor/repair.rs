@@ -12,6 +12,7 @@ use crate::store::journal::{Journal, Writer};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
+use crate::store::table::agreement;
 
 /// Something that was repaired.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -68,11 +69,25 @@ pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
     }
     if let Ok(Some(_)) = results.owner()
         && let Ok(stored) = Stored::read(results.clone())
-        && results.write_table(&stored.table())?
+        && repair_table(&stored)?
     {
-        add(&results.table_path(), "written again from plan and journal");
+        add(&results.table_path(), "set aside, and written again from plan and journal");
     }
     Ok(repaired)
+}
+
+/// Writes the summary table again if it is not that of plan and journal, and keeps the one that was there.
+/// Returns whether it was written.
+fn repair_table(stored: &Stored<'_>) -> Result<bool> {
+    let (results, table) = (&stored.results, stored.table());
+    if let Ok(found) = results.read_table()
+        && (agreement::is_of_other_physics(&found, &stored.journal.records)
+            || agreement::different_rows(&found, &table) == 0)
+    {
+        return Ok(false);
+    }
+    results.set_aside(&results.table_path())?;
+    results.write_table(&table)
 }
 
 fn invalidate(writer: &mut Writer<'_>, journal: &mut Journal, job: &JobId) -> Result<()> {

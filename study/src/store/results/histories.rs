@@ -1,6 +1,7 @@
 //! The history files of a results folder: written, checked against their records, read.
 
 use std::io;
+use std::path::Path;
 
 use super::Results;
 use crate::job::JobId;
@@ -14,10 +15,11 @@ const OTHER_FILE: &str = "not the file that was written; its job runs again";
 /// What is wrong with a history file that does not exist.
 const MISSING_FILE: &str = "missing; its job runs again";
 /// A problem of a history file, with its next step.
-fn next_run(problem: &str) -> String {
+fn next_run(root: &Path, problem: &str) -> String {
     format!(
-        "{problem}\n  next: run `billow run` of its study: it runs the job again; while a run is active, \
-         try again"
+        "{problem}\n  next: run `billow doctor --repair {}`, then `billow run` of its study: it runs the job \
+         again; while a run is active, try again",
+        root.display()
     )
 }
 
@@ -57,14 +59,14 @@ impl Results<'_> {
         let path = self.job_path(&record.job);
         let bytes = self.files.read(&path).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
-                Error::Disk { path: path.clone(), problem: next_run("missing") }
+                Error::Disk { path: path.clone(), problem: next_run(self.root(), "missing") }
             }
             _ => disk_error(&path, &error),
         })?;
         if record.file_hash.as_ref().is_none_or(|hash| history_file::bytes_hash(&bytes) == *hash) {
             return Ok(());
         }
-        let problem = next_run("not the history that was written for this job");
+        let problem = next_run(self.root(), "not the history that was written for this job");
         Err(Error::Disk { path, problem })
     }
 
@@ -80,7 +82,8 @@ impl Results<'_> {
         if recorded.is_some() || stored.job == *id {
             return Ok(stored);
         }
-        let problem = next_run(&format!("it is the history of the job {}", stored.job));
+        let problem =
+            next_run(self.root(), &format!("it is the history of the job {}", stored.job));
         Err(Error::Disk { path, problem })
     }
 

@@ -25,6 +25,10 @@ impl Results<'_> {
             self.refuse_other_folders()?;
         }
         let path = self.lock_path();
+        if path.is_dir() {
+            let problem = "a folder, not a lock\n  next: move it away".to_owned();
+            return Err(Error::Disk { path, problem });
+        }
         // A command that only checks the lock holds it for an instant.
         for _ in 0..MAX_LOCK_ATTEMPTS {
             let lock = self.files.try_lock(&path).map_err(|error| disk_error(&path, &error))?;

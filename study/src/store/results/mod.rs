@@ -114,7 +114,8 @@ impl<'a> Results<'a> {
         self.root.join("damaged")
     }
 
-    fn lock_path(&self) -> PathBuf {
+    /// Path of the lock.
+    pub fn lock_path(&self) -> PathBuf {
         self.root.join("lock")
     }
 

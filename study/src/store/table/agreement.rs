@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use super::Table;
 use crate::input::value::Value;
-use crate::job::row::COLUMNS;
+use crate::job::row::{COLUMNS, ColumnId};
 use crate::job::{JobId, Status};
+use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::Record;
 
 /// Whether every row has the cells of its job's record, and no row without a record has results. Columns that
@@ -26,6 +27,35 @@ pub fn agrees(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
     })
 }
 
+/// Whether a table says what the journal says, of another physics version than that of today: its jobs are in no
+/// plan of today.
+pub fn is_of_other_physics(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
+    let versions =
+        (0..table.rows()).filter_map(|row| match table.value(ColumnId::PhysicsVersion, row) {
+            Some(Value::Integer(version)) => Some(*version),
+            _ => None,
+        });
+    let versions: Vec<i64> = versions.collect();
+    let other = |version: &i64| *version != i64::from(PHYSICS_VERSION);
+    !versions.is_empty() && versions.iter().all(other) && agrees(table, records)
+}
+
+/// Number of rows in which two tables differ; all rows when their columns differ.
+pub fn different_rows(a: &Table, b: &Table) -> usize {
+    let names = |table: &Table| -> Vec<String> {
+        table.columns.iter().map(|column| column.name.clone()).collect()
+    };
+    let rows = a.rows().max(b.rows());
+    if a.rows() != b.rows() || names(a) != names(b) {
+        return rows;
+    }
+    let differs = |row: &usize| {
+        let mut columns = a.columns.iter().zip(&b.columns);
+        columns.any(|(a, b)| !same(&a.cells[*row], &b.cells[*row]))
+    };
+    (0..rows).filter(differs).count()
+}
+
 /// Whether two values are the same; NaN is the same as NaN.
 pub fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
@@ -39,7 +69,7 @@ pub fn same(a: &Value, b: &Value) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::row::{Cells, ColumnId};
+    use crate::job::row::Cells;
     use crate::run::fixture;
 
     #[test]
