@@ -16,7 +16,7 @@ use crate::harness::trial::{Fault, Kind, Trial};
 /// Limits of the address space, MB.
 const LIMITS: [u32; 12] = [120, 160, 200, 260, 350, 500, 700, 1000, 1400, 1800, 2400, 3000];
 /// Address space that the program needs for small jobs, MB: below, a message is enough.
-const NEEDED: u32 = 200;
+const NEEDED: u32 = 260;
 /// Time after which a command counts as hanging.
 const LIMIT: Duration = Duration::from_mins(3);
 /// Vertices along an edge of the large square mesh: a million lines of faces.
