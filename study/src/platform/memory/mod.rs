@@ -6,7 +6,7 @@
 //! ```
 //!
 //! In use: other processes for the machine, the group for a control group, this process for the address space.
-//! Margin: what the program needs beside its jobs ([`Limit::margin`]).
+//! Margin: what the program needs beside its jobs (`Limit::margin`).
 
 mod parse;
 mod system;
