@@ -5,10 +5,11 @@
 //!  "state": …, "run": …}
 //! ```
 //!
-//! JSON with its checksum ([`crate::platform::seal`]); every number has the shortest digits that read back to the same bits. A run resumes from any
-//! step: within an inflow window, packed, or while a support moves. Everything constant comes from the
-//! scene; `scene` is the fingerprint of the scene that this must be. The fields of the state belong to
-//! the version of the format and the physics version: a checkpoint of other versions is refused.
+//! JSON with its checksum ([`crate::platform::seal`]); every number has the shortest digits that read back to
+//! the same bits. A run resumes from any step: within an inflow window, packed, or while a support moves.
+//! Everything constant comes from the scene; `scene` is the fingerprint of the scene that this must be. The
+//! fields of the state belong to the version of the format and the physics version: a checkpoint of other
+//! versions is refused.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

@@ -83,12 +83,7 @@ fn is_stale(path: &Path) -> bool {
 /// # Errors
 /// The error of the system.
 pub fn remove_stale_files(files: &dyn Files, folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut paths = files.list(folder)?;
-    paths.retain(|path| is_stale(path));
-    for path in &paths {
-        files.remove(path)?;
-    }
-    Ok(paths)
+    remove_where(files, folder, is_stale)
 }
 
 /// Writes a whole file unless it holds these bytes already. Returns whether it wrote.
@@ -110,8 +105,17 @@ pub fn write_if_changed(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Res
 /// # Errors
 /// The error of the system.
 pub fn remove_temporary_files(files: &dyn Files, folder: &Path) -> io::Result<Vec<PathBuf>> {
+    remove_where(files, folder, is_temporary)
+}
+
+/// Removes the files of a folder for which `is_old` holds. Returns their paths.
+fn remove_where(
+    files: &dyn Files,
+    folder: &Path,
+    is_old: fn(&Path) -> bool,
+) -> io::Result<Vec<PathBuf>> {
     let mut paths = files.list(folder)?;
-    paths.retain(|path| is_temporary(path));
+    paths.retain(|path| is_old(path));
     for path in &paths {
         files.remove(path)?;
     }

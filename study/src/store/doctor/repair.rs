@@ -26,8 +26,8 @@ pub struct Repaired {
 /// Repairs a results folder under its lock. Returns what was done, in order.
 ///
 /// # Errors
-/// [`crate::platform::error::Error::Disk`] when the folder is locked or cannot be read or written. What was repaired until then stays
-/// repaired.
+/// [`crate::platform::error::Error::Disk`] when the folder is locked or cannot be read or written. What was
+/// repaired until then stays repaired.
 pub fn repair(results: &Results<'_>) -> Result<Vec<Repaired>> {
     let _lock = results.lock()?;
     let mut repaired = Vec::new();
