@@ -180,3 +180,64 @@ fn a_lost_history_is_reported_and_nothing_is_drawn() {
     assert!(stderr(&output).contains(job), "{}", stderr(&output));
     assert!(!folder.results().join("charts").exists());
 }
+
+/// Strategies over residual masses with four thicknesses of each point, limits, and a search of the largest
+/// inflow.
+fn question() -> serde_json::Value {
+    let mut study = grid(&json!({
+        "strategy": ["direct", "late"],
+        "residual_gas_mass": [0, "0.05 g"],
+        "mass_flow_rate": {
+            "bisect": ["0.5 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "20 %", "spacing": "log"
+        }
+    }));
+    study["design"]["N"] = json!(6);
+    study["design"]["M"] = json!(3);
+    study["design"]["alpha1_over_phi"] = json!(1);
+    study["strategies"] = json!({
+        "direct": {}, "late": { "inflow": [{ "from": "0.1 s", "to": "0.5 s" }] }
+    });
+    study["limits"] = json!({ "peak_vz": "< 27 m/s", "verdict": "deployed" });
+    study["replicates"] = json!({ "film.thickness": ["25 um", "26 um", "27 um", "28 um"] });
+    study
+}
+
+#[test]
+fn the_default_set_of_a_question_shows_borders_limits_and_medians() {
+    let folder = TestFolder::new(&question());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let printed = folder.stdout(&["chart", "grid.json", "-q"]);
+    let charts = "results/grid/charts";
+    let read = |name: &str| {
+        let path = format!("{charts}/{name}.svg");
+        assert!(printed.lines().any(|line| line == path), "{path}: {printed}");
+        texts(&fs::read(folder.path().join(path)).unwrap())
+    };
+    for (name, expected) in [
+        (
+            "borders",
+            &[
+                "Largest mass flow rate with peak_vz < 27 m/s over residual gas mass",
+                "Mass flow rate (g/s)",
+                "Inflation strategy",
+                "late",
+                "ends of the search",
+            ][..],
+        ),
+        ("smallest_margin-over-mass_flow_rate", &["limit", "0.05 g"]),
+        ("peak_vz-over-mass_flow_rate", &["limit 27 m/s", "inflation strategy", "direct"]),
+        ("history-z_rim", &["median, and range from least to largest"]),
+    ] {
+        let shown = read(name);
+        for text in expected {
+            let there = |shown: &String| shown.contains(text);
+            assert!(shown.iter().any(there), "{name}: {text}: {shown:?}");
+        }
+        assert!(!shown.iter().any(|text| text.contains("Thickness")), "{name}: {shown:?}");
+    }
+    let arguments = ["chart", "grid.json", "-q", "--outcome", "--out", "map.svg"];
+    let chosen = ["--map", "residual_gas_mass,strategy", "--where", "mass_flow_rate == '0.5 g/s'"];
+    folder.stdout(&[&arguments[..], &chosen].concat());
+    let map = texts(&fs::read(folder.path().join("map.svg")).unwrap());
+    assert!(map.iter().any(|text| text == "4/4"), "{map:?}");
+}

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use billow_study::input::study_file;
 use billow_study::study::plan::next_jobs;
-use billow_study::study::{Limits, Study};
+use billow_study::study::{PlanSize, Study};
 use serde_json::{Value as Json, json};
 
 /// A valid study with one value changed.
@@ -147,7 +147,7 @@ fn every_invalid_file_gives_one_error() {
         ),
         (
             changed("/grid", json!({"mass_flow_rate": {"bisect": [0, 1]}})),
-            &["bisect", "does not exist in this version"],
+            &["grid.mass_flow_rate", "has no `on`"],
         ),
         (
             changed("/grid", json!({"seed": {"from": 0, "to": 1e15, "step": 1}})),
@@ -383,7 +383,7 @@ fn a_hundred_thousand_mangled_studies_plan_or_name_their_error() {
             study.to_string().into_bytes()
         };
         let study = study_file::text_of(&bytes, "fuzz.json").and_then(|text| {
-            Study::from_text(text, "fuzz.json", "fuzz", &[], Limits { points: 24 })
+            Study::from_text(text, "fuzz.json", "fuzz", &[], PlanSize { points: 24 })
         });
         match study {
             Ok(study) => {

@@ -6,14 +6,15 @@ use std::time::Instant;
 use billow_study::input::value::Value;
 use billow_study::job::{JobId, Status};
 use billow_study::platform::error::InputError;
-use billow_study::study::plan::{FinishedRow, Generation, PlanCounts, next_jobs};
-use billow_study::study::{Limits, Study};
+use billow_study::study::finished::FinishedRow;
+use billow_study::study::plan::{Generation, PlanCounts, next_jobs};
+use billow_study::study::{PlanSize, Study};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
 
 fn try_study(json: &Json, sets: &[&str]) -> Result<Study, InputError> {
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-    Study::from_text(&json.to_string(), "test.json", "test", &sets, Limits::default())
+    Study::from_text(&json.to_string(), "test.json", "test", &sets, PlanSize::default())
 }
 
 fn plan(json: &Json, sets: &[&str]) -> Generation {
@@ -155,7 +156,7 @@ proptest! {
         prop_assert_eq!(&id(&rewritten), &expected);
 
         let text = reversed(&rewritten);
-        let other = Study::from_text(&text, "f", "x", &[], Limits::default()).unwrap();
+        let other = Study::from_text(&text, "f", "x", &[], PlanSize::default()).unwrap();
         prop_assert_eq!(&next_jobs(&other, &[]).unwrap().points[0].job.id, &expected);
 
         // With every default written out.
@@ -169,7 +170,7 @@ fn a_grid_is_the_product_in_the_order_of_the_file() {
     let text = r#"{"design": {"bottom_radius": 0.5, "top_radius": 0.365, "height": 1},
         "gas": {"mass_flow_rate": 0.005}, "solver": {"model": "piston", "end_time": 0.5},
         "grid": {"N": [5, 6], "M": [4, 3], "film.thickness": ["25.4 um", "12.7 um"]}}"#;
-    let study = Study::from_text(text, "f", "x", &[], Limits::default()).unwrap();
+    let study = Study::from_text(text, "f", "x", &[], PlanSize::default()).unwrap();
     assert_eq!(study.parameter_names(), ["N", "M", "thickness"]);
     let generation = next_jobs(&study, &[]).unwrap();
     assert_eq!(generation.number, 0);
@@ -356,7 +357,12 @@ fn a_generation_depends_only_on_the_finished_rows() {
     let finished: Vec<FinishedRow> = all
         .points
         .iter()
-        .map(|point| FinishedRow { id: point.job.id.clone(), status: Status::Done, verdict: None })
+        .map(|point| FinishedRow {
+            id: point.job.id.clone(),
+            status: Status::Done,
+            verdict: None,
+            met: Vec::new(),
+        })
         .collect();
     assert_eq!(next_jobs(&study, &finished[..2]), Some(all.clone()));
     let mut other_order = finished[1..].to_vec();
@@ -448,4 +454,23 @@ fn old_names_of_keys_give_the_same_jobs_with_a_note() {
     both["outputs"]["thresholds"]["close_margin"] = json!(0.01);
     let error = try_study(&both, &[]).unwrap_err().to_string();
     assert!(error.contains("outputs.thresholds.close_margin: is the old name of"), "{error}");
+}
+
+#[test]
+fn a_window_ends_when_its_mass_is_inside() {
+    let study = |window: Json| {
+        let mut study = capsule();
+        study["solver"]["end_time"] = json!(2);
+        study["strategies"] = json!({"fill": {"inflow": [window]}});
+        study["strategy"] = json!("fill");
+        study
+    };
+    let by_end = study(json!({"from": "0.5 s", "to": "0.9 s", "mass_flow_rate": "5 g/s"}));
+    let by_mass = study(json!({"from": "0.5 s", "mass": "2 g", "mass_flow_rate": "5 g/s"}));
+    assert_eq!(id(&by_mass), id(&by_end));
+    // The rate may be that of the study, or of the grid.
+    assert_eq!(id(&study(json!({"from": "0.5 s", "mass": "2 g"}))), id(&by_end));
+    let both = study(json!({"from": "0.5 s", "to": "0.9 s", "mass": "2 g"}));
+    let error = try_study(&both, &[]).unwrap_err().to_string();
+    assert!(error.contains("strategies.fill.inflow[0].mass") && error.contains("both"), "{error}");
 }

@@ -7,7 +7,7 @@ use std::process::Command;
 use billow_study::input::schema::study_schema;
 use billow_study::job::JobId;
 use billow_study::study::plan::next_jobs;
-use billow_study::study::{Limits, Study};
+use billow_study::study::{PlanSize, Study};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies")
@@ -61,7 +61,7 @@ fn a_resolved_study_has_the_same_jobs() {
         let text = serde_json::to_string(&resolved).unwrap();
         let value = serde_json::from_str(&text).unwrap();
         assert!(validator.is_valid(&value), "{}", path.display());
-        let again = Study::from_text(&text, "study.json", "x", &[], Limits::default());
+        let again = Study::from_text(&text, "study.json", "x", &[], PlanSize::default());
         let again = again.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         assert_eq!(ids(&again), ids(&study), "{}", path.display());
         assert_eq!(again.resolved(), resolved);
@@ -107,7 +107,7 @@ fn the_schema_refuses_what_the_program_refuses() {
         }
         assert!(!validator.is_valid(&broken), "the schema takes {pointer} = {value}");
         let read =
-            Study::from_text(&broken.to_string(), "broken.json", "x", &[], Limits::default());
+            Study::from_text(&broken.to_string(), "broken.json", "x", &[], PlanSize::default());
         assert!(read.is_err(), "the program takes {pointer} = {value}");
     }
 }

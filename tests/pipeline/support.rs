@@ -50,9 +50,15 @@ impl TestFolder {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The rows of the table.
-    pub fn rows(&self, results: &str) -> Vec<Value> {
+    /// The points of the table: one row for all runs of a point.
+    pub fn points(&self, results: &str) -> Vec<Value> {
         let text = self.stdout(&["table", results, "--json"]);
+        serde_json::from_str(&text).unwrap()
+    }
+
+    /// The rows of the table, one per run.
+    pub fn rows(&self, results: &str) -> Vec<Value> {
+        let text = self.stdout(&["table", results, "--runs", "--json"]);
         serde_json::from_str(&text).unwrap()
     }
 }

@@ -1,5 +1,8 @@
-//! What the rows of a study show: comparisons, statistics, the answer.
+//! What the rows of a study show: comparisons, statistics, the answer, the ranking.
 
 pub mod answer;
 pub mod compare;
+pub mod ranking;
+pub mod replicates;
 pub mod statistics;
+mod values;

@@ -20,7 +20,7 @@ use crate::run::event::Silent;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run};
 use crate::store::results::Results;
 use crate::study::plan;
-use crate::study::{Limits, Study};
+use crate::study::{PlanSize, Study};
 
 /// The study.
 const STUDY: &str = include_str!("study.json");
@@ -80,7 +80,7 @@ pub fn measure(
     let sets = QUICK.iter().filter(|_| effort == Effort::Quick).map(ToString::to_string);
     let sets: Vec<String> = sets.collect();
     let study =
-        Study::from_text(STUDY, "study/src/bench/study.json", "bench", &sets, Limits::default())?;
+        Study::from_text(STUDY, "study/src/bench/study.json", "bench", &sets, PlanSize::default())?;
     let folder =
         Scratch::new("bench").map_err(|error| disk_error(&std::env::temp_dir(), &error))?;
     let start = Instant::now();
@@ -89,6 +89,7 @@ pub fn measure(
             name: &study.name,
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(&study, finished),
+            result_limits: study.result_limits(),
             unit: &|name| study.unit(name).to_owned(),
             executor: &Solver { instruction_set, references: References::default() },
             results: Results::new(&Disk, &folder.path().join("results")),

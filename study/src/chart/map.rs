@@ -1,155 +1,61 @@
 //! One measure over two parameters: one cell per point, one panel per combination of the other
 //! parameters.
 
-use super::names::{self, Name};
+use super::Source;
+use super::grid::Grid;
+use super::names::Name;
 use super::outcome::{self, Outcomes};
-use super::parameters::{self, Facets, Parameter};
-use super::{Source, invalid_option};
-use crate::input::value::Value;
-use crate::platform::error::{Error, Result};
-use crate::render::figure::Sheet;
+use super::parameters;
+use super::share::{self, Judged};
+use crate::platform::error::Result;
 use crate::render::figure::legend::Sample;
-use crate::render::figure::map::{Cell, Maps, Panel, SAME_JOB};
-use crate::store::table::Column;
+use crate::render::figure::map::Cell;
 
-/// Most panels in one figure. Chosen: more do not fit on a page.
-const MAX_PANELS: usize = 18;
-/// Most values along an axis. Chosen: the numbers in narrower cells are not legible.
-const MAX_VALUES: usize = 16;
-
-/// An axis of the map: a parameter and its values.
-struct Axis<'a> {
-    parameter: Parameter<'a>,
-    values: Vec<Value>,
-}
-
-impl<'a> Axis<'a> {
-    fn new(column: &'a Column, rows: &[usize]) -> Result<Self> {
-        let parameter = Parameter::new(column, rows);
-        let values = parameter.values(rows);
-        if values.len() > MAX_VALUES {
-            return Err(invalid_option(
-                "--map",
-                parameter.name(),
-                format!("{} values along one axis", values.len()),
-                format!("{MAX_VALUES} values at most"),
-                "choose some with --where CONDITION, or draw it with --over",
-            ));
-        }
-        Ok(Self { parameter, values })
-    }
-
-    fn cell(&self, row: usize) -> &Value {
-        &self.parameter.column.cells[row]
-    }
-
-    /// Label and texts of the axis.
-    fn texts(&self, rows: &[usize]) -> (String, Vec<String>) {
-        self.parameter.along(&self.values, rows)
-    }
-}
-
-/// Draws a measure over the parameters `axes[0]` (to the right) and `axes[1]` (upwards).
+/// Draws a measure over the parameters `axes[0]` (to the right) and `axes[1]` (upwards). For `safe` and
+/// `verdict` see [`share`]. A searched parameter has the values that every search has.
 ///
 /// # Errors
 /// Unknown names, a measure that is not a number, one parameter on both axes, too many panels or cells.
 pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String> {
+    let common = source.common_values(&axes);
+    let source = common.as_ref().unwrap_or(source);
+    if let Some(judged) = Judged::of_name(measure) {
+        return share::svg(source, judged, axes);
+    }
     let measure = source.measure("--measure", measure)?;
-    let asked = axes.join(",");
-    if axes[0] == axes[1] {
-        let problem = "one parameter on both axes";
-        return Err(invalid_option("--map", &asked, problem, "two different parameters: X,Y", ""));
-    }
-    let [x, y] = [source.parameter("--map", axes[0])?, source.parameter("--map", axes[1])?];
-    let (others, mut notes) = parameters::varying(source.table, &source.rows, &[x, y]);
-    let facets = parameters::facets(others, &source.rows);
-    if facets.panels.len() > MAX_PANELS {
-        return Err(too_many_panels(&asked, &facets));
-    }
-    let [x, y] = [Axis::new(x, &source.rows)?, Axis::new(y, &source.rows)?];
+    let mut grid = Grid::new(source, axes)?;
     let values = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
     let unit = parameters::shown_unit(measure, values.clone());
     let range = values.fold(None, |range: Option<[f64; 2]>, value| {
         let value = unit.shown(value);
         Some(range.map_or([value, value], |[low, high]| [low.min(value), high.max(value)]))
     });
-    let shared: Vec<usize> = source.shared_jobs().into_iter().flatten().collect();
+    let bound = source.bound(measure);
     let mut outcomes = Outcomes::new(source);
-    let mut panels = Vec::with_capacity(facets.panels.len());
-    for (title, rows) in &facets.panels {
-        let mut cells = Vec::with_capacity(x.values.len() * y.values.len());
-        for up in &y.values {
-            for right in &x.values {
-                let here = |row: &usize| x.cell(*row) == right && y.cell(*row) == up;
-                let here: Vec<usize> = rows.iter().copied().filter(here).collect();
-                cells.push(match here.as_slice() {
-                    [] => Cell::Absent,
-                    [row] => match outcome::value(source, measure, *row) {
-                        Some(value) => Cell::Value {
-                            value: unit.shown(value),
-                            outcome: outcomes.mark(*row),
-                            shared: shared.contains(row),
-                        },
-                        None => Cell::Letter(outcomes.letter(*row)),
-                    },
-                    several => return Err(several_points(&asked, several.len())),
-                });
-            }
-        }
-        panels.push(Panel { title: names::capital(title), cells });
-    }
+    let panels = grid.panels(&mut |row, shared| match outcome::value(source, measure, row) {
+        None => Cell::Letter(outcomes.letter(row)),
+        Some(value) => Cell::Value {
+            value: unit.shown(value),
+            outcome: outcomes.mark(row),
+            shared,
+            text: String::new(),
+            below: outcome::mixed_text(source, row),
+            missed: bound.as_ref().is_some_and(|bound| bound.is_missed(source, row, value)),
+        },
+    })?;
     if range.is_none() {
-        notes.push(format!("No job here has a value of {}.", measure.name));
+        grid.notes.push(format!("No job here has a value of {}.", measure.name));
     }
     let mut legend = outcomes.legend(true);
-    if panels.iter().any(|panel| panel.cells.contains(&Cell::Absent)) {
-        legend.entries.push((Sample::Absent, "no such point in the study".to_owned()));
+    let missed = |cell: &Cell| matches!(cell, Cell::Value { missed: true, .. });
+    if let Some(bound) = bound.filter(|_| panels.iter().flat_map(|panel| &panel.cells).any(missed))
+    {
+        legend.entries.push((Sample::Missed, bound.legend()));
     }
-    let has_shared = |cell: &Cell| matches!(cell, Cell::Value { shared: true, .. });
-    if panels.iter().flat_map(|panel| &panel.cells).any(has_shared) {
-        let entry = (Sample::Letter(SAME_JOB.to_owned()), "same job as another cell".to_owned());
-        legend.entries.push(entry);
-    }
-    notes.extend(source.shared_job_note());
     let name = Name::of_measure(&measure.name, &measure.meaning);
-    let title = format!(
-        "{} over {} and {}",
-        name.plain,
-        x.parameter.plain().plain,
-        y.parameter.plain().plain
-    );
-    let maps = Maps {
-        sheet: Sheet {
-            title: source.title_or(&title),
-            subtitle: source.subtitle(),
-            legends: vec![legend],
-            notes,
-        },
-        x: x.texts(&source.rows),
-        y: y.texts(&source.rows),
-        label: name.label(&unit),
-        range,
-        panels,
-    };
-    Ok(maps.svg())
-}
-
-fn too_many_panels(asked: &str, facets: &Facets<'_>) -> Error {
-    invalid_option(
-        "--map",
-        asked,
-        format!("the map needs {} panels; nothing is averaged", facets.panels.len()),
-        format!("{MAX_PANELS} panels at most"),
-        format!("fix some of {} with --where CONDITION", parameters::heading(&facets.parameters)),
-    )
-}
-
-fn several_points(asked: &str, number: usize) -> Error {
-    invalid_option(
-        "--map",
-        asked,
-        format!("{number} points of the study share one cell"),
-        "one point per cell",
-        "choose some with --where CONDITION",
-    )
+    if source.runs.is_some() {
+        grid.notes.insert(0, "Numbers are medians of the runs of a point.".to_owned());
+    }
+    grid.notes.extend(source.runs_notes(Some(measure)));
+    Ok(grid.figure(&name.plain, &name.label(&unit), range, panels, legend))
 }

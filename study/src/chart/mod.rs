@@ -3,23 +3,34 @@
 //!
 //! A chart reads only the table and the history files. It shows every job: a job without a value is a
 //! letter in the figure, jobs without a history are counted below it. Nothing is averaged: every parameter
-//! is an axis, gives lines, gives panels, or has one value.
+//! is an axis, gives lines, gives panels, or has one value. The runs that repeat a point (replicates) are its
+//! median and range ([`runs`]).
 
 use crate::input::keys;
 use crate::input::value::Value;
+use crate::job::result_limit::ResultLimit;
 use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 use crate::store::table::{Column, Table};
 
+use self::borders::Searched;
 use self::parameters::Parameter;
+use self::runs::Replicated;
 
+pub mod borders;
 mod encoding;
+mod grid;
 pub mod history;
+mod limits;
 pub mod map;
 mod names;
 mod outcome;
 pub mod over;
 pub mod parameters;
+mod positions;
+pub mod runs;
+mod searched;
+pub mod share;
 pub mod standard;
 mod time_axis;
 
@@ -36,6 +47,12 @@ pub struct Source<'a> {
     pub choice: String,
     /// Title of the figure; empty for that of the chart.
     pub title: String,
+    /// What the results must meet to be safe.
+    pub limits: &'a [ResultLimit],
+    /// The runs of each row, where the table is condensed.
+    pub runs: Option<Replicated<'a>>,
+    /// The search of the study.
+    pub search: Option<Searched<'a>>,
 }
 
 impl<'a> Source<'a> {
@@ -44,7 +61,9 @@ impl<'a> Source<'a> {
         let rows = self.rows.len();
         let noun = if rows == 1 { "point" } else { "points" };
         let choice = if self.choice.is_empty() { "" } else { " " };
-        let mut lines = vec![format!("study {}: {rows} {noun}{choice}{}", self.study, self.choice)];
+        let runs = self.runs_text();
+        let mut lines =
+            vec![format!("study {}: {rows} {noun}{runs}{choice}{}", self.study, self.choice)];
         if let Some(first) = self.rows.first() {
             let fixed: Vec<String> = self
                 .table
@@ -149,8 +168,9 @@ impl<'a> Source<'a> {
     fn parameter(&self, option: &str, name: &str) -> Result<&'a Column> {
         let found = self.table.parameters().find(|column| column.name == name);
         found.ok_or_else(|| {
-            let names: Vec<&str> =
-                self.table.parameters().map(|column| column.name.as_str()).collect();
+            let replicates = self.runs.map_or(&[][..], |runs| runs.names);
+            let names = self.table.parameters().map(|column| &column.name).chain(replicates);
+            let names: Vec<&str> = names.map(String::as_str).collect();
             unknown_name(option, name, "not a parameter that this study varies", &names)
         })
     }

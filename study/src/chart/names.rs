@@ -40,6 +40,7 @@ const MEASURES: &[(&str, &str)] = &[
     ("ringing_frequency", "frequency of ringing"),
     ("film_stress", "peak film stress"),
     ("peak_lid_force", "peak force on the lid"),
+    ("smallest_margin", "smallest margin of the limits"),
     ("final_z_rim", "final height of the top ring"),
     ("final_volume", "final volume"),
     ("final_pressure", "final gas pressure"),

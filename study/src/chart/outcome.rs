@@ -7,6 +7,7 @@ use billow_solver::output::measures::Verdict;
 use super::Source;
 use crate::input::value::Value;
 use crate::job::Status;
+use crate::job::proportion::Proportion;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::style::Fill;
 use crate::store::table::Column;
@@ -14,11 +15,76 @@ use crate::store::table::Column;
 /// Legend text of a done job without a value: the event that the measure describes did not occur.
 const NOT_OCCURRED: &str = "done, event did not occur";
 
+/// What a marker says of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The verdict of its job.
+    Verdict(Option<Verdict>),
+    /// Each of its runs deployed.
+    All,
+    /// Some of its runs deployed.
+    Mixed,
+    /// None of its runs deployed.
+    None,
+}
+
+/// Every outcome with a marker, the best one first.
+pub const OUTCOMES: [Outcome; 7] = [
+    Outcome::All,
+    Outcome::Mixed,
+    Outcome::None,
+    Outcome::Verdict(Some(Verdict::Deployed)),
+    Outcome::Verdict(Some(Verdict::Partial)),
+    Outcome::Verdict(Some(Verdict::Stalled)),
+    Outcome::Verdict(None),
+];
+
+impl Outcome {
+    /// The outcome of a row.
+    pub fn of(source: &Source<'_>, row: usize) -> Self {
+        match source.runs_of(row).map(|runs| runs.deployed) {
+            None => Self::Verdict(verdict(source, row)),
+            Some(Proportion { of: 0, .. }) => Self::Verdict(None),
+            Some(deployed) if deployed.is_mixed() => Self::Mixed,
+            Some(Proportion { met: 0, .. }) => Self::None,
+            Some(_) => Self::All,
+        }
+    }
+
+    /// Its marker.
+    pub fn fill(self) -> Fill {
+        match self {
+            Self::Verdict(verdict) => fill(verdict),
+            Self::All => Fill::Filled,
+            Self::Mixed => Fill::Half,
+            Self::None => Fill::Crossed,
+        }
+    }
+
+    /// Its name in a legend.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Verdict(verdict) => verdict.map_or("done, no verdict", Verdict::name),
+            Self::All => "all runs deployed",
+            Self::Mixed => "k/n: k of n runs deployed",
+            Self::None => "no run deployed",
+        }
+    }
+}
+
+/// "3/5" where some of the runs of a row deployed; empty otherwise.
+pub fn mixed_text(source: &Source<'_>, row: usize) -> String {
+    match source.runs_of(row).map(|runs| runs.deployed) {
+        Some(deployed) if deployed.is_mixed() => format!("{}/{}", deployed.met, deployed.of),
+        _ => String::new(),
+    }
+}
+
 /// Letters and markers of the rows of a chart, and how often each is used.
 pub struct Outcomes<'a> {
     source: &'a Source<'a>,
     letters: BTreeMap<String, String>,
-    marked: Vec<(Option<Verdict>, usize)>,
+    marked: Vec<(Outcome, usize)>,
     lettered: BTreeMap<String, usize>,
 }
 
@@ -46,12 +112,12 @@ impl<'a> Outcomes<'a> {
 
     /// The marker of a job that is done, with a value.
     pub fn mark(&mut self, row: usize) -> Fill {
-        let verdict = verdict(self.source, row);
-        match self.marked.iter_mut().find(|(known, _)| *known == verdict) {
+        let outcome = Outcome::of(self.source, row);
+        match self.marked.iter_mut().find(|(known, _)| *known == outcome) {
             Some((_, count)) => *count += 1,
-            None => self.marked.push((verdict, 1)),
+            None => self.marked.push((outcome, 1)),
         }
-        fill(verdict)
+        outcome.fill()
     }
 
     /// The letter of a job without a value.
@@ -64,13 +130,11 @@ impl<'a> Outcomes<'a> {
 
     /// The legend of the markers and letters in use. With `cells` the letters stand in cells, as in a map.
     pub fn legend(&self, cells: bool) -> Legend {
-        // From deployed to stalled, then without a verdict.
-        let order = VERDICTS.map(Some).into_iter().chain([None]);
-        let marked =
-            order.filter_map(|verdict| self.marked.iter().find(|(known, _)| *known == verdict));
-        let marks = marked.map(|(verdict, count)| {
-            let name = verdict.map_or("done, no verdict", Verdict::name);
-            (Sample::Marker(fill(*verdict)), format!("{name} ({count})"))
+        let marked = OUTCOMES
+            .into_iter()
+            .filter_map(|outcome| self.marked.iter().find(|(known, _)| *known == outcome));
+        let marks = marked.map(|(outcome, count)| {
+            (Sample::Marker(outcome.fill()), format!("{} ({count})", outcome.name()))
         });
         let letters = self.lettered.iter().map(|(kind, count)| {
             let letter = self.letters.get(kind).cloned().unwrap_or_default();
@@ -108,9 +172,11 @@ fn text<'a>(source: &Source<'a>, name: &str, row: usize) -> &'a str {
 }
 
 /// The measure of a job; `None` also for a job that stopped before its end, because its peak so far is not
-/// the peak of the run.
+/// the peak of the run. Of several runs the median, once one of them is done.
 pub fn value(source: &Source<'_>, measure: &Column, row: usize) -> Option<f64> {
-    super::number(&measure.cells[row]).filter(|_| source.table.status(row) == Some(Status::Done))
+    let done = source.runs_of(row).is_some_and(|runs| runs.done > 0);
+    let done = done || source.table.status(row) == Some(Status::Done);
+    super::number(&measure.cells[row]).filter(|_| done)
 }
 
 /// The status of a row.

@@ -12,6 +12,9 @@ use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
 use crate::store::table::{Column, Table};
 
+/// The parameter whose values a study compares.
+pub const STRATEGY: &str = "strategy";
+
 /// A parameter and the unit in which it is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter<'a> {
@@ -166,6 +169,12 @@ pub fn varying<'a>(
         }
     }
     (kept.into_iter().map(|column| Parameter::new(column, rows)).collect(), notes)
+}
+
+/// Parameters with the inflation strategy first: strategies are compared side by side, by colour.
+pub fn strategy_first(mut parameters: Vec<Parameter<'_>>) -> Vec<Parameter<'_>> {
+    parameters.sort_by_key(|parameter| parameter.name() != STRATEGY);
+    parameters
 }
 
 /// Whether a column has one value in some rows.

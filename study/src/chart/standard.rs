@@ -1,5 +1,11 @@
 //! The standard charts, which `billow chart` draws without options: they answer the first questions of most
-//! studies.
+//! studies. A study with limits, replicates or a search has the charts of its question (`question`).
+
+mod middle;
+mod question;
+
+pub use middle::reduced;
+pub use question::outcome_axes;
 
 use super::history::{MAX_JOBS, has_history};
 use super::parameters::{self, Parameter};
@@ -17,8 +23,12 @@ pub enum ChartKind {
     History(Vec<String>),
     /// A measure over a parameter; the parameters that give the lines.
     Over(String, String, Vec<String>),
-    /// A measure over two parameters.
+    /// A measure over two parameters; `safe` and `verdict` are proportions of runs.
     Map(String, [String; 2]),
+    /// The borders of a search over a parameter; the parameters that give the lines.
+    Borders(Option<String>, Vec<String>),
+    /// Another chart of some rows, and how they were chosen.
+    At(Box<ChartKind>, Vec<usize>, String),
 }
 
 impl ChartKind {
@@ -29,6 +39,12 @@ impl ChartKind {
             Self::Over(measure, over, by) if by.is_empty() => format!("{measure}-over-{over}"),
             Self::Over(measure, over, by) => format!("{measure}-over-{over}-by-{}", by.join("-")),
             Self::Map(measure, [x, y]) => format!("{measure}-map-{x}-{y}"),
+            Self::Borders(over, by) => {
+                let over = over.as_ref().map(|over| format!("-over-{over}"));
+                let by = (!by.is_empty()).then(|| format!("-by-{}", by.join("-")));
+                format!("borders{}{}", over.unwrap_or_default(), by.unwrap_or_default())
+            }
+            Self::At(kind, _, _) => kind.file_name(),
         };
         // A parameter name can hold any character; a file name must not hold a path separator.
         name.chars()
@@ -39,6 +55,9 @@ impl ChartKind {
 
 /// The standard charts of a study, and messages about charts that are not drawn.
 pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
+    if source.runs.is_some() || source.search.is_some() || !source.limits.is_empty() {
+        return question::kinds(source);
+    }
     let mut kinds = Vec::new();
     let mut notes = Vec::new();
     let jobs = source.table.one_row_per_job(&source.rows);
@@ -53,31 +72,12 @@ pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
     } else {
         kinds.extend(HISTORIES.map(|column| ChartKind::History(vec![column.to_owned()])));
     }
-    let (parameters, _) = parameters::varying(source.table, &source.rows, &[]);
-    let is_number = |parameter: &&Parameter<'_>| parameter.is_number(&source.rows);
-    // Quantities come before whole numbers: a trend over an inflow shows more than one over N.
-    let (quantities, counts): (Vec<_>, Vec<_>) =
-        parameters.iter().filter(is_number).partition(|parameter| parameter.is_quantity());
-    let numeric: Vec<String> =
-        quantities.into_iter().chain(counts).map(|parameter| parameter.name().to_owned()).collect();
-    // A map needs two axes, and parameters without numbers have places too.
-    let texts = parameters.iter().filter(|parameter| !is_number(parameter));
-    let axes: Vec<String> =
-        numeric.into_iter().chain(texts.map(|parameter| parameter.name().to_owned())).collect();
+    let axes = axes(source);
     let Some(first) = axes.first().cloned() else {
         notes.push("no chart of measures and no map: no parameter varies".to_owned());
         return (kinds, notes);
     };
-    let measured: Vec<String> = MEASURES
-        .into_iter()
-        .filter(|name| {
-            let column = source.table.column(name);
-            column.is_some_and(|column| {
-                source.rows.iter().any(|row| number(&column.cells[*row]).is_some())
-            })
-        })
-        .map(str::to_owned)
-        .collect();
+    let measured = measured(source, &MEASURES);
     if measured.is_empty() {
         let names = MEASURES.join(", ");
         notes.push(format!("no chart of measures and no map: no job has a value of {names}"));
@@ -94,4 +94,28 @@ pub fn kinds(source: &Source<'_>) -> (Vec<ChartKind>, Vec<String>) {
         }
     }
     (kinds, notes)
+}
+
+/// Parameters that vary and can be axes: quantities, whole numbers, then those without numbers.
+fn axes(source: &Source<'_>) -> Vec<String> {
+    let (parameters, _) = parameters::varying(source.table, &source.rows, &[]);
+    let is_number = |parameter: &&Parameter<'_>| parameter.is_number(&source.rows);
+    // Quantities come before whole numbers: a trend over an inflow shows more than one over N.
+    let (quantities, counts): (Vec<_>, Vec<_>) =
+        parameters.iter().filter(is_number).partition(|parameter| parameter.is_quantity());
+    // A map needs two axes, and parameters without numbers have places too.
+    let texts = parameters.iter().filter(|parameter| !is_number(parameter));
+    let all = quantities.into_iter().chain(counts).chain(texts);
+    all.map(|parameter| parameter.name().to_owned()).collect()
+}
+
+/// Those of these measures of which a row has a value.
+fn measured(source: &Source<'_>, measures: &[&str]) -> Vec<String> {
+    let has_value = |name: &&&str| {
+        let column = source.table.column(name);
+        column.is_some_and(|column| {
+            source.rows.iter().any(|row| number(&column.cells[*row]).is_some())
+        })
+    };
+    measures.iter().filter(has_value).map(|name| (*name).to_owned()).collect()
 }

@@ -14,6 +14,9 @@ use crate::run::fixture;
 use crate::store::history_file::{self, StoredHistory};
 use crate::store::table::Table;
 
+mod question;
+mod searches;
+
 /// A point of an invented study.
 fn point(number: u32, parameters: &[(&str, Value)]) -> Point {
     let mut job: Job = fixture::job(number);
@@ -80,6 +83,9 @@ fn source(table: &Table) -> Source<'_> {
         rows: (0..table.rows()).collect(),
         choice: String::new(),
         title: String::new(),
+        limits: &[],
+        runs: None,
+        search: None,
     }
 }
 
@@ -114,8 +120,8 @@ fn every_point_of_a_measure_is_shown_with_its_outcome() {
         "Mass flow rate (g/s)",
         "Peak velocity of the top ring over mass flow rate",
         "Peak velocity of the top ring peak_vz (m/s)",
-        "Colour and marker: number of panels N",
-        "Line: inflation strategy",
+        "Colour and marker: inflation strategy",
+        "Line: number of panels N",
         "direct",
         "rapid",
         "deployed (5)",

@@ -26,7 +26,8 @@ pub fn print(results: &Results<'_>, table: &Table, rows: &[usize]) -> Result<()>
         return Ok(());
     }
     let study = Study::load(&results.study_path(), &[])?;
-    let effects = Effects::of(table, rows, &HEADLINE, &|name| study.zipped_with(name));
+    let effects =
+        Effects::of(table, rows, &study.replicates(), &HEADLINE, &|name| study.zipped_with(name));
     for text in lines(&effects) {
         let mut topic = "best:";
         for line in wrapped(&text, 6) {
@@ -73,6 +74,9 @@ fn part(effect: &Effect, measure: &MeasureEffect) -> String {
         format!("{}{more} {median} ({mark})", texts.join(", "))
     };
     match &measure.extremes {
+        Extremes::Equal if !is_within(measure) => {
+            format!("{name} equal within the ranges of the runs")
+        }
         Extremes::Equal => format!("{name} equal within {}", limit(&measure.tolerance)),
         Extremes::Range { lowest, highest } => {
             format!("{name} {}, {}", shown(lowest, "lowest"), shown(highest, "highest"))
@@ -122,22 +126,38 @@ pub fn left_out(effects: &Effects) -> Vec<String> {
                 None => reasons.push((value, reason, vec![measure.name()])),
             }
         }
-        let more = reasons.len().saturating_sub(MAX_VALUES);
-        lines.extend(reasons.iter().take(MAX_VALUES).map(|(value, reason, measures)| {
+        // Of many values, as those of a search, the number says enough.
+        let listed = if effect.values.len() > MAX_VALUES { 0 } else { MAX_VALUES };
+        let more = reasons.len().saturating_sub(listed);
+        lines.extend(reasons.iter().take(listed).map(|(value, reason, measures)| {
             let value = value.as_ref().map(|value| format!(" {}", effect.shown.quantity(value)));
             let value = value.unwrap_or_default();
             format!("{}{value} in {}: {reason}", effect.parameter, measures.join(", "))
         }));
         if more > 0 {
-            lines.push(format!("{}: {more} more values (--json lists them)", effect.parameter));
+            let name = &effect.parameter;
+            lines.push(match listed {
+                0 => format!(
+                    "{name}: {more} of its {} values (--json lists them)",
+                    effect.values.len()
+                ),
+                _ => format!("{name}: {more} more values (--json lists them)"),
+            });
         }
     }
     lines
 }
 
+/// Whether all medians are within the tolerance of the measure.
+fn is_within(measure: &MeasureEffect) -> bool {
+    let medians = || measure.medians.iter().flatten().copied();
+    let ends = medians().reduce(f64::min).zip(medians().reduce(f64::max));
+    ends.is_none_or(|(least, largest)| measure.tolerance.is_tie(least, largest))
+}
+
 /// The limit of a tolerance: "5 %", or an absolute difference.
 pub fn limit(tolerance: &Tolerance) -> String {
-    if tolerance.source == ToleranceSource::Unknown {
+    if matches!(tolerance.source, ToleranceSource::Unknown | ToleranceSource::Ranges) {
         "rounding".to_owned()
     } else if tolerance.absolute {
         brief_number(tolerance.limit)

@@ -15,6 +15,7 @@ use crate::platform::output::Output;
 mod answer;
 pub mod bench;
 mod best;
+mod borders;
 mod changes;
 mod chart;
 mod compare;
@@ -26,10 +27,14 @@ mod instruction_set;
 mod keys;
 mod memory;
 mod notes;
+mod opened;
 pub mod options;
 mod picture;
 mod plan;
+mod points;
 pub mod print;
+mod range;
+mod rank;
 pub mod reference;
 mod rerun;
 mod run;
@@ -89,6 +94,10 @@ pub enum Command {
     Solve(solve::Args),
     /// Print the summary table of a study's results.
     Table(table::Args),
+    /// Order strategies, or other values, by limits and measures.
+    Rank(rank::Args),
+    /// List the borders that the searches of a study found.
+    Borders(borders::Args),
     /// Draw charts of a study's results, as SVG and PNG.
     Chart(chart::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
@@ -139,6 +148,8 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Frames(args) => frames::run(args, out),
         Command::Solve(args) => solve::run(args, out),
         Command::Table(args) => table::run(args, out),
+        Command::Rank(args) => rank::run(args, out),
+        Command::Borders(args) => borders::run(args, out),
         Command::Chart(args) => chart::run(args, out),
         Command::Keys(args) => keys::run(args, out),
         Command::Schema(args) => schema::run(args, out),

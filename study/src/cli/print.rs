@@ -9,6 +9,7 @@ use crate::input::value::{Value, brief_number, json_value};
 use crate::platform::error::Result;
 
 /// A column of a list: its name, and the unit in which a table shows its numbers.
+#[derive(Clone)]
 pub struct Heading {
     /// Name.
     pub name: String,

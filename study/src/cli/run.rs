@@ -142,6 +142,7 @@ pub(super) fn run_study(
             name: &study.name,
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(study, finished),
+            result_limits: study.result_limits(),
             unit: &|name| study.unit(name).to_owned(),
             executor: &Solver {
                 instruction_set,
@@ -163,7 +164,8 @@ pub(super) fn run_study(
     let mut stored = Stored::read(results)?;
     stored.units = units;
     let answer = Answer::of(&stored);
-    print(study, root, &summary, &answer, options.output.format(), out).map_err(output_error)?;
+    let ended = Ended { study, root, summary: &summary, points: stored.point_count() };
+    ended.print(&answer, options.output.format(), out).map_err(output_error)?;
     result(&summary, &limits, root)
 }
 
@@ -239,54 +241,59 @@ fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String
     text
 }
 
-fn print(
-    study: &Study,
-    root: &Path,
-    summary: &Summary,
-    answer: &Answer,
-    format: Format,
-    out: &mut dyn Write,
-) -> io::Result<()> {
-    let (name, counts) = (&study.name, &summary.counts);
-    let points = count(study.points().len(), "point");
-    if format == Format::Json {
-        let mut json = serde_json::json!({
-            "study": name,
-            "results": root.display().to_string(),
-            "points": study.points().len(),
-            "ran": summary.ran,
-            "failed": counts.failed(),
-            "status": counts.status,
-            "verdict": counts.verdict,
-            "same_bits": summary.same,
-            "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
-        });
-        if let (Some(keys), serde_json::Value::Object(more)) =
-            (json.as_object_mut(), super::answer::json(answer))
-        {
-            keys.extend(more);
+/// A run that ended.
+struct Ended<'a> {
+    study: &'a Study,
+    root: &'a Path,
+    summary: &'a Summary,
+    /// Number of points planned so far.
+    points: usize,
+}
+
+impl Ended<'_> {
+    fn print(&self, answer: &Answer, format: Format, out: &mut dyn Write) -> io::Result<()> {
+        let Self { study, root, summary, .. } = self;
+        let (name, counts) = (&study.name, &summary.counts);
+        let points = count(self.points, "point");
+        if format == Format::Json {
+            let mut json = serde_json::json!({
+                "study": name,
+                "results": root.display().to_string(),
+                "points": self.points,
+                "ran": summary.ran,
+                "failed": counts.failed(),
+                "status": counts.status,
+                "verdict": counts.verdict,
+                "same_bits": summary.same,
+                "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
+            });
+            if let (Some(keys), serde_json::Value::Object(more)) =
+                (json.as_object_mut(), super::answer::json(answer))
+            {
+                keys.extend(more);
+            }
+            return writeln!(out, "{json}");
         }
-        return writeln!(out, "{json}");
+        if counts.jobs() == 0 {
+            writeln!(out, "{name}: nothing to run, no fold pattern fits any of {points}")?;
+            let root = root.display();
+            writeln!(out, "  next     billow table {root} --columns job,reason,nearest")?;
+        } else if summary.ran == 0 && counts.of(Status::Pending) == 0 {
+            writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
+        } else {
+            writeln!(out, "{name}: {} run, {points}", count(summary.ran, "job"))?;
+        }
+        writeln!(out, "  status   {}", listed(&counts.status))?;
+        if !counts.verdict.is_empty() {
+            writeln!(out, "  verdict  {}", listed(&counts.verdict))?;
+        }
+        if summary.same > 0 {
+            writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;
+        }
+        writeln!(out, "  results  {}", root.display())?;
+        super::answer::print(answer, out)?;
+        super::answer::print_next(answer, root, out)
     }
-    if counts.jobs() == 0 {
-        writeln!(out, "{name}: nothing to run, no fold pattern fits any of {points}")?;
-        let root = root.display();
-        writeln!(out, "  next     billow table {root} --columns job,reason,nearest")?;
-    } else if summary.ran == 0 && counts.of(Status::Pending) == 0 {
-        writeln!(out, "{name}: nothing to run, all {} jobs are finished", counts.jobs())?;
-    } else {
-        writeln!(out, "{name}: {} run, {points}", count(summary.ran, "job"))?;
-    }
-    writeln!(out, "  status   {}", listed(&counts.status))?;
-    if !counts.verdict.is_empty() {
-        writeln!(out, "  verdict  {}", listed(&counts.verdict))?;
-    }
-    if summary.same > 0 {
-        writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;
-    }
-    writeln!(out, "  results  {}", root.display())?;
-    super::answer::print(answer, out)?;
-    super::answer::print_next(answer, root, out)
 }
 
 /// Counts as text: "4 done, 1 infeasible".

@@ -117,7 +117,7 @@ impl<'a> Status<'a> {
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
             "running": self.health.running,
-            "points": stored.study.points().len(),
+            "points": stored.point_count(),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
@@ -171,7 +171,7 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
-        let points = self.stored.study.points().len();
+        let points = self.stored.point_count();
         let duplicates = match points.saturating_sub(counts.rows()) {
             0 => String::new(),
             number => format!(", {}", count(number, "duplicate")),

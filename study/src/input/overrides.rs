@@ -3,6 +3,7 @@
 //! - `film.thickness=…`, or a last part that only one key has, as `thickness=…`, sets that key. In a
 //!   study whose grid varies the key it replaces the axis: the study then has this value alone.
 //! - `grid.N=[5, 6]` sets the axis of a key; `grid.N=6` is an axis of one value.
+//! - `replicates.seed=3` sets the replicates of a key.
 //! - A list for a key that takes one value is an axis in a study: `N=[5, 6]` is `grid.N=[5, 6]`.
 
 use crate::input::keys::{self, KeyKind, Table};
@@ -13,6 +14,10 @@ use crate::platform::error::InputError;
 use crate::platform::nearest::did_you_mean;
 use crate::platform::quote;
 
+/// The section of the axes.
+const GRID: &str = "grid";
+/// The section of the replicates.
+const REPLICATES: &str = "replicates";
 /// Members of a grid that are not the axis of a key.
 const GRID_WORDS: [&str; 3] = ["zip", "points", "filter"];
 
@@ -76,7 +81,10 @@ impl Given {
             "set the key itself, or use a study file with billow plan".clone_into(&mut error.hint);
             return Err(error);
         }
-        let axis = name.strip_prefix("grid.").filter(|_| has_grid);
+        let mut sections = [GRID, REPLICATES].into_iter().filter(|_| has_grid);
+        let axis = sections
+            .find_map(|section| Some((section, name.strip_prefix(section)?.strip_prefix('.')?)));
+        let (section, axis) = axis.unzip();
         let current = renamed::current(axis.unwrap_or(name));
         let old = current.is_some();
         if let Some(new) = &current {
@@ -88,7 +96,7 @@ impl Given {
         }
         let name = current.as_deref().unwrap_or(axis.unwrap_or(name)).to_owned();
         let path = match axis {
-            Some(_) => set_axis(tree, &name, value),
+            Some(_) => set_axis(tree, section.unwrap_or(GRID), &name, value),
             None => set_key(tree, &name, value, table, has_grid, set, notes)?,
         };
         source.sets.push((path.clone(), flag(set)));
@@ -141,7 +149,7 @@ fn set_key(
     let key = table.find(name).map(|index| table.keys[index]);
     let one_value = key.is_some_and(|key| key.varies() && !matches!(key.kind, KeyKind::Vector(_)));
     if one_value && has_grid && matches!(value, Json::List(_)) {
-        return Ok(set_axis(tree, name, value));
+        return Ok(set_axis(tree, GRID, name, value));
     }
     let path = key.map_or(name, |key| key.path);
     let first = path.split(['.', '[']).next().unwrap_or_default();
@@ -187,22 +195,22 @@ fn removes_axis(tree: &mut Json, path: &str) -> bool {
 }
 
 /// Sets an axis; it replaces an axis of the same key. One value is a list of one.
-fn set_axis(tree: &mut Json, axis: &str, value: Json) -> String {
+fn set_axis(tree: &mut Json, section: &str, axis: &str, value: Json) -> String {
     let value = match value {
         one @ (Json::Integer(_) | Json::Number(_) | Json::Text(_) | Json::Bool(_))
-            if !GRID_WORDS.contains(&axis) =>
+            if section == GRID && !GRID_WORDS.contains(&axis) =>
         {
             Json::List(vec![one])
         }
         other => other,
     };
-    if let Some(Json::Object(members)) = member(tree, "grid") {
+    if let Some(Json::Object(members)) = member(tree, section) {
         match members.iter_mut().find(|(name, _)| same_key(name, axis)) {
             Some(member) => *member = (axis.to_owned(), value),
             None => members.push((axis.to_owned(), value)),
         }
     }
-    format!("grid.{axis}")
+    format!("{section}.{axis}")
 }
 
 /// The member of an object that one part of a path names; a new empty object where there is none.

@@ -8,7 +8,9 @@ pub mod limits;
 pub mod memory;
 pub mod pace;
 pub mod point;
+pub mod proportion;
 pub mod references;
+pub mod result_limit;
 pub mod row;
 pub mod status;
 

@@ -15,8 +15,9 @@ use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::Study;
-use crate::study::plan::{self, FinishedRow};
+use crate::study::finished::FinishedRow;
+use crate::study::plan;
+use crate::study::{Border, Study};
 
 /// Ids in the message about an id that is not found or not unique, at most.
 const MAX_IDS_SHOWN: usize = 5;
@@ -75,7 +76,23 @@ impl<'a> Stored<'a> {
     fn built(&self, points: &[Point]) -> Table {
         let unit = |name: &str| self.study.unit(name).to_owned();
         let table = Table::build(points, &self.journal.records, &unit);
-        table.shown_in(&self.units)
+        table.judged(self.study.result_limits()).shown_in(&self.units)
+    }
+
+    /// Number of points planned so far, also of those that share a job.
+    pub fn point_count(&self) -> usize {
+        self.points.iter().map(|point| 1 + point.merged.len()).sum()
+    }
+
+    /// What the searches of the study have found so far.
+    pub fn borders(&self) -> Vec<Border> {
+        let limits = self.study.result_limits();
+        let row = |point: &Point| {
+            let cells = journal::cells_of(point, &self.journal.records)?;
+            Some(FinishedRow::of(&point.job.id, &cells, limits))
+        };
+        let finished: Vec<FinishedRow> = self.points.iter().filter_map(row).collect();
+        plan::borders(&self.study, &finished)
     }
 
     /// The planned point of a job.
@@ -196,10 +213,10 @@ pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
         && last.is_none_or(|last| generation.number > last)
     {
         last = Some(generation.number);
-        points.extend(generation.points);
+        plan::add_generation(&mut points, generation);
         let row = |point: &Point| {
             let cells = journal::cells_of(point, records)?;
-            Some(FinishedRow::of(&point.job.id, &cells))
+            Some(FinishedRow::of(&point.job.id, &cells, study.result_limits()))
         };
         finished = points.iter().filter_map(row).collect();
     }

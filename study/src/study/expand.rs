@@ -8,9 +8,9 @@ use billow_solver::scene::error::SceneError;
 
 use super::base::Base;
 use super::fold::{self, DesignKey, Fold};
-use super::grid::{Axis, Grid};
-use super::limits::Limits;
-use super::point::StudyPoint;
+use super::grid::{Axis, AxisKind, Grid};
+use super::plan_size::PlanSize;
+use super::point::{Searched, StudyPoint};
 use super::{resolve, variables};
 use crate::input::expression::Expression;
 use crate::input::keys::{self, KEYS};
@@ -20,36 +20,51 @@ use crate::job::Parameters;
 use crate::job::point::Solved;
 use crate::platform::error::InputError;
 
-/// The points of a study, in plan order, and how many points the filter removed: those of the product
-/// that it keeps, the first axis slowest, then the single points, which it does not concern.
+/// The points that a study plans first.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Points {
+    /// The points in plan order: those of the product that the filter keeps, the first axis slowest, then
+    /// the single points, which it does not concern.
+    pub points: Vec<StudyPoint>,
+    /// Number of points of the product that the filter removed.
+    pub filtered: usize,
+}
+
+/// The points of a study.
 pub(super) fn points(
     base: &Base,
     grid: &Grid,
     source: &Source,
-    limits: Limits,
-) -> Result<(Vec<StudyPoint>, usize), InputError> {
-    let (product, count) = count(grid, source, limits)?;
-    let mut expansion = Expansion { base, grid, source, folds: HashMap::new(), points: vec![] };
+    size: PlanSize,
+) -> Result<Points, InputError> {
+    let (product, count) = count(grid, source, size)?;
+    let mut expansion = Expansion::new(base, grid, source);
+    if grid.search.is_some() {
+        expansion.searched = Searched::InProduct;
+    }
+    let axes: Vec<&Axis> = grid.axes.iter().collect();
     let mut filtered = 0;
     for number in 0..product {
         let mut point = base.clone();
-        let mut rest = number;
-        // The last axis varies fastest; axes are independent, so the order of setting is free.
-        for Axis { columns, rows } in grid.axes.iter().rev() {
-            let row = &rows[rest % rows.len()];
-            rest /= rows.len();
-            for (column, value) in columns.iter().zip(row) {
-                grid.columns[*column].target.set(&mut point, value.clone());
-            }
-        }
+        set_axes(&mut point, grid, &axes, number);
         filtered += usize::from(!expansion.add(&point, grid.filter.as_ref())?);
     }
+    let searched = grid.search.as_ref().map(|search| search.column);
     for values in &grid.points {
         let mut point = base.clone();
         for (column, value) in values {
             grid.columns[*column].target.set(&mut point, value.clone());
         }
-        expansion.add(&point, None)?;
+        // A point that does not give the key of the search is searched as those of the product.
+        let gives = |column: usize| values.iter().any(|(given, _)| *given == column);
+        let is_searched = searched.is_some_and(|column| !gives(column));
+        expansion.searched = if is_searched { Searched::Single } else { Searched::No };
+        let scan = grid.axes.iter().filter(|axis| axis.kind == AxisKind::Search);
+        let scan: Vec<&Axis> = scan.filter(|_| is_searched).collect();
+        for number in 0..scan.iter().map(|axis| axis.rows.len()).product() {
+            set_axes(&mut point, grid, &scan, number);
+            expansion.add_replicates(&point, None)?;
+        }
     }
     if expansion.points.is_empty() {
         let problem = format!("keeps none of the {count} points");
@@ -57,27 +72,63 @@ pub(super) fn points(
         let allowed = "a condition that at least one point meets";
         return Err(source.error("grid.filter", text, problem, allowed));
     }
-    Ok((expansion.points, filtered))
+    Ok(Points { points: expansion.points, filtered })
+}
+
+/// The runs of one searched point, with these values by column; those of replicates are not used.
+pub(super) fn points_at(
+    base: &Base,
+    grid: &Grid,
+    source: &Source,
+    values: &[Value],
+    searched: Searched,
+) -> Result<Vec<StudyPoint>, InputError> {
+    let mut expansion = Expansion::new(base, grid, source);
+    expansion.searched = searched;
+    let mut point = base.clone();
+    for (column, value) in grid.columns.iter().zip(values) {
+        column.target.set(&mut point, value.clone());
+    }
+    // The filter does not concern single points.
+    let filter = grid.filter.as_ref().filter(|_| searched == Searched::InProduct);
+    expansion.add_replicates(&point, filter)?;
+    Ok(expansion.points)
+}
+
+/// Sets the values of the combination with this number. The last axis varies fastest; axes are independent,
+/// so the order of setting is free.
+fn set_axes(point: &mut Base, grid: &Grid, axes: &[&Axis], number: usize) {
+    let mut rest = number;
+    for Axis { columns, rows, .. } in axes.iter().rev() {
+        let row = &rows[rest % rows.len()];
+        rest /= rows.len();
+        for (column, value) in columns.iter().zip(row) {
+            grid.columns[*column].target.set(point, value.clone());
+        }
+    }
 }
 
 /// Number of points of the product, and of all points before the filter.
 ///
 /// # Errors
 /// When a plan may not have as many.
-fn count(grid: &Grid, source: &Source, limits: Limits) -> Result<(usize, usize), InputError> {
-    let product = match (grid.axes.is_empty(), grid.points.is_empty()) {
+fn count(grid: &Grid, source: &Source, size: PlanSize) -> Result<(usize, usize), InputError> {
+    let has_axes = grid.axes.iter().any(|axis| axis.kind != AxisKind::Replicates);
+    let product = match (has_axes, grid.points.is_empty()) {
         // Without axes, single points stand alone; without either, the study is one point.
-        (true, false) => Some(0),
+        (false, false) => Some(0),
         _ => grid.axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.rows.len())),
     };
-    let all = product.and_then(|product| product.checked_add(grid.points.len()));
+    let single = grid.single_points().checked_mul(grid.replicate_count());
+    let all = product.zip(single).and_then(|(product, single)| product.checked_add(single));
     if let (Some(product), Some(all)) = (product, all)
-        && all <= limits.points
+        && all <= size.points
     {
         return Ok((product, all));
     }
+    let max = size.points;
     let size = all.map_or_else(|| "more than 10^19".to_owned(), |count| count.to_string());
-    let allowed = format!("up to {} points", limits.points);
+    let allowed = format!("up to {max} points");
     let mut error = source.error("grid", "", format!("has {size} points"), allowed);
     "give the axes fewer values, or make several studies".clone_into(&mut error.hint);
     Err(error)
@@ -87,12 +138,40 @@ struct Expansion<'a> {
     base: &'a Base,
     grid: &'a Grid,
     source: &'a Source,
+    /// Whether a search runs along the points that are added.
+    searched: Searched,
     /// Designs already solved: points that share a design share its fold.
     folds: HashMap<DesignKey, Rc<Fold>>,
     points: Vec<StudyPoint>,
 }
 
-impl Expansion<'_> {
+impl<'a> Expansion<'a> {
+    fn new(base: &'a Base, grid: &'a Grid, source: &'a Source) -> Self {
+        Self {
+            base,
+            grid,
+            source,
+            searched: Searched::No,
+            folds: HashMap::new(),
+            points: Vec::new(),
+        }
+    }
+
+    /// Adds a point with all values of its replicates, unless the filter removes it.
+    fn add_replicates(
+        &mut self,
+        point: &Base,
+        filter: Option<&Expression>,
+    ) -> Result<(), InputError> {
+        let axes: Vec<&Axis> = self.grid.replicates().collect();
+        for number in 0..self.grid.replicate_count() {
+            let mut point = point.clone();
+            set_axes(&mut point, self.grid, &axes, number);
+            self.add(&point, filter)?;
+        }
+        Ok(())
+    }
+
     /// Adds a point, unless the filter removes it; `false` for a removed point.
     fn add(&mut self, point: &Base, filter: Option<&Expression>) -> Result<bool, InputError> {
         debug_assert_eq!(self.base.supports, point.supports, "supports are not an axis");
@@ -120,7 +199,8 @@ impl Expansion<'_> {
             })
             .map_err(|error| self.at_point(point, error))?;
         let parameters = self.parameters(point);
-        self.points.push(StudyPoint { parameters, scene, infeasible, solved });
+        let searched = self.searched;
+        self.points.push(StudyPoint { parameters, scene, infeasible, solved, searched });
         Ok(true)
     }
 

@@ -1,8 +1,10 @@
 //! The grid of a study: axes (single or zipped), single points, a filter.
 
+use super::REPLICATES;
 use super::base::Base;
-use super::limits::Limits;
+use super::plan_size::PlanSize;
 use super::range::RangeInput;
+use super::search::{Search, is_search};
 use super::target::{self, Column, Target};
 use super::variables::variables;
 use crate::input::expression::Expression;
@@ -11,10 +13,11 @@ use crate::input::settings::{list, object, read};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::value::{Value, json_value};
+use crate::job::result_limit::ResultLimit;
 use crate::platform::error::InputError;
 
 /// What a study varies.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Grid {
     /// Every key varied on an axis or by a point, in the order of the file.
     pub columns: Vec<Column>,
@@ -24,6 +27,10 @@ pub(super) struct Grid {
     pub points: Vec<Vec<(usize, Value)>>,
     /// Which points the study keeps.
     pub filter: Option<Expression>,
+    /// The search of a border along one of the axes.
+    pub search: Option<Search>,
+    /// Names of the measures with a limit.
+    limit_names: Vec<String>,
 }
 
 /// One axis: keys that vary together.
@@ -33,30 +40,50 @@ pub(super) struct Axis {
     pub columns: Vec<usize>,
     /// Values: one row for each step of the axis, one value for each column.
     pub rows: Vec<Vec<Value>>,
+    /// What its values are.
+    pub kind: AxisKind,
+}
+
+/// What the values of an axis are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AxisKind {
+    /// Those of the file.
+    Values,
+    /// Those with which a search begins.
+    Search,
+    /// Repetitions of each point.
+    Replicates,
 }
 
 /// What an axis must look like, for errors.
-const AXIS: &str =
-    "a list of values, or {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}";
+const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}; or \
+                    {\"bisect\": [low, high], \"on\"}";
 
 impl Grid {
+    /// Reads the grid and the replicates of a study file.
     pub fn read(
-        json: Option<&Json>,
+        tree: &Json,
         base: &Base,
+        limits: &[ResultLimit],
         source: &Source,
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Self, InputError> {
-        let mut grid = Self { columns: vec![], axes: vec![], points: vec![], filter: None };
-        let Some(json) = json else { return Ok(grid) };
+        let limit_names = limits.iter().map(|limit| limit.measure.name().to_owned()).collect();
+        let mut grid = Self { limit_names, ..Self::default() };
+        let members = match tree.get("grid") {
+            Some(json) => object(json, &STUDY, "grid", source)?,
+            None => &[],
+        };
         let mut filter = None;
         let mut points = None;
-        for (name, value) in object(json, &STUDY, "grid", source)? {
+        for (name, value) in members {
             match name.as_str() {
                 "zip" => {
                     let allowed = "a list of objects of lists of equal length";
                     let groups = list(value, "grid.zip", source, allowed)?;
                     for (index, group) in groups.iter().enumerate() {
-                        grid.zip(group, &format!("grid.zip[{index}]"), base, source, limits)?;
+                        let path = format!("grid.zip[{index}]");
+                        grid.zip(group, &path, base, limits, source, size)?;
                     }
                 }
                 // Points and filter may name every column, so they are read last.
@@ -65,12 +92,19 @@ impl Grid {
                 _ => {
                     let path = format!("grid.{name}");
                     let column = grid.column(name, &path, value, base, source)?;
-                    let values = grid.values(column, value, &path, base, source, limits)?;
+                    if is_search(value) {
+                        grid.read_search(column, value, &path, limits, source)?;
+                        continue;
+                    }
+                    let values = grid.values(column, value, &path, base, source, size)?;
                     let rows = values.into_iter().map(|value| vec![value]).collect();
-                    grid.axes.push(Axis { columns: vec![column], rows });
+                    let kind = AxisKind::Values;
+                    grid.axes.push(Axis { columns: vec![column], rows, kind });
                 }
             }
         }
+        grid.read_replicates(tree.get(REPLICATES), base, source, size)?;
+        grid.check_search(source)?;
         if let Some(points) = points {
             grid.read_points(points, base, source)?;
         }
@@ -80,9 +114,22 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Whether nothing varies.
-    pub fn is_empty(&self) -> bool {
-        self.columns.is_empty() && self.filter.is_none()
+    /// Number of single points, without replicates.
+    pub fn single_points(&self) -> usize {
+        let Some(search) = &self.search else { return self.points.len() };
+        let gives =
+            |point: &&Vec<(usize, Value)>| point.iter().any(|(column, _)| *column == search.column);
+        let given = self.points.iter().filter(gives).count();
+        given + (self.points.len() - given) * search.scan().len()
+    }
+
+    /// The replicates as JSON; empty without any.
+    pub fn resolved_replicates(&self) -> Vec<(String, Json)> {
+        let member = |axis: &Axis| {
+            let values = axis.rows.iter().map(|row| Json::from(json_value(&row[0]))).collect();
+            (self.columns[axis.columns[0]].name.clone(), Json::List(values))
+        };
+        self.replicates().map(member).collect()
     }
 
     /// The grid as JSON: each axis is a group of `zip`, since a list keeps the order of the axes and an
@@ -91,14 +138,20 @@ impl Grid {
         let name = |column: usize| self.columns[column].name.clone();
         let json = |value: &Value| Json::from(json_value(value));
         let mut grid = Vec::new();
-        let groups = self.axes.iter().map(|axis| {
+        let grouped: Vec<&Axis> =
+            self.axes.iter().filter(|axis| axis.kind != AxisKind::Replicates).collect();
+        let groups = grouped.iter().map(|axis| {
+            if let (AxisKind::Search, Some(search)) = (axis.kind, &self.search) {
+                let json = search.to_json(&|limit| self.limit_names[limit].clone());
+                return Json::Object(vec![(name(axis.columns[0]), json)]);
+            }
             let columns = axis.columns.iter().enumerate().map(|(index, column)| {
                 let values = axis.rows.iter().map(|row| json(&row[index])).collect();
                 (name(*column), Json::List(values))
             });
             Json::Object(columns.collect())
         });
-        if !self.axes.is_empty() {
+        if !grouped.is_empty() {
             grid.push(("zip".to_owned(), Json::List(groups.collect())));
         }
         let points = self.points.iter().map(|point| {
@@ -119,8 +172,9 @@ impl Grid {
         group: &Json,
         path: &str,
         base: &Base,
+        limits: &[ResultLimit],
         source: &Source,
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<(), InputError> {
         let allowed = "an object of lists of equal length";
         let Json::Object(members) = group else {
@@ -132,7 +186,10 @@ impl Grid {
         for (name, value) in members {
             let path = format!("{path}.{name}");
             let column = self.column(name, &path, value, base, source)?;
-            let values = self.values(column, value, &path, base, source, limits)?;
+            if let (true, [_]) = (is_search(value), members.as_slice()) {
+                return self.read_search(column, value, &path, limits, source);
+            }
+            let values = self.values(column, value, &path, base, source, size)?;
             if let Some(first) = lists.first()
                 && first.len() != values.len()
             {
@@ -149,12 +206,12 @@ impl Grid {
         let rows = (0..length)
             .map(|row| lists.iter().map(|values| values[row].clone()).collect())
             .collect();
-        self.axes.push(Axis { columns, rows });
+        self.axes.push(Axis { columns, rows, kind: AxisKind::Values });
         Ok(())
     }
 
     /// Adds the column of a key; refuses a key that another axis varies.
-    fn column(
+    pub(super) fn column(
         &mut self,
         name: &str,
         path: &str,
@@ -171,25 +228,30 @@ impl Grid {
         Ok(self.columns.len() - 1)
     }
 
-    fn values(
+    pub(super) fn values(
         &self,
         column: usize,
         json: &Json,
         path: &str,
         base: &Base,
         source: &Source,
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Vec<Value>, InputError> {
         let target = &self.columns[column].target;
         let items = match json {
             Json::List(items) => items,
             Json::Object(members) => {
-                if members.iter().any(|(name, _)| name == "bisect") {
-                    let problem = "boundary search (`bisect`) does not exist in this version";
-                    return Err(source.error(path, &json.brief(), problem, AXIS));
+                if is_search(json) {
+                    let problem = "is a search, which cannot vary together with another key";
+                    return Err(source.error(
+                        path,
+                        &json.brief(),
+                        problem,
+                        "an axis of its key alone",
+                    ));
                 }
                 let key = target.key();
-                return RangeInput { key, members, json, path, source }.values(limits);
+                return RangeInput { key, members, json, path, source }.values(size);
             }
             other => {
                 let mut error = source.error(
@@ -232,6 +294,15 @@ impl Grid {
                     self.columns.push(found);
                     self.columns.len() - 1
                 });
+                if self.is_replicate(column) {
+                    let problem = "is a replicate, of which every point has all values";
+                    return Err(source.error(
+                        &path,
+                        &json.brief(),
+                        problem,
+                        "keys that are not replicates",
+                    ));
+                }
                 if values.iter().any(|(other, _)| *other == column) {
                     let problem = "gives this key twice";
                     return Err(source.error(&path, &json.brief(), problem, "each key once"));
@@ -288,8 +359,13 @@ pub(super) fn refuse_varied(grid: &Grid, source: &Source) -> Result<(), InputErr
             let on_axis = grid.axes.iter().any(|axis| axis.columns.contains(index));
             on_axis && matches!(column.target, Target::Key(key) if KEYS[key].path == path)
         });
-        if let Some((_, column)) = varied {
+        if let Some((index, column)) = varied {
             let name = &column.name;
+            if grid.is_replicate(index) {
+                let problem = "the study repeats each point with values of this key, so the override has no effect";
+                let allowed = format!("--set 'replicates.{name}=[…]'");
+                return Err(source.error(path, "", problem, allowed));
+            }
             return Err(source.error(
                 path,
                 "",

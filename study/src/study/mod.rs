@@ -8,16 +8,20 @@
 
 mod base;
 mod expand;
+pub mod finished;
 mod fold;
 mod grid;
 pub(crate) mod ground;
 pub mod job_limits;
-mod limits;
 pub mod plan;
+mod plan_size;
 mod point;
 mod range;
+mod replicates;
 mod resolve;
+mod result_limits;
 mod schedule;
+mod search;
 mod strategy;
 mod target;
 mod units;
@@ -32,16 +36,24 @@ use crate::input::study_file::{self, Json};
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::limits::JobLimits;
+use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
 use base::Base;
+use expand::Points;
 use grid::Grid;
-pub use limits::Limits;
-pub(crate) use point::StudyPoint;
+pub use plan_size::PlanSize;
+pub(crate) use point::{Searched, StudyPoint};
+pub use search::{Border, Criterion, Level, Outcome};
 
 /// The key of the units in which quantities are shown. It changes no job.
 pub(crate) const UNITS: &str = "units";
 /// Key of the checksum of study.json. A study file has none.
 const CHECKSUM: &str = "checksum";
+
+/// The section of the limits of results. It changes no job.
+pub(crate) const LIMITS: &str = "limits";
+/// The section of the replicates.
+pub(crate) const REPLICATES: &str = "replicates";
 
 /// The section of the limits of jobs. It changes no job.
 pub(crate) const JOB_LIMITS: &str = "job_limits";
@@ -72,9 +84,9 @@ pub struct Study {
     units: DisplayUnits,
     base: Base,
     grid: Grid,
-    points: Vec<StudyPoint>,
-    /// Number of points of the product that the filter removed.
-    filtered: usize,
+    /// What its results must meet to be safe.
+    result_limits: Vec<ResultLimit>,
+    points: Points,
 }
 
 /// A parameter that changes together with another one on an axis.
@@ -98,7 +110,7 @@ impl Study {
         let text = study_file::text_of(&bytes, &file)?;
         let stem =
             path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        Ok(Self::from_text(text, &file, &stem, sets, Limits::default())?)
+        Ok(Self::from_text(text, &file, &stem, sets, PlanSize::default())?)
     }
 
     /// Reads a study from its text. `file` is its name in errors, `stem` the name of the study where
@@ -111,10 +123,10 @@ impl Study {
         file: &str,
         stem: &str,
         sets: &[String],
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Self, InputError> {
         let tree = study_file::parse(text, file)?;
-        Self::from_tree(tree, file, stem, sets, limits)
+        Self::from_tree(tree, file, stem, sets, size)
             .map_err(|error| study_file::with_place(error, text, file))
     }
 
@@ -127,7 +139,7 @@ impl Study {
         file: &str,
         stem: &str,
         sets: &[String],
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Self, InputError> {
         let mut source = Source::new(file);
         if !matches!(tree, Json::Object(_)) {
@@ -144,15 +156,16 @@ impl Study {
         }
         let renamed = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let base = Base::read(&tree, &source)?;
-        let grid = Grid::read(tree.get("grid"), &base, &source, limits)?;
+        let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
+        let grid = Grid::read(&tree, &base, &result_limits, &source, size)?;
         grid::refuse_varied(&grid, &source)?;
         let units = units::read(&tree, &base, &source)?;
-        let (points, filtered) = expand::points(&base, &grid, &source, limits)?;
+        let points = expand::points(&base, &grid, &source, size)?;
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
         let warnings = source.warnings();
-        Ok(Self { name, question, renamed, warnings, units, base, grid, points, filtered })
+        Ok(Self { name, question, renamed, warnings, units, base, grid, result_limits, points })
     }
 
     /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
@@ -223,6 +236,36 @@ impl Study {
         Some(StudyKey { name: column.name, key, value })
     }
 
+    /// What its results must meet to be safe.
+    pub fn result_limits(&self) -> &[ResultLimit] {
+        &self.result_limits
+    }
+
+    /// Names of the parameters whose values repeat a point.
+    pub fn replicates(&self) -> Vec<String> {
+        let columns = self.grid.replicates().flat_map(|axis| &axis.columns);
+        columns.map(|column| self.grid.columns[*column].name.clone()).collect()
+    }
+
+    /// Number of runs of each point: 1 without replicates.
+    pub fn replicate_count(&self) -> usize {
+        self.grid.replicate_count()
+    }
+
+    /// The parameter along which it searches a border, and what changes there; `None` without a search.
+    pub fn searched(&self) -> Option<(&str, Criterion)> {
+        let search = self.grid.search.as_ref()?;
+        Some((&self.grid.columns[search.column].name, search.criterion))
+    }
+
+    /// Largest number of values that one of its searches can take; `None` without a search.
+    pub fn most_search_values(&self) -> Option<usize> {
+        // With replicates both ends of the border move.
+        let ends = if self.replicate_count() > 1 { 2 } else { 1 };
+        let search = self.grid.search.as_ref()?;
+        Some(search.scan().len() + ends * search.most_values_after_scan())
+    }
+
     /// The limits of its jobs.
     pub fn job_limits(&self) -> JobLimits {
         job_limits::of(|key| self.base.settings.value(key).clone())
@@ -241,8 +284,16 @@ impl Study {
         if !units.is_empty() {
             json.set(UNITS, Json::Object(units));
         }
-        if !self.grid.is_empty() {
-            json.set("grid", self.grid.resolved());
+        if !self.result_limits.is_empty() {
+            json.set(LIMITS, result_limits::to_json(&self.result_limits));
+        }
+        let replicates = self.grid.resolved_replicates();
+        if !replicates.is_empty() {
+            json.set(REPLICATES, Json::Object(replicates));
+        }
+        let grid = self.grid.resolved();
+        if grid != Json::Object(Vec::new()) {
+            json.set("grid", grid);
         }
         json
     }
@@ -260,12 +311,20 @@ impl Study {
     /// The points of the study, in plan order: those of the product that the filter keeps, and the single
     /// points.
     pub(crate) fn points(&self) -> &[StudyPoint] {
-        &self.points
+        &self.points.points
+    }
+
+    /// The runs of one searched point, with these values by column of the grid. Empty where the filter
+    /// removes it: a search ends there.
+    pub(crate) fn points_at(&self, values: &[Value], searched: Searched) -> Vec<StudyPoint> {
+        // A value between two valid ones is valid: what a key allows is an interval.
+        expand::points_at(&self.base, &self.grid, &Source::new(&self.name), values, searched)
+            .unwrap_or_default()
     }
 
     /// Number of points of the product that the filter removed.
     pub fn filtered(&self) -> usize {
-        self.filtered
+        self.points.filtered
     }
 }
 

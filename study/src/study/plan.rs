@@ -6,12 +6,11 @@
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
-use billow_solver::output::measures::Verdict;
-
 use crate::job::point::Point;
-use crate::job::row::Cells;
-use crate::job::{Job, JobId, Status};
-use crate::study::Study;
+use crate::job::{Job, JobId};
+use crate::study::finished::FinishedRow;
+use crate::study::search::replay::Replay;
+use crate::study::{Border, Study, StudyPoint};
 
 /// Points that are planned together.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,24 +19,6 @@ pub struct Generation {
     pub number: u32,
     /// Points in plan order.
     pub points: Vec<Point>,
-}
-
-/// What planning knows of a finished job.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FinishedRow {
-    /// The job.
-    pub id: JobId,
-    /// Its status, as in the table.
-    pub status: Status,
-    /// Its verdict.
-    pub verdict: Option<Verdict>,
-}
-
-impl FinishedRow {
-    /// The row of a job that ended with these cells.
-    pub fn of(id: &JobId, cells: &Cells) -> Self {
-        Self { id: id.clone(), status: cells.status(), verdict: cells.verdict() }
-    }
 }
 
 /// Numbers of points and jobs of a plan: points = jobs + duplicates + infeasible.
@@ -76,24 +57,71 @@ impl PlanCounts {
 /// The next generation of a study; `None` when every job is finished. The same study and the same
 /// finished rows, in any order, give the same generation.
 ///
-/// A grid has one generation, planned whole while any of its jobs has no finished row; the runner
-/// leaves out the finished ones. Infeasible points have no job to finish. Without any finished row the
-/// generation is always given, so that a study of infeasible points gets its rows.
+/// A generation is planned whole while any of its jobs has no finished row; the runner leaves out the
+/// finished ones. A grid has one generation, a search one more each time its jobs have ended. Infeasible
+/// points have no job to finish. Without any finished row the first generation is always given, so that a
+/// study of infeasible points gets its rows.
 pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> {
-    let finished: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
-    let generation = first_generation(study);
-    let open = generation
-        .points
-        .iter()
-        .any(|point| point.infeasible.is_none() && !finished.contains(&point.job.id));
-    (open || finished.is_empty()).then_some(generation)
+    let ids: BTreeSet<&JobId> = finished.iter().map(|row| &row.id).collect();
+    let is_open = |generation: &Generation| {
+        let mut jobs = generation.points.iter().filter(|point| point.infeasible.is_none());
+        jobs.any(|point| !ids.contains(&point.job.id))
+    };
+    let mut generation = generation(0, study.points());
+    if is_open(&generation) || finished.is_empty() {
+        return Some(generation);
+    }
+    let mut replay = Replay::new(study, finished)?;
+    loop {
+        let points = replay.next_points();
+        if points.is_empty() {
+            return None;
+        }
+        generation = self::generation(generation.number + 1, &points);
+        if is_open(&generation) {
+            return Some(generation);
+        }
+        replay.add(&points);
+    }
 }
 
-/// Every point of the grid. Points with the same job are merged into the first of them.
-fn first_generation(study: &Study) -> Generation {
-    let mut points: Vec<Point> = Vec::with_capacity(study.points().len());
+/// Adds a generation to the points planned before. A job that is planned already keeps its place, and gets the
+/// parameters of the new point.
+pub fn add_generation(points: &mut Vec<Point>, generation: Generation) {
+    if points.is_empty() {
+        *points = generation.points;
+        return;
+    }
+    let known = points.iter().enumerate().map(|(index, point)| (point.job.id.clone(), index));
+    let known: HashMap<JobId, usize> = known.collect();
+    for point in generation.points {
+        match known.get(&point.job.id) {
+            Some(index) => {
+                points[*index].merged.push(point.job.parameters);
+                points[*index].merged.extend(point.merged);
+            }
+            None => points.push(point),
+        }
+    }
+}
+
+/// What the searches of a study have found with these finished jobs.
+pub fn borders(study: &Study, finished: &[FinishedRow]) -> Vec<Border> {
+    let Some(mut replay) = Replay::new(study, finished) else { return Vec::new() };
+    loop {
+        let points = replay.next_points();
+        if points.is_empty() {
+            return replay.borders();
+        }
+        replay.add(&points);
+    }
+}
+
+/// A generation of these points. Points with the same job are merged into the first of them.
+fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
+    let mut points: Vec<Point> = Vec::with_capacity(planned.len());
     let mut positions: HashMap<JobId, usize> = HashMap::new();
-    for point in study.points() {
+    for point in planned {
         let id = JobId::of(&point.scene);
         match positions.entry(id) {
             Entry::Occupied(entry) => points[*entry.get()].merged.push(point.parameters.clone()),
@@ -109,5 +137,5 @@ fn first_generation(study: &Study) -> Generation {
             }
         }
     }
-    Generation { number: 0, points }
+    Generation { number, points }
 }

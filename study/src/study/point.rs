@@ -5,6 +5,17 @@ use billow_solver::scene::Scene;
 use crate::job::Parameters;
 use crate::job::point::{Infeasible, Solved};
 
+/// Whether a search runs along a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Searched {
+    /// It is a single point that gives the key of the search, or there is no search.
+    No,
+    /// It is a point of the product.
+    InProduct,
+    /// It is a single point.
+    Single,
+}
+
 /// One point of the grid, in plan order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StudyPoint {
@@ -16,4 +27,6 @@ pub(crate) struct StudyPoint {
     pub infeasible: Option<Infeasible>,
     /// What the fold solves; `None` for an infeasible point.
     pub solved: Option<Solved>,
+    /// Whether a search runs along it.
+    pub searched: Searched,
 }

@@ -6,7 +6,7 @@
 //! step h:           x_i = from + i h, up to `to`, which is one of them
 //! ```
 
-use super::limits::Limits;
+use super::plan_size::PlanSize;
 use crate::input::keys::{Key, KeyKind};
 use crate::input::settings::{read, read_silently};
 use crate::input::source::Source;
@@ -48,7 +48,7 @@ impl RangeInput<'_> {
     /// # Errors
     /// When the range is incomplete or contradicts itself, has more values than a grid has points, or
     /// has a value that the key does not allow.
-    pub fn values(&self, limits: Limits) -> Result<Vec<Value>, InputError> {
+    pub fn values(&self, size: PlanSize) -> Result<Vec<Value>, InputError> {
         let (KeyKind::Quantity(_) | KeyKind::Integer(..)) = self.key.kind else {
             return self.refuse("is a range of a key that does not hold numbers");
         };
@@ -60,9 +60,9 @@ impl RangeInput<'_> {
             return self.refuse("`from` is not below `to`");
         }
         let numbers = match spacing {
-            Spacing::Linear(steps) => self.linear(from, to, steps, limits)?,
-            Spacing::Log(steps) => self.logarithmic(from, to, steps, limits)?,
-            Spacing::Step(step) => self.stepped(from, to, step, limits)?,
+            Spacing::Linear(steps) => self.linear(from, to, steps, size)?,
+            Spacing::Log(steps) => self.logarithmic(from, to, steps, size)?,
+            Spacing::Step(step) => self.stepped(from, to, step, size)?,
         };
         let value = |(index, number)| {
             let path = format!("{} (value {})", self.path, index + 1);
@@ -137,11 +137,11 @@ impl RangeInput<'_> {
         }
     }
 
-    fn check_count(&self, count: f64, limits: Limits) -> Result<(), InputError> {
-        if count <= limits.points as f64 {
+    fn check_count(&self, count: f64, size: PlanSize) -> Result<(), InputError> {
+        if count <= size.points as f64 {
             return Ok(());
         }
-        let limit = limits.points;
+        let limit = size.points;
         self.refuse(&format!("has {count:.0} values; a grid may have {limit} points"))
     }
 
@@ -150,9 +150,9 @@ impl RangeInput<'_> {
         from: f64,
         to: f64,
         steps: usize,
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Vec<f64>, InputError> {
-        self.check_count(steps as f64, limits)?;
+        self.check_count(steps as f64, size)?;
         let width = (to - from) / (steps - 1) as f64;
         Ok(with_ends((0..steps).map(|i| rounded(from + width * i as f64)).collect(), from, to))
     }
@@ -162,9 +162,9 @@ impl RangeInput<'_> {
         from: f64,
         to: f64,
         steps: usize,
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Vec<f64>, InputError> {
-        self.check_count(steps as f64, limits)?;
+        self.check_count(steps as f64, size)?;
         if from <= 0.0 {
             return self.refuse("has logarithmic spacing, so `from` must be above 0");
         }
@@ -178,7 +178,7 @@ impl RangeInput<'_> {
         from: f64,
         to: f64,
         step: f64,
-        limits: Limits,
+        size: PlanSize,
     ) -> Result<Vec<f64>, InputError> {
         // A last value that is above `to` by rounding alone belongs to the range.
         let widths = (to - from) / step * (1.0 + 1e-12);
@@ -187,7 +187,7 @@ impl RangeInput<'_> {
             let last = rounded(from + step * widths.floor());
             return self.refuse(&format!("does not end at `to`: its last step is {last}"));
         }
-        self.check_count(count, limits)?;
+        self.check_count(count, size)?;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,

@@ -177,7 +177,25 @@ impl Windows<'_> {
     /// One window of the strategy, with the study's values where it gives none.
     fn window(&self, index: usize, window: &Window) -> Result<InflowWindow, InputError> {
         let from = window.from.unwrap_or(self.strategy.release_time());
-        let to = window.to.unwrap_or(self.draft.scene.solver.end_time.max(from));
+        let rate = window.mass_flow_rate.or(self.draft.inflow.mass_flow_rate);
+        let rate = rate.ok_or_else(|| {
+            let key = const { named(KEYS, "gas.mass_flow_rate") };
+            self.point.settings.missing(key, self.source)
+        })?;
+        let end_time = self.draft.scene.solver.end_time.max(from);
+        let to = match (window.to, window.mass) {
+            (Some(_), Some(mass)) => {
+                return Err(self.source.error(
+                    &format!("strategies.{}.inflow[{index}].mass", self.name),
+                    &shown(mass),
+                    "the window gives both its end and its mass",
+                    "`to` or `mass`",
+                ));
+            }
+            (Some(to), None) => to,
+            (None, Some(mass)) if rate > 0.0 => from + mass / rate,
+            (None, _) => end_time,
+        };
         if to <= from && (to < from || window.to.is_some()) {
             return Err(self.source.error(
                 &format!("strategies.{}.inflow[{index}].to", self.name),
@@ -186,11 +204,6 @@ impl Windows<'_> {
                 format!("above its `from`, {} s", shown(from)),
             ));
         }
-        let rate = window.mass_flow_rate.or(self.draft.inflow.mass_flow_rate);
-        let rate = rate.ok_or_else(|| {
-            let key = const { named(KEYS, "gas.mass_flow_rate") };
-            self.point.settings.missing(key, self.source)
-        })?;
         let temperature = window.temperature.unwrap_or(self.draft.inflow.temperature);
         Ok(InflowWindow { from, to, mass_flow_rate: rate, temperature })
     }

@@ -25,6 +25,8 @@ pub(super) struct Window {
     pub from: Option<f64>,
     /// End, s.
     pub to: Option<f64>,
+    /// Mass let in, kg; it gives the end.
+    pub mass: Option<f64>,
     /// Mass flow rate, kg/s.
     pub mass_flow_rate: Option<f64>,
     /// Temperature of the gas let in, K.
@@ -52,6 +54,7 @@ impl Strategy {
         self.inflow.iter().map(|values| Window {
             from: number(&values[const { position(WINDOW_KEYS, "from") }]),
             to: number(&values[const { position(WINDOW_KEYS, "to") }]),
+            mass: number(&values[const { position(WINDOW_KEYS, "mass") }]),
             mass_flow_rate: number(&values[const { position(WINDOW_KEYS, "mass_flow_rate") }]),
             temperature: number(&values[const { position(WINDOW_KEYS, "temperature") }]),
         })

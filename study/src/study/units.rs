@@ -2,7 +2,7 @@
 //! file writes for a key, first under `grid`, then in its section.
 
 use super::base::Base;
-use super::target;
+use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS, target};
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
 use crate::input::settings::object;
 use crate::input::source::Source;
@@ -11,6 +11,10 @@ use crate::input::units::{DisplayUnit, DisplayUnits, written_unit};
 use crate::job::row::{COLUMNS, current_column_name};
 use crate::platform::error::InputError;
 
+/// Members of a range and of a search that hold values of the key.
+const VALUE_MEMBERS: [&str; 4] = ["from", "to", "step", "bisect"];
+/// Sections in which no key of the study has its value.
+const WITHOUT_VALUES: [&str; 5] = ["grid", UNITS, JOB_LIMITS, LIMITS, REPLICATES];
 /// What the section `units` must look like, for errors.
 const ALLOWED: &str =
     "a unit of this quantity, as in {\"mass_flow_rate\": \"g/s\", \"t_90_z_rim\": \"ms\"}";
@@ -34,11 +38,13 @@ pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayU
             units.set(&name, symbol);
         }
     }
-    written_in_grid(tree.get("grid"), &mut |name, value| {
-        if let Ok(column) = target::find(name, "grid", value, base, source) {
-            suggest(&mut units, &column.name, value);
-        }
-    });
+    for section in ["grid", REPLICATES] {
+        written_in_grid(tree.get(section), &mut |name, value| {
+            if let Ok(column) = target::find(name, section, value, base, source) {
+                suggest(&mut units, &column.name, value);
+            }
+        });
+    }
     written_in_section("", tree, &mut units);
     Ok(units)
 }
@@ -91,7 +97,7 @@ fn written_in_section(path: &str, json: &Json, units: &mut DisplayUnits) {
     match json {
         Json::Object(members) => {
             for (name, value) in members {
-                if path.is_empty() && matches!(name.as_str(), "grid" | "units" | "job_limits") {
+                if path.is_empty() && WITHOUT_VALUES.contains(&name.as_str()) {
                     continue;
                 }
                 let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
@@ -123,7 +129,11 @@ fn suggest(units: &mut DisplayUnits, name: &str, value: &Json) {
             }
         }
         Json::List(items) => items.iter().for_each(|item| suggest(units, name, item)),
-        Json::Object(members) => members.iter().for_each(|(_, item)| suggest(units, name, item)),
+        Json::Object(members) => {
+            // The tolerance of a search may be a percentage.
+            let values = members.iter().filter(|(name, _)| VALUE_MEMBERS.contains(&name.as_str()));
+            values.for_each(|(_, item)| suggest(units, name, item));
+        }
         _ => {}
     }
 }

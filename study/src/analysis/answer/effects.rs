@@ -13,9 +13,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use billow_solver::output::measures::Verdict;
 
 use super::medians::{Extremes, Set, block, extremes};
+use super::points::Points;
 use super::trust::is_trusted;
-use crate::analysis::compare::{self, Measure, Sets, Tolerance, canonical};
-use crate::analysis::statistics::Spread;
+use crate::analysis::compare::{self, Measure, Range, Sets, Tolerance, canonical, median_range};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -71,29 +71,62 @@ pub struct MeasureEffect {
 }
 
 impl Effects {
-    /// Effects in some rows of a table. `zipped` gives the parameters on the axis of one.
+    /// Effects in some rows of a table. With `replicates` each point counts once, by the medians over its runs.
+    /// `zipped` gives the parameters on the axis of one.
     pub fn of(
         table: &Table,
         rows: &[usize],
+        replicates: &[String],
         measures: &[ColumnId],
         zipped: &dyn Fn(&str) -> Vec<Zipped>,
     ) -> Self {
-        let measures: Vec<(ColumnId, Measure<'_>)> = measures
-            .iter()
-            .filter_map(|id| {
-                let column = table.column(id.name())?;
-                let tolerance = Tolerance::of(table, rows, column, &zipped("seed"));
-                Some((*id, Measure { column, tolerance }))
-            })
-            .collect();
+        if replicates.is_empty() {
+            let trusted = |row| is_trusted(table, row);
+            let deploys = |row| table.verdict(row) == Some(Verdict::Deployed) && trusted(row);
+            let judged = rows.iter().any(|row| table.verdict(*row).is_some());
+            let judges = Judges { trusted: &trusted, deploys: &deploys, judged };
+            let of_runs = |column| {
+                Measure::of_runs(column, Tolerance::of(table, rows, column, &zipped("seed")))
+            };
+            return Self::of_rows(table, rows, &judges, (measures, &of_runs), zipped);
+        }
+        let points = Points::of(table, rows, replicates);
+        let all_trusted =
+            |point: usize| points.runs[point].rows.iter().all(|row| is_trusted(table, *row));
+        let trusted = |point: usize| points.trusted[point];
+        let deploys = |point| points.deploys(point) == Some(true) && all_trusted(point);
+        let judged = points.runs.iter().any(|runs| runs.deployed.of > 0);
+        let judges = Judges { trusted: &trusted, deploys: &deploys, judged };
+        let rows: Vec<usize> = (0..points.runs.len()).collect();
+        let (condensed, table) = (&points.condensed, &points.condensed.table);
+        let of_points = |column| Measure::of_points(condensed, &rows, column, &zipped("seed"));
+        Self::of_rows(table, &rows, &judges, (measures, &of_points), zipped)
+    }
+
+    /// Effects in some rows of a table with one row per point.
+    fn of_rows<'a>(
+        table: &'a Table,
+        rows: &[usize],
+        judges: &Judges<'_>,
+        (ids, measure): (&[ColumnId], &dyn Fn(&'a Column) -> Measure<'a>),
+        zipped: &dyn Fn(&str) -> Vec<Zipped>,
+    ) -> Self {
+        let named = |id: &ColumnId| Some((*id, measure(table.column(id.name())?)));
+        let measures: Vec<(ColumnId, Measure<'_>)> = ids.iter().filter_map(named).collect();
         let mut effects = Self::default();
         for parameter in table.parameters() {
             if compare::values(parameter, rows).len() < 2 {
                 continue;
             }
             let keys = parameter.cells.iter().map(canonical).collect();
-            let study =
-                Comparable { table, rows, parameter, keys, zipped: zipped(&parameter.name) };
+            let study = Comparable {
+                table,
+                rows,
+                judges,
+                parameter,
+                keys,
+                zipped: zipped(&parameter.name),
+            };
             match study.effect(&measures) {
                 Ok(effect) => effects.effects.push(effect),
                 Err(reason) => effects.not_compared.push((parameter.name.clone(), reason)),
@@ -103,10 +136,21 @@ impl Effects {
     }
 }
 
+/// What is known of each row.
+struct Judges<'a> {
+    /// Whether its measures can be trusted.
+    trusted: &'a dyn Fn(usize) -> bool,
+    /// Whether it deployed, and can be trusted.
+    deploys: &'a dyn Fn(usize) -> bool,
+    /// Whether any job has a verdict.
+    judged: bool,
+}
+
 /// A parameter that varies in some rows.
 struct Comparable<'a> {
     table: &'a Table,
     rows: &'a [usize],
+    judges: &'a Judges<'a>,
     parameter: &'a Column,
     /// The value of the parameter in each row of the table, as it is matched.
     keys: Vec<String>,
@@ -127,7 +171,7 @@ impl Comparable<'_> {
             return Err(self.without_sets());
         }
         let deployed = self.deployed(&values, &all);
-        let judged = self.judged();
+        let judged = self.judges.judged;
         let always: Vec<bool> =
             deployed.iter().map(|(deployed, jobs)| !judged || deployed == jobs).collect();
         let mut effect = Effect {
@@ -142,7 +186,7 @@ impl Comparable<'_> {
         };
         for (id, measure) in measures {
             let has = |row| {
-                is_trusted(self.table, row)
+                (self.judges.trusted)(row)
                     && compare::measured(self.table, measure.column, row).is_some()
             };
             let (sets, _) = self.sets(&effect.values, &has);
@@ -154,19 +198,19 @@ impl Comparable<'_> {
                 let reason = self.left_out(&effect.values[index], index, &sets, &has);
                 effect.left_out.push((Some(effect.values[index].clone()), *id, reason));
             }
-            let medians = (0..effect.values.len()).map(|index| {
+            let ranges = (0..effect.values.len()).map(|index| {
                 let rows = block.iter().filter_map(|set| set[index]);
-                let numbers =
-                    rows.filter_map(|row| compare::measured(self.table, measure.column, row));
-                chosen.contains(&index).then(|| Spread::of(numbers))?.map(|spread| spread.median)
+                let ranges: Vec<Range> =
+                    rows.filter_map(|row| measure.range(self.table, row)).collect();
+                median_range(&ranges).filter(|_| chosen.contains(&index))
             });
-            let medians: Vec<Option<f64>> = medians.collect();
+            let ranges: Vec<Option<Range>> = ranges.collect();
             effect.measures.push(MeasureEffect {
                 measure: *id,
                 shown: measure.column.shown.clone(),
                 sets: block.len(),
-                extremes: extremes(&medians, measure, &always),
-                medians,
+                extremes: extremes(&ranges, measure, &always),
+                medians: ranges.iter().map(|range| range.map(|range| range[1])).collect(),
                 tolerance: measure.tolerance,
             });
         }
@@ -205,18 +249,10 @@ impl Comparable<'_> {
         let of_value = |index: usize| {
             let rows: Vec<usize> = sets.iter().filter_map(|set| set[index]).collect();
             let jobs = self.table.one_row_per_job(&rows);
-            let deployed = jobs.iter().filter(|row| {
-                self.table.verdict(**row) == Some(Verdict::Deployed)
-                    && is_trusted(self.table, **row)
-            });
+            let deployed = jobs.iter().filter(|row| (self.judges.deploys)(**row));
             (deployed.count(), jobs.len())
         };
         (0..values.len()).map(of_value).collect()
-    }
-
-    /// Whether a job has a verdict.
-    fn judged(&self) -> bool {
-        self.rows.iter().any(|row| self.table.verdict(*row).is_some())
     }
 
     /// Why no two jobs differ in this parameter alone.

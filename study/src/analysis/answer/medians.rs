@@ -6,11 +6,11 @@
 //! (values − 1) · sets → max
 //! ```
 
-use crate::analysis::compare::Measure;
+use crate::analysis::compare::{Measure, Range};
 use crate::job::row::BetterSide;
 
 /// One row of a set per value of the parameter.
-pub(super) type Set = Vec<Option<usize>>;
+pub(in crate::analysis) type Set = Vec<Option<usize>>;
 
 /// The best and the worst values of a parameter by one measure: positions in `Effect::values`, the
 /// extreme one first, then those that are equal to it up to the tolerance.
@@ -36,7 +36,7 @@ pub enum Extremes {
 
 /// The values and the sets with the most independent comparisons, of those sets in which every one of these
 /// values has a job; `None` when no set has two values.
-pub(super) fn block(sets: &[Set], values: usize) -> Option<(Vec<usize>, Vec<&Set>)> {
+pub(in crate::analysis) fn block(sets: &[Set], values: usize) -> Option<(Vec<usize>, Vec<&Set>)> {
     let number = |index: &usize| sets.iter().filter(|set| set[*index].is_some()).count();
     let mut order: Vec<usize> = (0..values).collect();
     // The sort is stable: values of equally many sets stay in plan order.
@@ -56,30 +56,29 @@ pub(super) fn block(sets: &[Set], values: usize) -> Option<(Vec<usize>, Vec<&Set
     Some((chosen.clone(), block.collect()))
 }
 
-/// The best and the worst of some medians. `always` says which values deploy in all their jobs.
+/// The best and the worst of some medians with their ranges. `always` says which values deploy in all their
+/// jobs.
 pub(super) fn extremes(
-    medians: &[Option<f64>],
+    ranges: &[Option<Range>],
     measure: &Measure<'_>,
     always: &[bool],
 ) -> Extremes {
-    let mut order: Vec<(usize, f64)> = medians
-        .iter()
-        .enumerate()
-        .filter_map(|(index, median)| Some((index, (*median)?)))
-        .collect();
-    order.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut order: Vec<(usize, Range)> =
+        ranges.iter().enumerate().filter_map(|(index, range)| Some((index, (*range)?))).collect();
+    order.sort_by(|a, b| a.1[1].total_cmp(&b.1[1]));
     let (Some(lowest), Some(highest)) = (order.first(), order.last()) else {
         return Extremes::Equal;
     };
-    if measure.tolerance.is_tie(lowest.1, highest.1) {
+    let equals = |a: &(usize, Range), b: &(usize, Range)| measure.are_equal(a.1, b.1);
+    if order.iter().all(|value| equals(lowest, value) && equals(highest, value)) {
         return Extremes::Equal;
     }
-    let tied = |order: &mut dyn Iterator<Item = &(usize, f64)>| -> Vec<usize> {
-        let Some((first, extreme)) = order.next() else { return Vec::new() };
-        let equal = order.take_while(|(_, median)| measure.tolerance.is_tie(*extreme, *median));
-        [*first].into_iter().chain(equal.map(|(index, _)| *index)).collect()
+    let tied = |order: &mut dyn Iterator<Item = &(usize, Range)>| -> Vec<usize> {
+        let Some(extreme) = order.next() else { return Vec::new() };
+        let equal = order.filter(|value| equals(extreme, value));
+        [extreme.0].into_iter().chain(equal.map(|(index, _)| *index)).collect()
     };
-    let deploys = |entry: &&(usize, f64)| always[entry.0];
+    let deploys = |entry: &&(usize, Range)| always[entry.0];
     let (lowest, highest) = (tied(&mut order.iter()), tied(&mut order.iter().rev()));
     match measure.side() {
         BetterSide::Smaller => {

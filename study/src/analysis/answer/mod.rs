@@ -1,6 +1,6 @@
-//! The answer of a study, from its table: how many jobs deploy, which job is fastest, which has the
-//! largest impact, how far the results can be trusted, and the effect of each parameter with all others
-//! equal.
+//! The answer of a study, from its table: how many jobs deploy, which points are safe, which job is fastest,
+//! which has the largest impact, how far the results can be trusted, the effect of each parameter with all
+//! others equal, which strategy is gentler, and where the borders of a search are.
 
 use billow_solver::output::measures::Verdict;
 
@@ -15,10 +15,20 @@ use crate::store::table::Table;
 
 mod effects;
 mod medians;
+mod pairwise;
+mod points;
+mod safety;
+mod searches;
 mod trust;
 
 pub use effects::{Effect, Effects, MeasureEffect};
 pub use medians::Extremes;
+pub(super) use medians::{Set, block};
+pub use pairwise::{Loads, MeasureVersus, Versus};
+pub(super) use points::worst_margin;
+pub use points::{Depends, PointCounts, Points};
+pub use safety::{PointMargin, SafeBy, SafeCounts, SafeValue, Safety};
+pub use searches::{Found, Searches};
 pub use trust::Trust;
 
 /// The answer of a study.
@@ -41,6 +51,18 @@ pub struct Answer {
     pub largest_strain: f64,
     /// Effects of the parameters that vary.
     pub effects: Effects,
+    /// Numbers of points, in a study with replicates.
+    pub points: Option<PointCounts>,
+    /// Points whose verdict depends on a numerical choice.
+    pub depends: Option<Depends>,
+    /// Safe points, in a study with limits.
+    pub safety: Option<Safety>,
+    /// The parameter whose values are compared in pairs: the strategy, or the first one with words.
+    pub choice: Option<String>,
+    /// Each pair of its values.
+    pub pairwise: Vec<Versus>,
+    /// What the searches of borders found.
+    pub searches: Option<Searches>,
 }
 
 /// The job with the smallest or largest value of a measure.
@@ -66,8 +88,21 @@ impl Answer {
         answer.question.clone_from(&stored.study.question);
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
-        answer.effects =
-            Effects::of(&table, &rows, &HEADLINE, &|name| stored.study.zipped_with(name));
+        let (study, replicates) = (&stored.study, stored.study.replicates());
+        let zipped = |name: &str| study.zipped_with(name);
+        answer.effects = Effects::of(&table, &rows, &replicates, &HEADLINE, &zipped);
+        let jobs = Points::of(&table, &table.one_row_per_job(&rows), &replicates);
+        answer.points = (!replicates.is_empty()).then(|| PointCounts::of(&jobs, &replicates));
+        answer.depends = Depends::of(&table, &jobs);
+        let choice = pairwise::choice(&table, &rows);
+        let choice = choice.filter(|column| !replicates.contains(&column.name));
+        answer.safety = Safety::of(&table, study.result_limits(), &rows, &replicates, choice);
+        if let Some(choice) = choice {
+            let points = Points::of(&table, &rows, &replicates);
+            answer.choice = Some(choice.name.clone());
+            answer.pairwise = pairwise::pairwise(&points, &choice.name, &zipped);
+        }
+        answer.searches = Searches::of(stored, &table);
         answer
     }
 
@@ -141,5 +176,7 @@ fn largest_strain(stored: &Stored<'_>) -> f64 {
     stored.points.iter().map(strain).fold(0.0, f64::max)
 }
 
+#[cfg(test)]
+mod point_tests;
 #[cfg(test)]
 mod tests;

@@ -87,7 +87,7 @@ fn only_done_jobs_enter_extremes_and_audit() {
 
 fn effects(table: &Table) -> Effects {
     let rows: Vec<usize> = (0..table.rows()).collect();
-    Effects::of(table, &rows, &HEADLINE, &|_| Vec::new())
+    Effects::of(table, &rows, &[], &HEADLINE, &|_| Vec::new())
 }
 
 fn effect<'a>(effects: &'a Effects, parameter: &str) -> &'a Effect {

@@ -16,15 +16,19 @@
 
 use std::collections::BTreeSet;
 
+use super::replicates::Condensed;
+use super::statistics::Spread;
 use crate::input::value::Value;
 use crate::job::Status;
-use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId};
+use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
+use crate::study::Zipped;
 
 mod sets;
 mod tally;
 mod tolerance;
 
+pub use super::values::{canonical, measured};
 pub use sets::{Pair, Sets, pairs};
 pub use tally::{Tally, pairs_of_jobs, tallies};
 pub use tolerance::{ROUNDING, Tolerance, ToleranceSource};
@@ -34,19 +38,22 @@ pub fn measures_with(side: BetterSide) -> Vec<&'static str> {
     COLUMNS.iter().filter(|column| column.better == side).map(|column| column.name).collect()
 }
 
-/// Which side of a measure is better.
-fn better_side(measure: &str) -> BetterSide {
-    ColumnId::from_name(measure).map_or(BetterSide::Neither, |id| id.column().better)
+/// Whether a column holds margins of limits.
+pub fn is_margin(name: &str) -> bool {
+    name == DerivedColumn::SmallestMargin.name() || name.starts_with("margin_")
 }
 
-/// The text by which values are matched: numbers in shortest digits (8 = 8.0, −0 = 0), texts in
-/// quotes.
-pub fn canonical(value: &Value) -> String {
-    match value {
-        Value::Number(number) => format!("{}", number + 0.0),
-        Value::Text(text) => format!("{text:?}"),
-        other => other.to_string(),
+/// Whether a measure can be negative or zero, so that a ratio of two values means nothing.
+fn is_signed(measure: &str) -> bool {
+    is_margin(measure) || ColumnId::from_name(measure).is_some_and(ColumnId::is_signed)
+}
+
+/// Which side of a measure is better. A larger margin is.
+fn better_side(measure: &str) -> BetterSide {
+    if is_margin(measure) {
+        return BetterSide::Larger;
     }
+    ColumnId::from_name(measure).map_or(BetterSide::Neither, |id| id.column().better)
 }
 
 /// Different values of a column in some rows, in the order of first appearance.
@@ -120,9 +127,50 @@ pub struct Measure<'a> {
     pub column: &'a Column,
     /// Its tolerance.
     pub tolerance: Tolerance,
+    /// The smallest and the largest values over the runs of each point; `None` for single runs.
+    pub ranges: Option<[&'a Column; 2]>,
 }
 
-impl Measure<'_> {
+/// Least, median and largest value over the runs of a point; of a single run its value.
+pub type Range = [f64; 3];
+
+/// The median of each end, and of the medians, of some ranges.
+pub fn median_range(ranges: &[Range]) -> Option<Range> {
+    let median = |end: usize| Spread::of(ranges.iter().map(|range| range[end]));
+    Some([median(0)?.median, median(1)?.median, median(2)?.median])
+}
+
+impl<'a> Measure<'a> {
+    /// A measure of single runs.
+    pub fn of_runs(column: &'a Column, tolerance: Tolerance) -> Self {
+        Self { column, tolerance, ranges: None }
+    }
+
+    /// A measure of points: a column of their medians. `zipped` are the parameters on the axis of the seeds.
+    pub fn of_points(
+        points: &'a Condensed,
+        rows: &[usize],
+        column: &'a Column,
+        zipped: &[Zipped],
+    ) -> Self {
+        let tolerance = Tolerance::of_points(points, rows, column, zipped);
+        let end = |table: &'a Table| table.column(&column.name);
+        let ranges = end(&points.least).zip(end(&points.largest));
+        Self { column, tolerance, ranges: ranges.map(|(least, largest)| [least, largest]) }
+    }
+
+    /// The value at a row, with its range.
+    pub fn range(&self, table: &Table, row: usize) -> Option<Range> {
+        let value = measured(table, self.column, row)?;
+        let end = |column: &Column| measured(table, column, row).unwrap_or(value);
+        Some(self.ranges.map_or([value; 3], |[least, largest]| [end(least), value, end(largest)]))
+    }
+
+    /// Whether two values are equal: within the tolerance, or because their ranges overlap.
+    pub fn are_equal(&self, a: Range, b: Range) -> bool {
+        self.tolerance.is_tie(a[1], b[1]) || (a[0] <= b[2] && b[0] <= a[2])
+    }
+
     /// Which of two values is better; neither while no spread is known.
     pub fn side(&self) -> BetterSide {
         if self.tolerance.judges() { better_side(&self.column.name) } else { BetterSide::Neither }
@@ -130,7 +178,7 @@ impl Measure<'_> {
 
     /// Whether the measure can be negative or zero, so that a ratio of two values means nothing.
     pub fn is_signed(&self) -> bool {
-        ColumnId::from_name(&self.column.name).is_some_and(ColumnId::is_signed)
+        is_signed(&self.column.name)
     }
 }
 
@@ -162,7 +210,7 @@ impl Compared {
 
 /// Compares one measure of a pair.
 pub fn compared(table: &Table, pair: Pair, measure: &Measure<'_>) -> Compared {
-    let [base, other] = [pair.base, pair.other].map(|row| measured(table, measure.column, row));
+    let [base, other] = [pair.base, pair.other].map(|row| measure.range(table, row));
     let has = |row: usize, status| table.status(row) == Some(status);
     let pending = [pair.base, pair.other].iter().any(|row| has(*row, Status::Pending));
     let better = match (base, other) {
@@ -173,6 +221,7 @@ pub fn compared(table: &Table, pair: Pair, measure: &Measure<'_>) -> Compared {
         (None, Some(_)) => Better::OnlyOther,
         (Some(base), Some(other)) => judge(measure, base, other),
     };
+    let [base, other] = [base, other].map(|side| side.map(|range| range[1]));
     Compared { base, other, better, signed: measure.is_signed() }
 }
 
@@ -184,10 +233,10 @@ fn same_job(table: &Table, pair: Pair) -> bool {
         .is_some_and(|job| job.cells[pair.base] == job.cells[pair.other] && !infeasible)
 }
 
-fn judge(measure: &Measure<'_>, base: f64, other: f64) -> Better {
-    let base_is_smaller = base < other;
+fn judge(measure: &Measure<'_>, base: Range, other: Range) -> Better {
+    let base_is_smaller = base[1] < other[1];
     let smaller = if base_is_smaller { Better::Base } else { Better::Other };
-    if measure.tolerance.is_tie(base, other) {
+    if measure.are_equal(base, other) {
         return Better::Tie;
     }
     match measure.side() {
@@ -198,18 +247,6 @@ fn judge(measure: &Measure<'_>, base: f64, other: f64) -> Better {
     }
 }
 
-/// A measure of a row; `None` unless its job is done and has the measure.
-pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
-    if table.status(row) != Some(Status::Done) {
-        return None;
-    }
-    match measure.cells[row] {
-        Value::Number(number) if !number.is_nan() => Some(number),
-        Value::Integer(number) => Some(number as f64),
-        _ => None,
-    }
-}
-
 /// Whether a column can be compared as a measure.
 pub fn is_measure(column: &Column) -> bool {
     matches!(column.cell_type, CellType::Number | CellType::Integer)
@@ -217,3 +254,5 @@ pub fn is_measure(column: &Column) -> bool {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tolerance_tests;

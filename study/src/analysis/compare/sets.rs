@@ -23,12 +23,23 @@ impl Sets {
     /// them is a function of `by` on the axis, a row that follows the axis is not matched in it; a
     /// single point that leaves the axis is.
     pub fn new(table: &Table, rows: &[usize], by: &str, zipped: &[Zipped]) -> Self {
+        Self::with_free(table, rows, by, &[], zipped)
+    }
+
+    /// As [`Self::new`], with further parameters that a set leaves free.
+    pub fn with_free(
+        table: &Table,
+        rows: &[usize],
+        by: &str,
+        free: &[String],
+        zipped: &[Zipped],
+    ) -> Self {
         let Some(compared) = table.parameters().find(|column| column.name == by) else {
             return Self::default();
         };
         let others: Vec<(&Column, Option<BTreeMap<String, String>>)> = table
             .parameters()
-            .filter(|column| column.name != by)
+            .filter(|column| column.name != by && !free.contains(&column.name))
             .map(|column| {
                 let axis = zipped.iter().find(|zipped| zipped.name == column.name);
                 (column, axis.and_then(|axis| function(axis, column, compared, rows)))

@@ -3,9 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::study::Zipped;
 
-fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
+pub(super) fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
     Column {
         name: name.to_owned(),
         cell_type,
@@ -17,7 +16,7 @@ fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
 }
 
 /// A table of parameters `a`, `b` and a measure.
-fn table(rows: &[(i64, f64, &str, Option<f64>)]) -> Table {
+pub(super) fn table(rows: &[(i64, f64, &str, Option<f64>)]) -> Table {
     let text = |text: &str| Value::Text(text.to_owned());
     Table {
         columns: vec![
@@ -38,12 +37,12 @@ fn table(rows: &[(i64, f64, &str, Option<f64>)]) -> Table {
     }
 }
 
-fn all(table: &Table) -> Vec<usize> {
+pub(super) fn all(table: &Table) -> Vec<usize> {
     (0..table.rows()).collect()
 }
 
 fn given(table: &Table, tie: f64) -> Measure<'_> {
-    Measure { column: table.column("peak_vz").unwrap(), tolerance: Tolerance::given(tie) }
+    Measure::of_runs(table.column("peak_vz").unwrap(), Tolerance::given(tie))
 }
 
 fn betters(table: &Table, base: i64, tie: f64) -> Vec<Better> {
@@ -95,7 +94,7 @@ fn every_outcome_is_given_and_none_is_ignored() {
 fn the_better_side_is_that_of_the_column() {
     let judged = |name: &str, tolerance: Tolerance, base: f64, other: f64| {
         let column = column(name, CellType::Number, Vec::new());
-        judge(&Measure { column: &column, tolerance }, base, other)
+        judge(&Measure::of_runs(&column, tolerance), [base; 3], [other; 3])
     };
     let exact = Tolerance::given(ROUNDING);
     assert_eq!(judged("height_ratio", exact, 0.9, 1.0), Better::Other);
@@ -107,42 +106,10 @@ fn the_better_side_is_that_of_the_column() {
 }
 
 #[test]
-fn a_default_tie_is_the_larger_of_the_spreads_of_seed_and_method() {
-    let mut table = table(&[
-        (1, 1.0, "done", Some(10.0)),
-        (2, 1.0, "done", Some(10.3)),
-        (1, 2.0, "done", Some(10.0)),
-        (2, 2.0, "done", Some(11.0)),
-        (3, 2.0, "pending", None),
-    ]);
-    let of =
-        |table: &Table| Tolerance::of(table, &all(table), table.column("peak_vz").unwrap(), &[]);
-    let limit = |tolerance: Tolerance| (tolerance.limit, tolerance.source);
-    assert_eq!(limit(of(&table)), (0.05, ToleranceSource::Method), "README: seeds differ by 5 %");
-    table.columns[1].name = "seed".to_owned();
-    assert_eq!(
-        limit(of(&table)),
-        (1.0 / 11.0, ToleranceSource::Seeds),
-        "the largest over the sets"
-    );
-    table.columns[4].cells[3] = Value::Number(10.1);
-    assert_eq!(limit(of(&table)), (0.05, ToleranceSource::Method));
-
-    // No spread is known: lower, not better.
-    table.columns[4].name = "ringing_rms".to_owned();
-    table.columns[1].name = "a".to_owned();
-    let column = table.column("ringing_rms").unwrap();
-    let measure = Measure { column, tolerance: Tolerance::of(&table, &all(&table), column, &[]) };
-    assert_eq!(compared(&table, Pair { base: 0, other: 1 }, &measure).better, Better::Higher);
-    assert_eq!(compared(&table, Pair { base: 1, other: 0 }, &measure).better, Better::Lower);
-}
-
-#[test]
 fn a_signed_measure_has_differences_and_no_ratio() {
     let mut table = table(&[(1, 1.0, "done", Some(-0.01)), (2, 1.0, "done", Some(0.03))]);
     table.columns[4].name = "overshoot".to_owned();
-    let measure =
-        Measure { column: table.column("overshoot").unwrap(), tolerance: Tolerance::given(0.0) };
+    let measure = Measure::of_runs(table.column("overshoot").unwrap(), Tolerance::given(0.0));
     let pair = Pair { base: 0, other: 1 };
     let compared = compared(&table, pair, &measure);
     assert_eq!((compared.ratio(), compared.difference()), (None, Some(0.04)));

@@ -2,15 +2,20 @@
 //!
 //! ```text
 //! tie:  |other − base| ≤ tolerance · max(|base|, |other|)     signed measure: |other − base| ≤ tolerance
+//! points of several runs:  also if their ranges [least, largest] overlap
 //! ```
 //!
-//! Without a given tolerance it is the larger of two spreads: that over the seeds of the study, and that
-//! of the method as the documents give it. A measure with neither has no known spread: its values are
-//! lower or higher, not better.
+//! Without a given tolerance it is the spread of the method as the documents give it; for single runs the
+//! largest spread over the seeds and replicates of any point, if that is larger. Points of several runs have
+//! their ranges instead, so one chaotic point makes no others equal. A measure with no known spread has values
+//! that are lower or higher, not better. A margin is the distance of a measure from its
+//! limit over the limit: near the limit its spread is the relative spread of the measure.
 
 use super::Sets;
+use crate::analysis::replicates::Condensed;
 use crate::analysis::statistics::Spread;
-use crate::job::row::ColumnId;
+use crate::input::value::Value;
+use crate::job::row::{CellType, ColumnId, DerivedColumn};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
@@ -36,8 +41,10 @@ pub struct Tolerance {
 pub enum ToleranceSource {
     /// The user gave it.
     Given,
-    /// The largest spread over the seeds of the study.
+    /// The largest spread over the runs of a point: the seeds, or the replicates, of the study.
     Seeds,
+    /// No spread of the method is known; the ranges over the runs of both points decide.
+    Ranges,
     /// The spread of the method, README, "Models and their limits".
     Method,
     /// No spread is known: rounding alone.
@@ -50,13 +57,25 @@ impl Tolerance {
         Self { limit, source: ToleranceSource::Given, absolute: false }
     }
 
-    /// The tolerance of a measure in some rows of a table.
+    /// The tolerance of a measure in some rows of a table. `zipped` are the parameters on the axis of the
+    /// seeds.
     pub fn of(table: &Table, rows: &[usize], measure: &Column, zipped: &[Zipped]) -> Self {
-        let id = ColumnId::from_name(&measure.name);
-        let absolute = id.is_some_and(ColumnId::is_signed);
+        Self::over(table, rows, measure, &[], zipped)
+    }
+
+    /// The same in a study with replicates. The rows are those of single runs.
+    pub fn over(
+        table: &Table,
+        rows: &[usize],
+        measure: &Column,
+        replicates: &[String],
+        zipped: &[Zipped],
+    ) -> Self {
+        let absolute = super::is_signed(&measure.name);
         let mut tolerance = Self { limit: ROUNDING, source: ToleranceSource::Unknown, absolute };
-        let method = id.and_then(method_spread).map(|limit| (limit, ToleranceSource::Method));
-        let seeds = seed_spread(table, rows, measure, absolute, zipped)
+        let method = spread_of_method(table, rows, &measure.name)
+            .map(|limit| (limit, ToleranceSource::Method));
+        let seeds = spread_of_runs(table, rows, measure, absolute, replicates, zipped)
             .map(|limit| (limit, ToleranceSource::Seeds));
         for (limit, source) in [method, seeds].into_iter().flatten() {
             if tolerance.source == ToleranceSource::Unknown || limit > tolerance.limit {
@@ -64,6 +83,23 @@ impl Tolerance {
             }
         }
         tolerance
+    }
+
+    /// The tolerance of the medians of points, beside their ranges.
+    pub fn of_points(
+        points: &Condensed,
+        rows: &[usize],
+        measure: &Column,
+        zipped: &[Zipped],
+    ) -> Self {
+        let tolerance = Self::of(&points.table, rows, measure, zipped);
+        let repeated = rows.iter().any(|row| points.runs[*row].done > 1);
+        match tolerance.source {
+            ToleranceSource::Unknown if repeated => {
+                Self { source: ToleranceSource::Ranges, ..tolerance }
+            }
+            _ => tolerance,
+        }
     }
 
     /// Whether two values are equal.
@@ -76,6 +112,32 @@ impl Tolerance {
     /// Whether a difference above it is better or worse, and not only lower or higher.
     pub fn judges(&self) -> bool {
         self.source != ToleranceSource::Unknown
+    }
+}
+
+/// The spread of the method for a measure, or for a margin. That of the smallest margin is the largest of the
+/// measures that have it in these rows.
+fn spread_of_method(table: &Table, rows: &[usize], name: &str) -> Option<f64> {
+    if name != DerivedColumn::SmallestMargin.name() {
+        return match name.strip_prefix("margin_") {
+            Some(measure) => margin_spread(measure),
+            None => ColumnId::from_name(name).and_then(method_spread),
+        };
+    }
+    let of = table.column(DerivedColumn::SmallestMarginOf.name())?;
+    let names = rows.iter().filter_map(|row| match &of.cells[*row] {
+        Value::Text(measure) => Some(margin_spread(measure)),
+        _ => None,
+    });
+    names.reduce(|a, b| Some(a?.max(b?))).flatten()
+}
+
+/// The spread of the method for the margin of a measure. A word has none.
+fn margin_spread(measure: &str) -> Option<f64> {
+    let id = ColumnId::from_name(measure)?;
+    match id.column().cell_type {
+        CellType::Bool | CellType::Text => Some(0.0),
+        CellType::Integer | CellType::Number => method_spread(id),
     }
 }
 
@@ -98,19 +160,25 @@ fn method_spread(measure: ColumnId) -> Option<f64> {
     }
 }
 
-/// The largest spread of a measure over the seeds, all other parameters being equal; `None` unless a set
-/// has two seeds.
-fn seed_spread(
+/// The largest spread of a measure over the seeds and the replicates, all other parameters being equal; `None`
+/// unless a set has two runs.
+fn spread_of_runs(
     table: &Table,
     rows: &[usize],
     measure: &Column,
     absolute: bool,
+    replicates: &[String],
     zipped: &[Zipped],
 ) -> Option<f64> {
-    table.parameters().find(|column| column.name == SEED)?;
+    let varies = |name: &str| table.parameters().any(|column| column.name == name);
+    let first = if varies(SEED) {
+        SEED
+    } else {
+        replicates.iter().map(String::as_str).find(|name| varies(name))?
+    };
     let measured = |row: &usize| super::measured(table, measure, *row);
     let rows: Vec<usize> = rows.iter().copied().filter(|row| measured(row).is_some()).collect();
-    let sets = Sets::new(table, &rows, SEED, zipped).sets;
+    let sets = Sets::with_free(table, &rows, first, replicates, zipped).sets;
     let spreads = sets.iter().filter(|set| set.len() > 1).filter_map(|set| {
         let spread = Spread::of(set.iter().filter_map(measured))?;
         let width = spread.largest - spread.least;

@@ -1,4 +1,5 @@
-//! Histories of several jobs in one figure: one line per job, one row of panels per quantity.
+//! Histories of several jobs in one figure: one line per job, one row of panels per quantity. The runs that
+//! repeat a point are one line, their median, with a band (`medians`).
 
 use std::collections::BTreeMap;
 
@@ -16,18 +17,23 @@ use crate::platform::error::Result;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Axis, Line, Panel, Plots};
 use crate::render::figure::scale::Spread;
-use crate::render::figure::style::{Fill, Series};
 use crate::render::figure::{Sheet, columns as columns_of};
 use crate::store::history_file::StoredHistory;
 
+mod line;
+mod medians;
 mod quantity;
 
+use line::history_line;
 use quantity::{Drawn, Quantity, drawn, quantity};
 
 /// Most jobs in one figure. Chosen: 12 panels with a few lines each.
 pub const MAX_JOBS: usize = 48;
 /// Most lines in a panel of a quantity that rings. Chosen: more cover each other.
 const MAX_RINGING_LINES: usize = 3;
+/// Most runs behind the lines of a figure. Chosen: their histories are in memory together.
+const MAX_RUNS: usize = 240;
+
 /// A job of the figure.
 struct Run {
     row: usize,
@@ -73,7 +79,10 @@ pub fn svg(
         quantities.iter().map(|quantity| drawn(quantity, &runs, &time)).collect();
 
     let chosen = Source { rows: stored.clone(), ..source.clone() };
-    let (others, mut notes) = parameters::varying(source.table, &stored, &[]);
+    let (mut others, mut notes) = parameters::varying(source.table, &stored, &[]);
+    if source.runs.is_some() {
+        others = parameters::strategy_first(others);
+    }
     let asked = columns.join(",");
     let encoding = |preferred: usize| {
         Encoding::new(&chosen, others.clone(), &[], preferred, false, ("--history", &asked))
@@ -101,12 +110,14 @@ pub fn svg(
     let plain: Vec<&str> = quantities.iter().map(|quantity| quantity.name.plain.as_str()).collect();
     notes.extend(time.note.clone());
     notes.extend(source.shared_job_note());
-    notes.extend(not_drawn(source, runs.len()));
+    let lines = if source.runs.is_some() { stored.len() } else { runs.len() };
+    notes.extend(not_drawn(source, lines));
+    notes.extend(source.runs_notes(None));
     let plots = Plots {
         sheet: Sheet {
             title: source.title_or(&format!("{} over time", plain.join(", "))),
             subtitle: source.subtitle(),
-            legends: legends(source, &encoding, &runs),
+            legends: legends(&chosen, &encoding, &runs),
             notes,
         },
         x: Axis {
@@ -129,18 +140,26 @@ fn runs<'a>(
     columns: &[String],
     read: &dyn Fn(&JobId) -> Result<StoredHistory>,
 ) -> Result<BTreeMap<&'a str, Run>> {
+    let single = Source { rows: rows.to_vec(), ..source.clone() }.single();
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
-    for row in rows {
-        first.entry(source.job(*row)).or_insert(*row);
+    for row in single.rows.iter().filter(|row| has_history(&single, **row)) {
+        first.entry(single.job(*row)).or_insert(*row);
     }
-    if first.len() > MAX_JOBS {
-        return Err(invalid_option(
+    let too_many = |number: usize, noun: &str, limit: usize| {
+        Err(invalid_option(
             "--history",
             &columns.join(","),
-            format!("{} jobs in one figure", first.len()),
-            format!("{MAX_JOBS} jobs at most"),
+            format!("{number} {noun} in one figure"),
+            format!("{limit} {noun} at most"),
             "choose some with --jobs ID,ID or --where CONDITION",
-        ));
+        ))
+    };
+    if source.runs.is_some() && rows.len() > MAX_JOBS {
+        return too_many(rows.len(), "points", MAX_JOBS);
+    }
+    let (noun, limit) = if source.runs.is_some() { ("runs", MAX_RUNS) } else { ("jobs", MAX_JOBS) };
+    if first.len() > limit {
+        return too_many(first.len(), noun, limit);
     }
     let mut runs = BTreeMap::new();
     for (job, row) in first {
@@ -151,10 +170,16 @@ fn runs<'a>(
     Ok(runs)
 }
 
-/// Whether the job of a row has a stored history.
+/// Whether the job of a row, or one of its runs, has a stored history.
 pub fn has_history(source: &Source<'_>, row: usize) -> bool {
-    let hash = source.table.column("content_hash");
-    hash.is_some_and(|column| matches!(column.cells[row], Value::Text(_)))
+    let single = source.runs.map_or(source.table, |runs| runs.single);
+    let hash = single.column("content_hash");
+    let stored =
+        |row: usize| hash.is_some_and(|column| matches!(column.cells[row], Value::Text(_)));
+    match source.runs_of(row) {
+        None => stored(row),
+        Some(runs) => runs.rows.iter().any(|row| stored(*row)),
+    }
 }
 
 /// The panel of a quantity: one line per job of these rows.
@@ -170,10 +195,18 @@ fn panel(
     for row in rows {
         let job = source.job(*row);
         // Points that are one job are one line.
-        if let Some(run) = runs.get(job).filter(|_| !jobs.contains(&job)) {
+        if jobs.contains(&job) {
+            continue;
+        }
+        let (index, series) = encoding.line(*row);
+        let line = if source.runs.is_some() {
+            medians::line(source, *row, series, runs, drawn)
+        } else {
+            runs.get(job).map(|run| history_line(source, series, run, drawn))
+        };
+        if let Some(line) = line {
             jobs.push(job);
-            let (index, series) = encoding.line(*row);
-            lines.push((index, history_line(source, series, run, drawn)));
+            lines.push((index, line));
         }
     }
     lines.sort_by_key(|(index, _)| *index);
@@ -194,42 +227,6 @@ fn panel(
     }
 }
 
-/// The line of one job. Non-finite values interrupt it. A cross marks its last point if the job failed, a
-/// marker its last visible point if the capsule did not deploy.
-fn history_line(source: &Source<'_>, series: Series, run: &Run, drawn: &Drawn<'_>) -> Line {
-    let Drawn { quantity, unit, time, rings, .. } = drawn;
-    let [start, end] = time.ends.map(|end| time.unit.shown(end));
-    let points: Vec<[f64; 2]> = run
-        .times()
-        .iter()
-        .zip(run.values(&quantity.symbol))
-        .map(|(t, value)| [time.unit.shown(*t), unit.shown(*value)])
-        .collect();
-    let finite = |point: &[f64; 2]| point[1].is_finite();
-    let visible = |point: &&[f64; 2]| (start..=end).contains(&point[0]);
-    let last = points.iter().rfind(|point| finite(point)).filter(visible).copied();
-    let crosses = last.filter(|_| outcome::has_failed(source, run.row)).into_iter().collect();
-    let marker = not_deployed(source, run.row);
-    let end = points.iter().rfind(|point| finite(point) && visible(point));
-    let marks = marker.and_then(|fill| end.map(|point| (*point, fill))).into_iter().collect();
-    // Of the points beyond the axis only the next ones are needed.
-    let first = points.partition_point(|point| point[0] < start).saturating_sub(1);
-    let past = (points.partition_point(|point| point[0] <= time.unit.shown(time.ends[1])) + 1)
-        .min(points.len());
-    let pieces: Vec<Vec<[f64; 2]>> = points[first.min(past)..past]
-        .chunk_by(|a, b| finite(a) == finite(b))
-        .filter(|piece| finite(&piece[0]))
-        .map(<[_]>::to_vec)
-        .collect();
-    Line { series, pieces, marks, sparse_markers: true, crosses, rings: *rings }
-}
-
-/// The marker at the end of a line: of a done job that is not deployed.
-fn not_deployed(source: &Source<'_>, row: usize) -> Option<Fill> {
-    let verdict = outcome::verdict(source, row).filter(|verdict| *verdict != Verdict::Deployed)?;
-    Some(outcome::fill(Some(verdict)))
-}
-
 /// The legends of the lines, and of the marks at their ends.
 fn legends(
     source: &Source<'_>,
@@ -237,6 +234,10 @@ fn legends(
     runs: &BTreeMap<&str, Run>,
 ) -> Vec<Legend> {
     let mut legends = encoding.legends(false);
+    if source.runs.is_some() {
+        legends.extend(medians::legends(source));
+        return legends;
+    }
     let mut ends: Vec<(Sample, String)> = Vec::new();
     for verdict in [Verdict::Partial, Verdict::Stalled] {
         let of_verdict = |run: &&Run| outcome::verdict(source, run.row) == Some(verdict);

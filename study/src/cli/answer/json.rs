@@ -2,10 +2,12 @@
 
 use serde_json::{Map, json};
 
-use super::sets;
-use crate::analysis::answer::{Answer, Effect, Extreme, Extremes, Trust};
+use super::effects::sets;
+use crate::analysis::answer::{Answer, Depends, Effect, Extreme, Extremes, PointCounts, Trust};
 use crate::input::value::json_value;
 use crate::job::row::HEADLINE;
+
+mod judged;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {
@@ -21,7 +23,32 @@ pub fn json(answer: &Answer) -> serde_json::Value {
         "not_compared": answer.effects.not_compared.iter()
             .map(|(parameter, reason)| json!({"parameter": parameter, "reason": reason}))
             .collect::<Vec<_>>(),
+        "points_with_runs": answer.points.as_ref().map(points_json),
+        "verdict_depends_on": answer.depends.as_ref().map(depends_json),
+        "safe": answer.safety.as_ref().map(judged::safety),
+        "pairwise": {
+            "parameter": answer.choice,
+            "pairs": answer.pairwise.iter().map(judged::versus).collect::<Vec<_>>(),
+        },
+        "borders": answer.searches.as_ref().map(judged::searches),
     })
+}
+
+fn points_json(points: &PointCounts) -> serde_json::Value {
+    json!({
+        "points": points.points,
+        "deployed": points.deployed,
+        "mixed": points.mixed,
+        "never": points.never,
+        "not_decided": points.undecided,
+        "replicates": points.replicates,
+    })
+}
+
+fn depends_json(depends: &Depends) -> serde_json::Value {
+    let choices = depends.choices.iter();
+    let choices: Map<_, _> = choices.map(|(name, points)| (name.clone(), json!(points))).collect();
+    json!({ "points": depends.points, "of": depends.of, "choices": choices })
 }
 
 fn extreme_json(

@@ -7,33 +7,59 @@ use std::path::Path;
 use billow_solver::output::audit::MAX_LEDGER_RESIDUAL;
 use billow_solver::output::measures::Verdict;
 
-use super::best::{self, MAX_LINE_WIDTH, MAX_VALUES};
+use super::best;
 use super::print::count;
-use crate::analysis::answer::{Answer, Effect, Effects, Extreme, Trust};
-use crate::input::units::{self, Dimension, DisplayUnit};
+use crate::analysis::answer::{Answer, Effect, Extreme, Trust};
+use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
-use crate::job::row::{ColumnId, HEADLINE};
+use crate::job::row::HEADLINE;
 
+mod border;
+mod effects;
 mod json;
+mod pairwise;
+mod safe;
 
 pub use json::json;
 
 /// Characters before the text of a line: two spaces, the topic, a space.
 const TOPIC_WIDTH: usize = 11;
 
+/// Most lines on pairs of values. Chosen: three strategies with two or three lines each.
+const MAX_PAIR_LINES: usize = 9;
+
 /// Film stress over Young's modulus above which a note asks for a missing unit. Chosen: no film is linear
 /// up to there, and short peaks of film that is pulled taut reach half of it.
 const MAX_PLAUSIBLE_STRAIN: f64 = 0.1;
 
-/// Prints the answer: one or two lines each for the deployed jobs, the fastest job, the jobs with the
-/// highest velocity and energy, the audit, and every parameter with a few values.
+/// Prints the answer: one or two lines each for the deployed jobs, the safe points, each search of a border,
+/// the fastest job, the jobs with the highest velocity and energy, the audit, every parameter with a few values,
+/// and each pair of strategies.
 pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     if !answer.question.is_empty() {
         writeln!(out, "{}", crate::platform::quote::printable(&answer.question))?;
     }
-    writeln!(out, "  deployed {}", deployed(answer))?;
+    let deployed = match &answer.points {
+        Some(points) => safe::deployed(points, &answer.counts),
+        None => deployed(answer),
+    };
+    print_topic("deployed", &deployed, out)?;
+    if let Some(depends) = &answer.depends {
+        print_topic("depends", &safe::depends(depends), out)?;
+    }
+    let mut topic = "safe";
+    for line in answer.safety.iter().flat_map(safe::safe) {
+        print_topic(topic, &line, out)?;
+        topic = "";
+    }
+    // The border is what a study with a search asks for, so it stands before the single jobs.
+    let mut topic = "border";
+    for line in answer.searches.iter().flat_map(border::lines) {
+        print_topic(topic, &line, out)?;
+        topic = "";
+    }
     print_extremes(answer, out)?;
     if let Some(trust) = &answer.trust {
         writeln!(out, "  trust    {}", audit(trust))?;
@@ -46,43 +72,39 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             brief_number(100.0 * answer.largest_strain)
         )?;
     }
-    print_effects(&answer.effects, out)
+    effects::print(&answer.effects, out)?;
+    print_pairs(answer, out)
 }
 
-/// The medians of each parameter, its best and worst values, and what is not compared.
-fn print_effects(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
-    if !effects.effects.is_empty() {
-        writeln!(
-            out,
-            "  medians  {} per value, all other parameters being equal",
-            HEADLINE.map(|measure| headline(effects, measure)).join(", ")
-        )?;
-    }
-    let names = effects.effects.iter().map(|effect| name(effect).chars().count());
-    let indent = names.max().unwrap_or(0);
-    for effect in &effects.effects {
-        for line in lines(effect, indent) {
-            writeln!(out, "{line}")?;
-        }
-    }
-    for (topic, texts) in [("best", best::lines(effects)), ("left out", best::left_out(effects))] {
-        let mut topic = topic;
-        for text in &texts {
-            for line in best::wrapped(text, TOPIC_WIDTH) {
-                writeln!(out, "  {topic:<8} {line}")?;
-                topic = "";
-            }
-        }
+/// A line of a topic, wrapped.
+fn print_topic(topic: &str, text: &str, out: &mut dyn Write) -> io::Result<()> {
+    let mut topic = topic;
+    for line in best::wrapped(text, TOPIC_WIDTH) {
+        writeln!(out, "  {topic:<8} {line}")?;
+        topic = "";
     }
     Ok(())
 }
 
-/// A headline measure with the unit of its medians.
-fn headline(effects: &Effects, measure: ColumnId) -> String {
-    let measures = effects.effects.iter().flat_map(|effect| &effect.measures);
-    let mut shown = measures.filter(|effect| effect.measure == measure).map(|effect| &effect.shown);
-    let si = DisplayUnit::si(measure.column().unit);
-    shown.next().unwrap_or(&si).label(measure.name())
+/// Each pair of values of the choice, as far as a few lines go.
+fn print_pairs(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
+    let (mut topic, mut printed) = ("pairs", 0);
+    let lines = pairwise::lines(&answer.pairwise);
+    for (index, line) in lines.iter().enumerate() {
+        let needed = best::wrapped(line, TOPIC_WIDTH).len();
+        if index > 0 && printed + needed > MAX_PAIR_LINES {
+            let by = answer.choice.as_deref().unwrap_or_default();
+            let text = format!(
+                "and {}: billow compare --by {by}",
+                count(lines.len() - index, "more pair")
+            );
+            return print_topic("", &text, out);
+        }
+        print_topic(topic, line, out)?;
+        printed += needed;
+        topic = "";
+    }
+    Ok(())
 }
 
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
@@ -110,6 +132,12 @@ pub fn print_next(answer: &Answer, root: &Path, out: &mut dyn Write) -> io::Resu
     let root = root.display();
     writeln!(out, "  next     billow table {root}")?;
     writeln!(out, "           billow chart {root}")?;
+    if answer.safety.is_some() {
+        writeln!(out, "           billow rank {root}")?;
+    }
+    if answer.searches.is_some() {
+        writeln!(out, "           billow borders {root}")?;
+    }
     // Compare a named choice (a strategy) first, then a quantity with a unit.
     let first_with =
         |unit: fn(&str) -> bool| answer.effects.effects.iter().find(|effect| unit(&effect.unit));
@@ -208,56 +236,4 @@ fn audit(trust: &Trust) -> String {
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)
     )
-}
-
-/// A parameter with its unit, indented.
-fn name(effect: &Effect) -> String {
-    format!("    {}", effect.shown.label(&effect.parameter))
-}
-
-/// One parameter: its values with both medians, on as many lines as needed.
-fn lines(effect: &Effect, indent: usize) -> Vec<String> {
-    let listed = effect.values.len() <= MAX_VALUES;
-    let median = |measure, index: usize| {
-        let effect = effect.measures.iter().find(|effect| effect.measure == measure)?;
-        effect.medians[index].map(|median| effect.shown.number(median))
-    };
-    let mut parts: Vec<String> = effect
-        .values
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| listed && HEADLINE.iter().any(|id| median(*id, *index).is_some()))
-        .map(|(index, value)| {
-            let medians = HEADLINE
-                .map(|measure| median(measure, index).map_or_else(|| "-".to_owned(), brief_number));
-            format!("{}: {}", effect.shown.text(value), medians.join(", "))
-        })
-        .collect();
-    if !listed {
-        let values = effect.values.len();
-        let name = &effect.parameter;
-        parts.push(format!("{values} values: billow chart --measure peak_vz --over {name}"));
-    }
-    let with = if effect.carried.is_empty() {
-        String::new()
-    } else {
-        format!(", {} with it", effect.carried.join(", "))
-    };
-    parts.push(format!("({}{with})", count(sets(effect), "set")));
-    let mut lines = vec![format!("{:<indent$}", name(effect))];
-    for part in parts {
-        let length = lines.last().map_or(0, |line| line.chars().count());
-        if length + 2 + part.chars().count() > MAX_LINE_WIDTH {
-            lines.push(" ".repeat(indent));
-        }
-        if let Some(line) = lines.last_mut() {
-            let _ = write!(line, "  {part}");
-        }
-    }
-    lines
-}
-
-/// Number of sets of the measure with the most.
-fn sets(effect: &Effect) -> usize {
-    effect.measures.iter().map(|measure| measure.sets).max().unwrap_or(0)
 }

@@ -26,6 +26,7 @@ impl Comparison<'_> {
         let ties = self.measures.iter().map(|measure| {
             let source = match measure.tolerance.source {
                 ToleranceSource::Given => "--tie",
+                ToleranceSource::Ranges => "no spread of the method is known",
                 ToleranceSource::Seeds => "spread over the seeds",
                 ToleranceSource::Method => "spread of the method",
                 ToleranceSource::Unknown => "spread not known: lower or higher, not better",
@@ -33,7 +34,17 @@ impl Comparison<'_> {
             let limit = best::limit(&measure.tolerance);
             format!("{} within {limit} ({source})", measure.column.name)
         });
-        eprintln!("tie: {}", ties.collect::<Vec<_>>().join(", "));
+        let ranges = self.measures.iter().any(|measure| measure.ranges.is_some());
+        let overlap = if ranges { "; or the ranges over the runs overlap" } else { "" };
+        eprintln!("tie: {}{overlap}", ties.collect::<Vec<_>>().join(", "));
+        if let Some(points) = self.points {
+            eprintln!(
+                "{}, {}; values are medians over {} [least to largest]; --runs pairs single runs",
+                count(self.table.rows(), "point"),
+                count(points.run_count(), "run"),
+                self.replicates.join(", ")
+            );
+        }
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");
         }

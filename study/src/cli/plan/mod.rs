@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 mod forecast;
 mod lengths;
+mod results;
 
 use forecast::forecast;
 
@@ -70,6 +71,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print_warnings(&study);
         notes::print(&study);
+        for note in results::notes(&study, &counts) {
+            eprintln!("{note}");
+        }
     }
     Ok(())
 }

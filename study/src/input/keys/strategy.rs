@@ -2,7 +2,7 @@
 
 use super::key::Default::{Absent, Number, Required};
 use super::key::{Key, KeyKind, key};
-use super::study::{CLOCK, FLOW_RATE, GAS_MASS, KELVIN};
+use super::study::{CLOCK, FLOW_RATE, GAS_MASS, INFLOW_MASS, KELVIN};
 use super::words::{SUPPORT_PLACES, words};
 
 /// The keys of a strategy; paths are those within `strategies.<name>`.
@@ -20,6 +20,8 @@ pub static WINDOW_KEYS: &[Key] = &[
     key("from", CLOCK, Absent("the release time"), "\"5 s\"", "Start, since the start of the run."),
     key("to", CLOCK, Absent("the end time of the run"), "\"12 s\"",
         "End, since the start of the run."),
+    key("mass", INFLOW_MASS, Absent("follows from the end"), "\"1 g\"",
+        "Mass let in, in place of `to`: the window ends when it is inside."),
     key("mass_flow_rate", FLOW_RATE, Absent("gas.mass_flow_rate"),
         "\"1 g/s\"", "Mass flow rate."),
     key("temperature", KELVIN, Absent("gas.inflow_temperature"), "\"293 K\"",

@@ -45,6 +45,16 @@ pub(crate) const STRUCTURED: &[(&str, &str)] = &[
     ),
     ("grid", "What varies: every combination of the axes, the first varying slowest."),
     (
+        "replicates",
+        "Parameters whose values repeat each point, as in {\"seed\": 5} (seeds 1 to 5) or {\"seed\": [1, 2, 7]}. Each \
+         run is a row; tables, comparisons and charts show median, range and proportions.",
+    ),
+    (
+        "limits",
+        "What a result must meet to be safe, as in {\"peak_vz\": \"< 25 m/s\", \"verdict\": \"deployed\"}: columns of the \
+         table with <, <=, > or >= and a quantity, a verdict, true or false. They change no job.",
+    ),
+    (
         "units",
         "Units in which tables, charts and answers show keys and columns, as in {\"mass_flow_rate\": \
          \"g/s\", \"t_90_z_rim\": \"ms\"}. Default: the unit that this file writes for the key, SI for a \
@@ -73,6 +83,8 @@ pub(super) const FLOW_RATE: KeyKind =
     likely(from(Dimension::MassFlowRate, 0.0, 100.0), 0.0, MAX_PLAUSIBLE_FLOW_RATE);
 /// A mass of gas in a folded capsule, kg.
 pub(super) const GAS_MASS: KeyKind = likely(from(Dimension::Mass, 0.0, 10.0), 0.0, 0.02);
+/// A mass of gas that a window lets in, kg.
+pub(super) const INFLOW_MASS: KeyKind = likely(above(Dimension::Mass, 0.0, 1e4), 0.0, 1.0);
 /// Longest plausible run, s. Chosen: a deployment takes seconds, a slow one minutes.
 const MAX_PLAUSIBLE_TIME: f64 = 300.0;
 /// Largest plausible mass flow rate, kg/s. Chosen: it fills a capsule of 1 m3 in milliseconds.
@@ -314,6 +326,12 @@ pub(crate) const GRID_MEANINGS: &[(&str, &str)] = &[
         "An axis: any other key, by its last part or its whole path, with a list of values or a \
          range {\"from\", \"to\", \"steps\" (number of values, both ends counted) or \"step\", \
          \"spacing\": \"linear\" or \"log\"}.",
+    ),
+    (
+        "grid.<key>.bisect",
+        "A search: {\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit, \"tolerance\": a percentage (of \
+         high - low; with logarithmic spacing of the value) or a quantity, \"spacing\"}. It finds where the outcome \
+         changes, for every combination of the other axes.",
     ),
     ("grid.zip", "Groups of keys that vary together: lists of equal length."),
     ("grid.points", "Single points, after the product."),

@@ -39,6 +39,8 @@ pub fn study_schema() -> Json {
     properties.insert("supports".to_owned(), supports(&mut definitions));
     properties.insert("strategies".to_owned(), strategies(&mut definitions));
     properties.insert("grid".to_owned(), grid(&mut definitions));
+    properties.insert("replicates".to_owned(), replicates(&mut definitions));
+    properties.insert("limits".to_owned(), limits());
     properties.insert(
         "units".to_owned(),
         json!({
@@ -132,7 +134,8 @@ fn axis(definitions: &mut Definitions, name: &str, key: &Key, kind: &Json) -> Js
             _ => {
                 let mut range = definitions.refer("range", |_| range());
                 range["patternProperties"] = json!({"^(from|to)$": kind});
-                json!({"oneOf": [list, range]})
+                let search = definitions.refer("search", |_| search());
+                json!({"oneOf": [list, range, search]})
             }
         }
     })
@@ -159,6 +162,57 @@ fn range() -> Json {
         "required": ["from", "to"],
         "oneOf": [{"required": ["steps"]}, {"required": ["step"]}],
         "additionalProperties": false,
+    })
+}
+
+/// A search along any key.
+fn search() -> Json {
+    json!({
+        "description": meaning("grid.<key>.bisect"),
+        "type": "object",
+        "properties": {
+            "bisect": {"type": "array", "minItems": 2, "maxItems": 2},
+            "on": {
+                "description": "What changes: verdict, safe, or a measure with a limit.",
+                "type": "string",
+            },
+            "tolerance": {"oneOf": [
+                {"type": "number", "exclusiveMinimum": 0},
+                {"type": "string", "pattern": any_quantity_pattern()},
+            ]},
+            "spacing": {"enum": ["linear", "log"], "default": "linear"},
+        },
+        "required": ["bisect", "on"],
+        "additionalProperties": false,
+    })
+}
+
+fn replicates(definitions: &mut Definitions) -> Json {
+    let axes = definitions.refer("axes", |definitions| {
+        named(&mut |name, key| {
+            let kind = json!({"$ref": format!("#/$defs/value.{name}")});
+            axis(definitions, name, key, &kind)
+        })
+    });
+    json!({
+        "title": "replicates",
+        "description": STUDY.meaning("replicates"),
+        "type": "object",
+        "anyOf": [axes, {"properties": {"seed": {"type": "integer", "minimum": 1}}}],
+    })
+}
+
+/// The limits of results: a condition for each measure.
+fn limits() -> Json {
+    json!({
+        "title": "limits",
+        "description": STUDY.meaning("limits"),
+        "type": "object",
+        "additionalProperties": {"oneOf": [
+            {"type": "boolean"},
+            {"enum": ["deployed", "partial", "stalled"]},
+            {"type": "string", "pattern": "^ *[<>]=? *[-+]?[0-9.]"},
+        ]},
     })
 }
 

@@ -10,6 +10,7 @@ use crate::job::{Job, Status};
 mod cell;
 mod columns;
 mod counts;
+mod derived;
 mod job_end;
 mod noisy;
 pub mod reference;
@@ -18,6 +19,7 @@ mod renamed;
 pub use cell::Cell;
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
 pub use counts::Counts;
+pub use derived::{DERIVED_COLUMNS, DerivedColumn, DerivedRow};
 pub use job_end::JobEnd;
 pub use noisy::{HEADLINE, NOISY};
 pub use renamed::{

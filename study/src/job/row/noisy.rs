@@ -2,7 +2,8 @@
 //!
 //! A measure is noisy if the seed, the time step, the numerical damping or the contact distance changes it
 //! by more than 3 % on the capsule of the paper (docs/performance.md). Compare noisy measures over several
-//! seeds. The default table, `billow compare` and the answer of a study use none.
+//! seeds. `billow compare` and the answer of a study use none by default, nor does the table, except `peak_vz`
+//! where strategies are compared.
 
 use super::ColumnId;
 

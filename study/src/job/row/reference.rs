@@ -6,8 +6,8 @@ use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
 use super::{
-    BetterSide, COLUMNS, CellType, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, RowColumn, SAME_JOB_AS,
-    SAME_JOB_AS_MEANING,
+    BetterSide, COLUMNS, CellType, DERIVED_COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS,
+    RowColumn, SAME_JOB_AS, SAME_JOB_AS_MEANING,
 };
 use crate::job::status::{RENAMED_STATUSES, Status};
 
@@ -32,7 +32,9 @@ fn table_columns(page: &mut String) {
          The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
          called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
-         them. Any cell may be null. The column \"better\" says which side\n\
+         them. `safe`, `smallest_margin`, `smallest_margin_of` and `margin_<measure>` exist in a study with\n\
+         `limits`, `verdict_depends_on` in one that varies a numerical choice.\n\
+         Any cell may be null. The column \"better\" says which side\n\
          `billow compare` calls the better one. Marks: a \"signed\" value can be negative or zero and is\n\
          compared by difference, not by ratio; a \"noisy\" measure changes by more than 3 % with the seed,\n\
          the time step, the numerical damping or the contact distance: compare it over several seeds.\n\n\
@@ -56,7 +58,17 @@ fn table_columns(page: &mut String) {
             column.meaning
         );
     }
+    for column in &DERIVED_COLUMNS {
+        let (name, cell_type, unit) = (column.name, column.cell_type.name(), column.unit);
+        let _ = writeln!(page, "| `{name}` | {cell_type} | {unit} |  |  |  | {} |", column.meaning);
+    }
     let text = CellType::Text.name();
+    let number = CellType::Number.name();
+    let _ = writeln!(
+        page,
+        "| `margin_<measure>` | {number} | 1 |  |  |  | distance of a measure from its limit over the limit; negative \
+         beyond it |"
+    );
     let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");
 }
 

@@ -1,5 +1,9 @@
 //! The legend, below the plots, so that it never covers data.
 
+use super::map;
+use super::plot::line::Direction;
+use super::plot::range::{self, FAINT, FAINT_OPACITY};
+use super::plot::rule;
 use super::style::{self, Fill, MEDIUM, PLAIN, SMALL, Series};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, cut};
@@ -30,6 +34,22 @@ pub enum Sample {
     Cell(String),
     /// An empty cell.
     Absent,
+    /// A cell with a thick frame: it misses a limit.
+    Missed,
+    /// A shaded area.
+    Area,
+    /// A line in a shaded range.
+    Band,
+    /// An error bar.
+    Bar,
+    /// The hatch of the side that is not allowed.
+    Closed,
+    /// A dashed line across the plot.
+    End,
+    /// An arrow.
+    Arrow(Direction),
+    /// A faint point.
+    Faint(Fill),
 }
 
 /// Width of a line sample and the gap after it, mm.
@@ -76,7 +96,8 @@ impl Legend {
 impl Legend {
     /// Width of a sample and the gap after it, mm.
     fn indent(&self) -> f64 {
-        let lines = self.entries.iter().any(|(sample, _)| matches!(sample, Sample::Line(_)));
+        let lines =
+            self.entries.iter().any(|(sample, _)| matches!(sample, Sample::Line(_) | Sample::Band));
         if lines { LINE_SAMPLE } else { MARKER_SAMPLE }
     }
 
@@ -118,7 +139,38 @@ fn draw_sample(page: &mut Page, sample: &Sample, left: Position) {
             page.text([middle[0], middle[1] + 0.36 * SMALL], &letters, letter);
         }
         Sample::Absent => page.frame([left[0], left[1] - 1.9], [4.0, 3.8], &style::HATCH),
+        Sample::Missed => {
+            page.frame([left[0], left[1] - 1.9], [4.0, 3.8], &style::HATCH);
+            map::draw_missed(page, [left[0], left[1] - 1.9], [4.0, 3.8], "#000000");
+        }
+        Sample::Area => area(page, left, 4.0),
+        Sample::Band => {
+            area(page, left, LINE_SAMPLE - 2.0);
+            let line = Series::dashes_only(0).line();
+            page.line(left, [left[0] + LINE_SAMPLE - 2.0, left[1]], &line);
+        }
+        Sample::Bar => {
+            range::draw_bar(page, [[middle[0], left[1] + 1.7], [middle[0], left[1] - 1.7]], PLAIN);
+            style::plain_marker(page, middle, PLAIN, Fill::Filled, range::FAINT);
+        }
+        Sample::Closed => rule::draw_closed(page, [left[0], left[1] - 1.7], [4.2, 3.4], 1.2),
+        Sample::End => page.line(left, [left[0] + 4.2, left[1]], &rule::END),
+        Sample::Arrow(direction) => {
+            let start = if *direction == Direction::Up { left[1] + 2.0 } else { left[1] - 2.0 };
+            range::arrow(page, [middle[0], start], *direction, PLAIN);
+        }
+        Sample::Faint(fill) => {
+            page.fade(FAINT_OPACITY);
+            style::plain_marker(page, middle, PLAIN, *fill, FAINT);
+            page.close();
+        }
     }
+}
+
+/// A shaded area of this width, mm.
+fn area(page: &mut Page, left: Position, width: f64) {
+    let (top, bottom, right) = (left[1] - 1.5, left[1] + 1.5, left[0] + width);
+    page.area(&[[left[0], top], [right, top], [right, bottom], [left[0], bottom]], PLAIN);
 }
 
 /// Size of a marker, mm.

@@ -3,15 +3,17 @@
 //! All cells have the same size, whatever the distances of the values along the axes. A cell without a
 //! value is hatched and has a letter; a cell without a point of the study is an empty frame.
 
-use super::style::{self, AXIS, EMPTY, Fill, HATCH, MARGIN, MEDIUM, SMALL};
-use super::{INNER, Sheet, ticks};
-use crate::input::value::short_number;
+use super::style::{AXIS, Fill, MARGIN, MEDIUM, SMALL};
+use super::{INNER, Sheet};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, cut, wrapped_at_commas};
 
 mod bar;
+mod cell;
 
 use self::bar::MIN_BAR_HEIGHT;
+use self::cell::cell_text;
+pub use self::cell::draw_missed;
 
 /// A figure of maps.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +52,12 @@ pub enum Cell {
         outcome: Fill,
         /// Whether another cell shows the same job; [`SAME_JOB`] says so.
         shared: bool,
+        /// Text in the place of the number; empty for the number.
+        text: String,
+        /// Text below the number; empty for none.
+        below: String,
+        /// Whether the value misses a limit.
+        missed: bool,
     },
     /// No value: the letter of the outcome.
     Letter(String),
@@ -57,8 +65,23 @@ pub enum Cell {
     Absent,
 }
 
+impl Cell {
+    /// A cell with a value and its outcome.
+    pub fn of(value: f64, outcome: Fill, shared: bool) -> Self {
+        let (text, below) = (String::new(), String::new());
+        Self::Value { value, outcome, shared, text, below, missed: false }
+    }
+
+    /// The text below its number.
+    fn below(&self) -> &str {
+        if let Self::Value { below, .. } = self { below } else { "" }
+    }
+}
+
 /// Least height of a cell, mm.
 const MIN_CELL_HEIGHT: f64 = 7.0;
+/// Least height of a cell with two lines of text, mm.
+const MIN_HEIGHT_OF_TWO_LINES: f64 = 9.0;
 /// Largest height of a cell when there are several rows of maps, mm.
 const MAX_CELL_HEIGHT: f64 = 11.0;
 /// Largest height of a cell when all maps are in one row, mm.
@@ -108,7 +131,7 @@ impl Layout {
             .min(columns as f64 * MAX_CELL_WIDTH);
         let max_height =
             if maps.panels.len() > across { MAX_CELL_HEIGHT } else { MAX_CELL_HEIGHT_OF_ONE_ROW };
-        let cell_height = (MAP_HEIGHT / rows as f64).clamp(MIN_CELL_HEIGHT, max_height);
+        let cell_height = (MAP_HEIGHT / rows as f64).clamp(maps.min_cell_height(), max_height);
         let titles: Vec<Vec<String>> =
             maps.panels.iter().map(|panel| wrapped_at_commas(&panel.title, SMALL, width)).collect();
         let lines = titles.iter().map(Vec::len).max().unwrap_or(0);
@@ -200,12 +223,20 @@ impl Maps {
         extent.end + 1.5 * MEDIUM
     }
 
+    /// Least height of a cell, mm.
+    fn min_cell_height(&self) -> f64 {
+        let mut cells = self.panels.iter().flat_map(|panel| &panel.cells);
+        let two = cells.any(|cell| !cell.below().is_empty());
+        if two { MIN_HEIGHT_OF_TWO_LINES } else { MIN_CELL_HEIGHT }
+    }
+
     /// Number of maps side by side: as many as leave the numbers legible.
     fn across(&self, inner_width: f64) -> usize {
         let columns = self.x.1.len().max(1) as f64;
         let numbers = self.panels.iter().flat_map(|panel| &panel.cells).map(|cell| match cell {
-            Cell::Value { value, shared, .. } => {
-                font::width(&cell_text(*value, *shared), SMALL) + MARKER_WIDTH
+            Cell::Value { value, shared, text, below, .. } => {
+                let number = font::width(&cell_text(*value, *shared, text), SMALL) + MARKER_WIDTH;
+                number.max(font::width(below, SMALL) + 1.0)
             }
             _ => SMALL,
         });
@@ -214,61 +245,6 @@ impl Maps {
         let fits = |across: &usize| *across as f64 * (min_width + GAP) - GAP <= inner_width;
         let most = if self.panels.len() > 9 { 4 } else { super::columns(self.panels.len()) };
         (1..=most).rev().find(fits).unwrap_or(1)
-    }
-
-    fn draw_cells(&self, page: &mut Page, panel: &Panel, corner: Position, size: [f64; 2]) {
-        let (columns, rows) = (self.x.1.len(), self.y.1.len());
-        let [width, height] = size;
-        for (index, cell) in panel.cells.iter().enumerate() {
-            let (column, row) = (index % columns, index / columns);
-            let cell_corner =
-                [corner[0] + column as f64 * width, corner[1] + (rows - 1 - row) as f64 * height];
-            match cell {
-                Cell::Value { value, outcome, shared } => {
-                    let text = cell_text(*value, *shared);
-                    self.draw_value(page, (*value, &text, *outcome), cell_corner, size);
-                }
-                Cell::Letter(letter) => draw_letter(page, letter, cell_corner, size),
-                Cell::Absent => page.frame(cell_corner, size, &HATCH),
-            }
-        }
-        page.frame(corner, [width * columns as f64, height * rows as f64], &AXIS);
-    }
-
-    /// A cell with its colour, number and outcome marker. The marker stands before the number, or in the
-    /// corner of the cell if there is no space for both.
-    fn draw_value(
-        &self,
-        page: &mut Page,
-        (value, text, fill): (f64, &str, Fill),
-        corner: Position,
-        size: [f64; 2],
-    ) {
-        let [width, height] = size;
-        let middle = [corner[0] + 0.5 * width, corner[1] + 0.5 * height];
-        let (colour, ink) = style::map_colour(self.fraction(value));
-        page.fill(corner, size, &colour);
-        let text_width = font::width(text, SMALL);
-        let both_fit = text_width + MARKER_WIDTH <= width;
-        let shift = if both_fit { 1.6 } else { 0.0 };
-        if text_width + 0.6 <= width {
-            let letters = Letters { colour: ink, ..Letters::new(SMALL).at(Anchor::Middle) };
-            page.text([middle[0] + shift, middle[1] + 0.36 * SMALL], &letters, text);
-        }
-        let marker = if both_fit {
-            [middle[0] + shift - 0.5 * text_width - 1.9, middle[1]]
-        } else {
-            [corner[0] + 1.3, corner[1] + 1.3]
-        };
-        style::map_marker(page, marker, ink, fill, 2.0);
-    }
-
-    /// Position of a value on the colour scale, 0 to 1.
-    fn fraction(&self, value: f64) -> f64 {
-        match self.range {
-            Some([low, high]) if high > low => (value - low) / (high - low),
-            _ => 0.5,
-        }
     }
 
     fn draw_y_axis(&self, page: &mut Page, corner: Position, layout: &Layout) {
@@ -298,42 +274,9 @@ impl Maps {
     }
 }
 
-/// A hatched cell with a letter on a plain ground.
-fn draw_letter(page: &mut Page, letter: &str, corner: Position, size: [f64; 2]) {
-    let middle = [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]];
-    page.fill(corner, size, EMPTY);
-    page.hatch(corner, size, 1.8, &HATCH);
-    let ground = font::width(letter, MEDIUM) + 1.2;
-    page.fill([middle[0] - 0.5 * ground, middle[1] - 2.0], [ground, 4.0], EMPTY);
-    let letters = Letters::new(MEDIUM).at(Anchor::Middle);
-    page.text([middle[0], middle[1] + 0.36 * MEDIUM], &letters, letter);
-}
-
 /// Width of the widest of some small texts, mm.
 fn widest(texts: &[String]) -> f64 {
     texts.iter().map(|text| font::width(text, SMALL)).fold(0.0, f64::max)
-}
-
-/// The text of a cell.
-fn cell_text(value: f64, shared: bool) -> String {
-    let number = cell_number(value);
-    if shared { format!("{SAME_JOB} {number}") } else { number }
-}
-
-/// A number in a cell: three significant digits.
-fn cell_number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return ticks::minus(&short_number(value));
-    }
-    let exponent = libm::floor(libm::log10(value.abs()));
-    let text = match exponent {
-        exponent if !(-3.0..5.0).contains(&exponent) => format!("{value:.1e}"),
-        exponent if exponent >= 2.0 => format!("{value:.0}"),
-        exponent if exponent >= 1.0 => format!("{value:.1}"),
-        exponent if exponent >= 0.0 => format!("{value:.2}"),
-        _ => format!("{value:.3}"),
-    };
-    ticks::minus(&text)
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! From the values of an axis to millimetres on the page.
 
 /// How values are spread along an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spread {
     /// Linearly.
+    #[default]
     Linear,
     /// By their logarithm; every value is positive.
     Logarithmic,

@@ -129,9 +129,14 @@ impl Page {
 
     /// A closed area in a light shade of a colour, through which lines below it are visible.
     pub fn area(&mut self, positions: &[Position], colour: &str) {
+        self.shade(positions, colour, 0.3);
+    }
+
+    /// A closed area in a colour with an opacity from 0 to 1.
+    pub fn shade(&mut self, positions: &[Position], colour: &str, opacity: f64) {
         let _ = writeln!(
             self.body,
-            "<polygon points=\"{}\" fill=\"{colour}\" fill-opacity=\"0.3\" stroke=\"none\"/>",
+            "<polygon points=\"{}\" fill=\"{colour}\" fill-opacity=\"{opacity}\" stroke=\"none\"/>",
             points(positions)
         );
     }
@@ -206,6 +211,11 @@ impl Page {
     /// Opens a group with this name and these attributes; [`Self::close`] ends it.
     pub fn open(&mut self, name: &str, attributes: &str) {
         let _ = writeln!(self.body, "<g id=\"{name}\" {attributes}>");
+    }
+
+    /// Opens a group that is drawn with an opacity from 0 to 1; [`Self::close`] ends it.
+    pub fn fade(&mut self, opacity: f64) {
+        let _ = writeln!(self.body, "<g opacity=\"{opacity}\">");
     }
 
     /// A filled SVG path `d` with the stroke of its group.

@@ -80,6 +80,7 @@ fn run_with(
         name: "test",
         study: &serde_json::json!({}).into(),
         planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
+        result_limits: &[],
         unit: &|_| String::new(),
         executor,
         results: Results::new(&Disk, root),

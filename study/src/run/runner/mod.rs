@@ -17,12 +17,14 @@ use crate::input::study_file::Json;
 use crate::job::JobId;
 use crate::job::executor::Executor;
 use crate::job::limits::JobLimits;
+use crate::job::result_limit::ResultLimit;
 use crate::job::row::Counts;
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
 use crate::run::event::{Event, Reporter};
 use crate::store::results::Results;
-use crate::study::plan::{FinishedRow, Generation};
+use crate::study::finished::FinishedRow;
+use crate::study::plan::Generation;
 
 mod attempt_log;
 mod quarantine;
@@ -43,6 +45,8 @@ pub struct Run<'a> {
     pub study: &'a Json,
     /// [`crate::study::plan::next_jobs`] of that study.
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
+    /// What the results must meet to be safe.
+    pub result_limits: &'a [ResultLimit],
     /// SI unit of a parameter.
     pub unit: &'a dyn Fn(&str) -> String,
     /// Computes the jobs.

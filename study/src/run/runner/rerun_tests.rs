@@ -38,6 +38,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         name: "test",
         study: &serde_json::json!({}).into(),
         planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
+        result_limits: &[],
         unit: &|_| String::new(),
         executor: &executor,
         results: Results::new(files, root),

@@ -17,7 +17,8 @@ use crate::run::event::{Event, Reporter};
 use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::table::Table;
-use crate::study::plan::{FinishedRow, Generation};
+use crate::study::finished::FinishedRow;
+use crate::study::plan::{self, Generation};
 
 /// Time between two writes of the table while jobs run, at least. Chosen: a reader sees new rows
 /// soon, and writing takes little of a run.
@@ -140,7 +141,7 @@ impl<'a, 'w> State<'a, 'w> {
         let finished = seen.iter().filter(is_finished).count();
         let jobs = finished + missing.len();
         reporter.event(&Event::GenerationStarted { number: generation.number, jobs, finished });
-        self.points.extend(generation.points);
+        plan::add_generation(&mut self.points, generation);
         self.table_outdated = true;
         Ok(missing)
     }
@@ -254,7 +255,8 @@ impl<'a, 'w> State<'a, 'w> {
         let start = Instant::now();
         if self.table_outdated {
             self.log.check_folder()?;
-            let table = Table::build(&self.points, &self.records, self.run.unit);
+            let table = Table::build(&self.points, &self.records, self.run.unit)
+                .judged(self.run.result_limits);
             self.run.results.write_table(&table)?;
             self.table_outdated = false;
         }
@@ -269,7 +271,8 @@ impl<'a, 'w> State<'a, 'w> {
 
     /// Finished rows for the planner, in plan order.
     pub(super) fn finished(&self) -> Vec<FinishedRow> {
-        let row = |point: &Point| Some(FinishedRow::of(&point.job.id, &self.cells(point)?));
+        let limits = self.run.result_limits;
+        let row = |point: &Point| Some(FinishedRow::of(&point.job.id, &self.cells(point)?, limits));
         self.points.iter().filter_map(row).collect()
     }
 

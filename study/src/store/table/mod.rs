@@ -17,6 +17,7 @@ use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
 pub mod agreement;
+mod judged;
 pub mod parquet;
 pub mod same_job;
 

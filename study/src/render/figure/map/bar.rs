@@ -1,6 +1,6 @@
 //! The colour bar of a figure of maps.
 
-use super::{MAP_HEIGHT, MAX_CELL_HEIGHT, MIN_CELL_HEIGHT, Maps};
+use super::{MAP_HEIGHT, MAX_CELL_HEIGHT, Maps};
 use crate::render::figure::style::{self, AXIS, MEDIUM, SMALL};
 use crate::render::figure::ticks;
 use crate::render::font;
@@ -35,7 +35,7 @@ impl Maps {
     /// The lines of the label, which fit beside the lowest map of this number of rows.
     fn label_lines(&self) -> Vec<String> {
         let rows = self.y.1.len().max(1) as f64;
-        let height = rows * (MAP_HEIGHT / rows).clamp(MIN_CELL_HEIGHT, MAX_CELL_HEIGHT);
+        let height = rows * (MAP_HEIGHT / rows).clamp(self.min_cell_height(), MAX_CELL_HEIGHT);
         wrapped(&self.label, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0)
     }
 

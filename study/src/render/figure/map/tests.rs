@@ -13,11 +13,19 @@ fn maps(columns: usize, rows: usize, panels: usize, values: &[f64]) -> Maps {
     let cell = |index: usize| match index % 5 {
         3 => Cell::Letter("S".to_owned()),
         4 if index.is_multiple_of(2) => Cell::Absent,
-        _ => Cell::Value {
+        2 => Cell::Value {
             value: values[index % values.len()],
-            outcome: [Fill::Open, Fill::Crossed][index % 2],
-            shared: index % 7 == 1,
+            outcome: Fill::Half,
+            shared: false,
+            text: if index.is_multiple_of(4) { "3/5*".to_owned() } else { String::new() },
+            below: "3/5".to_owned(),
+            missed: index.is_multiple_of(3),
         },
+        _ => Cell::of(
+            values[index % values.len()],
+            [Fill::Open, Fill::Crossed][index % 2],
+            index % 7 == 1,
+        ),
     };
     Maps {
         sheet: Sheet { title: "A map".to_owned(), ..Sheet::default() },
@@ -50,7 +58,9 @@ fn every_cell_shows_its_number_and_the_bar_its_unit() {
     let values = [12.0, 31.25, 0.5, 0.25, 1234.0];
     let svg = maps(5, 1, 1, &values).svg();
     let texts = check::figure(&svg);
-    for text in ["12.0", "= 31.2", "0.500", "S", "peak_vz (m/s)", "mass_flow_rate (g/s)", "N"] {
+    for text in
+        ["12.0", "= 31.2", "3/5", "0.500", "S", "peak_vz (m/s)", "mass_flow_rate (g/s)", "N"]
+    {
         assert!(texts.iter().any(|other| other == text), "{text}: {texts:?}");
     }
     assert!(png::encode(&svg, 2.0).unwrap().len() > 1000);

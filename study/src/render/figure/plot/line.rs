@@ -1,8 +1,69 @@
-//! Points of a line: sparse markers along it, and thinning.
+//! A line of a plot: what belongs to one series; sparse markers along it, and thinning.
 
-use super::Line;
 use crate::render::figure::scale::Scale;
+use crate::render::figure::style::{Fill, Series};
 use crate::render::page::Position;
+
+/// One series of a plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Colour, dashes, marker.
+    pub series: Series,
+    /// Pieces of the line, each a list of joined points; all finite.
+    pub pieces: Vec<Vec<[f64; 2]>>,
+    /// Markers at given points.
+    pub marks: Vec<([f64; 2], Fill)>,
+    /// Whether a few markers stand along the line, which identify it in black and white.
+    pub sparse_markers: bool,
+    /// Crosses at the ends of failed runs.
+    pub crosses: Vec<[f64; 2]>,
+    /// Whether the line is thin, and a band where it turns too often to be read.
+    pub rings: bool,
+    /// Shaded ranges along the line, each a list of x, lower and upper value; all finite.
+    pub bands: Vec<Vec<[f64; 3]>>,
+    /// Shaded columns: x, lower and upper value, all finite, and width, mm.
+    pub columns: Vec<([f64; 3], f64)>,
+    /// Error bars: x, lower and upper value; all finite.
+    pub bars: Vec<[f64; 3]>,
+    /// Faint points behind the line.
+    pub faint: Vec<([f64; 2], Fill)>,
+    /// Short texts beside points.
+    pub texts: Vec<([f64; 2], String)>,
+    /// Arrows at points that lie at the end of what was searched; up or down.
+    pub arrows: Vec<([f64; 2], Direction)>,
+    /// Displacement along x, mm: lines with equal x stand side by side.
+    pub shift: f64,
+}
+
+impl Line {
+    /// A line of this series, without points.
+    pub fn new(series: Series) -> Self {
+        Self {
+            series,
+            pieces: Vec::new(),
+            marks: Vec::new(),
+            sparse_markers: false,
+            crosses: Vec::new(),
+            rings: false,
+            bands: Vec::new(),
+            columns: Vec::new(),
+            bars: Vec::new(),
+            faint: Vec::new(),
+            texts: Vec::new(),
+            arrows: Vec::new(),
+            shift: 0.0,
+        }
+    }
+}
+
+/// A direction on the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Direction {
+    /// Upwards.
+    Up,
+    /// Downwards.
+    Down,
+}
 
 /// Positions on a line at x = start + k · step, mm, for every k ≥ 0.
 pub(super) fn along(line: &Line, (x, y): (&Scale, &Scale), start: f64, step: f64) -> Vec<Position> {

@@ -4,19 +4,27 @@
 //! a value is a letter in a lane below the plot.
 
 use super::scale::{Scale, Spread};
-use super::style::{AXIS, Fill, MARGIN, MEDIUM, SMALL, Series};
+use super::style::{AXIS, MARGIN, MEDIUM, SMALL};
 use super::ticks::{self, Tick};
 use super::{INNER, Sheet};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, cut, wrapped, wrapped_at_commas};
 
 mod band;
+mod frame;
 pub mod lane;
-mod line;
+pub mod line;
 mod panel;
+pub mod range;
+pub mod rule;
+mod words;
 
+pub use self::line::{Direction, Line};
+
+use self::frame::Frame;
 use self::lane::Mark;
-use self::panel::Frame;
+use self::panel::Drawn;
+use self::rule::Rule;
 
 /// A figure of plots.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +63,10 @@ pub struct Panel {
     pub label: String,
     /// Ends of its y axis, low < high; those of the first panel of a row apply to the row.
     pub range: [f64; 2],
+    /// How the values of its y axis are spread; that of the first panel of a row applies to the row.
+    pub spread: Spread,
+    /// Horizontal lines across the plot, as those of limits.
+    pub rules: Vec<Rule>,
     /// Lines, in drawing order.
     pub lines: Vec<Line>,
     /// Jobs without a value.
@@ -63,23 +75,6 @@ pub struct Panel {
     pub message: String,
     /// Whether the place of the panel stays empty.
     pub blank: bool,
-}
-
-/// One series of a plot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Line {
-    /// Colour, dashes, marker.
-    pub series: Series,
-    /// Pieces of the line, each a list of joined points; all finite.
-    pub pieces: Vec<Vec<[f64; 2]>>,
-    /// Markers at given points.
-    pub marks: Vec<([f64; 2], Fill)>,
-    /// Whether a few markers stand along the line, which identify it in black and white.
-    pub sparse_markers: bool,
-    /// Crosses at the ends of failed runs.
-    pub crosses: Vec<[f64; 2]>,
-    /// Whether the line is thin, and a band where it turns too often to be read.
-    pub rings: bool,
 }
 
 /// Distance between plots side by side, mm.
@@ -105,6 +100,8 @@ struct Layout {
 
 /// Note of a figure with a band.
 const BAND_NOTE: &str = "Shaded bands: the range of a line that turns too often to be drawn.";
+/// Note of a figure without space for each text beside a point.
+const OMITTED_NOTE: &str = "Some texts k/n have no space here; the table has them all.";
 /// Distance of the lines of a label, in sizes of its letters.
 const LABEL_LINE: f64 = 1.3;
 /// Height of a line of a title, mm.
@@ -122,7 +119,7 @@ impl Plots {
         let mut page = Page::new();
         let mut y = self.sheet.head(&mut page);
         let layout = self.layout();
-        let mut bands = false;
+        let mut all = Drawn::default();
         let last_row = self.panels.len().saturating_sub(self.across);
         for (row, panels) in self.panels.chunks(self.across.max(1)).enumerate() {
             y += layout.title;
@@ -140,12 +137,14 @@ impl Plots {
                     width: layout.width,
                     height: layout.height,
                     x: self.x_scale(left, layout.width),
-                    y: Scale::new(Spread::Linear, panels[0].range, [bottom, y]),
+                    y: Scale::new(panels[0].spread, panels[0].range, [bottom, y]),
                     x_ticks: self.x_ticks(layout.width),
                     lane_rows: layout.lanes.get(row).copied().unwrap_or(0),
                     first: column == 0,
                 };
-                bands |= panel.draw(&mut page, &frame, &layout.titles[number]);
+                let drawn = panel.draw(&mut page, &frame, &layout.titles[number]);
+                all.bands |= drawn.bands;
+                all.omitted |= drawn.omitted;
                 let below_is_blank =
                     self.panels.get(number + self.across).is_none_or(|panel| panel.blank);
                 if number >= last_row || below_is_blank {
@@ -163,7 +162,10 @@ impl Plots {
         page.text([0.5 * (left + right), y], &letters, &label);
         y += 0.5 * MEDIUM;
         let mut sheet = self.sheet.clone();
-        if bands {
+        if all.omitted {
+            sheet.notes.insert(0, OMITTED_NOTE.to_owned());
+        }
+        if all.bands {
             sheet.notes.insert(0, BAND_NOTE.to_owned());
         }
         sheet.foot(page, y)
@@ -181,7 +183,7 @@ impl Plots {
             _ => 40.0,
         };
         let widths = self.panels.iter().step_by(across).flat_map(|panel| {
-            let ticks = y_ticks(panel.range, height);
+            let ticks = y_ticks(panel.spread, panel.range, height);
             ticks.into_iter().map(|(_, text)| font::width(&text, SMALL))
         });
         let mut gutter = widths.fold(0.0, f64::max);
@@ -279,9 +281,13 @@ impl Panel {
 }
 
 /// Ticks of a y axis of this height, mm.
-fn y_ticks([low, high]: [f64; 2], height: f64) -> Vec<Tick> {
+fn y_ticks(spread: Spread, [low, high]: [f64; 2], height: f64) -> Vec<Tick> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 11")]
-    ticks::linear(low, high, ((height / 7.0) as usize).clamp(3, 9))
+    let most = ((height / 7.0) as usize).clamp(3, 9);
+    match spread {
+        Spread::Linear => ticks::linear(low, high, most),
+        Spread::Logarithmic => ticks::logarithmic(low, high, most),
+    }
 }
 
 #[cfg(test)]

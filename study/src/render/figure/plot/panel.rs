@@ -1,12 +1,12 @@
-//! One panel of a plot: grid, lines, markers, lane, message.
+//! One panel of a plot: grid, limits, lines, markers, lane, message.
 
-use super::lane;
+use super::frame::Frame;
 use super::line::{along, thinned};
-use super::{LABEL_LINE, Line, Panel, TITLE_LINE, band, y_ticks};
+use super::words::Words;
+use super::{LABEL_LINE, Line, Panel, TITLE_LINE, band, lane, range, y_ticks};
 use crate::render::figure::legend;
-use crate::render::figure::scale::Scale;
+use crate::render::figure::scale::Spread;
 use crate::render::figure::style::{self, AXIS, Fill, GRID, MARGIN, MEDIUM, SMALL};
-use crate::render::figure::ticks::Tick;
 use crate::render::page::{Anchor, Letters, Page, Position, Stroke, cut, wrapped};
 
 /// The line of zero in a plot of both signs.
@@ -16,69 +16,59 @@ const SPARSE_MARKERS: f64 = 6.0;
 /// Distance of these markers along x, mm, at least. Chosen: with several lines they do not hide the data.
 const MARKER_DISTANCE: f64 = 20.0;
 
-/// Where a panel lies on the page, mm, and its scales.
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
-    pub(super) x: Scale,
-    pub(super) y: Scale,
-    pub(super) x_ticks: Vec<Tick>,
-    /// Number of rows of letters in the lane below.
-    pub(super) lane_rows: usize,
-    /// Whether the panel is the first one of its row and has the y axis.
-    pub(super) first: bool,
-}
-
-impl Frame {
-    fn right(&self) -> f64 {
-        self.left + self.width
-    }
-
-    fn bottom(&self) -> f64 {
-        self.top + self.height
-    }
-
-    fn position(&self, [x, y]: [f64; 2]) -> Position {
-        [self.x.position(x), self.y.position(y)]
-    }
-
-    fn contains(&self, [x, y]: Position) -> bool {
-        (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
-    }
+/// What a panel drew.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Drawn {
+    /// Whether a line became a band.
+    pub(super) bands: bool,
+    /// Whether a text had no space.
+    pub(super) omitted: bool,
 }
 
 impl Panel {
-    /// Draws the panel, with the y axis if it is the first one of its row. Returns whether it has a band.
-    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) -> bool {
+    /// Draws the panel, with the y axis if it is the first one of its row.
+    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) -> Drawn {
         for (number, line) in title.iter().rev().enumerate() {
             let y = frame.top - 1.6 - number as f64 * TITLE_LINE;
             page.text([frame.left, y], &Letters::new(SMALL), &cut(line, SMALL, frame.width));
         }
-        self.draw_grid(page, frame);
         let size = [frame.width, frame.height];
+        for rule in &self.rules {
+            rule.draw_closed_side(page, frame);
+        }
+        self.draw_grid(page, frame);
         page.clip([frame.left, frame.top], size);
+        range::draw_bands(page, &self.lines, frame);
         let mut bands = false;
         for line in &self.lines {
             bands |= draw_line(page, line, frame);
         }
         page.unclip();
         page.frame([frame.left, frame.top], size, &AXIS);
+        range::draw_points(page, &self.lines, frame);
         self.draw_markers(page, frame);
+        let mut omitted = false;
+        // The message of an empty plot takes the place of other texts.
+        if self.message.is_empty() {
+            let mut words = Words::new(self, frame);
+            for rule in &self.rules {
+                rule.draw(page, frame, &mut words);
+            }
+            omitted = words.draw_texts(page, &self.lines, frame);
+        }
         if frame.lane_rows > 0 {
             let area = ([frame.left, frame.bottom()], [frame.width, lane::height(frame.lane_rows)]);
             lane::draw(page, &self.lane, area, &frame.x, frame.first);
         }
         self.draw_message(page, frame);
-        bands
+        Drawn { bands, omitted }
     }
 
     /// Grid lines, and the y axis with its label.
     fn draw_grid(&self, page: &mut Page, frame: &Frame) {
         let (left, right) = (frame.left, frame.right());
         let (top, bottom) = (frame.top, frame.bottom());
-        for (value, text) in y_ticks(self.range, frame.height) {
+        for (value, text) in y_ticks(self.spread, self.range, frame.height) {
             let y = frame.y.position(value);
             page.line([left, y], [right, y], &GRID);
             if frame.first {
@@ -91,7 +81,7 @@ impl Panel {
             let x = frame.x.position(*value);
             page.line([x, top], [x, bottom], &GRID);
         }
-        if self.range[0] < 0.0 && self.range[1] > 0.0 {
+        if self.range[0] < 0.0 && self.range[1] > 0.0 && self.spread == Spread::Linear {
             let y = frame.y.position(0.0);
             page.line([left, y], [right, y], &ZERO);
         }
@@ -122,7 +112,7 @@ impl Panel {
                 }
             }
             for (point, fill) in &line.marks {
-                let position = frame.position(*point);
+                let position = range::shifted(frame.position(*point), line);
                 style::marker(page, position, line.series, *fill, legend::MARKER);
             }
             for point in &line.crosses {
@@ -151,7 +141,8 @@ fn draw_line(page: &mut Page, line: &Line, frame: &Frame) -> bool {
     let mut bands = false;
     let stroke = if line.rings { line.series.thin_line() } else { line.series.line() };
     for piece in &line.pieces {
-        let positions: Vec<Position> = piece.iter().map(|point| frame.position(*point)).collect();
+        let place = |point: &[f64; 2]| range::shifted(frame.position(*point), line);
+        let positions: Vec<Position> = piece.iter().map(place).collect();
         if !line.rings {
             page.polyline(&thinned(&positions), &stroke);
             continue;

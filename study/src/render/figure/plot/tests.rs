@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::line::thinned;
 use super::*;
 use crate::render::figure::legend::{Legend, Sample};
+use crate::render::figure::style::{Fill, Series};
 use crate::render::figure::{check, columns};
 use crate::render::page::Position;
 use crate::render::png;
@@ -30,13 +31,21 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
     let (bottom, top) =
         ticks::padded(extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max));
     let line = |series: usize| Line {
-        series: Series::nth(series),
         rings: series == 1,
         pieces: vec![points.clone()],
         marks: vec![(points[0], Fill::Open)],
         sparse_markers: true,
         crosses: if series == 0 { vec![points[points.len() - 1]] } else { Vec::new() },
+        bands: vec![points.iter().map(|[x, y]| [*x, *y, 1.01 * y.abs() + 1.0]).collect()],
+        columns: vec![([points[0][0], bottom, points[0][1]], 2.0)],
+        bars: vec![[points[0][0], bottom, top]],
+        faint: vec![(points[0], Fill::Half)],
+        texts: points.iter().map(|point| (*point, "3/5".to_owned())).collect(),
+        arrows: vec![(points[0], Direction::Down)],
+        shift: series as f64,
+        ..Line::new(Series::nth(series))
     };
+    let rule = |value: f64, closed| Rule { value, text: "limit 25 m/s".to_owned(), closed };
     let lane = (0..series).map(|series| mark_of(high, series)).collect();
     Plots {
         sheet: Sheet {
@@ -59,8 +68,12 @@ fn plots(x: Axis, ys: &[f64], panels: usize, across: usize, series: usize) -> Pl
                 range: [bottom, top],
                 lines: (0..series).map(line).collect(),
                 lane: if panel == 0 { Vec::clone(&lane) } else { Vec::new() },
-                message: String::new(),
-                blank: false,
+                rules: vec![
+                    rule(ys[0], Some(Direction::Up)),
+                    rule(top, None),
+                    rule(bottom - 1e6, Some(Direction::Down)),
+                ],
+                ..Panel::default()
             })
             .collect(),
         across,

@@ -3,13 +3,21 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+mod asked;
+mod question;
+
+use self::asked::{Asked, kind, of_outcome};
+use self::question::Question;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture, refused};
 use super::print::print_rows;
 use super::target::{self, StudyArgs, Target};
 use super::{Format, best, output_error};
+use crate::analysis::replicates::Condensed;
+use crate::chart::runs::Replicated;
+use crate::chart::share::Judged;
 use crate::chart::standard::{self, ChartKind};
-use crate::chart::{Source, history, map, over};
+use crate::chart::{Source, borders, history, map, over};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
@@ -27,20 +35,34 @@ pub struct Args {
     /// per column.
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["measure"])]
     pub history: Vec<String>,
-    /// Draw this column of the table, over a parameter (--over) or two (--map).
-    #[arg(long, value_name = "COLUMN")]
+    /// Draw this column of the table, over a parameter (--over) or two (--map). In a map `safe` and
+    /// `verdict` are the proportion of runs that are safe, or deployed.
+    #[arg(long, value_name = "COLUMN", groups = ["with_over", "with_map"])]
     pub measure: Option<String>,
-    /// Draw the measure over this parameter. Every other parameter that varies gives lines or
-    /// panels; nothing is averaged.
-    #[arg(long, value_name = "PARAMETER", requires = "measure", conflicts_with = "map")]
+    /// Draw the map of outcomes: the proportion of safe runs (without limits: of deployed runs) over the
+    /// two parameters that change it the most, or those of --map.
+    #[arg(long, group = "with_map", conflicts_with_all = ["history", "measure", "borders"])]
+    pub outcome: bool,
+    /// Draw the borders that the search of the study found, over the first other parameter with numbers, or
+    /// that of --over.
+    #[arg(long, group = "with_over", conflicts_with_all = ["history", "measure", "outcome"])]
+    pub borders: bool,
+    /// Draw the measure, or the borders, over this parameter. Every other parameter that varies gives
+    /// lines or panels; nothing is averaged but the runs of a point, of which the chart shows median and
+    /// range.
+    #[arg(long, value_name = "PARAMETER", requires = "with_over", conflicts_with = "map")]
     pub over: Option<String>,
     /// Draw one line per combination of these parameters, comma-separated; the other parameters
     /// that vary give panels [default: as many lines as are legible].
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', requires = "over")]
     pub by: Vec<String>,
-    /// Draw the measure as a map over two parameters.
-    #[arg(long, value_name = "X,Y", value_delimiter = ',', requires = "measure")]
+    /// Draw the measure, or the outcome, as a map over two parameters.
+    #[arg(long, value_name = "X,Y", value_delimiter = ',', requires = "with_map")]
     pub map: Vec<String>,
+    /// Draw each run; replicates are parameters as any other [default: median and range of the runs of a
+    /// point].
+    #[arg(long)]
+    pub runs: bool,
     /// Only these jobs: first digits of their ids, comma-separated.
     #[arg(long, value_name = "IDS", value_delimiter = ',')]
     pub jobs: Vec<String>,
@@ -83,10 +105,29 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     target.add_keys(&[], args.condition.as_deref())?;
     let Target { results, table, records, .. } = target;
     let name = study_name(&results);
-    let source = source(args, &name, &table)?;
+    let question = Question::read(&results)?;
+    let single = Source {
+        limits: &question.limits,
+        search: question.search(),
+        ..source(args, &name, &table)?
+    };
+    let replicates = question.replicates(args, asked.as_ref());
+    let condensed =
+        (!replicates.is_empty()).then(|| Condensed::of(single.table, &single.rows, &replicates));
+    let source = condensed.as_ref().map_or_else(
+        || single.clone(),
+        |condensed| Source {
+            table: &condensed.table,
+            rows: (0..condensed.table.rows()).collect(),
+            runs: Some(Replicated { condensed, single: &table, names: &replicates }),
+            ..single.clone()
+        },
+    );
     let standard = asked.is_none();
+    let chosen_axes = matches!(&asked, Some(Asked::Outcome(axes)) if axes.is_empty());
     let kinds = match asked {
-        Some(kind) => vec![kind],
+        Some(Asked::One(kind)) => vec![kind],
+        Some(Asked::Outcome(axes)) => vec![outcome(&source, axes)?],
         None => standard_kinds(&source, args.quiet.quiet),
     };
     let read = |id: &JobId| results.read_history(id, records.get(id));
@@ -94,20 +135,43 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     for kind in &kinds {
         match draw(&source, kind, range, &read) {
             Ok(svg) => written.extend(write(args, &results, kind, &svg)?),
-            // A standard chart may not fit this study; then it is skipped with a message.
+            // A standard chart may not fit this study; then it shows fewer points, or is skipped, with a
+            // message.
             Err(Error::Input(error)) if standard => {
-                if !args.quiet.quiet {
-                    eprintln!("billow: no {}: {}", kind.file_name(), error.problem);
+                let note = |text: String| {
+                    if !args.quiet.quiet {
+                        eprintln!("billow: {text}");
+                    }
+                };
+                let fewer =
+                    if question.is_asked() { standard::reduced(&source, kind) } else { None };
+                let drawn = fewer.as_ref().map(|fewer| draw(&source, fewer, range, &read));
+                if let (Some(Ok(svg)), Some(ChartKind::At(_, _, choice))) = (&drawn, &fewer) {
+                    note(format!("{} {choice}: {}", kind.file_name(), error.problem));
+                    written.extend(write(args, &results, kind, svg)?);
+                } else {
+                    note(format!("no {}: {}", kind.file_name(), error.problem));
                 }
             }
+            Err(error) if chosen_axes => return Err(of_outcome(error)),
             Err(error) => return Err(error),
         }
     }
     print(&written, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
-        best::print(&results, &table, &source.rows)?;
+        best::print(&results, &table, &single.rows)?;
     }
     Ok(())
+}
+
+/// The map of outcomes.
+fn outcome(source: &Source<'_>, axes: Vec<String>) -> Result<ChartKind> {
+    let given = <[String; 2]>::try_from(axes).ok();
+    let axes = given.or_else(|| standard::outcome_axes(source)).ok_or_else(|| {
+        let problem = "a map needs two parameters that vary";
+        refused("--outcome", "", problem, "a study that varies two, without its replicates")
+    })?;
+    Ok(ChartKind::Map(Judged::of(source).name().to_owned(), axes))
 }
 
 /// The rows that `--jobs` or `--where` choose.
@@ -129,7 +193,7 @@ fn source<'a>(args: &Args, study: &'a str, table: &'a Table) -> Result<Source<'a
         (None, _) => "(chosen jobs)".to_owned(),
     };
     let title = args.title.clone().unwrap_or_default();
-    Ok(Source { study, table, rows, choice, title })
+    Ok(Source { study, table, rows, choice, title, limits: &[], runs: None, search: None })
 }
 
 /// Name of the results folder; the whole path when it has no last part, as in ".".
@@ -175,48 +239,10 @@ fn draw(
         ChartKind::History(columns) => history::svg(source, columns, range, read),
         ChartKind::Over(measure, parameter, by) => over::svg(source, measure, parameter, by),
         ChartKind::Map(measure, [x, y]) => map::svg(source, measure, [x, y]),
-    }
-}
-
-/// The chart that the options ask for; `None` for the standard charts.
-fn kind(args: &Args) -> Result<Option<ChartKind>> {
-    if !args.history.is_empty() {
-        let current = |name: &String| target::current_name("--history", name.trim()).to_owned();
-        return Ok(Some(ChartKind::History(args.history.iter().map(current).collect())));
-    }
-    let measure = args
-        .measure
-        .as_deref()
-        .map(|name| target::current_name("--measure", name.trim()).to_owned());
-    let Some(measure) = measure else {
-        let one = "one chart: --history, --measure … --over, or --measure … --map";
-        return match (&args.out, &args.title) {
-            (None, None) => Ok(None),
-            (Some(path), _) => {
-                let path = path.display().to_string();
-                Err(refused("--out", &path, "one file for several charts", one))
-            }
-            (None, Some(title)) => {
-                Err(refused("--title", title, "one title for several charts", one))
-            }
-        };
-    };
-    match (args.over.clone(), args.map.as_slice()) {
-        (Some(over), _) => {
-            let by = args.by.iter().map(|name| name.trim().to_owned()).collect();
-            Ok(Some(ChartKind::Over(measure, over, by)))
-        }
-        (None, [x, y]) => {
-            Ok(Some(ChartKind::Map(measure, [x, y].map(|name| name.trim().to_owned()))))
-        }
-        (None, []) => Err(refused(
-            "--measure",
-            &measure,
-            "needs a parameter to be drawn over",
-            "--over PARAMETER, or --map X,Y",
-        )),
-        (None, several) => {
-            Err(refused("--map", &several.join(","), "not two parameters", "--map X,Y"))
+        ChartKind::Borders(over, by) => borders::svg(source, over.as_deref(), by),
+        ChartKind::At(kind, rows, _) => {
+            let choice = [source.choice.as_str(), "at middle values"].join(" ").trim().to_owned();
+            draw(&Source { rows: rows.clone(), choice, ..source.clone() }, kind, range, read)
         }
     }
 }

@@ -1,0 +1,149 @@
+//! What the searches of a study found, with what decides each border.
+
+use std::collections::BTreeMap;
+
+use crate::input::units::DisplayUnit;
+use crate::input::value::Value;
+use crate::job::row::{CellType, DerivedColumn};
+use crate::store::stored::Stored;
+use crate::store::table::Table;
+use crate::study::{Border, Criterion, Level, Outcome};
+
+/// The searches of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Searches {
+    /// The parameter along which they search.
+    pub parameter: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// Unit in which its values are shown.
+    pub shown: DisplayUnit,
+    /// What changes at a border: `safe`, `deployed`, `peak_vz < 25 m/s`.
+    pub criterion: String,
+    /// Number of runs of each value.
+    pub replicates: usize,
+    /// One entry per search, in plan order.
+    pub found: Vec<Found>,
+}
+
+/// What one search found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Values, runs, outcome.
+    pub border: Border,
+    /// The other parameters, and the units in which they are shown.
+    pub parameters: Vec<(String, Value, DisplayUnit)>,
+    /// The measure that decides: that of the smallest margin in most runs beyond the border.
+    pub limit: Option<String>,
+}
+
+impl Searches {
+    /// The searches of a results folder; `None` for a study without one. `table` is its table.
+    pub fn of(stored: &Stored<'_>, table: &Table) -> Option<Self> {
+        let (parameter, criterion) = stored.study.searched()?;
+        let limits = stored.study.result_limits();
+        let shown = |name: &str| {
+            let column = table.parameters().find(|column| column.name == name);
+            column.map_or_else(|| DisplayUnit::si(""), |column| column.shown.clone())
+        };
+        let found = stored.borders().into_iter().map(|border| Found {
+            parameters: border
+                .parameters
+                .iter()
+                .map(|(name, value)| (name.clone(), value.clone(), shown(name)))
+                .collect(),
+            limit: match criterion {
+                Criterion::Deployed => Some("verdict".to_owned()),
+                Criterion::Limit(index) => limits.get(index).map(|l| l.measure.name().to_owned()),
+                Criterion::Safe => deciding(table, parameter, &border),
+            },
+            border,
+        });
+        Some(Self {
+            parameter: parameter.to_owned(),
+            unit: stored.study.unit(parameter).to_owned(),
+            shown: shown(parameter),
+            criterion: criterion.text(limits),
+            replicates: stored.study.replicate_count(),
+            found: found.collect(),
+        })
+    }
+}
+
+impl Found {
+    /// Name of the outcome.
+    pub fn outcome(&self) -> &'static str {
+        match self.border.outcome {
+            Outcome::Open => "open",
+            Outcome::Border { .. } => "border",
+            Outcome::NotMonotone(_) => "not_monotone",
+            Outcome::NoChange { .. } => "no_change",
+            Outcome::Undecided => "undecided",
+        }
+    }
+
+    /// The smallest and the largest value at which the outcome is decided.
+    pub fn decided(&self, replicates: usize) -> Option<[f64; 2]> {
+        let decided = |level: &&Level| level.outcome(replicates).is_some();
+        let mut levels = self.border.levels.iter().filter(decided).map(|level| level.value);
+        let first = levels.next()?;
+        Some([first, levels.next_back().unwrap_or(first)])
+    }
+
+    /// The values at which the outcome is not decided.
+    pub fn undecided(&self, replicates: usize) -> Vec<f64> {
+        let levels = self.border.levels.iter();
+        let undecided = levels.filter(|level| level.outcome(replicates).is_none());
+        undecided.map(|level| level.value).collect()
+    }
+
+    /// The smallest and the largest value.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let levels = &self.border.levels;
+        Some([levels.first()?.value, levels.last()?.value])
+    }
+
+    /// Number of runs of all values that are counted so.
+    pub fn sum(&self, of: fn(&Level) -> usize) -> usize {
+        self.border.levels.iter().map(of).sum()
+    }
+
+    /// Whether the criterion is met below the border, or at every value.
+    pub fn met_below(&self) -> Option<bool> {
+        match self.border.outcome {
+            Outcome::Border { met_below: met, .. } | Outcome::NoChange { met } => Some(met),
+            _ => None,
+        }
+    }
+}
+
+/// The measure that most unsafe runs have as that of their smallest margin, at the value next to the border on
+/// its unsafe side.
+fn deciding(table: &Table, parameter: &str, border: &Border) -> Option<String> {
+    let Outcome::Border { low, high, met_below } = border.outcome else { return None };
+    let side = if met_below { high } else { low };
+    let names = table.column(DerivedColumn::SmallestMarginOf.name())?;
+    let safe = table.column(DerivedColumn::Safe.name())?;
+    let searched = table.parameters().find(|column| column.name == parameter)?;
+    let is_side = |row: &usize| match (searched.cell_type, &searched.cells[*row]) {
+        (CellType::Text, Value::Text(text)) => text.parse() == Ok(side),
+        (_, Value::Number(number)) => number.total_cmp(&side).is_eq(),
+        (_, Value::Integer(number)) => (*number as f64).total_cmp(&side).is_eq(),
+        _ => false,
+    };
+    let fixed = |row: &usize| {
+        border.parameters.iter().all(|(name, value)| {
+            let column = table.parameters().find(|column| column.name == *name);
+            // A column of texts and numbers stores its numbers as text.
+            column.is_some_and(|column| column.cells[*row].to_string() == value.to_string())
+        })
+    };
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for row in (0..table.rows()).filter(is_side).filter(fixed) {
+        if safe.cells[row] == Value::Bool(false) {
+            *counts.entry(names.cells[row].to_string()).or_default() += 1;
+        }
+    }
+    // The first name of those that are equally frequent.
+    counts.into_iter().rev().max_by_key(|(_, runs)| *runs).map(|(name, _)| name)
+}

@@ -1,0 +1,235 @@
+//! The order of candidates: the values of some parameters, over the same conditions.
+//!
+//! ```text
+//! candidate = one combination of values of the ranked parameters
+//! set       = points that are equal in all other parameters: the same conditions
+//! order     = fewest points not safe, then the smallest proportion of runs not safe, then the largest worst
+//!             margin, then the medians of the measures
+//! ```
+//! Only sets in which every ranked candidate has a point that has ended count, so all candidates are judged by
+//! the same conditions. Without limits the points and runs that do not deploy take the place of those not safe;
+//! without verdicts the measures decide alone. A candidate is dominated by another one that is not worse in
+//! anything and better in something, up to the spread of each measure.
+
+use super::answer::{Points, Set, worst_margin};
+use super::compare::Measure;
+use super::statistics::Spread;
+use crate::input::value::Value;
+use crate::job::Status;
+use crate::job::proportion::Proportion;
+use crate::job::result_limit::ResultLimit;
+use crate::job::row::{BetterSide, ColumnId};
+use crate::store::table::Table;
+use crate::study::Zipped;
+
+mod dominance;
+mod field;
+mod order;
+mod sets;
+
+use sets::{candidates, sets, shared};
+
+/// The measures of a ranking where none are asked for.
+pub const DEFAULT_MEASURES: [ColumnId; 3] =
+    [ColumnId::PeakVz, ColumnId::PeakKineticEnergy, ColumnId::T90ZRimSinceRelease];
+
+/// What to rank.
+pub struct Question<'a> {
+    /// The table.
+    pub table: &'a Table,
+    /// The rows that count.
+    pub rows: &'a [usize],
+    /// The ranked parameters.
+    pub by: &'a [String],
+    /// The parameters that repeat a point.
+    pub replicates: &'a [String],
+    /// The limits of the study.
+    pub limits: &'a [ResultLimit],
+    /// The measures, the most important one first. Each has a better side.
+    pub measures: &'a [ColumnId],
+    /// The parameters on the axis of one.
+    pub zipped: &'a dyn Fn(&str) -> Vec<Zipped>,
+}
+
+/// Candidates, the best one first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranking {
+    /// What orders them first.
+    pub basis: Basis,
+    /// The candidates.
+    pub candidates: Vec<Candidate>,
+    /// Number of sets of points over which all of them are ranked.
+    pub sets: usize,
+    /// The other parameters, equal in a set.
+    pub matched: Vec<String>,
+    /// Parameters that change with the ranked one.
+    pub carried: Vec<String>,
+    /// Candidates that are not ranked, and why.
+    pub left_out: Vec<(Vec<Value>, String)>,
+    /// Number of points of the ranked candidates outside these sets.
+    pub outside: usize,
+    /// Number of points that have not ended, or are infeasible.
+    pub not_ended: usize,
+    /// Number of ranked points whose measures cannot be trusted and do not count.
+    pub not_trusted: usize,
+    /// For each measure the number of sets with a value of every candidate that has one.
+    pub measure_sets: Vec<usize>,
+}
+
+/// What orders candidates before their measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Safe points, safe runs, then the worst margin.
+    Limits,
+    /// Deployed points, then deployed runs.
+    Verdicts,
+    /// Nothing: no limits and no verdict.
+    Measures,
+}
+
+/// One candidate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// Values of the ranked parameters.
+    pub values: Vec<Value>,
+    /// Number of its points.
+    pub points: usize,
+    /// Points whose runs are all safe.
+    pub safe: usize,
+    /// Points whose runs all deploy.
+    pub deployed: usize,
+    /// Points of which a run failed.
+    pub failed: usize,
+    /// Its runs by the limits.
+    pub safe_runs: Proportion,
+    /// Its runs by their verdict.
+    pub deployed_runs: Proportion,
+    /// Of all its runs, those that are not safe, or without limits those that do not deploy. A run that
+    /// cannot be judged is one of them, as its point is.
+    pub missed: Proportion,
+    /// The smallest margin over its runs, with its measure.
+    pub margin: Option<(f64, String)>,
+    /// Each measure: median over the points, range over their runs.
+    pub measures: Vec<Option<Spread>>,
+    /// Rank of the first other candidate that dominates it.
+    pub dominated_by: Option<usize>,
+}
+
+/// The data of a ranking: points, and sets of them with one point per candidate.
+struct Field<'a> {
+    points: &'a Points,
+    table: &'a Table,
+    limits: &'a [ResultLimit],
+    measures: Vec<Measure<'a>>,
+    /// Positions of the ranked candidates in a set.
+    chosen: Vec<usize>,
+    sets: Vec<Set>,
+    basis: Basis,
+    /// The smallest margin of each point, with its measure.
+    margins: Vec<Option<(f64, String)>>,
+}
+
+impl Ranking {
+    /// Ranks the candidates of a question.
+    ///
+    /// # Errors
+    /// Why nothing can be ranked.
+    pub fn of(question: &Question<'_>) -> Result<Self, String> {
+        let replicates: Vec<String> = question
+            .replicates
+            .iter()
+            .filter(|name| !question.by.contains(name))
+            .cloned()
+            .collect();
+        let points = Points::of(question.table, question.rows, &replicates);
+        let table = &points.condensed.table;
+        let all: Vec<usize> = (0..table.rows()).collect();
+        let ended: Vec<usize> =
+            all.iter().copied().filter(|point| has_ended(table, *point)).collect();
+        let values = candidates(table, question.by);
+        if ended.is_empty() {
+            return Err("no point has ended".to_owned());
+        }
+        let (sets, matched, carried) = sets(table, &ended, question, &values);
+        let shared = shared(&sets, values.len());
+        let Some((chosen, kept)) = shared else {
+            return Err(format!(
+                "no two values of {} have ended points that are equal in all other parameters",
+                question.by.join(", ")
+            ));
+        };
+        let zipped = (question.zipped)("seed");
+        let measures = question.measures.iter().filter_map(|id| table.column(id.name()));
+        let measures =
+            measures.map(|column| Measure::of_points(&points.condensed, &ended, column, &zipped));
+        let margins = points.runs.iter();
+        let margins = margins.map(|runs| {
+            worst_margin(question.table, runs).map(|(margin, measure, _)| (margin, measure))
+        });
+        let field = Field {
+            points: &points,
+            table,
+            limits: question.limits,
+            measures: measures.collect(),
+            sets: kept,
+            basis: basis(question.limits, &points),
+            margins: margins.collect(),
+            chosen,
+        };
+        let mut ranking = field.ranked(&values);
+        ranking.left_out = left_out(&field.chosen, &values, &sets);
+        ranking.outside =
+            ended.len() - ranked_points(&field).count() - left_out_points(&field, &sets);
+        ranking.not_ended = all.len() - ended.len();
+        (ranking.matched, ranking.carried) = (matched, carried);
+        Ok(ranking)
+    }
+}
+
+/// What orders candidates first.
+fn basis(limits: &[ResultLimit], points: &Points) -> Basis {
+    if !limits.is_empty() {
+        Basis::Limits
+    } else if points.runs.iter().any(|runs| runs.deployed.of > 0) {
+        Basis::Verdicts
+    } else {
+        Basis::Measures
+    }
+}
+
+fn has_ended(table: &Table, point: usize) -> bool {
+    !matches!(table.status(point), None | Some(Status::Pending | Status::Infeasible))
+}
+
+/// The points of the ranked candidates in the sets.
+fn ranked_points<'a>(field: &'a Field<'_>) -> impl Iterator<Item = usize> + 'a {
+    field.sets.iter().flat_map(|set| field.chosen.iter().filter_map(|index| set[*index]))
+}
+
+/// Number of points of the candidates that are left out.
+fn left_out_points(field: &Field<'_>, sets: &[Set]) -> usize {
+    let of_set = |set: &Set| {
+        let points = set.iter().enumerate();
+        points.filter(|(index, p)| p.is_some() && !field.chosen.contains(index)).count()
+    };
+    sets.iter().map(of_set).sum()
+}
+
+/// The candidates that are not ranked.
+fn left_out(chosen: &[usize], values: &[Vec<Value>], sets: &[Set]) -> Vec<(Vec<Value>, String)> {
+    let others = values.iter().enumerate().filter(|(index, _)| !chosen.contains(index));
+    let reason = |index: usize| match sets.iter().filter(|set| set[index].is_some()).count() {
+        0 => "none of its points has ended".to_owned(),
+        with => format!("it is in {with} of {} sets of equal conditions", sets.len()),
+    };
+    others.map(|(index, values)| (values.clone(), reason(index))).collect()
+}
+
+/// Which of two values of a measure is better, without a tolerance.
+fn is_better(measure: &Measure<'_>, a: f64, b: f64) -> bool {
+    let side = ColumnId::from_name(&measure.column.name).map(|id| id.column().better);
+    if side == Some(BetterSide::Larger) { a > b } else { a < b }
+}
+
+#[cfg(test)]
+mod tests;

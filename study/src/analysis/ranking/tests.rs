@@ -1,0 +1,233 @@
+//! Rankings of an invented table.
+
+use super::*;
+use crate::input::units::DisplayUnit;
+use crate::job::result_limit::Condition;
+use crate::job::row::CellType;
+use crate::store::table::Column;
+
+/// A run: strategy, mass, seed, `peak_vz`, verdict.
+type Run = (&'static str, f64, i64, f64, &'static str);
+
+const DEPLOYED: &str = "deployed";
+
+fn limits() -> Vec<ResultLimit> {
+    let bound = Condition::Bound { bound: 20.0, above: false, or_equal: false };
+    let word = Condition::Is(Value::Text(DEPLOYED.to_owned()));
+    let limit = |measure, condition| ResultLimit { measure, condition, text: String::new() };
+    vec![limit(ColumnId::PeakVz, bound), limit(ColumnId::Verdict, word)]
+}
+
+fn table(runs: &[Run]) -> Table {
+    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: String::new(),
+        shown: DisplayUnit::si(""),
+        meaning: String::new(),
+        cells: runs.iter().map(of).collect(),
+    };
+    let text = |text: &str| Value::Text(text.to_owned());
+    let columns = vec![
+        column("job", CellType::Text, &|run| text(&format!("{run:?}"))),
+        column("strategy", CellType::Text, &|run| text(run.0)),
+        column("mass", CellType::Number, &|run| Value::Number(run.1)),
+        column("seed", CellType::Integer, &|run| Value::Integer(run.2)),
+        column("status", CellType::Text, &|run| {
+            text(if run.4 == "pending" { "pending" } else { "done" })
+        }),
+        column("verdict", CellType::Text, &|run| match run.4 {
+            "pending" | "" => Value::Null,
+            verdict => text(verdict),
+        }),
+        column("peak_vz", CellType::Number, &|run| Value::Number(run.3)),
+    ];
+    Table { columns }
+}
+
+fn ranked(runs: &[Run], by: &[&str], limits: &[ResultLimit]) -> Ranking {
+    let table = table(runs).judged(limits);
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    Ranking::of(&Question {
+        table: &table,
+        rows: &rows,
+        by: &by.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>(),
+        replicates: &["seed".to_owned()],
+        limits,
+        measures: &[ColumnId::PeakVz],
+        zipped: &|_| Vec::new(),
+    })
+    .unwrap()
+}
+
+fn order(ranking: &Ranking) -> Vec<String> {
+    let texts = ranking.candidates.iter().map(|candidate| {
+        candidate.values.iter().map(Value::to_string).collect::<Vec<_>>().join(" ")
+    });
+    texts.collect()
+}
+
+/// Strategy c is safe in all runs, a in all but one, b in none; two masses, two seeds.
+const GRID: [Run; 12] = [
+    ("a", 1.0, 1, 8.0, DEPLOYED),
+    ("a", 1.0, 2, 8.0, DEPLOYED),
+    ("a", 2.0, 1, 10.0, DEPLOYED),
+    ("a", 2.0, 2, 25.0, DEPLOYED),
+    ("b", 1.0, 1, 5.0, "stalled"),
+    ("b", 1.0, 2, 5.0, "stalled"),
+    ("b", 2.0, 1, 6.0, "stalled"),
+    ("b", 2.0, 2, 6.0, "stalled"),
+    ("c", 1.0, 1, 16.0, DEPLOYED),
+    ("c", 1.0, 2, 17.0, DEPLOYED),
+    ("c", 2.0, 1, 18.0, DEPLOYED),
+    ("c", 2.0, 2, 18.0, DEPLOYED),
+];
+
+#[test]
+fn limits_come_before_measures_and_every_run_of_a_point_must_be_safe() {
+    let ranking = ranked(&GRID, &["strategy"], &limits());
+    assert_eq!(order(&ranking), ["c", "a", "b"]);
+    assert_eq!((ranking.sets, ranking.basis), (2, Basis::Limits));
+    let safe: Vec<_> = ranking.candidates.iter().map(|c| (c.safe, c.points, c.safe_runs)).collect();
+    let runs = |met| Proportion { met, of: 4 };
+    assert_eq!(safe, [(2, 2, runs(4)), (1, 2, runs(3)), (0, 2, runs(0))]);
+    let margins: Vec<_> = ranking.candidates.iter().map(|c| c.margin.clone().unwrap()).collect();
+    let (speed, verdict) = ("peak_vz".to_owned(), "verdict".to_owned());
+    assert_eq!(margins, [(0.1, speed.clone()), (-0.25, speed), (-1.0, verdict)]);
+    // Medians over the points; ranges over all runs.
+    let spread = ranking.candidates[1].measures[0].unwrap();
+    assert_eq!((spread.median, spread.least, spread.largest), (12.75, 8.0, 25.0));
+    assert!(ranking.candidates.iter().all(|candidate| candidate.dominated_by.is_none()));
+    // Without limits what does not deploy comes last, then the speed decides.
+    let ranking = ranked(&GRID, &["strategy"], &[]);
+    assert_eq!(
+        (order(&ranking), ranking.basis),
+        (vec!["a".to_owned(), "c".into(), "b".into()], Basis::Verdicts)
+    );
+    assert_eq!(ranking.candidates[1].dominated_by, Some(1), "c is faster and deploys no more");
+    let words: Vec<Run> = GRID.iter().map(|run| (run.0, run.1, run.2, run.3, "")).collect();
+    let ranking = ranked(&words, &["strategy"], &[]);
+    assert_eq!(
+        (order(&ranking), ranking.basis),
+        (vec!["b".to_owned(), "a".into(), "c".into()], Basis::Measures)
+    );
+}
+
+#[test]
+fn points_that_not_every_candidate_has_change_nothing() {
+    let without = ranked(&GRID, &["strategy"], &limits());
+    // As a search adds them: at masses of which the others have no point.
+    let searched = [
+        ("a", 1.5, 1, 99.0, "stalled"),
+        ("a", 1.5, 2, 99.0, "stalled"),
+        ("c", 1.75, 1, 99.0, "stalled"),
+        ("c", 1.75, 2, 99.0, "stalled"),
+        ("b", 3.0, 1, 1.0, "pending"),
+    ];
+    let with = ranked(&[&GRID[..], &searched[..]].concat(), &["strategy"], &limits());
+    assert_eq!(with.candidates, without.candidates);
+    assert_eq!((with.sets, with.outside, with.not_ended), (2, 2, 1));
+    // A strategy with no partner is left out, with the reason.
+    let alone = [("d", 9.0, 1, 1.0, DEPLOYED), ("d", 9.0, 2, 1.0, DEPLOYED)];
+    let with = ranked(&[&GRID[..], &alone[..]].concat(), &["strategy"], &limits());
+    assert_eq!(with.candidates, without.candidates);
+    let (values, reason) = &with.left_out[0];
+    assert_eq!(values, &[Value::Text("d".to_owned())]);
+    assert_eq!(reason, "it is in 1 of 3 sets of equal conditions");
+}
+
+#[test]
+fn all_parameters_rank_every_point_and_the_worse_ones_are_dominated() {
+    let ranking = ranked(&GRID, &["strategy", "mass"], &limits());
+    assert_eq!(order(&ranking), ["a 1", "c 1", "c 2", "a 2", "b 1", "b 2"]);
+    assert_eq!((ranking.sets, ranking.matched.len()), (1, 0));
+    let dominated: Vec<_> = ranking.candidates.iter().map(|c| c.dominated_by).collect();
+    // Strategy b moves less than the others, so none of these dominates it.
+    assert_eq!(dominated, [None, Some(1), Some(1), Some(1), None, Some(5)]);
+}
+
+#[test]
+fn candidates_equal_within_the_spread_do_not_dominate_each_other() {
+    let runs = [("a", 1.0, 1, 10.0, DEPLOYED), ("b", 1.0, 1, 10.3, DEPLOYED)];
+    let ranking = ranked(&runs, &["strategy"], &limits());
+    assert_eq!(order(&ranking), ["a", "b"]);
+    assert_eq!(ranking.candidates[1].dominated_by, None, "5 % is the spread of peak_vz");
+    let runs = [("a", 1.0, 1, 10.0, DEPLOYED), ("b", 1.0, 1, 12.0, DEPLOYED)];
+    assert_eq!(ranked(&runs, &["strategy"], &limits()).candidates[1].dominated_by, Some(1));
+}
+
+#[test]
+fn rounding_errors_decide_no_order() {
+    // The speeds differ in the last bits: plan order stays in both cases.
+    let speed: f64 = 0.1 + 0.2;
+    assert_ne!(speed.to_bits(), 0.3_f64.to_bits());
+    for speeds in [[speed, 0.3], [0.3, speed]] {
+        let runs = [("b", 1.0, 1, speeds[0], DEPLOYED), ("a", 1.0, 1, speeds[1], DEPLOYED)];
+        let ranking = ranked(&runs, &["strategy"], &limits());
+        assert_eq!(order(&ranking), ["b", "a"]);
+    }
+}
+
+#[test]
+fn a_candidate_can_be_dominated_by_a_later_one() {
+    // The margin and the speed of a are better by less than the spread; b has far less energy.
+    let mut limits = limits();
+    limits.truncate(1);
+    let runs = [("a", 1.0, 1, 10.0, DEPLOYED), ("b", 1.0, 1, 10.1, DEPLOYED)];
+    let table = table(&runs).judged(&limits);
+    let mut energy = table.column("peak_vz").unwrap().clone();
+    ColumnId::PeakKineticEnergy.name().clone_into(&mut energy.name);
+    energy.cells = [9.0, 1.0].map(Value::Number).to_vec();
+    let table = Table { columns: [table.columns, vec![energy]].concat() };
+    let ranking = Ranking::of(&Question {
+        table: &table,
+        rows: &[0, 1],
+        by: &["strategy".to_owned()],
+        replicates: &["seed".to_owned()],
+        limits: &limits,
+        measures: &[ColumnId::PeakVz, ColumnId::PeakKineticEnergy],
+        zipped: &|_| Vec::new(),
+    })
+    .unwrap();
+    assert_eq!(order(&ranking), ["a", "b"]);
+    let dominated: Vec<_> = ranking.candidates.iter().map(|c| c.dominated_by).collect();
+    assert_eq!(dominated, [Some(2), None]);
+}
+
+#[test]
+fn of_two_points_that_are_not_safe_the_one_with_fewer_runs_missed_is_better() {
+    let mut runs = Vec::new();
+    for seed in 1..=5 {
+        let word = |met: bool| if met { DEPLOYED } else { "stalled" };
+        // Strategy a never deploys and is the slower one; b deploys in four of five runs.
+        runs.push(("a", 1.0, seed, 8.0, word(false)));
+        runs.push(("b", 1.0, seed, 10.0, word(seed > 1)));
+    }
+    for limits in [limits(), Vec::new()] {
+        let ranking = ranked(&runs, &["strategy"], &limits);
+        assert_eq!(order(&ranking), ["b", "a"]);
+        let missed: Vec<_> = ranking.candidates.iter().map(|c| c.missed).collect();
+        assert_eq!(missed, [Proportion { met: 1, of: 5 }, Proportion { met: 5, of: 5 }]);
+        assert!(ranking.candidates.iter().all(|candidate| candidate.dominated_by.is_none()));
+    }
+    // Equally fast, b is better in the runs alone, and dominates.
+    let equal: Vec<Run> = runs.iter().map(|run| (run.0, run.1, run.2, 9.0, run.4)).collect();
+    for limits in [limits(), Vec::new()] {
+        assert_eq!(ranked(&equal, &["strategy"], &limits).candidates[1].dominated_by, Some(1));
+    }
+}
+
+#[test]
+fn a_point_dominates_where_the_ranges_of_the_runs_do_not_overlap() {
+    let with = |speeds: [[f64; 2]; 2]| {
+        let runs = (1_i64..).zip(speeds).flat_map(|(seed, [a, b])| {
+            [("a", 1.0, seed, a, DEPLOYED), ("b", 1.0, seed, b, DEPLOYED)]
+        });
+        ranked(&runs.collect::<Vec<_>>(), &["strategy"], &limits()[1..])
+    };
+    let apart = with([[8.0, 11.0], [10.0, 13.0]]);
+    assert_eq!(apart.candidates[1].dominated_by, Some(1));
+    let overlapping = with([[8.0, 9.0], [10.0, 15.0]]);
+    assert_eq!(order(&overlapping), ["a", "b"]);
+    assert_eq!(overlapping.candidates[1].dominated_by, None, "equal: 9 is in the range of a");
+}

@@ -1,0 +1,287 @@
+//! The runs of each point as one: medians, ranges, proportions.
+//!
+//! ```text
+//! point = all parameters but the replicates      runs of a point = its different jobs
+//! value = median over the done runs;  range = least to largest;  deployed, safe: k of n
+//! ```
+//! The condensed table has one row per point and is a table as any other: charts and comparisons read it in
+//! the place of the rows. A word, or a truth value, is that of all runs or null; `smallest_margin_of` is that of
+//! the run with the smallest margin, `verdict_depends_on` that of the first run that has one.
+
+use std::collections::BTreeMap;
+
+use billow_solver::output::measures::Verdict;
+
+use super::statistics::Spread;
+use super::values::{canonical, measured};
+use crate::input::value::Value;
+use crate::job::Status;
+use crate::job::proportion::Proportion;
+use crate::job::row::{CellType, ColumnId, DerivedColumn, SAME_JOB_AS};
+use crate::store::table::{Column, Table};
+
+/// A table with one row per point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condensed {
+    /// The medians. Its parameters are those of the study without the replicates; `job` is that of the first
+    /// run.
+    pub table: Table,
+    /// The same table with the smallest values.
+    pub least: Table,
+    /// The same table with the largest values.
+    pub largest: Table,
+    /// The runs of each row.
+    pub runs: Vec<Runs>,
+}
+
+/// The runs of one point.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Runs {
+    /// Rows of the table, one per different job.
+    pub rows: Vec<usize>,
+    /// Of the runs with a verdict, those that deployed.
+    pub deployed: Proportion,
+    /// Of the runs that the limits can judge, those that are safe.
+    pub safe: Proportion,
+    /// Number of done runs.
+    pub done: usize,
+    /// Number of runs that failed.
+    pub failed: usize,
+    /// Number of runs without a fold pattern.
+    pub infeasible: usize,
+    /// Number of runs that have not ended.
+    pub pending: usize,
+}
+
+/// Which of the values of several runs a table has.
+#[derive(Clone, Copy)]
+enum Statistic {
+    Least,
+    Median,
+    Largest,
+}
+
+impl Condensed {
+    /// Condenses some rows of a table. Without replicates each job is a point.
+    pub fn of(table: &Table, rows: &[usize], replicates: &[String]) -> Self {
+        let runs: Vec<Runs> =
+            groups(table, rows, replicates).into_iter().map(|rows| Runs::of(table, rows)).collect();
+        let with = |statistic| condensed(table, &runs, replicates, statistic);
+        Self {
+            table: with(Statistic::Median),
+            least: with(Statistic::Least),
+            largest: with(Statistic::Largest),
+            runs,
+        }
+    }
+
+    /// Least, median and largest value of a measure at a row; `None` where no run has one.
+    pub fn spread(&self, name: &str, row: usize) -> Option<[f64; 3]> {
+        let value = |table: &Table| match table.column(name)?.cells[row] {
+            Value::Number(number) => Some(number),
+            _ => None,
+        };
+        Some([value(&self.least)?, value(&self.table)?, value(&self.largest)?])
+    }
+}
+
+impl Runs {
+    /// The run with the smallest margin of the limits.
+    fn least(&self, table: &Table) -> Option<usize> {
+        let margin = table.column(DerivedColumn::SmallestMargin.name())?;
+        let value = |row: usize| Some((measured(table, margin, row)?, row));
+        let runs = self.rows.iter().filter_map(|row| value(*row));
+        runs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, row)| row)
+    }
+
+    /// The runs in some rows of a table.
+    fn of(table: &Table, rows: Vec<usize>) -> Self {
+        let status = |wanted: fn(Status) -> bool| {
+            rows.iter().filter(|row| table.status(**row).is_some_and(wanted)).count()
+        };
+        let done = status(|status| status == Status::Done);
+        let pending = status(|status| status == Status::Pending);
+        let infeasible = status(|status| status == Status::Infeasible);
+        let verdicts = rows.iter().filter_map(|row| table.verdict(*row));
+        let safe = table.column(DerivedColumn::Safe.name());
+        let safe = rows.iter().filter_map(|row| match safe?.cells[*row] {
+            Value::Bool(safe) => Some(safe),
+            _ => None,
+        });
+        Self {
+            deployed: Proportion::count(verdicts.map(|verdict| verdict == Verdict::Deployed)),
+            safe: Proportion::count(safe),
+            done,
+            failed: rows.len() - done - pending - infeasible,
+            infeasible,
+            pending,
+            rows,
+        }
+    }
+}
+
+/// The rows of each point, one row per job, in the order of their first rows.
+fn groups(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<Vec<usize>> {
+    let fixed: Vec<&Column> =
+        table.parameters().filter(|column| !replicates.contains(&column.name)).collect();
+    let job = table.column("job");
+    let mut positions: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for row in rows {
+        let key = fixed.iter().map(|column| canonical(&column.cells[*row])).collect();
+        let position = *positions.entry(key).or_insert(groups.len());
+        if position == groups.len() {
+            groups.push(Vec::new());
+        }
+        let same = |known: &usize| job.is_some_and(|job| job.cells[*known] == job.cells[*row]);
+        if !groups[position].iter().any(same) {
+            groups[position].push(*row);
+        }
+    }
+    groups
+}
+
+fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Statistic) -> Table {
+    let is_replicate = |column: &Column| replicates.contains(&column.name);
+    let parameters = table.parameters().count();
+    let columns = table.columns.iter().enumerate();
+    let columns = columns.filter(|(index, column)| *index > parameters || !is_replicate(column));
+    let column = |(index, column): (usize, &Column)| {
+        let number = matches!(column.cell_type, CellType::Number | CellType::Integer);
+        let is_measure = index > parameters && number;
+        let cell = |runs: &Runs| {
+            if is_measure {
+                let values = runs.rows.iter().filter_map(|row| measured(table, column, *row));
+                return Spread::of(values).map_or(Value::Null, |spread| {
+                    Value::Number(match statistic {
+                        Statistic::Least => spread.least,
+                        Statistic::Median => spread.median,
+                        Statistic::Largest => spread.largest,
+                    })
+                });
+            }
+            let first = &column.cells[runs.rows[0]];
+            if column.name == "job" || index <= parameters {
+                return first.clone();
+            }
+            if column.name == ColumnId::Status.name() {
+                return Value::Text(status(table, runs).name().to_owned());
+            }
+            if column.name == DerivedColumn::SmallestMarginOf.name() {
+                return runs.least(table).map_or(Value::Null, |row| column.cells[row].clone());
+            }
+            if column.name == DerivedColumn::VerdictDependsOn.name() {
+                let mut cells = runs.rows.iter().map(|row| &column.cells[*row]);
+                return cells.find(|cell| **cell != Value::Null).cloned().unwrap_or(Value::Null);
+            }
+            let same = runs.rows.iter().all(|row| column.cells[*row] == *first);
+            if same && column.name != SAME_JOB_AS { first.clone() } else { Value::Null }
+        };
+        Column {
+            cell_type: if is_measure { CellType::Number } else { column.cell_type },
+            cells: runs.iter().map(cell).collect(),
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+            shown: column.shown.clone(),
+            meaning: column.meaning.clone(),
+        }
+    };
+    Table { columns: columns.map(column).collect() }
+}
+
+/// The status of a point: pending while a run is, done if a run is, otherwise that of the first run.
+fn status(table: &Table, runs: &Runs) -> Status {
+    if runs.pending > 0 {
+        Status::Pending
+    } else if runs.done > 0 {
+        Status::Done
+    } else {
+        table.status(runs.rows[0]).unwrap_or(Status::Pending)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::units::DisplayUnit;
+
+    fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
+        Column {
+            name: name.to_owned(),
+            cell_type,
+            unit: String::new(),
+            shown: DisplayUnit::si(""),
+            meaning: String::new(),
+            cells,
+        }
+    }
+
+    fn text(values: &[&str]) -> Vec<Value> {
+        let value = |text: &&str| match *text {
+            "" => Value::Null,
+            text => Value::Text(text.to_owned()),
+        };
+        values.iter().map(value).collect()
+    }
+
+    /// Strategy a with three seeds of which one failed, strategy b with two seeds that are one job.
+    fn table() -> Table {
+        let numbers = |values: [f64; 5]| values.map(Value::Number).to_vec();
+        Table {
+            columns: vec![
+                column("job", CellType::Text, text(&["1", "2", "3", "4", "4"])),
+                column("strategy", CellType::Text, text(&["a", "a", "a", "b", "b"])),
+                column("seed", CellType::Integer, [1, 2, 3, 1, 2].map(Value::Integer).to_vec()),
+                column(
+                    "status",
+                    CellType::Text,
+                    text(&["done", "done", "unstable", "done", "done"]),
+                ),
+                column(
+                    "verdict",
+                    CellType::Text,
+                    text(&["deployed", "stalled", "", "deployed", "deployed"]),
+                ),
+                column("peak_vz", CellType::Number, numbers([10.0, 14.0, 99.0, 5.0, 5.0])),
+                column(
+                    "safe",
+                    CellType::Bool,
+                    [true, false, false, true, true].map(Value::Bool).to_vec(),
+                ),
+            ],
+        }
+    }
+
+    #[test]
+    fn runs_become_medians_ranges_and_proportions() {
+        let all = [0, 1, 2, 3, 4];
+        let condensed = Condensed::of(&table(), &all, &["seed".to_owned()]);
+        assert_eq!(condensed.table.rows(), 2);
+        let names: Vec<&str> = condensed.table.parameters().map(|column| &*column.name).collect();
+        assert_eq!(names, ["strategy"]);
+        assert_eq!(
+            condensed.spread("peak_vz", 0),
+            Some([10.0, 12.0, 14.0]),
+            "without the failed run"
+        );
+        assert_eq!(condensed.spread("peak_vz", 1), Some([5.0; 3]));
+        let [a, b] = condensed.runs.as_slice() else { panic!() };
+        assert_eq!((a.deployed, a.done, a.failed), (Proportion { met: 1, of: 2 }, 2, 1));
+        assert_eq!(
+            (b.deployed, b.rows.len()),
+            (Proportion { met: 1, of: 1 }, 1),
+            "one job counts once"
+        );
+        assert_eq!(condensed.table.verdict(0), None, "the runs disagree");
+        assert_eq!(condensed.table.verdict(1), Some(Verdict::Deployed));
+        assert_eq!(condensed.table.status(0), Some(Status::Done));
+    }
+
+    #[test]
+    fn without_replicates_each_job_is_a_point() {
+        let condensed = Condensed::of(&table(), &[0, 1, 3], &[]);
+        assert_eq!(condensed.table.column("peak_vz"), condensed.largest.column("peak_vz"));
+        assert_eq!(condensed.runs.len(), 3);
+        assert_eq!(condensed.table.parameters().count(), 2);
+    }
+}

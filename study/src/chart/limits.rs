@@ -1,0 +1,149 @@
+//! The limit of a measure in a chart: its line, the side that is not allowed, the cells that miss it.
+
+use std::cmp::Ordering;
+
+use super::{Source, number};
+use crate::input::value::{Value, short_number};
+use crate::job::result_limit::{Condition, ResultLimit};
+use crate::job::row::DerivedColumn;
+use crate::render::figure::plot::Direction;
+use crate::render::figure::plot::rule::Rule;
+use crate::render::figure::ticks::minus;
+use crate::render::figure::unit::Unit;
+use crate::store::table::{Column, Table, row_column_name};
+
+/// A limit farther from the values than this many times their range is not on the axis. Chosen: the values
+/// still take a fourth of it.
+const MAX_DISTANCE: f64 = 3.0;
+
+/// A bound of the drawn measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    /// Its value, SI.
+    value: f64,
+    /// Whether values must be above it.
+    above: bool,
+    /// Whether the bound itself is allowed; `None` where the runs say it: of all limits together.
+    or_equal: Option<bool>,
+    /// Its meaning, as `peak_vz < 25 m/s`.
+    text: String,
+    /// Whether the measure is a margin, which is 0 at its limit.
+    margin: bool,
+}
+
+impl<'a> Source<'a> {
+    /// The bound of a measure; that of a margin is 0.
+    pub(super) fn bound(&self, measure: &Column) -> Option<Bound> {
+        let name = row_column_name(&measure.name);
+        let value = 0.0;
+        if name == DerivedColumn::SmallestMargin.name() {
+            let text = "every limit is met".to_owned();
+            return Some(Bound { value, above: true, or_equal: None, text, margin: true });
+        }
+        if let Some(limit) = self.limits.iter().find(|limit| limit.column_name() == name) {
+            let strict = matches!(limit.condition, Condition::Bound { or_equal: false, .. });
+            let (or_equal, text) = (Some(!strict), limit.to_string());
+            return Some(Bound { value, above: true, or_equal, text, margin: true });
+        }
+        let limit = self.limits.iter().find(|limit| limit.measure.name() == name)?;
+        let Condition::Bound { bound, above, or_equal } = limit.condition else { return None };
+        let (or_equal, text) = (Some(or_equal), limit.to_string());
+        Some(Bound { value: bound, above, or_equal, text, margin: false })
+    }
+
+    /// Whether a run of a row does not meet a limit.
+    pub(super) fn misses(&self, limit: &ResultLimit, row: usize) -> bool {
+        let (table, rows) = self.judged_rows(row);
+        rows.iter().any(|row| {
+            let value = table.value(limit.measure, *row).unwrap_or(&Value::Null);
+            let judged = table.status(*row).and_then(|status| limit.judge(status, value));
+            judged.is_some_and(|judged| !judged.met)
+        })
+    }
+
+    /// Whether a run of a row is not safe although its smallest margin is 0: it lies at a bound that is not
+    /// allowed.
+    fn misses_at_bound(&self, row: usize) -> bool {
+        let (table, rows) = self.judged_rows(row);
+        let cell = |name: DerivedColumn, row: usize| {
+            table.column(name.name()).map_or(&Value::Null, |column| &column.cells[row])
+        };
+        rows.iter().any(|row| {
+            number(cell(DerivedColumn::SmallestMargin, *row)) == Some(0.0)
+                && *cell(DerivedColumn::Safe, *row) == Value::Bool(false)
+        })
+    }
+
+    /// The table of the single runs, and the runs of a row.
+    fn judged_rows(&self, row: usize) -> (&'a Table, Vec<usize>) {
+        match (self.runs, self.runs_of(row)) {
+            (Some(runs), Some(of_row)) => (runs.single, of_row.rows.clone()),
+            _ => (self.table, vec![row]),
+        }
+    }
+}
+
+impl Bound {
+    /// Whether a row with this value (SI) misses the limit.
+    pub fn is_missed(&self, source: &Source<'_>, row: usize, value: f64) -> bool {
+        match value.partial_cmp(&self.value) {
+            Some(Ordering::Less) => self.above,
+            Some(Ordering::Greater) => !self.above,
+            Some(Ordering::Equal) => {
+                self.or_equal.map_or_else(|| source.misses_at_bound(row), |allowed| !allowed)
+            }
+            None => true,
+        }
+    }
+
+    /// Text of the legend.
+    pub fn legend(&self) -> String {
+        if self.margin {
+            format!("not safe; above 0: {}", self.text)
+        } else {
+            format!("misses the limit ({})", self.text)
+        }
+    }
+
+    /// A note on margins that are not distances.
+    pub fn note(&self, source: &Source<'_>) -> Option<String> {
+        let word = |limit: &&ResultLimit| matches!(limit.condition, Condition::Is(_));
+        let words = source.limits.iter().filter(word);
+        let names: Vec<&str> = words.map(|limit| limit.measure.name()).collect();
+        (self.margin && !names.is_empty()).then(|| {
+            format!("The margin of {} is 1 if the limit is met, −1 if not.", names.join(", "))
+        })
+    }
+
+    /// The line of the limit.
+    pub fn rule(&self, unit: &Unit) -> Rule {
+        let closed = if self.above { Direction::Down } else { Direction::Up };
+        Rule { value: unit.shown(self.value), text: self.label(unit), closed: Some(closed) }
+    }
+
+    fn label(&self, unit: &Unit) -> String {
+        if self.margin {
+            return "limit".to_owned();
+        }
+        let number = unit.shown(self.value);
+        let near: f64 = format!("{number:.5e}").parse().unwrap_or(number);
+        format!("limit {}", unit.after(&minus(&short_number(near))))
+    }
+
+    /// The ends of the values with the limit; a note in its place if it is far from them.
+    pub fn extended(&self, [low, high]: [f64; 2], unit: &Unit) -> ([f64; 2], Option<String>) {
+        let value = unit.shown(self.value);
+        // Zero is an end of the axis where it is near.
+        let span = high - low.min(0.0).min(high);
+        if low > high {
+            return ([value, value], None);
+        }
+        let distance = (low - value).max(value - high);
+        if distance <= MAX_DISTANCE * span {
+            return ([low.min(value), high.max(value)], None);
+        }
+        let side = if value > high { "above" } else { "below" };
+        let label = self.label(unit);
+        ([low, high], Some(format!("The {label} lies far {side} the vertical axis.")))
+    }
+}

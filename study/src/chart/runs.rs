@@ -1,0 +1,102 @@
+//! The runs behind the points of a chart, where replicates repeat a point: median, range, k of n.
+
+use super::{Source, names};
+use crate::analysis::compare::measured;
+use crate::analysis::replicates::{Condensed, Runs};
+use crate::render::figure::legend::{Legend, Sample};
+use crate::store::table::{Column, Table};
+
+/// The runs behind the rows of a condensed table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Replicated<'a> {
+    /// The condensed table, which is that of the source.
+    pub condensed: &'a Condensed,
+    /// The table of the single runs.
+    pub single: &'a Table,
+    /// The parameters whose values repeat a point.
+    pub names: &'a [String],
+}
+
+impl<'a> Source<'a> {
+    /// The runs of a row; `None` where each row is one job.
+    pub(super) fn runs_of(&self, row: usize) -> Option<&'a Runs> {
+        Some(&self.runs?.condensed.runs[row])
+    }
+
+    /// Least and largest value of a measure at a row; `None` where its runs do not differ.
+    pub(super) fn range(&self, measure: &Column, row: usize) -> Option<[f64; 2]> {
+        let [least, _, largest] = self.runs?.condensed.spread(&measure.name, row)?;
+        (least < largest).then_some([least, largest])
+    }
+
+    /// The single runs of the chart.
+    pub(super) fn single(&self) -> Self {
+        let Some(runs) = self.runs else { return self.clone() };
+        let rows = self.rows.iter().flat_map(|row| runs.condensed.runs[*row].rows.clone());
+        Self { table: runs.single, rows: rows.collect(), runs: None, ..self.clone() }
+    }
+
+    /// The rows of the single runs of a row.
+    pub(super) fn single_rows(&self, row: usize) -> &[usize] {
+        self.runs_of(row).map_or(&[], |runs| &runs.rows)
+    }
+
+    /// " of 5 runs each (seed)", for the subtitle.
+    pub(super) fn runs_text(&self) -> String {
+        let Some(runs) = self.runs else { return String::new() };
+        let counts = || self.rows.iter().map(|row| runs.condensed.runs[*row].rows.len());
+        let (Some(least), Some(most)) = (counts().min(), counts().max()) else {
+            return String::new();
+        };
+        let name = |name: &String| names::Name::of_parameter(name).plain;
+        let names: Vec<String> = runs.names.iter().map(name).collect();
+        let number = if least == most { most.to_string() } else { format!("{least} to {most}") };
+        let noun = if most == 1 { "run" } else { "runs" };
+        format!(" of {number} {noun} each ({})", names.join(", "))
+    }
+
+    /// Notes on the runs that medians and ranges do not contain.
+    pub(super) fn runs_notes(&self, measure: Option<&Column>) -> Vec<String> {
+        let Some(Replicated { condensed, single, .. }) = self.runs else { return Vec::new() };
+        let all = || self.rows.iter().map(|row| &condensed.runs[*row]);
+        let sum = |count: fn(&Runs) -> usize| all().map(count).sum::<usize>();
+        let (failed, pending) =
+            (sum(|runs| runs.failed + runs.infeasible), sum(|runs| runs.pending));
+        let mut texts = Vec::new();
+        if failed > 0 {
+            texts.push(format!("{failed} failed or are infeasible"));
+        }
+        if pending > 0 {
+            texts.push(format!("{pending} have not ended"));
+        }
+        let mut notes = Vec::new();
+        if !texts.is_empty() {
+            notes.push(format!(
+                "Of {} runs {}: medians, ranges and k/n are those of the others.",
+                sum(|runs| runs.rows.len()),
+                texts.join(", ")
+            ));
+        }
+        let column = measure.and_then(|measure| single.column(&measure.name));
+        let partly = column.map_or(0, |column| {
+            let count = |runs: &Runs| {
+                runs.rows.iter().filter(|row| measured(single, column, **row).is_some()).count()
+            };
+            all().filter(|runs| (1..runs.done).contains(&count(runs))).count()
+        });
+        if partly > 0 {
+            let noun = if partly == 1 { "point" } else { "points" };
+            notes.push(format!(
+                "At {partly} {noun} not every run has a value: median and range are of those that have one."
+            ));
+        }
+        notes
+    }
+
+    /// The legend of medians and ranges, with this sample.
+    pub(super) fn runs_legend(&self, sample: Sample) -> Option<Legend> {
+        self.runs?;
+        let entries = vec![(sample, "median, and range from least to largest".to_owned())];
+        Some(Legend { heading: "Runs of a point".to_owned(), entries })
+    }
+}

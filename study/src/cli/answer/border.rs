@@ -1,0 +1,84 @@
+//! Lines of the answer on the searches of a border.
+
+use crate::analysis::answer::{Found, Searches};
+use crate::cli::print::count;
+use crate::input::value::Value;
+use crate::study::Outcome;
+
+/// Most searches that the answer names.
+const MAX_SEARCHES: usize = 12;
+
+/// One line per search.
+pub(super) fn lines(searches: &Searches) -> Vec<String> {
+    let mut lines: Vec<String> =
+        searches.found.iter().take(MAX_SEARCHES).map(|found| line(searches, found)).collect();
+    let more = searches.found.len() - lines.len();
+    if more > 0 {
+        let open = searches.found.iter().filter(|found| found.border.outcome == Outcome::Open);
+        let open = match open.count() {
+            0 => String::new(),
+            open => format!(" ({open} of all are open)"),
+        };
+        lines.push(format!("and {more} more{open}: billow borders lists all"));
+    }
+    lines
+}
+
+fn line(searches: &Searches, found: &Found) -> String {
+    let (name, what) = (&searches.parameter, &searches.criterion);
+    let interval = |[low, high]: [f64; 2]| {
+        let (unit, high) = (&searches.shown, Value::Number(high));
+        format!("{} to {}", unit.text(&Value::Number(low)), unit.quantity(&high))
+    };
+    let text = match &found.border.outcome {
+        Outcome::Open => {
+            let open = found.sum(|level| level.open);
+            format!("{name}: open: {} not run", count(open, "job"))
+        }
+        Outcome::Border { low, high, met_below } => {
+            let sides = if *met_below { ("below", "above") } else { ("above", "below") };
+            format!("{name} {}: {what} {}, not {}", interval([*low, *high]), sides.0, sides.1)
+        }
+        Outcome::NotMonotone(changes) => {
+            let changes: Vec<String> = changes.iter().map(|change| interval(*change)).collect();
+            format!("{name}: {what}: not monotone: changes in {}", changes.join(" and in "))
+        }
+        Outcome::NoChange { met } => {
+            let range = found.decided(searches.replicates).map(interval).unwrap_or_default();
+            let value = if *met { "every decided" } else { "no decided" };
+            let open = found.undecided(searches.replicates);
+            let open: Vec<String> =
+                open.iter().map(|v| searches.shown.text(&Value::Number(*v))).collect();
+            let unit = searches.shown.symbol();
+            let open = match open.as_slice() {
+                [] => String::new(),
+                values => {
+                    format!(", not decided at {} {unit}", values.join(", ")).trim_end().to_owned()
+                }
+            };
+            format!("{name}: {what} at {value} value from {range}{open}")
+        }
+        Outcome::Undecided => format!("{name}: {what}: not decided at any value"),
+    };
+    let varies = |index: &usize| {
+        let mut values = searches.found.iter().map(|other| &other.parameters[*index].1);
+        let first = &found.parameters[*index].1;
+        values.any(|value| value != first)
+    };
+    let parameters: Vec<String> = (0..found.parameters.len())
+        .filter(varies)
+        .map(|index| {
+            let (name, value, unit) = &found.parameters[index];
+            format!("{name}={}", unit.quantity(value))
+        })
+        .collect();
+    let parameters =
+        if parameters.is_empty() { String::new() } else { format!(" ({})", parameters.join(", ")) };
+    let not_judged = match found.sum(|level| level.not_judged) {
+        0 => String::new(),
+        runs => format!("; {} not judged", count(runs, "run")),
+    };
+    let filtered =
+        if found.border.filtered { "; the filter of the study ends this search" } else { "" };
+    format!("{text}{parameters}{not_judged}{filtered}")
+}

@@ -1,0 +1,75 @@
+//! Notes of a plan on its searches and limits.
+
+use billow_solver::scene::ModelKind;
+
+use crate::cli::print::count;
+use crate::job::row::ColumnId;
+use crate::study::Study;
+use crate::study::plan::{PlanCounts, borders};
+
+/// Measures that only the film model computes.
+const FILM_ONLY: [ColumnId; 7] = [
+    ColumnId::FilmStress99,
+    ColumnId::TFilmStress99,
+    ColumnId::Passages,
+    ColumnId::Intersections,
+    ColumnId::InterlayerPressure,
+    ColumnId::ContactAreaFraction,
+    ColumnId::SmallestGap,
+];
+
+/// What a reader of the plan must know of its searches and limits.
+pub(super) fn notes(study: &Study, counts: &PlanCounts) -> Vec<String> {
+    let mut notes: Vec<String> = search(study, counts).into_iter().collect();
+    notes.extend(limits(study));
+    notes
+}
+
+/// How many jobs a search takes.
+fn search(study: &Study, counts: &PlanCounts) -> Option<String> {
+    let (name, _) = study.searched()?;
+    let searches = borders(study, &[]);
+    let begins = searches.iter().map(|border| border.levels.len()).max().unwrap_or(0);
+    let more = study.most_search_values()?.saturating_sub(begins) * study.replicate_count();
+    Some(format!(
+        "search: {} along {name}; first generation {}; up to {more} more per search",
+        match searches.len() {
+            1 => "1 search".to_owned(),
+            number => format!("{number} searches"),
+        },
+        count(counts.jobs, "job"),
+    ))
+}
+
+/// What the limits of the study say, and what they leave open.
+fn limits(study: &Study) -> Vec<String> {
+    let limits = study.result_limits();
+    if limits.is_empty() {
+        return Vec::new();
+    }
+    let texts: Vec<String> = limits.iter().map(ToString::to_string).collect();
+    let mut notes = vec![format!("limits: safe is {}", texts.join(" and "))];
+    if !limits.iter().any(|limit| limit.measure == ColumnId::Verdict) {
+        notes.push(
+            "note: limits have no verdict: a capsule that does not deploy can be safe; \"verdict\": \"deployed\" \
+             excludes it"
+                .to_owned(),
+        );
+    }
+    let pistons =
+        study.points().iter().filter(|point| point.scene.solver.model == ModelKind::Piston);
+    let pistons = pistons.count();
+    let missing: Vec<&str> = limits
+        .iter()
+        .filter(|limit| pistons > 0 && FILM_ONLY.contains(&limit.measure))
+        .map(|limit| limit.measure.name())
+        .collect();
+    if !missing.is_empty() {
+        notes.push(format!(
+            "note: the model piston does not compute {}: {} cannot be judged",
+            missing.join(", "),
+            count(pistons, "point")
+        ));
+    }
+    notes
+}

@@ -1,0 +1,123 @@
+//! The columns of a table of points, one number per column.
+
+use super::{DEPLOYED, RANGE, RUNS};
+use crate::analysis::replicates::{Condensed, Runs};
+use crate::input::units::DisplayUnit;
+use crate::input::value::Value;
+use crate::job::proportion::Proportion;
+use crate::job::row::{CellType, DerivedColumn, SAME_JOB_AS};
+use crate::store::table::{Column, Table};
+
+/// The position of the first column of a key, which stands after the stored columns.
+pub fn keys_start(table: &Table) -> usize {
+    let last = table.columns.iter().position(|column| column.name == SAME_JOB_AS);
+    last.map_or(table.columns.len(), |last| last + 1)
+}
+
+/// The columns of the points.
+pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
+    let counted = |name: &str, meaning: &str, count: fn(&Runs) -> usize| {
+        let cells = condensed.runs.iter().map(|runs| integer(count(runs)));
+        column(name, CellType::Integer, meaning, cells.collect())
+    };
+    let mut new = vec![counted(RUNS, "number of runs: different jobs", |runs| runs.rows.len())];
+    let parameters = condensed.table.parameters().count();
+    let stored = keys_start(&condensed.table);
+    let stored = (1..stored).filter(|index| condensed.table.columns[*index].name != SAME_JOB_AS);
+    for index in stored {
+        let median = &condensed.table.columns[index];
+        let number = matches!(median.cell_type, CellType::Integer | CellType::Number);
+        let with = |end: &str, source: &Table| Column {
+            name: format!("{}{end}", median.name),
+            ..source.columns[index].clone()
+        };
+        let [least, largest] = RANGE;
+        match median.name.as_str() {
+            _ if index <= parameters || !number && median.name != DerivedColumn::Safe.name() => {
+                new.push(median.clone());
+            }
+            name if name == DerivedColumn::Safe.name() => {
+                new.extend(proportion(name, "are safe", condensed, |runs| runs.safe));
+            }
+            name if name == DerivedColumn::SmallestMargin.name() => new.extend([
+                with("", &condensed.least),
+                with("_median", &condensed.table),
+                with(largest, &condensed.largest),
+            ]),
+            _ => new.extend([
+                median.clone(),
+                with(least, &condensed.least),
+                with(largest, &condensed.largest),
+            ]),
+        }
+        if index == parameters + 1 {
+            new.push(counted("runs_done", "number of done runs", |runs| runs.done));
+            new.push(counted("runs_failed", "number of failed runs", |runs| runs.failed));
+            new.push(counted("runs_pending", "number of runs to come", |runs| runs.pending));
+            new.extend(proportion(DEPLOYED, "deployed", condensed, |runs| runs.deployed));
+        }
+    }
+    // Keys that a condition or an option names: the runs of a point have one value, or none is given.
+    new.extend(table.columns.iter().skip(keys_start(table)).map(|key| Column {
+        cells: condensed.runs.iter().map(|runs| common(key, &runs.rows)).collect(),
+        ..key.clone()
+    }));
+    new
+}
+
+/// The value that all these rows have.
+fn common(column: &Column, rows: &[usize]) -> Value {
+    let first = &column.cells[rows[0]];
+    let same = rows.iter().all(|row| column.cells[*row] == *first);
+    if same { first.clone() } else { Value::Null }
+}
+
+/// The four columns of a proportion: k, n, and its interval.
+fn proportion(
+    name: &str,
+    what: &str,
+    condensed: &Condensed,
+    of: fn(&Runs) -> Proportion,
+) -> Vec<Column> {
+    let all: Vec<Proportion> = condensed.runs.iter().map(of).collect();
+    let numbers = |number: fn(&Proportion) -> usize| {
+        all.iter().map(|one| integer(number(one))).collect::<Vec<Value>>()
+    };
+    let ends = |end: usize| -> Vec<Value> {
+        let cell = |one: &Proportion| match one.of {
+            0 => Value::Null,
+            _ => Value::Number(one.wilson()[end]),
+        };
+        all.iter().map(cell).collect()
+    };
+    let count = format!("number of runs that {what}");
+    let interval =
+        |end: &str| format!("{end} end of the 95 % interval (Wilson) of those that {what}");
+    let named = |end: &str| format!("{name}{end}");
+    vec![
+        column(name, CellType::Integer, &count, numbers(|one| one.met)),
+        column(
+            &named("_of"),
+            CellType::Integer,
+            "number of runs that were judged",
+            numbers(|one| one.of),
+        ),
+        column(&named("_low"), CellType::Number, &interval("lower"), ends(0)),
+        column(&named("_high"), CellType::Number, &interval("upper"), ends(1)),
+    ]
+}
+
+fn column(name: &str, cell_type: CellType, meaning: &str, cells: Vec<Value>) -> Column {
+    Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: "1".to_owned(),
+        shown: DisplayUnit::si("1"),
+        meaning: meaning.to_owned(),
+        cells,
+    }
+}
+
+fn integer(number: usize) -> Value {
+    Value::Integer(i64::try_from(number).unwrap_or(i64::MAX))
+}

@@ -1,0 +1,109 @@
+//! The points of a small table: columns, cells, conditions.
+
+use super::*;
+use crate::cli::range::rounded;
+use crate::input::units::DisplayUnit;
+use crate::job::row::SAME_JOB_AS;
+
+fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
+    Column {
+        name: name.to_owned(),
+        cell_type,
+        unit: String::new(),
+        shown: DisplayUnit::si(""),
+        meaning: String::new(),
+        cells,
+    }
+}
+
+fn texts(values: [&str; 6]) -> Vec<Value> {
+    let value = |text: &str| match text {
+        "" => Value::Null,
+        text => Value::Text(text.to_owned()),
+    };
+    values.map(value).to_vec()
+}
+
+/// Strategy a: three seeds, one failed. Strategy b: three seeds, all safe.
+fn table() -> Table {
+    let numbers = |name: &str, values: [f64; 6]| {
+        column(name, CellType::Number, values.map(Value::Number).to_vec())
+    };
+    let text = |name: &str, values: [&str; 6]| column(name, CellType::Text, texts(values));
+    let mut safe = [true, false, false, true, true, true].map(Value::Bool);
+    safe[2] = Value::Null;
+    Table {
+        columns: vec![
+            text("job", ["1", "2", "3", "4", "5", "6"]),
+            text("strategy", ["a", "a", "a", "b", "b", "b"]),
+            column("seed", CellType::Integer, [1, 2, 3, 1, 2, 3].map(Value::Integer).to_vec()),
+            text("status", ["done", "done", "unstable", "done", "done", "done"]),
+            text("verdict", ["deployed", "stalled", "", "deployed", "deployed", "deployed"]),
+            numbers("peak_vz", [20.0, 30.0, 99.0, 10.0, 11.0, 15.0]),
+            column("safe", CellType::Bool, safe.to_vec()),
+            numbers("smallest_margin", [0.2, -0.2, 9.0, 0.6, 0.5612, 0.4]),
+            text("smallest_margin_of", ["peak_vz", "verdict", "", "peak_vz", "peak_vz", "peak_vz"]),
+            text("verdict_depends_on", ["seed", "seed", "", "", "", ""]),
+            text(SAME_JOB_AS, [""; 6]),
+            numbers("film.thickness", [2e-5; 6]),
+        ],
+    }
+}
+
+fn seeds() -> Vec<String> {
+    vec!["seed".to_owned()]
+}
+
+#[test]
+fn a_point_has_one_number_per_column_for_programs() {
+    let table = table();
+    let points = Points::of(&table, &[0, 1, 2, 3, 4, 5], &seeds());
+    let cells = |name: &str| points.table.column(name).unwrap().cells.clone();
+    let integers = |numbers: [i64; 2]| numbers.map(Value::Integer).to_vec();
+    assert_eq!(cells("runs"), integers([3, 3]));
+    assert_eq!(cells("runs_failed"), integers([1, 0]));
+    assert_eq!((cells("deployed"), cells("deployed_of")), (integers([1, 3]), integers([2, 3])));
+    assert_eq!((cells("safe"), cells("safe_of")), (integers([1, 3]), integers([2, 3])));
+    let Value::Number(low) = cells("deployed_low")[1] else { panic!() };
+    assert_eq!(rounded(low, 2).to_bits(), 0.44_f64.to_bits(), "Wilson: 3 of 3");
+    assert_eq!(cells("peak_vz"), [25.0, 11.0].map(Value::Number));
+    assert_eq!(cells("peak_vz_least"), [20.0, 10.0].map(Value::Number));
+    assert_eq!(cells("peak_vz_largest"), [30.0, 15.0].map(Value::Number));
+    assert_eq!(cells("smallest_margin"), [-0.2, 0.4].map(Value::Number), "the least is safe");
+    assert_eq!(cells("smallest_margin_of")[0], Value::Text("verdict".to_owned()));
+    assert_eq!(cells("verdict_depends_on"), [Value::Text("seed".to_owned()), Value::Null]);
+    assert_eq!(cells("film.thickness"), [Value::Number(2e-5), Value::Number(2e-5)]);
+    let parameters: Vec<&str> = points.table.parameters().map(|column| &*column.name).collect();
+    assert_eq!(parameters, ["strategy"]);
+    assert!(points.table.column("job").is_none(), "a point has several jobs");
+}
+
+#[test]
+fn a_cell_for_a_reader_has_the_range_and_the_interval() {
+    let table = table();
+    let points = Points::of(&table, &[0, 1, 2, 3, 4, 5], &seeds());
+    let cell = |name: &str, row| points.cell(points.table.column(name).unwrap(), row).to_string();
+    assert_eq!(cell("runs", 0), "2 done, 1 failed");
+    assert_eq!(cell("runs", 1), "3");
+    assert_eq!(cell("peak_vz", 0), "25 [20 to 30]");
+    assert_eq!(cell("deployed", 0), "1 of 2 (9 to 91 %)");
+    assert_eq!(cell("safe", 1), "3 of 3 (44 to 100 %)");
+    assert_eq!(cell("smallest_margin", 1), "0.4");
+    assert_eq!(cell("verdict", 0), "null", "the runs disagree");
+}
+
+#[test]
+fn a_condition_on_results_chooses_points_and_one_on_a_replicate_runs() {
+    let table = table();
+    let chosen = |condition: &str| chosen_runs(&table, Some(condition), &seeds()).unwrap();
+    assert_eq!(chosen("safe and smallest_margin > 0.1"), [3, 4, 5]);
+    assert_eq!(chosen("not safe"), [0, 1, 2]);
+    assert_eq!(chosen("peak_vz >= 25"), [0, 1, 2], "the median, with all runs");
+    assert_eq!(chosen("peak_vz_largest < 16 and deployed == deployed_of"), [3, 4, 5]);
+    assert_eq!(chosen("strategy == 'a'"), [0, 1, 2]);
+    assert_eq!(chosen("seed <= 2"), [0, 1, 3, 4]);
+    assert_eq!(chosen("seed <= 2 and peak_vz > 15"), [0, 1]);
+    let single = chosen_runs(&table, Some("safe and smallest_margin > 0.1"), &[]).unwrap();
+    assert_eq!(single, [0, 3, 4, 5], "single runs");
+    assert!(chosen_runs(&table, Some("deployd == 1"), &seeds()).is_err());
+}

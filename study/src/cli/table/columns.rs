@@ -1,0 +1,142 @@
+//! The columns of the single runs: those asked for, or those that fit on a line.
+
+use super::{MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH};
+use crate::cli::Format;
+use crate::cli::print::Heading;
+use crate::cli::target::find;
+use crate::input::value::Value;
+use crate::job::row::{ColumnId, DerivedColumn, current_column_name};
+use crate::platform::error::Result;
+use crate::store::table::{Column, Table};
+
+/// The parameter whose values are compared for how gentle they are.
+const STRATEGY: &str = "strategy";
+
+/// Columns shown after the parameters by default, in this order, as far as they fit. Where strategies are
+/// compared, the speed stands beside the energy, although it is noisy: both measure the impact.
+pub fn main_names(table: &Table) -> Vec<&'static str> {
+    let mut names = vec![
+        ColumnId::Status.name(),
+        ColumnId::Verdict.name(),
+        DerivedColumn::Safe.name(),
+        DerivedColumn::SmallestMargin.name(),
+        DerivedColumn::SmallestMarginOf.name(),
+        DerivedColumn::VerdictDependsOn.name(),
+    ];
+    names.extend(main_measures(table));
+    names
+}
+
+/// The measures among them.
+pub fn main_measures(table: &Table) -> Vec<&'static str> {
+    let impact: &[ColumnId] = if compares_strategies(table) {
+        &[ColumnId::PeakKineticEnergy, ColumnId::PeakVz]
+    } else {
+        &[ColumnId::PeakKineticEnergy]
+    };
+    let end = [
+        ColumnId::FinalPressure,
+        ColumnId::TDeployed,
+        ColumnId::VolumeRatio,
+        ColumnId::HeightRatio,
+        ColumnId::Overshoot,
+    ];
+    let measures = [ColumnId::T90ZRim].iter().chain(impact).chain(&end);
+    measures.map(|column| column.name()).collect()
+}
+
+/// Whether a study compares strategies.
+pub fn compares_strategies(table: &Table) -> bool {
+    table.parameters().any(|column| column.name == STRATEGY)
+}
+
+/// The columns to print.
+///
+/// # Errors
+/// An unknown column.
+pub fn chosen<'a>(
+    table: &'a Table,
+    names: &[String],
+    sort: &[String],
+    format: Format,
+) -> Result<Vec<&'a Column>> {
+    match names {
+        [] if format == Format::Table => Ok(main_columns(table, sort)),
+        [] => Ok(table.columns.iter().collect()),
+        [all] if all == "all" => Ok(table.columns.iter().collect()),
+        names => names.iter().map(|name| find(table, "--columns", name.trim())).collect(),
+    }
+}
+
+/// The columns that sort the rows and are not among these.
+pub fn sorting<'a>(table: &'a Table, sort: &[String], known: &[&Column]) -> Vec<&'a Column> {
+    let mut columns: Vec<&Column> = Vec::new();
+    for name in sort.iter().map(|key| key.split(':').next().unwrap_or_default().trim()) {
+        let column = table.column(current_column_name(name).0);
+        let is_new =
+            |column: &&Column| known.iter().chain(&columns).all(|known| known.name != column.name);
+        columns.extend(column.filter(is_new));
+    }
+    columns
+}
+
+/// Job, parameters, the columns that sort the rows, and the main columns that fit on a line.
+fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
+    let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
+    columns.extend(table.parameters());
+    columns.extend(sorting(table, sort, &columns));
+    let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
+    let shown: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let names = main_names(table);
+    let mains = names.iter().filter(|name| !shown.contains(name));
+    // What the limits say takes the room of three columns.
+    let judged = table.column(DerivedColumn::Safe.name()).is_some();
+    let most = if judged { MAX_WIDE_LINE_WIDTH } else { MAX_LINE_WIDTH };
+    for column in mains.filter_map(|name| table.column(name)).collect::<Vec<_>>() {
+        let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
+        let always = is_always_shown(&column.name, has_values);
+        let fits = width + self::width(column) <= most;
+        // The speed does not take the place of the energy.
+        let partner = ColumnId::PeakKineticEnergy.name();
+        let alone = column.name == ColumnId::PeakVz.name()
+            && columns.iter().all(|known| known.name != partner);
+        if always || (has_values && fits && !alone) {
+            width += self::width(column) + 2;
+            columns.push(column);
+        }
+    }
+    columns
+}
+
+/// Whether a column is shown even if it makes the line too long: the status, and what the limits say.
+fn is_always_shown(name: &str, has_values: bool) -> bool {
+    let judged =
+        [DerivedColumn::Safe, DerivedColumn::SmallestMargin, DerivedColumn::VerdictDependsOn];
+    name == ColumnId::Status.name()
+        || (has_values && judged.iter().any(|column| column.name() == name))
+}
+
+/// A column as the head of a table has it.
+pub fn heading(column: &Column) -> Heading {
+    Heading { name: column.name.clone(), unit: column.shown.clone() }
+}
+
+/// Width of a column, characters.
+fn width(column: &Column) -> usize {
+    let rows = 0..column.cells.len();
+    let widest = rows.map(|row| match shown(column, row, Format::Table) {
+        Value::Null => 1,
+        value => column.shown.text(&value).chars().count(),
+    });
+    widest.max().unwrap_or(0).max(heading(column).width())
+}
+
+/// A cell as printed: a table has short job ids.
+pub fn shown(column: &Column, row: usize, format: Format) -> Value {
+    match &column.cells[row] {
+        Value::Text(id) if format == Format::Table && column.name == "job" => {
+            Value::Text(id.chars().take(8).collect())
+        }
+        value => value.clone(),
+    }
+}

@@ -1,0 +1,49 @@
+//! The order of the rows (`--sort`).
+
+use std::cmp::Ordering;
+
+use crate::cli::target::find;
+use crate::input::value::Value;
+use crate::platform::error::{Error, Result};
+use crate::store::table::{Column, Table};
+
+/// Rows in the order asked for; equal rows stay in plan order, empty cells come last.
+///
+/// # Errors
+/// An unknown column or direction.
+pub fn sorted(table: &Table, mut rows: Vec<usize>, sort: &[String]) -> Result<Vec<usize>> {
+    let mut keys = Vec::with_capacity(sort.len());
+    for key in sort {
+        let (name, descending) = match key.trim().split_once(':') {
+            None => (key.trim(), false),
+            Some((name, "asc")) => (name, false),
+            Some((name, "desc")) => (name, true),
+            Some(_) => {
+                let allowed = "NAME, NAME:asc, NAME:desc";
+                return Err(Error::invalid_option("--sort", key, "unknown direction", allowed, ""));
+            }
+        };
+        keys.push((find(table, "--sort", name)?, descending));
+    }
+    rows.sort_by(|a, b| {
+        let compare = |(column, descending): &(&Column, bool)| {
+            compare(&column.cells[*a], &column.cells[*b], *descending)
+        };
+        keys.iter().map(compare).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    });
+    Ok(rows)
+}
+
+fn compare(a: &Value, b: &Value, descending: bool) -> Ordering {
+    let order = match (a, b) {
+        (Value::Null, Value::Null) => return Ordering::Equal,
+        (Value::Null, _) => return Ordering::Greater,
+        (_, Value::Null) => return Ordering::Less,
+        (Value::Bool(a), Value::Bool(b)) => a.cmp(b),
+        (Value::Integer(a), Value::Integer(b)) => a.cmp(b),
+        (Value::Number(a), Value::Number(b)) => a.total_cmp(b),
+        // Cells of one column have one type: these are texts.
+        (a, b) => a.to_string().cmp(&b.to_string()),
+    };
+    if descending { order.reverse() } else { order }
+}

@@ -1,0 +1,218 @@
+//! Columns that follow from the others: margins of the limits of the study, and the numerical choices on
+//! which a verdict depends.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Column, Table};
+use crate::input::keys::{self, KEYS};
+use crate::input::units::DisplayUnit;
+use crate::input::value::Value;
+use crate::job::Status;
+use crate::job::result_limit::{ResultLimit, Safety};
+use crate::job::row::{CellType, DerivedColumn, SAME_JOB_AS};
+
+/// Keys that change numbers and no physics: a verdict that depends on one is not certain.
+const NUMERICAL: [&str; 7] = [
+    "seed",
+    "imperfection_amplitude",
+    "design.subdivisions",
+    "solver.cfl",
+    "film.numerical_damping",
+    "contact.distance",
+    "outputs.sample_interval",
+];
+
+impl Table {
+    /// The table with the columns of these limits, and with `verdict_depends_on` where the study varies a
+    /// numerical choice.
+    #[must_use]
+    pub fn judged(mut self, limits: &[ResultLimit]) -> Self {
+        let mut new = Vec::new();
+        if !limits.is_empty() {
+            let safety: Vec<Option<Safety>> =
+                (0..self.rows()).map(|row| self.safety(limits, row)).collect();
+            let cells = |of: fn(&Safety, &[ResultLimit]) -> Value| {
+                safety
+                    .iter()
+                    .map(|row| row.as_ref().map_or(Value::Null, |row| of(row, limits)))
+                    .collect()
+            };
+            new.push(derived(DerivedColumn::Safe, cells(|row, _| Value::Bool(row.safe))));
+            let smallest = cells(|row, _| Value::Number(row.smallest_margin));
+            new.push(derived(DerivedColumn::SmallestMargin, smallest));
+            let name =
+                cells(|row, limits| Value::Text(limits[row.limit].measure.name().to_owned()));
+            new.push(derived(DerivedColumn::SmallestMarginOf, name));
+            new.extend(limits.iter().map(|limit| self.margins(limit)));
+        }
+        let numerical = self.numerical_parameters();
+        if !numerical.is_empty() {
+            new.push(derived(DerivedColumn::VerdictDependsOn, self.verdict_depends_on(&numerical)));
+        }
+        let last = self.columns.iter().position(|column| column.name == SAME_JOB_AS);
+        let last = last.unwrap_or(self.columns.len());
+        self.columns.splice(last..last, new);
+        self
+    }
+
+    /// The safety of a row.
+    fn safety(&self, limits: &[ResultLimit], row: usize) -> Option<Safety> {
+        let value = |column| self.value(column, row).unwrap_or(&Value::Null);
+        Safety::of(limits, self.status(row)?, value)
+    }
+
+    /// The margins of one limit.
+    fn margins(&self, limit: &ResultLimit) -> Column {
+        let margin = |row| {
+            let value = self.value(limit.measure, row)?;
+            let judged = limit.judge(self.status(row)?, value)?;
+            Some(Value::Number(judged.margin))
+        };
+        Column {
+            name: limit.column_name(),
+            cell_type: CellType::Number,
+            unit: "1".to_owned(),
+            shown: DisplayUnit::si("1"),
+            meaning: format!(
+                "distance of {} from its limit ({}) over the limit; negative beyond it",
+                limit.measure.name(),
+                limit.text
+            ),
+            cells: (0..self.rows()).map(|row| margin(row).unwrap_or(Value::Null)).collect(),
+        }
+    }
+
+    /// The parameters that are numerical choices.
+    fn numerical_parameters(&self) -> Vec<usize> {
+        let is_numerical =
+            |name: &str| keys::find(name).is_some_and(|key| NUMERICAL.contains(&KEYS[key].path));
+        let parameters = self.parameters().enumerate();
+        parameters
+            .filter(|(_, column)| is_numerical(&column.name))
+            .map(|(index, _)| index)
+            .collect()
+    }
+
+    /// The numerical parameters on which the verdict of each row depends: with all other parameters equal,
+    /// another value gives another verdict.
+    fn verdict_depends_on(&self, numerical: &[usize]) -> Vec<Value> {
+        let parameters: Vec<&Column> = self.parameters().collect();
+        let names = |which: &[usize]| {
+            let names: Vec<&str> =
+                which.iter().map(|index| parameters[*index].name.as_str()).collect();
+            Value::Text(names.join(", "))
+        };
+        let alone: Vec<Vec<bool>> =
+            numerical.iter().map(|one| self.has_other_verdicts(&parameters, &[*one])).collect();
+        let together = self.has_other_verdicts(&parameters, numerical);
+        let cell = |row: usize| {
+            if self.verdict(row).is_none() || !together[row] {
+                return Value::Null;
+            }
+            let of_row = numerical.iter().zip(&alone).filter(|(_, depends)| depends[row]);
+            let of_row: Vec<usize> = of_row.map(|(index, _)| *index).collect();
+            // No single one changes it: they do together.
+            names(if of_row.is_empty() { numerical } else { &of_row })
+        };
+        (0..self.rows()).map(cell).collect()
+    }
+
+    /// For each row whether the rows that differ in these parameters alone have more than one verdict.
+    fn has_other_verdicts(&self, parameters: &[&Column], free: &[usize]) -> Vec<bool> {
+        let key = |row: usize| -> Vec<String> {
+            let fixed = parameters.iter().enumerate().filter(|(index, _)| !free.contains(index));
+            fixed.map(|(_, column)| column.cells[row].to_string()).collect()
+        };
+        let mut verdicts: BTreeMap<Vec<String>, BTreeSet<&'static str>> = BTreeMap::new();
+        let keys: Vec<Vec<String>> = (0..self.rows()).map(key).collect();
+        for (row, key) in keys.iter().enumerate() {
+            if let (Some(verdict), Some(Status::Done)) = (self.verdict(row), self.status(row)) {
+                verdicts.entry(key.clone()).or_default().insert(verdict.name());
+            }
+        }
+        keys.iter().map(|key| verdicts.get(key).is_some_and(|known| known.len() > 1)).collect()
+    }
+}
+
+/// A derived column with these cells.
+fn derived(column: DerivedColumn, cells: Vec<Value>) -> Column {
+    let row = column.row();
+    Column {
+        name: row.name.to_owned(),
+        cell_type: row.cell_type,
+        unit: row.unit.to_owned(),
+        shown: DisplayUnit::si(row.unit),
+        meaning: row.meaning.to_owned(),
+        cells,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::point::Point;
+    use crate::job::result_limit::Condition;
+    use crate::job::row::{Cells, ColumnId};
+    use crate::job::{Job, JobId};
+    use crate::run::fixture;
+    use crate::store::journal::Record;
+
+    /// Two designs, three seeds each, with these verdicts and speeds.
+    fn table(verdicts: [&str; 6], speeds: [f64; 6]) -> Table {
+        let mut points: Vec<Point> = fixture::generation(6).points;
+        let mut records = BTreeMap::new();
+        for (index, point) in points.iter_mut().enumerate() {
+            let number = |value: usize| Value::Integer(i64::try_from(value).unwrap());
+            let parameters =
+                vec![("N".to_owned(), number(index / 3)), ("seed".to_owned(), number(index % 3))];
+            point.job = Job { parameters, ..point.job.clone() };
+            let mut cells = Cells::new(Status::Done);
+            cells.set(ColumnId::Verdict, verdicts[index]);
+            cells.set(ColumnId::PeakVz, speeds[index]);
+            let job: JobId = point.job.id.clone();
+            let record = Record { job: job.clone(), cells, file_hash: None, file_stamp: None };
+            records.insert(job, record);
+        }
+        Table::build(&points, &records, &|_| String::new())
+    }
+
+    #[test]
+    fn a_verdict_that_differs_between_seeds_is_marked() {
+        let table = table(
+            ["deployed", "deployed", "deployed", "deployed", "stalled", "deployed"],
+            [1.0; 6],
+        );
+        let judged = table.clone().judged(&[]);
+        let depends = judged.column("verdict_depends_on").unwrap();
+        let null = Value::Null;
+        let seed = Value::Text("seed".to_owned());
+        assert_eq!(
+            depends.cells,
+            [null.clone(), null.clone(), null, seed.clone(), seed.clone(), seed]
+        );
+        let names = |table: &Table| table.columns.last().unwrap().name.clone();
+        assert_eq!(names(&judged), names(&table), "the last column stays the last");
+        assert!(judged.column("safe").is_none(), "no limits, no margins");
+    }
+
+    #[test]
+    fn limits_give_margins_and_say_which_is_the_smallest() {
+        let bound = Condition::Bound { bound: 20.0, above: false, or_equal: false };
+        let deployed = Condition::Is(Value::Text("deployed".to_owned()));
+        let limit =
+            |measure, condition| ResultLimit { measure, condition, text: "< 20 m/s".to_owned() };
+        let limits = [limit(ColumnId::PeakVz, bound), limit(ColumnId::Verdict, deployed)];
+        let mut verdicts = ["deployed"; 6];
+        verdicts[3] = "stalled";
+        // The fixture's third point is infeasible.
+        let judged = table(verdicts, [10.0, 25.0, 0.0, 10.0, 0.0, 0.0]).judged(&limits);
+        let cells =
+            |name: &str| [0, 1, 3].map(|row| judged.column(name).unwrap().cells[row].clone());
+        assert_eq!(cells("safe"), [true, false, false].map(Value::Bool));
+        assert_eq!(cells("smallest_margin"), [0.5, -0.25, -1.0].map(Value::Number));
+        let names = ["peak_vz", "peak_vz", "verdict"].map(|name| Value::Text(name.to_owned()));
+        assert_eq!(cells("smallest_margin_of"), names);
+        assert_eq!(cells("margin_peak_vz"), [0.5, -0.25, 0.5].map(Value::Number));
+        assert_eq!(cells("margin_verdict"), [1.0, 1.0, -1.0].map(Value::Number));
+    }
+}

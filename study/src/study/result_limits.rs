@@ -1,0 +1,206 @@
+//! The section `limits` of a study: what its results must meet to be safe.
+
+use crate::input::keys::STUDY;
+use crate::input::settings::object;
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::units::{self, Dimension};
+use crate::input::value::Value;
+use crate::job::result_limit::{Condition, ResultLimit};
+use crate::job::row::{COLUMNS, CellType, ColumnGroup, RowColumn, current_column_name};
+use crate::platform::error::InputError;
+use crate::platform::nearest::nearest;
+use billow_solver::output::measures::Verdict;
+
+/// Every verdict.
+const VERDICTS: [Verdict; 3] = [Verdict::Deployed, Verdict::Partial, Verdict::Stalled];
+/// Comparisons, the longer ones first: text, whether the value must be above, whether the bound is allowed.
+const COMPARISONS: [(&str, bool, bool); 4] =
+    [("<=", false, true), (">=", true, true), ("<", false, false), (">", true, false)];
+
+/// Reads the limits, in the order of the file.
+///
+/// # Errors
+/// A name that is not a measure, a condition that is not one, a bound of another dimension.
+pub(super) fn read(json: Option<&Json>, source: &Source) -> Result<Vec<ResultLimit>, InputError> {
+    let Some(json) = json else { return Ok(Vec::new()) };
+    let mut limits: Vec<ResultLimit> = Vec::new();
+    for (name, value) in object(json, &STUDY, "limits", source)? {
+        let path = format!("limits.{name}");
+        let column = column(name).ok_or_else(|| unknown(name, &path, value, source))?;
+        if limits.iter().any(|known| known.measure == column.id) {
+            let problem = format!("limits {} twice", column.name);
+            return Err(source.error(&path, &value.brief(), problem, "each measure once"));
+        }
+        let condition = condition(column, value, &path, source)?;
+        let text = match value {
+            Json::Text(text) => text.trim().to_owned(),
+            other => other.brief(),
+        };
+        limits.push(ResultLimit { measure: column.id, condition, text });
+    }
+    Ok(limits)
+}
+
+/// The section as a study file has it.
+pub(super) fn to_json(limits: &[ResultLimit]) -> Json {
+    let member = |limit: &ResultLimit| {
+        let value = match &limit.condition {
+            Condition::Is(Value::Bool(value)) => Json::Bool(*value),
+            _ => Json::Text(limit.text.clone()),
+        };
+        (limit.measure.name().to_owned(), value)
+    };
+    Json::Object(limits.iter().map(member).collect())
+}
+
+/// The column that a limit may name: an outcome, a measure or part of the audit.
+fn column(name: &str) -> Option<&'static RowColumn> {
+    let name = current_column_name(name).0;
+    COLUMNS.iter().find(|column| column.name == name && can_be_limited(column))
+}
+
+fn can_be_limited(column: &RowColumn) -> bool {
+    let group =
+        matches!(column.group, ColumnGroup::Outcome | ColumnGroup::Measures | ColumnGroup::Audit);
+    group && (column.cell_type != CellType::Text || column.name == "verdict")
+}
+
+fn condition(
+    column: &RowColumn,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Condition, InputError> {
+    match column.cell_type {
+        CellType::Text => verdict(json, path, source),
+        CellType::Bool => match json {
+            Json::Bool(value) => Ok(Condition::Is(Value::Bool(*value))),
+            _ => Err(source.error(path, &json.brief(), "is not a truth value", "true, false")),
+        },
+        CellType::Integer | CellType::Number => bound(column, json, path, source),
+    }
+}
+
+fn verdict(json: &Json, path: &str, source: &Source) -> Result<Condition, InputError> {
+    let word = match json {
+        Json::Text(text) => text.trim(),
+        _ => "",
+    };
+    if VERDICTS.iter().any(|verdict| verdict.name() == word) {
+        return Ok(Condition::Is(Value::Text(word.to_owned())));
+    }
+    let names = VERDICTS.map(Verdict::name);
+    let near = nearest(word, names.iter().copied());
+    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    Err(source.error(path, &json.brief(), format!("is not a verdict{near}"), names.join(", ")))
+}
+
+fn bound(
+    column: &RowColumn,
+    json: &Json,
+    path: &str,
+    source: &Source,
+) -> Result<Condition, InputError> {
+    let dimension = Dimension::ALL.into_iter().find(|known| known.si() == column.unit);
+    let allowed = match dimension {
+        Some(Dimension::Number) | None => "<, <=, > or >= and a number, as in \"< 0.1\"".to_owned(),
+        Some(dimension) => format!(
+            "<, <=, > or >= and {} with a unit ({}), as in \"< 25 {}\"",
+            dimension.name(),
+            dimension.units().join(", "),
+            dimension.si()
+        ),
+    };
+    let refuse = |problem: &str| Err(source.error(path, &json.brief(), problem, allowed.clone()));
+    let Json::Text(text) = json else {
+        return refuse("does not say on which side the measure must be");
+    };
+    let text = text.trim();
+    let found = COMPARISONS.iter().find_map(|(sign, above, or_equal)| {
+        Some((text.strip_prefix(sign)?.trim(), *above, *or_equal))
+    });
+    let Some((quantity, above, or_equal)) = found else {
+        return refuse("does not begin with <, <=, > or >=");
+    };
+    let plain = quantity.parse::<f64>().ok().filter(|number| number.is_finite());
+    let bound = match (dimension, plain) {
+        (Some(Dimension::Number) | None, Some(number)) => number,
+        (Some(dimension), None) => match units::parse(quantity, dimension) {
+            Ok(bound) => bound,
+            Err(error) => return refuse(&error.problem),
+        },
+        (Some(_), Some(_)) => return refuse("has no unit"),
+        (None, None) => return refuse("is not a number"),
+    };
+    Ok(Condition::Bound { bound, above, or_equal })
+}
+
+fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError {
+    let known = COLUMNS.iter().filter(|column| can_be_limited(column)).map(|column| column.name);
+    let near = nearest(name, known);
+    let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+    let problem = format!("is not a measure that can have a limit{near}");
+    let mut error = source.error(
+        path,
+        &value.brief(),
+        problem,
+        "verdict, peak_vz, film_stress_99, t_deployed_since_release and other measures",
+    );
+    "docs/reference/columns.md lists them: groups outcome, measures, audit"
+        .clone_into(&mut error.hint);
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::study_file;
+    use crate::job::row::ColumnId;
+
+    fn limits(text: &str) -> Result<Vec<ResultLimit>, InputError> {
+        read(Some(&study_file::parse(text, "s.json").unwrap()), &Source::new("s.json"))
+    }
+
+    #[test]
+    fn limits_are_read_with_their_units_and_written_back() {
+        let text = r#"{"film_stress_99": "< 100 MPa", "peak_vz": "<= 25 m/s", "verdict": "deployed",
+            "volume_ratio": ">0.9", "passages": "< 1", "numerically_damped": false}"#;
+        let read = limits(text).unwrap();
+        let bound = |bound, above, or_equal| Condition::Bound { bound, above, or_equal };
+        let conditions: Vec<&Condition> = read.iter().map(|limit| &limit.condition).collect();
+        let expected = [
+            bound(1e8, false, false),
+            bound(25.0, false, true),
+            Condition::Is(Value::Text("deployed".to_owned())),
+            bound(0.9, true, false),
+            bound(1.0, false, false),
+            Condition::Is(Value::Bool(false)),
+        ];
+        assert_eq!(conditions, expected.iter().collect::<Vec<_>>());
+        assert_eq!(read[0].measure, ColumnId::FilmStress99);
+        let again = serde_json::to_string(&to_json(&read)).unwrap();
+        assert_eq!(limits(&again).unwrap(), read);
+    }
+
+    #[test]
+    fn a_wrong_limit_names_its_key_and_what_is_allowed() {
+        for (text, problem, allowed) in [
+            (r#"{"peak_v": "< 25 m/s"}"#, "did you mean peak_vz?", "peak_vz"),
+            (r#"{"wall_seconds": "< 25 s"}"#, "is not a measure", "peak_vz"),
+            (r#"{"peak_vz": "25 m/s"}"#, "does not begin with", "\"< 25 m/s\""),
+            (r#"{"peak_vz": 25}"#, "on which side", "\"< 25 m/s\""),
+            (r#"{"peak_vz": "< 25"}"#, "has no unit", "m/s, mm/s"),
+            (r#"{"peak_vz": "< 25 Pa"}"#, "is a pressure, not a velocity", "m/s"),
+            (r#"{"volume_ratio": "> a"}"#, "not a number", "number"),
+            (r#"{"verdict": "deploys"}"#, "did you mean deployed?", "stalled"),
+            (r#"{"near_threshold": "no"}"#, "is not a truth value", "true, false"),
+            (r#"{"close": true, "near_threshold": false}"#, "twice", "once"),
+            (r#"["peak_vz"]"#, "is a list, not an object", ""),
+        ] {
+            let error = limits(text).unwrap_err().to_string();
+            assert!(error.contains(problem) && error.contains(allowed), "{text}: {error}");
+            assert!(error.contains("limits"), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Reads `{"bisect": [low, high], "on": …, "tolerance": …, "spacing": …}`, an axis of the grid.
+
+use super::{Criterion, Search, Spacing, Tolerance};
+use crate::input::keys::{Key, KeyKind};
+use crate::input::settings::{list, read};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::units::{self, Dimension};
+use crate::input::value::Value;
+use crate::job::proportion::Proportion;
+use crate::job::result_limit::ResultLimit;
+use crate::job::row::{ColumnId, current_column_name};
+use crate::platform::error::InputError;
+use crate::platform::nearest::nearest;
+use crate::study::grid::{Axis, AxisKind, Grid};
+use billow_solver::output::measures::Verdict;
+
+/// The member that makes an axis a search.
+const BISECT: &str = "bisect";
+/// The criterion of the verdict.
+pub(super) const VERDICT: &str = "verdict";
+/// The criterion of all limits.
+pub(super) const SAFE: &str = "safe";
+/// Width of the border where the file gives none (chosen).
+const DEFAULT_TOLERANCE: &str = "5 %";
+/// Smallest relative tolerance. Chosen: far below what a simulation can tell apart.
+const MIN_RELATIVE_TOLERANCE: f64 = 1e-6;
+/// What a search must look like, for errors.
+const ALLOWED: &str = "{\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit, \"tolerance\": a quantity or \
+                       a percentage, \"spacing\": linear or log}";
+
+/// Whether an axis is a search.
+pub(in crate::study) fn is_search(json: &Json) -> bool {
+    json.get(BISECT).is_some()
+}
+
+impl Grid {
+    /// Reads a search as an axis of this column.
+    ///
+    /// # Errors
+    /// A second search, a key without numbers, ends or a tolerance that are not allowed, an unknown
+    /// criterion.
+    pub(in crate::study) fn read_search(
+        &mut self,
+        column: usize,
+        json: &Json,
+        path: &str,
+        limits: &[ResultLimit],
+        source: &Source,
+    ) -> Result<(), InputError> {
+        let key = self.columns[column].target.key();
+        let file = SearchFile { key, json, path, source };
+        if self.search.is_some() {
+            return file
+                .refuse("is a second search", "one search in a study; the other axes as lists");
+        }
+        let search = file.read(column, limits)?;
+        let values = search.scan().into_iter().map(|number| vec![search.value(number)]);
+        let rows = values.collect();
+        self.axes.push(Axis { columns: vec![column], rows, kind: AxisKind::Search });
+        self.search = Some(search);
+        Ok(())
+    }
+
+    /// Refuses a search whose replicates can never decide.
+    pub(in crate::study) fn check_search(&self, source: &Source) -> Result<(), InputError> {
+        let count = self.replicate_count();
+        let decides = Proportion { met: count, of: count }.majority().is_some();
+        let Some(search) = self.search.as_ref().filter(|_| count > 1 && !decides) else {
+            return Ok(());
+        };
+        let path = format!("grid.{}.bisect", self.columns[search.column].name);
+        let mut error = source.error(
+            &path,
+            "",
+            format!(
+                "{count} replicates can never exclude one half: their Wilson interval is too wide"
+            ),
+            "no replicates, or 4 and more",
+        );
+        "give \"replicates\": {\"seed\": 5}".clone_into(&mut error.hint);
+        Err(error)
+    }
+}
+
+impl Search {
+    /// A value of the key.
+    pub fn value(&self, number: f64) -> Value {
+        #[expect(clippy::cast_possible_truncation, reason = "whole numbers of a key")]
+        if self.integer { Value::Integer(number as i64) } else { Value::Number(number) }
+    }
+}
+
+/// A search in the file.
+struct SearchFile<'a> {
+    key: &'static Key,
+    json: &'a Json,
+    path: &'a str,
+    source: &'a Source,
+}
+
+impl SearchFile<'_> {
+    fn refuse<T>(&self, problem: &str, allowed: &str) -> Result<T, InputError> {
+        Err(self.source.error(self.path, &self.json.brief(), problem, allowed))
+    }
+
+    fn read(&self, column: usize, limits: &[ResultLimit]) -> Result<Search, InputError> {
+        let Json::Object(members) = self.json else {
+            return self.refuse("is not an object", ALLOWED);
+        };
+        let known = [BISECT, "on", "tolerance", "spacing"];
+        if let Some((name, _)) = members.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+            return self.refuse(&format!("`{name}` is not a key of a search"), ALLOWED);
+        }
+        let integer = match self.key.kind {
+            KeyKind::Integer(..) => true,
+            KeyKind::Quantity(_) => false,
+            _ => return self.refuse("is a search of a key that does not hold numbers", ALLOWED),
+        };
+        let spacing = match self.json.get("spacing") {
+            None => Spacing::Linear,
+            Some(Json::Text(text)) if text == "linear" => Spacing::Linear,
+            Some(Json::Text(text)) if text == "log" => Spacing::Log,
+            Some(_) => return self.refuse("`spacing` is neither \"linear\" nor \"log\"", ALLOWED),
+        };
+        let ends = self.ends()?;
+        if spacing == Spacing::Log && ends[0] <= 0.0 {
+            return self.refuse("has logarithmic spacing, so `bisect` must begin above 0", ALLOWED);
+        }
+        let criterion = self.criterion(limits)?;
+        let tolerance = self.tolerance(ends)?;
+        let default = || Json::Text(DEFAULT_TOLERANCE.to_owned());
+        let written_tolerance = self.json.get("tolerance").cloned().unwrap_or_else(default);
+        Ok(Search { column, ends, spacing, criterion, tolerance, written_tolerance, integer })
+    }
+
+    fn ends(&self) -> Result<[f64; 2], InputError> {
+        let path = format!("{}.{BISECT}", self.path);
+        let json = self.json.get(BISECT).unwrap_or(&Json::Null);
+        let allowed = "two values, the smaller one first";
+        let items = list(json, &path, self.source, allowed)?;
+        let [low, high] = items else {
+            return self.refuse("`bisect` is not a list of two values", allowed);
+        };
+        let end = |json: &Json, index: usize| match read(
+            self.key,
+            json,
+            &format!("{path}[{index}]"),
+            self.source,
+        )? {
+            Value::Number(number) if number.is_finite() => Ok(number),
+            Value::Integer(number) => Ok(number as f64),
+            _ => self.refuse("`bisect` has an end that is not a finite number", allowed),
+        };
+        let ends = [end(low, 0)?, end(high, 1)?];
+        if ends[0] >= ends[1] {
+            return self.refuse("`bisect` does not begin below its end", allowed);
+        }
+        Ok(ends)
+    }
+
+    fn criterion(&self, limits: &[ResultLimit]) -> Result<Criterion, InputError> {
+        let names = || limits.iter().map(|limit| limit.measure.name());
+        let allowed = [VERDICT, SAFE].into_iter().chain(names().filter(|name| *name != VERDICT));
+        let allowed = allowed.collect::<Vec<_>>().join(", ");
+        let Some(Json::Text(name)) = self.json.get("on") else {
+            return self.refuse("has no `on`: what changes at the border", &allowed);
+        };
+        if name == SAFE {
+            if limits.is_empty() {
+                return self.refuse(
+                    "searches the border of `safe` without limits",
+                    "\"limits\" of the study",
+                );
+            }
+            return Ok(Criterion::Safe);
+        }
+        let current = current_column_name(name).0;
+        if let Some(index) = names().position(|known| known == current) {
+            return Ok(Criterion::Limit(index));
+        }
+        if name == VERDICT {
+            return Ok(Criterion::Deployed);
+        }
+        let near = nearest(name, [VERDICT, SAFE].into_iter().chain(names()));
+        let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+        let problem = if ColumnId::from_name(current).is_some() {
+            format!("`on`: {name} has no limit")
+        } else {
+            format!("`on`: {name} is neither verdict, safe nor a limit of the study{near}")
+        };
+        self.refuse(&problem, &allowed)
+    }
+
+    fn tolerance(&self, ends: [f64; 2]) -> Result<Tolerance, InputError> {
+        let dimension = match self.key.kind {
+            KeyKind::Quantity(quantity) => quantity.dimension,
+            _ => Dimension::Number,
+        };
+        let allowed = "a percentage, as in \"5 %\", or a positive quantity of the key";
+        let default = Json::Text(DEFAULT_TOLERANCE.to_owned());
+        let tolerance = match self.json.get("tolerance").unwrap_or(&default) {
+            Json::Text(text) => match units::parse(text, Dimension::Number) {
+                Ok(part) => Tolerance::Relative(part),
+                Err(_) => match units::parse(text, dimension) {
+                    Ok(width) => Tolerance::Absolute(width),
+                    Err(error) => {
+                        return self.refuse(&format!("`tolerance` {}", error.problem), allowed);
+                    }
+                },
+            },
+            Json::Number(number) => Tolerance::Absolute(*number),
+            Json::Integer(number) => Tolerance::Absolute(*number as f64),
+            _ => return self.refuse("`tolerance` is not a quantity", allowed),
+        };
+        match tolerance {
+            Tolerance::Absolute(width) if width >= MIN_RELATIVE_TOLERANCE * (ends[1] - ends[0]) => {
+                Ok(tolerance)
+            }
+            Tolerance::Relative(part) if part >= MIN_RELATIVE_TOLERANCE => Ok(tolerance),
+            _ => self.refuse("`tolerance` is not positive, or below a millionth", allowed),
+        }
+    }
+}
+
+/// Whether a row meets a criterion; `None` where nothing can be said.
+pub(super) fn meets(
+    criterion: Criterion,
+    verdict: Option<Verdict>,
+    met: &[Option<bool>],
+) -> Option<bool> {
+    match criterion {
+        Criterion::Deployed => verdict.map(|verdict| verdict == Verdict::Deployed),
+        Criterion::Limit(index) => met.get(index).copied().flatten(),
+        Criterion::Safe if met.contains(&Some(false)) => Some(false),
+        Criterion::Safe => met.iter().try_fold(true, |all, met| met.map(|met| all && met)),
+    }
+}

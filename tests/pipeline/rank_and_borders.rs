@@ -1,0 +1,168 @@
+//! Limits, replicates and searches: the answer of a run, `rank`, `borders`, and the notes of `plan`.
+
+use serde_json::{Value, json};
+
+use crate::support::{TestFolder, grid, json_of, stderr};
+
+/// Strategies and rates with four thicknesses each, and limits. The piston deploys with a gas supply.
+fn safety_study(rates: &Value) -> Value {
+    let mut study = grid(&json!({
+        "N": [6], "M": [3], "alpha1_over_phi": [1],
+        "strategy": ["rapid", "preinflate"], "mass_flow_rate": rates
+    }));
+    study["strategies"] = json!({
+        "rapid": {"inflow": [{"from": 0, "to": "0.4 s"}]},
+        "preinflate": {"preinflation_mass": "0.15 g", "inflow": [{"from": "0.1 s"}]}
+    });
+    study["replicates"] = json!({"film.thickness": ["20 um", "25 um", "30 um", "35 um"]});
+    study["limits"] = json!({"peak_vz": "< 41 m/s", "verdict": "deployed"});
+    study
+}
+
+#[test]
+fn the_answer_counts_points_and_names_the_gentler_strategy() {
+    let folder = TestFolder::new(&safety_study(&json!(["0.5 g/s", "2 g/s", "5 g/s"])));
+    let said = folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(said.contains("deployed all runs of 6 of 6 points deploy"), "{said}");
+    assert!(said.contains("(peak_vz < 41 m/s, deployed)"), "{said}");
+    assert!(said.contains("  pairs    rapid is "), "{said}");
+    assert!(said.contains("billow rank results/grid"), "{said}");
+    let answer = json_of(&folder, &["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
+    assert_eq!(rows.len(), 24);
+    // The test counts the safe points itself.
+    let rates = [0.0005, 0.002, 0.005];
+    let runs = |strategy: &str, rate: f64| {
+        let of = move |row: &&Value| {
+            row["strategy"] == *strategy && row["mass_flow_rate"].as_f64() == Some(rate)
+        };
+        rows.iter().filter(of).collect::<Vec<_>>()
+    };
+    let safe_runs = |strategy: &str, rate: f64| {
+        runs(strategy, rate).iter().filter(|row| row["safe"] == true).count()
+    };
+    let points: Vec<usize> = ["rapid", "preinflate"]
+        .iter()
+        .flat_map(|strategy| rates.map(|rate| safe_runs(strategy, rate)))
+        .collect();
+    let safe = &answer["safe"];
+    let number = |wanted: fn(usize) -> bool| points.iter().filter(|n| wanted(**n)).count();
+    assert_eq!(safe["safe"], number(|runs| runs == 4));
+    assert_eq!(safe["mixed"], number(|runs| 0 < runs && runs < 4));
+    assert!(number(|runs| runs == 4) > 0 && number(|runs| runs < 4) > 0, "{points:?}");
+    assert_eq!(safe["missed"], json!({"peak_vz": number(|runs| runs < 4)}));
+    let pair = &answer["pairwise"]["pairs"][0];
+    assert_eq!((&pair["pairs"], &pair["measures"][0]["pairs"]), (&json!(3), &json!(3)));
+    assert_eq!(answer["points_with_runs"]["replicates"], json!(["thickness"]));
+
+    let ranked = json_of(&folder, &["rank", "grid.json"]);
+    assert_eq!(ranked[0]["strategy"], "rapid");
+    for (index, row) in ranked.as_array().unwrap().iter().enumerate() {
+        let strategy = row["strategy"].as_str().unwrap();
+        let of_rates = rates.map(|rate| safe_runs(strategy, rate));
+        assert_eq!(row["rank"], index + 1);
+        assert_eq!((&row["points"], &row["judged_runs"]), (&json!(3), &json!(12)));
+        assert_eq!(row["safe_runs"], of_rates.iter().sum::<usize>());
+        assert_eq!(row["safe"], of_rates.iter().filter(|runs| **runs == 4).count());
+        let margins = rows.iter().filter(|run| run["strategy"] == strategy);
+        let worst = margins.filter_map(|run| run["smallest_margin"].as_f64());
+        assert_eq!(row["smallest_margin"].as_f64(), worst.reduce(f64::min));
+    }
+    let every = json_of(&folder, &["rank", "--by", "strategy,mass_flow_rate", "--top", "4"]);
+    assert_eq!(every.as_array().unwrap().len(), 4);
+    let output = folder.run(&["rank", "--measures", "peak_vz"]);
+    let said = stderr(&output);
+    assert!(said.contains("over 3 sets of points that are equal in mass_flow_rate"), "{said}");
+    for (arguments, expected) in [
+        (["--by", "strateg"], "did you mean strategy?"),
+        (["--measures", "final_pressure"], "smaller or larger is better"),
+        (["--top", "0"], "prints nothing"),
+    ] {
+        let output = folder.run(&[&["rank"], &arguments[..]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+    let refused = folder.run(&["borders"]);
+    assert!(stderr(&refused).contains("searches no border"), "{}", stderr(&refused));
+}
+
+#[test]
+fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
+    let bisect = json!({"bisect": ["0.5 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "0.2 g/s"});
+    let mut study = safety_study(&bisect);
+    study.as_object_mut().unwrap().remove("replicates");
+    let folder = TestFolder::new(&study);
+    let planned = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(
+        planned.contains("search: 2 searches along mass_flow_rate; first generation 10 jobs"),
+        "{planned}"
+    );
+    assert!(planned.contains("limits: safe is peak_vz < 41 m/s and deployed"), "{planned}");
+    let said = folder.stdout(&["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
+    assert!(rows.len() > 10, "the search goes on after its first values");
+    assert!(said.contains(&format!("{} points", rows.len())), "{said}");
+    let status = json_of(&folder, &["status"]);
+    assert_eq!((&status["points"], &status["pending"]), (&json!(rows.len()), &json!(0)));
+
+    let borders = json_of(&folder, &["borders"]);
+    assert_eq!(borders.as_array().unwrap().len(), 2);
+    let mut found = 0;
+    for border in borders.as_array().unwrap().iter().filter(|row| row["outcome"] == "border") {
+        found += 1;
+        let [low, high] = ["low", "high"].map(|end| border[end].as_f64().unwrap());
+        assert!(0.0 < high - low && high - low <= 0.0002, "{border}");
+        assert_eq!((&border["below"], &border["limit"]), (&json!("met"), &json!("peak_vz")));
+        for row in rows.iter().filter(|row| row["strategy"] == border["strategy"]) {
+            let (rate, speed) =
+                (row["mass_flow_rate"].as_f64().unwrap(), row["peak_vz"].as_f64().unwrap());
+            assert!(rate > low || speed < 41.0, "{row}");
+            assert!(rate < high || speed >= 41.0, "{row}");
+        }
+        let strategy = border["strategy"].as_str().unwrap();
+        assert!(
+            said.contains(&format!("peak_vz < 41 m/s below, not above (strategy={strategy})")),
+            "{said}"
+        );
+    }
+    assert!(found > 0, "{borders}");
+    let few =
+        json_of(&folder, &["borders", "--where", "strategy == 'rapid' and outcome != 'open'"]);
+    assert_eq!(few.as_array().unwrap().len(), 1);
+
+    // Only the values that both strategies have are ranked: the five of the scan.
+    let ranked = json_of(&folder, &["rank"]);
+    assert!(ranked.as_array().unwrap().iter().all(|row| row["points"] == 5), "{ranked}");
+}
+
+#[test]
+fn plan_says_which_limits_the_piston_cannot_judge() {
+    let mut study = safety_study(&json!(["1 g/s"]));
+    study["limits"] =
+        json!({"film_stress_99": "< 100 MPa", "passages": "< 1", "film_stress": "< 1 GPa"});
+    let folder = TestFolder::new(&study);
+    let said = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(said.contains("a capsule that does not deploy can be safe"), "{said}");
+    let expected =
+        "the model piston does not compute film_stress_99, passages: 8 points cannot be judged";
+    assert!(said.contains(expected), "{said}");
+    // The list of these measures is that of the empty columns of a run.
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
+    let empty = |name: &str| rows.iter().all(|row| row[name].is_null());
+    for name in [
+        "film_stress_99",
+        "t_film_stress_99",
+        "passages",
+        "intersections",
+        "interlayer_pressure",
+        "contact_area_fraction",
+        "smallest_gap",
+    ] {
+        assert!(empty(name), "{name}");
+    }
+    for name in ["film_stress", "peak_vz", "peak_kinetic_energy", "final_overpressure", "t_settled"]
+    {
+        assert!(!empty(name), "{name}");
+    }
+}

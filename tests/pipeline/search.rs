@@ -1,0 +1,274 @@
+//! Replicates, limits and the search of a border: from the study file to the rows.
+
+use billow_study::input::value::Value;
+use billow_study::job::JobId;
+use billow_study::platform::files::Disk;
+use billow_study::store::results::Results;
+use billow_study::store::stored::Stored;
+use billow_study::study::{Border, Outcome, PlanSize, Study};
+use serde_json::{Value as Json, json};
+
+use crate::support::{TestFolder, grid, stderr};
+
+/// A piston study that searches the mass flow rate at which the speed reaches its limit.
+fn searching() -> Json {
+    let mut study = grid(&json!({
+        "N": [5, 6],
+        "mass_flow_rate": {"bisect": ["1 g/s", "20 g/s"], "on": "peak_vz", "tolerance": "2 %", "spacing": "log"},
+    }));
+    study["design"]["M"] = json!(3);
+    study["design"]["alpha1_over_phi"] = json!(1);
+    study["limits"] = json!({"peak_vz": "< 40 m/s", "verdict": "deployed"});
+    study
+}
+
+/// With five films in the place of seeds, which the piston ignores.
+fn replicated() -> Json {
+    let mut study = searching();
+    let films = ["24 um", "25 um", "26 um", "27 um", "28 um"];
+    study["replicates"] = json!({"film.thickness": films});
+    study
+}
+
+fn borders(folder: &TestFolder) -> Vec<Border> {
+    Stored::read(Results::new(&Disk, &folder.results())).unwrap().borders()
+}
+
+fn jobs(folder: &TestFolder) -> Vec<JobId> {
+    let stored = Stored::read(Results::new(&Disk, &folder.results())).unwrap();
+    stored.points.iter().map(|point| point.job.id.clone()).collect()
+}
+
+/// Rows of the runs, by their cells.
+fn rows(folder: &TestFolder) -> Vec<Json> {
+    serde_json::from_str(&folder.stdout(&["table", "results/grid", "--columns", "all", "--json"]))
+        .unwrap()
+}
+
+#[test]
+fn a_search_finds_the_border_of_a_limit_and_resumes() {
+    let folder = TestFolder::new(&searching());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let found = borders(&folder);
+    assert_eq!(found.len(), 2, "one search for each N");
+    let rows = rows(&folder);
+    for border in &found {
+        let Outcome::Border { low, high, met_below } = border.outcome else { panic!("{border:?}") };
+        assert!(met_below && low < high && high <= 1.02 * low, "{low} to {high}");
+        let number = |row: &Json, name: &str| row[name].as_f64().unwrap();
+        let same =
+            |row: &&Json| Value::Integer(row["N"].as_i64().unwrap()) == border.parameters[0].1;
+        for row in rows.iter().filter(same) {
+            let below = number(row, "mass_flow_rate") <= low;
+            assert_eq!(number(row, "peak_vz") < 40.0, below, "{row}");
+            assert_eq!(number(row, "margin_peak_vz") > 0.0, below, "{row}");
+        }
+        assert!(border.levels.len() <= 5 + 6, "{}", border.levels.len());
+    }
+    // Nothing more to do; a study that is planned again from study.json has the same jobs.
+    let planned = jobs(&folder);
+    assert!(folder.stdout(&["run", "grid.json", "-q"]).contains("nothing to run"));
+    folder.stdout(&["run", "results/grid", "-q"]);
+    assert_eq!(jobs(&folder), planned);
+    // A job that is lost runs again, and the search goes on as before.
+    let lost = planned.last().unwrap();
+    std::fs::remove_file(Results::new(&Disk, &folder.results()).job_path(lost)).unwrap();
+    let output = folder.stdout(&["run", "grid.json", "-q"]);
+    assert!(output.contains("1 job run"), "{output}");
+    assert_eq!((jobs(&folder), borders(&folder)), (planned, found));
+}
+
+#[test]
+fn an_interrupted_search_plans_the_same_jobs() {
+    let whole = TestFolder::new(&searching());
+    whole.stdout(&["run", "grid.json", "-q"]);
+    let parts = TestFolder::new(&searching());
+    // First the scan alone, as the jobs of a plain grid.
+    let scan = Study::from_text(&searching().to_string(), "s.json", "s", &[], PlanSize::default());
+    let rates: Vec<Json> = scan
+        .unwrap()
+        .resolved()
+        .get("grid")
+        .map(|_| [1.0, 20.0].map(|rate: f64| json!(rate * 1e-3)).to_vec())
+        .unwrap();
+    let rates = format!("grid.mass_flow_rate={}", Json::Array(rates));
+    parts.stdout(&["run", "grid.json", "-q", "--set", &rates]);
+    let output = parts.stdout(&["run", "grid.json", "-q"]);
+    assert!(!output.contains("nothing to run"), "{output}");
+    assert_eq!(jobs(&parts), jobs(&whole));
+    assert_eq!(borders(&parts), borders(&whole));
+}
+
+#[test]
+fn replicates_repeat_every_point_and_decide_together() {
+    let folder = TestFolder::new(&replicated());
+    folder.stdout(&["run", "grid.json", "-q"]);
+    for border in borders(&folder) {
+        let Outcome::Border { low, high, met_below: true } = border.outcome else {
+            panic!("{border:?}")
+        };
+        for level in &border.levels {
+            assert_eq!((level.met.of, level.not_judged, level.open), (5, 0, 0));
+            if level.value <= low {
+                assert_eq!(level.met.met, 5, "{level:?}");
+            } else if level.value >= high {
+                assert_eq!(level.met.met, 0, "{level:?}");
+            }
+        }
+        let names: Vec<&str> = border.parameters.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["N"], "neither the replicate nor what is searched");
+    }
+}
+
+#[test]
+fn single_points_have_all_replicates() {
+    let mut study = grid(&json!({"points": [{"N": 6, "M": 3, "mass_flow_rate": "1 g/s"}]}));
+    study["design"]["alpha1_over_phi"] = json!(1);
+    study["replicates"] =
+        json!({"seed": 3, "film.thickness": {"from": "20 um", "to": "30 um", "steps": 2}});
+    let study =
+        Study::from_text(&study.to_string(), "s.json", "s", &[], PlanSize::default()).unwrap();
+    assert_eq!(study.replicates(), ["thickness", "seed"], "keys in order");
+    assert_eq!(study.replicate_count(), 6);
+    let plan = billow_study::study::plan::next_jobs(&study, &[]).unwrap();
+    let points: usize = plan.points.iter().map(|point| 1 + point.merged.len()).sum();
+    assert_eq!((points, plan.points.len()), (6, 6));
+    // The resolved study is the same study.
+    let text = serde_json::to_string(&study.resolved()).unwrap();
+    let again = Study::from_text(&text, "s.json", "s", &[], PlanSize::default()).unwrap();
+    assert_eq!(billow_study::study::plan::next_jobs(&again, &[]), Some(plan));
+    assert_eq!(again.replicates(), study.replicates());
+}
+
+#[test]
+fn wrong_searches_and_replicates_are_refused_with_their_place() {
+    let refused = |change: &dyn Fn(&mut Json), parts: &[&str]| {
+        let mut study = searching();
+        change(&mut study);
+        let folder = TestFolder::new(&study);
+        let output = folder.run(&["plan", "grid.json"]);
+        let error = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        for part in parts {
+            assert!(error.contains(part), "{part} is missing in: {error}");
+        }
+    };
+    let axis =
+        |study: &mut Json, key: &str, value: Json| study["grid"]["mass_flow_rate"][key] = value;
+    refused(
+        &|study| axis(study, "bisect", json!(["5 g/s", "1 g/s"])),
+        &["grid.mass_flow_rate", "below its end"],
+    );
+    refused(&|study| axis(study, "bisect", json!([0, "1 g/s"])), &["logarithmic", "above 0"]);
+    refused(&|study| axis(study, "bisect", json!(["1 g/s"])), &["list of two values"]);
+    refused(
+        &|study| axis(study, "on", json!("peak_kinetic_energy")),
+        &["has no limit", "verdict, safe, peak_vz"],
+    );
+    refused(&|study| axis(study, "on", json!("peak_v")), &["did you mean peak_vz"]);
+    refused(&|study| axis(study, "tolerance", json!("2 Pa")), &["`tolerance`", "mass flow rate"]);
+    refused(&|study| axis(study, "tolerance", json!(0)), &["`tolerance` is not positive"]);
+    refused(&|study| axis(study, "steps", json!(3)), &["`steps` is not a key of a search"]);
+    refused(
+        &|study| study["grid"]["N"] = json!({"bisect": [4, 8], "on": "verdict"}),
+        &["second search"],
+    );
+    refused(&|study| study["replicates"] = json!({"seed": 3}), &["3 replicates", "4 and more"]);
+    refused(
+        &|study| study["replicates"] = json!({"N": [4, 5]}),
+        &["replicates.N", "varies already"],
+    );
+    refused(
+        &|study| study["replicates"] = json!({"thickness": 3}),
+        &["replicates.thickness", "list of values"],
+    );
+    refused(&|study| study["replicates"] = json!({"seed": 0}), &["replicates.seed", "1 to"]);
+    refused(
+        &|study| {
+            study["replicates"] = json!({"seed": 5});
+            study["grid"]["points"] = json!([{"seed": 9}]);
+        },
+        &["grid.points[0].seed", "is a replicate"],
+    );
+    refused(
+        &|study| study["limits"] = json!({"peak_vz": "40 m/s"}),
+        &["limits.peak_vz", "does not begin with <"],
+    );
+}
+
+#[test]
+fn a_set_of_a_replicate_names_the_section() {
+    let folder = TestFolder::new(&replicated());
+    let output = folder.run(&["plan", "grid.json", "--set", "film.thickness=25 um"]);
+    let error = stderr(&output);
+    assert!(error.contains("--set 'replicates.thickness="), "{error}");
+    folder.stdout(&[
+        "plan",
+        "grid.json",
+        "--set",
+        "replicates.film.thickness=[\"25 um\"]",
+        "--summary",
+    ]);
+}
+
+#[test]
+fn a_search_runs_along_single_points_that_do_not_give_its_key() {
+    let mut study = searching();
+    study["grid"]["points"] = json!([
+        {"N": 7, "heat_transfer": "adiabatic"},
+        {"N": 7, "mass_flow_rate": "3 g/s"},
+    ]);
+    study["grid"]["filter"] = json!("N < 7");
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let found = borders(&folder);
+    let values: Vec<&Value> = found.iter().map(|border| &border.parameters[0].1).collect();
+    assert_eq!(values, [5, 6, 7].map(Value::Integer).iter().collect::<Vec<_>>());
+    for border in &found {
+        let Outcome::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
+        assert!(high <= 1.02 * low, "the filter does not end a search of a single point");
+    }
+    assert!(
+        found[2].levels.iter().all(|level| (level.value - 0.003).abs() > 1e-9),
+        "not a value of the search"
+    );
+}
+
+#[test]
+fn a_job_that_two_points_share_counts_once() {
+    let plain = TestFolder::new(&searching());
+    plain.stdout(&["run", "grid.json", "-q"]);
+    let expected = borders(&plain);
+    // A value that the bisection meets, and a single point that is one of the product.
+    let Outcome::Border { low, .. } = expected[0].outcome else { panic!("{expected:?}") };
+    let mut study = searching();
+    study["grid"]["points"] = json!([{"N": 5, "mass_flow_rate": low}, {"N": 5}]);
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    assert_eq!(borders(&folder), expected);
+    let mut ids = jobs(&folder);
+    ids.sort();
+    ids.dedup();
+    assert_eq!(
+        ids.len(),
+        jobs(&folder).len(),
+        "each job is one point with its other parameters merged"
+    );
+    assert_eq!(ids.len(), jobs(&plain).len());
+}
+
+#[test]
+fn a_filter_that_ends_a_search_is_reported() {
+    let mut study = searching();
+    study["grid"]["filter"] = json!("mass_flow_rate < '6 g/s' or mass_flow_rate > '6.5 g/s'");
+    let folder = TestFolder::new(&study);
+    let printed = folder.stdout(&["run", "grid.json", "-q"]);
+    for border in borders(&folder) {
+        let Outcome::Border { low, high, .. } = border.outcome else { panic!("{border:?}") };
+        assert_eq!(border.filtered, high > 1.02 * low, "{low} to {high}");
+    }
+    assert_eq!(
+        printed.contains("the filter of the study ends this search"),
+        borders(&folder).iter().any(|border| border.filtered)
+    );
+}
