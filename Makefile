@@ -3,6 +3,7 @@
 # make test-all the quick tier, the long ones, every reference case, and the Python readers
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
+# make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
 # make bench    what billow costs on this machine, a few minutes
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
@@ -19,12 +20,15 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: study paper test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
 	$(BILLOW) table studies/first.json
 	$(BILLOW) chart studies/first.json
+
+paper: build
+	studies/publish_paper.sh $(BILLOW)
 
 test: deps
 	$(CARGO) test $(FLAGS)
