@@ -166,8 +166,14 @@ fn wrong_searches_and_replicates_are_refused_with_their_place() {
         &["has no limit", "verdict, safe, peak_vz"],
     );
     refused(&|study| axis(study, "on", json!("peak_v")), &["did you mean peak_vz"]);
-    refused(&|study| axis(study, "tolerance", json!("2 Pa")), &["`tolerance`", "mass flow rate"]);
-    refused(&|study| axis(study, "tolerance", json!(0)), &["`tolerance` is not positive"]);
+    refused(
+        &|study| axis(study, "tolerance", json!("2 Pa")),
+        &["rate.tolerance", "mass flow rate (kg/s, "],
+    );
+    refused(
+        &|study| axis(study, "tolerance", json!(0)),
+        &["rate.tolerance = 0", "is not positive"],
+    );
     refused(&|study| axis(study, "steps", json!(3)), &["`steps` is not a key of a search"]);
     refused(
         &|study| study["grid"]["N"] = json!({"bisect": [4, 8], "on": "verdict"}),
@@ -183,6 +189,22 @@ fn wrong_searches_and_replicates_are_refused_with_their_place() {
         &["replicates.thickness", "list of values"],
     );
     refused(&|study| study["replicates"] = json!({"seed": 0}), &["replicates.seed", "1 to"]);
+    refused(
+        &|study| study["replicates"] = json!({"sed": 5}),
+        &["can repeat a point", "mean seed?"],
+    );
+    refused(
+        &|study| study["replicates"] = json!({"zip": [1]}),
+        &["allowed: keys of the study, as N or film.thickness\n"],
+    );
+    refused(&|study| study["replicates"] = json!(5), &["next: \"replicates\": {\"seed\": 5}"]);
+    refused(
+        &|study| {
+            study["replicates"] = json!({"seed": 5});
+            study["grid"]["filter"] = json!("seed < 3");
+        },
+        &["grid.filter", "names seed, a replicate"],
+    );
     refused(
         &|study| {
             study["replicates"] = json!({"seed": 5});
@@ -209,6 +231,20 @@ fn a_set_of_a_replicate_names_the_section() {
         "replicates.film.thickness=[\"25 um\"]",
         "--summary",
     ]);
+}
+
+#[test]
+fn a_member_of_a_search_is_overridden() {
+    let folder = TestFolder::new(&searching());
+    let plan = |set: &str| folder.run(&["plan", "grid.json", "--set", set]);
+    let ends = "grid.mass_flow_rate.bisect=[\"1 g/s\", \"2 g/s\"]";
+    let changed = folder.stdout(&["plan", "grid.json", "--set", ends]);
+    assert!(changed.lines().any(|line| line.contains(" 1.414 ")), "{changed}");
+    let wide = "grid.mass_flow_rate.tolerance=-1 %";
+    let error = stderr(&plan(wide));
+    assert!(error.contains(&format!("--set {wide}: grid.mass_flow_rate.tolerance")), "{error}");
+    let error = stderr(&plan("grid.mass_flow_rate.tolerant=1 %"));
+    assert!(error.contains("`tolerant` is not a key of a search"), "{error}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! point = all parameters but the replicates      runs of a point = its different jobs
-//! value = median over the done runs;  range = least to largest;  deployed, safe: k of n
+//! value = median over the trusted runs;  range = least to largest;  deployed, safe: k of n
 //! ```
 //! The condensed table has one row per point and is a table as any other: charts and comparisons read it in
 //! the place of the rows. A word, or a truth value, is that of all runs or null; `smallest_margin_of` is that of
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use billow_solver::output::measures::Verdict;
 
 use super::statistics::Spread;
-use super::values::{canonical, measured};
+use super::values::{canonical, is_trusted, measured};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
@@ -45,6 +45,11 @@ pub struct Runs {
     pub safe: Proportion,
     /// Number of done runs.
     pub done: usize,
+    /// Number of done runs that cannot be trusted. They have no part in medians and ranges of a point of
+    /// which another run can be.
+    pub not_trusted: usize,
+    /// Rows of the runs whose measures count.
+    pub measured: Vec<usize>,
     /// Number of runs that failed.
     pub failed: usize,
     /// Number of runs without a fold pattern.
@@ -90,7 +95,7 @@ impl Runs {
     fn least(&self, table: &Table) -> Option<usize> {
         let margin = table.column(DerivedColumn::SmallestMargin.name())?;
         let value = |row: usize| Some((measured(table, margin, row)?, row));
-        let runs = self.rows.iter().filter_map(|row| value(*row));
+        let runs = self.measured.iter().filter_map(|row| value(*row));
         runs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, row)| row)
     }
 
@@ -100,6 +105,14 @@ impl Runs {
             rows.iter().filter(|row| table.status(**row).is_some_and(wanted)).count()
         };
         let done = status(|status| status == Status::Done);
+        let of_done = |row: &usize| table.status(*row) == Some(Status::Done);
+        let trusted = |row: &usize| is_trusted(table, *row);
+        let measured: Vec<usize> = rows.iter().copied().filter(trusted).collect();
+        let not_trusted = done - measured.len();
+        let measured = match measured.len() {
+            0 => rows.iter().copied().filter(of_done).collect(),
+            _ => measured,
+        };
         let pending = status(|status| status == Status::Pending);
         let infeasible = status(|status| status == Status::Infeasible);
         let verdicts = rows.iter().filter_map(|row| table.verdict(*row));
@@ -112,6 +125,8 @@ impl Runs {
             deployed: Proportion::count(verdicts.map(|verdict| verdict == Verdict::Deployed)),
             safe: Proportion::count(safe),
             done,
+            not_trusted,
+            measured,
             failed: rows.len() - done - pending - infeasible,
             infeasible,
             pending,
@@ -151,7 +166,7 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
         let is_measure = index > parameters && number;
         let cell = |runs: &Runs| {
             if is_measure {
-                let values = runs.rows.iter().filter_map(|row| measured(table, column, *row));
+                let values = runs.measured.iter().filter_map(|row| measured(table, column, *row));
                 return Spread::of(values).map_or(Value::Null, |spread| {
                     Value::Number(match statistic {
                         Statistic::Least => spread.least,

@@ -63,6 +63,10 @@ impl<'a> Source<'a> {
         let (failed, pending) =
             (sum(|runs| runs.failed + runs.infeasible), sum(|runs| runs.pending));
         let mut texts = Vec::new();
+        let not_trusted = all().map(|runs| runs.done - runs.measured.len()).sum::<usize>();
+        if not_trusted > 0 {
+            texts.push(format!("{not_trusted} cannot be trusted"));
+        }
         if failed > 0 {
             texts.push(format!("{failed} failed or are infeasible"));
         }
@@ -80,9 +84,9 @@ impl<'a> Source<'a> {
         let column = measure.and_then(|measure| single.column(&measure.name));
         let partly = column.map_or(0, |column| {
             let count = |runs: &Runs| {
-                runs.rows.iter().filter(|row| measured(single, column, **row).is_some()).count()
+                runs.measured.iter().filter(|row| measured(single, column, **row).is_some()).count()
             };
-            all().filter(|runs| (1..runs.done).contains(&count(runs))).count()
+            all().filter(|runs| (1..runs.measured.len()).contains(&count(runs))).count()
         });
         if partly > 0 {
             let noun = if partly == 1 { "point" } else { "points" };

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::opened::open_stored;
-use super::options::{OutputOptions, SetOption, UnitsOption};
+use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, filtered};
 use super::{Format, study_keys};
@@ -28,6 +28,8 @@ pub struct Args {
     units: UnitsOption,
     #[command(flatten)]
     set: SetOption,
+    #[command(flatten)]
+    quiet: QuietOption,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -59,7 +61,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         .map(|row| columns.iter().map(|column| column.cells[*row].clone()).collect())
         .collect();
     print_quantities(&headings, &cells, format, out)?;
-    if format == Format::Table {
+    if format == Format::Table && !args.quiet.quiet {
         eprintln!(
             "{}: {}; low, high: nearest values at which the outcome is decided",
             searches.parameter, searches.criterion

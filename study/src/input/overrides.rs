@@ -3,6 +3,7 @@
 //! - `film.thickness=…`, or a last part that only one key has, as `thickness=…`, sets that key. In a
 //!   study whose grid varies the key it replaces the axis: the study then has this value alone.
 //! - `grid.N=[5, 6]` sets the axis of a key; `grid.N=6` is an axis of one value.
+//! - `grid.N.to=8` sets one member of an axis that is a range or a search.
 //! - `replicates.seed=3` sets the replicates of a key.
 //! - A list for a key that takes one value is an axis in a study: `N=[5, 6]` is `grid.N=[5, 6]`.
 
@@ -194,17 +195,33 @@ fn removes_axis(tree: &mut Json, path: &str) -> bool {
     members.len() < before
 }
 
-/// Sets an axis; it replaces an axis of the same key. One value is a list of one.
-fn set_axis(tree: &mut Json, section: &str, axis: &str, value: Json) -> String {
-    let value = match value {
+/// The value of a member of a section. One value of an axis is a list of one.
+fn as_axis(section: &str, axis: &str, given: Json) -> Json {
+    match given {
         one @ (Json::Integer(_) | Json::Number(_) | Json::Text(_) | Json::Bool(_))
             if section == GRID && !GRID_WORDS.contains(&axis) =>
         {
             Json::List(vec![one])
         }
         other => other,
-    };
+    }
+}
+
+/// Sets an axis; it replaces an axis of the same key. `N.to` is one member of a range or a search.
+fn set_axis(tree: &mut Json, section: &str, axis: &str, given: Json) -> String {
     if let Some(Json::Object(members)) = member(tree, section) {
+        if let Some((key, part)) = axis.rsplit_once('.')
+            && let Some((name, Json::Object(parts))) =
+                members.iter_mut().find(|(name, _)| same_key(name, key))
+        {
+            let path = format!("{section}.{name}.{part}");
+            match parts.iter_mut().find(|(name, _)| name == part) {
+                Some((_, old)) => *old = given,
+                None => parts.push((part.to_owned(), given)),
+            }
+            return path;
+        }
+        let value = as_axis(section, axis, given);
         match members.iter_mut().find(|(name, _)| same_key(name, axis)) {
             Some(member) => *member = (axis.to_owned(), value),
             None => members.push((axis.to_owned(), value)),

@@ -13,6 +13,7 @@ mod fold;
 mod grid;
 pub(crate) mod ground;
 pub mod job_limits;
+mod parameters;
 pub mod plan;
 mod plan_size;
 mod point;
@@ -29,7 +30,7 @@ mod variables;
 
 use std::path::Path;
 
-use crate::input::keys::{self, KEYS, Key, STUDY, position};
+use crate::input::keys::{KEYS, STUDY, position};
 use crate::input::overrides;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
@@ -40,7 +41,8 @@ use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
 use base::Base;
 use expand::Points;
-use grid::Grid;
+use grid::{Context, Grid};
+pub use parameters::{StudyKey, Zipped};
 pub use plan_size::PlanSize;
 pub(crate) use point::{Searched, StudyPoint};
 pub use search::{Border, Criterion, Level, Outcome};
@@ -57,17 +59,6 @@ pub(crate) const REPLICATES: &str = "replicates";
 
 /// The section of the limits of jobs. It changes no job.
 pub(crate) const JOB_LIMITS: &str = "job_limits";
-
-/// A key of a study.
-#[derive(Debug, Clone)]
-pub struct StudyKey {
-    /// Its shortest name: the name of its column where the study varies it.
-    pub name: String,
-    /// Its row in the table of keys.
-    pub key: &'static Key,
-    /// Its value outside the grid, SI.
-    pub value: Value,
-}
 
 /// A validated study.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,15 +78,6 @@ pub struct Study {
     /// What its results must meet to be safe.
     result_limits: Vec<ResultLimit>,
     points: Points,
-}
-
-/// A parameter that changes together with another one on an axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Zipped {
-    /// Its name.
-    pub name: String,
-    /// The steps of the axis: value of the other parameter, value of this one.
-    pub steps: Vec<(Value, Value)>,
 }
 
 impl Study {
@@ -157,7 +139,8 @@ impl Study {
         let renamed = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let base = Base::read(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
-        let grid = Grid::read(&tree, &base, &result_limits, &source, size)?;
+        let context = Context { base: &base, limits: &result_limits, source: &source, size };
+        let grid = Grid::read(&tree, context)?;
         grid::refuse_varied(&grid, &source)?;
         let units = units::read(&tree, &base, &source)?;
         let points = expand::points(&base, &grid, &source, size)?;
@@ -166,74 +149,6 @@ impl Study {
         let question = question.unwrap_or_default().to_owned();
         let warnings = source.warnings();
         Ok(Self { name, question, renamed, warnings, units, base, grid, result_limits, points })
-    }
-
-    /// Names of the varied parameters, in the order of [`crate::job::Job::parameters`].
-    pub fn parameter_names(&self) -> Vec<String> {
-        self.grid.columns.iter().map(|column| column.name.clone()).collect()
-    }
-
-    /// Dotted paths of the varied parameters, in the same order.
-    pub fn parameter_paths(&self) -> impl Iterator<Item = &'static str> {
-        self.grid.columns.iter().map(|column| column.target.key().path)
-    }
-
-    /// Varied parameters on the same axis as this one, which change together with it.
-    pub fn zipped_with(&self, parameter: &str) -> Vec<Zipped> {
-        let named = |column: &usize| self.grid.columns[*column].name == parameter;
-        let axis = self.grid.axes.iter().find(|axis| axis.columns.iter().any(named));
-        let Some(axis) = axis else { return Vec::new() };
-        let by = axis.columns.iter().position(named).unwrap_or(0);
-        let others = axis.columns.iter().enumerate().filter(|(index, _)| *index != by);
-        let zipped = |(index, column): (usize, &usize)| Zipped {
-            name: self.grid.columns[*column].name.clone(),
-            steps: axis.rows.iter().map(|row| (row[by].clone(), row[index].clone())).collect(),
-        };
-        others.map(zipped).collect()
-    }
-
-    /// Reads a value of a varied parameter as a user writes it on a command line: a number (SI), a
-    /// quantity with its unit, a word. `None` when the parameter is unknown, or does not allow the
-    /// value.
-    pub fn parameter_value(&self, parameter: &str, text: &str) -> Option<Value> {
-        let column = self.grid.columns.iter().find(|column| column.name == parameter)?;
-        let key = column.target.key();
-        let text = text.trim();
-        let number = || {
-            let whole = text.parse::<i64>().ok().map(Json::Integer);
-            whole.or_else(|| {
-                text.parse::<f64>().ok().filter(|number| number.is_finite()).map(Json::Number)
-            })
-        };
-        let flag = || text.parse::<bool>().ok().map(Json::Bool);
-        let written = [number(), flag(), Some(Json::Text(text.to_owned()))];
-        written.iter().flatten().find_map(|json| key.read(json).ok())
-    }
-
-    /// SI unit of a varied parameter: "1" for a pure number, empty for a word.
-    pub fn unit(&self, parameter: &str) -> &'static str {
-        let column = self.grid.columns.iter().find(|column| column.name == parameter);
-        column.map_or("", |column| column.target.key().unit())
-    }
-
-    /// The units in which its parameters and measures are shown: those that the file writes, or asks for
-    /// under `units`.
-    pub fn display_units(&self) -> &DisplayUnits {
-        &self.units
-    }
-
-    /// Whether a name may be that of a key, as `film.thickness`, `thickness` or one of a strategy.
-    pub fn may_be_key(name: &str) -> bool {
-        keys::find(name).is_some_and(|index| KEYS[index].varies())
-            || name.starts_with("strategies.")
-    }
-
-    /// A key by its path or its last part; `None` for another name.
-    pub fn key(&self, name: &str) -> Option<StudyKey> {
-        let source = Source::new("");
-        let column = target::find(name, name, &Json::Null, &self.base, &source).ok()?;
-        let (key, value) = (column.target.key(), column.target.value(&self.base));
-        Some(StudyKey { name: column.name, key, value })
     }
 
     /// What its results must meet to be safe.

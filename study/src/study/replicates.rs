@@ -3,20 +3,18 @@
 //! A replicate is an axis that varies fastest. Its runs are rows of the table; tables, comparisons and
 //! charts show their median, range and proportions.
 
-use super::base::Base;
-use super::grid::{Axis, AxisKind, Grid};
-use super::plan_size::PlanSize;
-use crate::input::keys::{KEYS, STUDY, position};
-use crate::input::settings::object;
-use crate::input::source::Source;
+use super::REPLICATES;
+use super::grid::{Axis, AxisKind, Context, Grid};
+use super::target::{Section, Target};
+use crate::input::keys::{KEYS, position};
 use crate::input::study_file::Json;
 use crate::platform::error::InputError;
 
-use super::target::Target;
-
 /// The key of which a number of values is enough.
 const SEED: usize = position(KEYS, "seed");
-/// What the section must look like, for errors.
+/// The section, for errors.
+const EXAMPLE: &str = "keys and their values, as in {\"seed\": 5} or {\"seed\": [1, 2, 3]}";
+/// What the values of a key must look like, for errors.
 const ALLOWED: &str =
     "a list of values, as in [1, 2, 3], or a range; for seed also their number, as in 5";
 
@@ -28,17 +26,24 @@ impl Grid {
     pub(super) fn read_replicates(
         &mut self,
         json: Option<&Json>,
-        base: &Base,
-        source: &Source,
-        size: PlanSize,
+        context: Context<'_>,
     ) -> Result<(), InputError> {
         let Some(json) = json else { return Ok(()) };
-        for (name, value) in object(json, &STUDY, "replicates", source)? {
-            let path = format!("replicates.{name}");
-            let column = self.column(name, &path, value, base, source)?;
+        let source = context.source;
+        let Json::Object(members) = json else {
+            let problem = format!("is {}, not an object of keys", json.kind());
+            let mut error = source.error(REPLICATES, &json.brief(), problem, EXAMPLE);
+            if let Json::Integer(_) | Json::List(_) = json {
+                error.hint = format!("\"{REPLICATES}\": {{\"seed\": {}}}", json.brief());
+            }
+            return Err(error);
+        };
+        for (name, value) in members {
+            let path = format!("{REPLICATES}.{name}");
+            let column = self.column(name, &path, value, Section::Replicates, context)?;
             let values = match value {
                 Json::Integer(count) if self.columns[column].target == Target::Key(SEED) => {
-                    &seeds(*count, &path, value, source, size)?
+                    &seeds(*count, &path, value, context)?
                 }
                 Json::List(_) | Json::Object(_) => value,
                 other => {
@@ -46,14 +51,13 @@ impl Grid {
                     return Err(source.error(&path, &other.brief(), problem, ALLOWED));
                 }
             };
-            let values = self.values(column, values, &path, base, source, size)?;
-            let twice = (1..values.len()).find(|index| values[..*index].contains(&values[*index]));
+            self.read_axis(column, values, &path, AxisKind::Replicates, context)?;
+            let rows = self.axes.last().map_or(&[][..], |axis| &axis.rows);
+            let twice = (1..rows.len()).find(|index| rows[..*index].contains(&rows[*index]));
             if let Some(index) = twice {
-                let problem = format!("has the value {} twice", values[index].short());
+                let problem = format!("has the value {} twice", rows[index][0].short());
                 return Err(source.error(&path, &value.brief(), problem, "each value once"));
             }
-            let rows = values.into_iter().map(|value| vec![value]).collect();
-            self.axes.push(Axis { columns: vec![column], rows, kind: AxisKind::Replicates });
         }
         Ok(())
     }
@@ -75,13 +79,8 @@ impl Grid {
 }
 
 /// The seeds 1 to a number. Seed 0 has no imperfection.
-fn seeds(
-    count: i64,
-    path: &str,
-    json: &Json,
-    source: &Source,
-    size: PlanSize,
-) -> Result<Json, InputError> {
+fn seeds(count: i64, path: &str, json: &Json, context: Context<'_>) -> Result<Json, InputError> {
+    let Context { source, size, .. } = context;
     let fits = usize::try_from(count).is_ok_and(|count| (1..=size.points).contains(&count));
     if !fits {
         let problem = "is not a number of seeds";

@@ -1,5 +1,7 @@
 //! What a grid varies: a key of the study, of a strategy or of an inflow window.
 
+use std::fmt::Write as _;
+
 use super::base::Base;
 use crate::input::keys::{self, KEYS, Key, STRATEGY_KEYS, WINDOW_KEYS};
 use crate::input::source::Source;
@@ -33,6 +35,11 @@ impl Target {
             Self::Strategy(_, index) => &STRATEGY_KEYS[*index],
             Self::Window(_, _, index) => &WINDOW_KEYS[*index],
         }
+    }
+
+    /// Whether a name, short or whole, is that of its key.
+    pub fn has_name(&self, name: &str) -> bool {
+        matches!(self, Self::Key(index) if keys::find(name) == Some(*index))
     }
 
     /// The value at a point.
@@ -71,6 +78,33 @@ impl Target {
     }
 }
 
+/// A section of a study file whose members are keys and their values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Section {
+    /// The axes.
+    Grid,
+    /// The replicates.
+    Replicates,
+}
+
+impl Section {
+    /// Its members that are not keys.
+    fn words(self) -> &'static [&'static str] {
+        match self {
+            Self::Grid => &["zip", "points", "filter"],
+            Self::Replicates => &[],
+        }
+    }
+
+    /// What it does with a key, for errors.
+    fn use_of_keys(self) -> &'static str {
+        match self {
+            Self::Grid => "a grid can vary",
+            Self::Replicates => "can repeat a point",
+        }
+    }
+}
+
 /// Finds what the name of an axis stands for: its shortest name and its target. `path` is the place of
 /// the axis in the file.
 pub(super) fn find(
@@ -78,6 +112,7 @@ pub(super) fn find(
     path: &str,
     value: &Json,
     base: &Base,
+    section: Section,
     source: &Source,
 ) -> Result<Column, InputError> {
     if let Some(index) = keys::find(name).filter(|index| KEYS[*index].varies()) {
@@ -87,7 +122,7 @@ pub(super) fn find(
     if let Some(rest) = name.strip_prefix("strategies.") {
         return of_strategy(name, rest, path, value, base, source);
     }
-    Err(unknown(name, path, value, source))
+    Err(unknown(name, path, value, section, source))
 }
 
 /// The target of `strategies.<rest>`.
@@ -130,7 +165,7 @@ fn of_strategy(
 }
 
 /// The error of a name that a grid cannot vary, with the nearest name.
-fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError {
+fn unknown(name: &str, path: &str, value: &Json, section: Section, source: &Source) -> InputError {
     let same_leaf: Vec<&str> =
         KEYS.iter().filter(|key| key.leaf() == name).map(|key| key.path).collect();
     if same_leaf.len() > 1 {
@@ -139,9 +174,12 @@ fn unknown(name: &str, path: &str, value: &Json, source: &Source) -> InputError 
     }
     let varied = KEYS.iter().enumerate().filter(|(_, key)| key.varies());
     let known = varied.flat_map(|(index, key)| [keys::short_name(index), key.path]);
-    let near = keys::nearest(name, known.chain(["zip", "points", "filter"]));
+    let near = keys::nearest(name, known.chain(section.words().iter().copied()));
     let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
-    let allowed = "keys of the study, as N or film.thickness; zip, points, filter";
-    let problem = format!("is not a key that a grid can vary{near}");
+    let problem = format!("is not a key that {}{near}", section.use_of_keys());
+    let mut allowed = "keys of the study, as N or film.thickness".to_owned();
+    if !section.words().is_empty() {
+        let _ = write!(allowed, "; {}", section.words().join(", "));
+    }
     source.error(path, &value.brief(), problem, allowed)
 }

@@ -2,7 +2,8 @@
 //! file writes for a key, first under `grid`, then in its section.
 
 use super::base::Base;
-use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS, target};
+use super::target::{self, Section};
+use super::{JOB_LIMITS, LIMITS, REPLICATES, UNITS};
 use crate::input::keys::{self, KEYS, KeyKind, STUDY};
 use crate::input::settings::object;
 use crate::input::source::Source;
@@ -40,7 +41,7 @@ pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayU
     }
     for section in ["grid", REPLICATES] {
         written_in_grid(tree.get(section), &mut |name, value| {
-            if let Ok(column) = target::find(name, section, value, base, source) {
+            if let Ok(column) = target::find(name, section, value, base, Section::Grid, source) {
                 suggest(&mut units, &column.name, value);
             }
         });
@@ -57,7 +58,7 @@ pub(super) fn quantity(
     base: &Base,
     source: &Source,
 ) -> Result<(String, &'static str), InputError> {
-    if let Ok(column) = target::find(name, path, value, base, source) {
+    if let Ok(column) = target::find(name, path, value, base, Section::Grid, source) {
         return Ok((column.name, column.target.key().unit()));
     }
     let current = current_column_name(name).0;

@@ -14,8 +14,8 @@ use billow_solver::output::measures::Verdict;
 
 use super::medians::{Extremes, Set, block, extremes};
 use super::points::Points;
-use super::trust::is_trusted;
 use crate::analysis::compare::{self, Measure, Range, Sets, Tolerance, canonical, median_range};
+use crate::analysis::values::is_trusted;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -91,13 +91,14 @@ impl Effects {
             return Self::of_rows(table, rows, &judges, (measures, &of_runs), zipped);
         }
         let points = Points::of(table, rows, replicates);
-        let all_trusted =
-            |point: usize| points.runs[point].rows.iter().all(|row| is_trusted(table, *row));
+        let all_trusted = |point: usize| {
+            points.condensed.runs[point].rows.iter().all(|row| is_trusted(table, *row))
+        };
         let trusted = |point: usize| points.trusted[point];
         let deploys = |point| points.deploys(point) == Some(true) && all_trusted(point);
-        let judged = points.runs.iter().any(|runs| runs.deployed.of > 0);
+        let judged = points.condensed.runs.iter().any(|runs| runs.deployed.of > 0);
         let judges = Judges { trusted: &trusted, deploys: &deploys, judged };
-        let rows: Vec<usize> = (0..points.runs.len()).collect();
+        let rows: Vec<usize> = (0..points.condensed.runs.len()).collect();
         let (condensed, table) = (&points.condensed, &points.condensed.table);
         let of_points = |column| Measure::of_points(condensed, &rows, column, &zipped("seed"));
         Self::of_rows(table, &rows, &judges, (measures, &of_points), zipped)

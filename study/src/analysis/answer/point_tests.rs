@@ -116,7 +116,11 @@ fn a_run_that_cannot_be_trusted_leaves_the_median_to_the_others() {
     let points = points(&table);
     let first = &points.condensed;
     assert_eq!(first.spread("peak_vz", 0), Some([9.99; 3]), "the seed that is trusted");
-    assert_eq!(points.runs[0].deployed, Proportion { met: 2, of: 2 }, "its verdict counts");
+    assert_eq!(
+        points.condensed.runs[0].deployed,
+        Proportion { met: 2, of: 2 },
+        "its verdict counts"
+    );
     assert!(points.trusted.iter().all(|trusted| *trusted));
 }
 

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
 
-use super::trust::is_trusted;
 use crate::analysis::replicates::{Condensed, Runs};
 use crate::input::value::Value;
 use crate::job::Status;
@@ -20,8 +19,6 @@ use crate::store::table::Table;
 pub struct Points {
     /// One row per point: medians over the trusted runs.
     pub condensed: Condensed,
-    /// All runs of each point, trusted or not.
-    pub runs: Vec<Runs>,
     /// Whether the measures of each point can be trusted.
     pub trusted: Vec<bool>,
 }
@@ -29,43 +26,31 @@ pub struct Points {
 impl Points {
     /// The points in some rows.
     pub fn of(table: &Table, rows: &[usize], replicates: &[String]) -> Self {
-        let all = Condensed::of(table, rows, replicates);
-        // A run that is not trusted is left out where its point has one that is.
-        let kept = |runs: &Runs| {
-            let mut kept = runs.rows.clone();
-            if kept.iter().any(|row| is_trusted(table, *row)) {
-                kept.retain(|row| {
-                    is_trusted(table, *row) || table.status(*row) != Some(Status::Done)
-                });
-            }
-            kept
-        };
-        let kept: Vec<usize> = all.runs.iter().flat_map(kept).collect();
-        let condensed = Condensed::of(table, &kept, replicates);
-        let trusted = condensed.runs.iter();
-        let trusted = trusted.map(|runs| runs.rows.iter().any(|row| is_trusted(table, *row)));
-        Self { trusted: trusted.collect(), condensed, runs: all.runs }
+        let condensed = Condensed::of(table, rows, replicates);
+        let trusted = condensed.runs.iter().map(|runs| runs.done > runs.not_trusted).collect();
+        Self { condensed, trusted }
     }
 
     /// Whether all runs of a point deployed; `None` where a run has no verdict.
     pub fn deploys(&self, point: usize) -> Option<bool> {
-        all_of(self.runs[point].deployed, &self.runs[point])
+        all_of(&self.condensed.runs[point], |runs| runs.deployed)
     }
 
     /// Whether all runs of a point are safe; `None` where that cannot be said.
     pub fn is_safe(&self, point: usize) -> Option<bool> {
-        all_of(self.runs[point].safe, &self.runs[point])
+        all_of(&self.condensed.runs[point], |runs| runs.safe)
     }
 
     /// The points that have a job.
     pub fn feasible(&self) -> impl Iterator<Item = usize> {
         let table = &self.condensed.table;
-        (0..self.runs.len()).filter(|point| table.status(*point) != Some(Status::Infeasible))
+        (0..self.trusted.len()).filter(|point| table.status(*point) != Some(Status::Infeasible))
     }
 }
 
 /// Whether all runs meet a condition: not if one does not, unknown while one is not judged.
-fn all_of(judged: Proportion, runs: &Runs) -> Option<bool> {
+fn all_of(runs: &Runs, of: fn(&Runs) -> Proportion) -> Option<bool> {
+    let judged = of(runs);
     if judged.met < judged.of {
         Some(false)
     } else {
@@ -108,7 +93,7 @@ impl PointCounts {
         let mut counts = Self { replicates: replicates.to_vec(), ..Self::default() };
         for point in points.feasible() {
             counts.points += 1;
-            let deployed = points.runs[point].deployed;
+            let deployed = points.condensed.runs[point].deployed;
             *match points.deploys(point) {
                 Some(true) => &mut counts.deployed,
                 _ if deployed.is_mixed() => &mut counts.mixed,
@@ -137,7 +122,7 @@ impl Depends {
         let column = table.column(DerivedColumn::VerdictDependsOn.name())?;
         let mut depends = Self { points: 0, of: 0, choices: Vec::new() };
         let mut choices: BTreeMap<String, usize> = BTreeMap::new();
-        for runs in &points.runs {
+        for runs in &points.condensed.runs {
             let with_verdict = |row: &usize| -> Option<Verdict> { table.verdict(*row) };
             depends.of += usize::from(runs.rows.iter().any(|row| with_verdict(row).is_some()));
             let cells = runs.rows.iter().filter_map(|row| match &column.cells[*row] {

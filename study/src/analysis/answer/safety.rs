@@ -86,7 +86,7 @@ impl Safety {
                 let judged = table.status(*row).and_then(|status| limit.judge(status, value));
                 judged.is_some_and(|judged| !judged.met)
             };
-            points.runs.iter().filter(|runs| runs.rows.iter().any(is_missed)).count()
+            points.condensed.runs.iter().filter(|runs| runs.rows.iter().any(is_missed)).count()
         };
         let missed = limits.iter().map(|limit| (limit.measure.name().to_owned(), missed(limit)));
         let mut missed: Vec<(String, usize)> = missed.filter(|(_, points)| *points > 0).collect();
@@ -132,7 +132,7 @@ impl SafeCounts {
         for point in some {
             match points.is_safe(*point) {
                 Some(true) => counts.safe += 1,
-                _ if points.runs[*point].safe.is_mixed() => counts.mixed += 1,
+                _ if points.condensed.runs[*point].safe.is_mixed() => counts.mixed += 1,
                 Some(false) => {}
                 None => counts.not_judged += 1,
             }
@@ -156,7 +156,7 @@ fn smaller(a: PointMargin, b: PointMargin) -> PointMargin {
 
 /// The smallest margin of a point.
 fn margin(table: &Table, points: &Points, point: usize) -> Option<PointMargin> {
-    let (value, measure, row) = worst_margin(table, &points.runs[point])?;
+    let (value, measure, row) = worst_margin(table, &points.condensed.runs[point])?;
     let parameters = points.condensed.table.parameters();
     let parameters = parameters
         .map(|column| (column.name.clone(), column.cells[point].clone(), column.shown.clone()));

@@ -62,13 +62,3 @@ pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
             .count(),
     })
 }
-
-/// Whether a job is done and its audit found nothing: no passage, no intersection, no motion damped by the
-/// numerics.
-pub(super) fn is_trusted(table: &Table, row: usize) -> bool {
-    let none = |column| !matches!(table.value(column, row), Some(Value::Integer(1..)));
-    table.status(row) == Some(Status::Done)
-        && none(ColumnId::Passages)
-        && none(ColumnId::Intersections)
-        && table.value(ColumnId::NumericallyDamped, row) != Some(&Value::Bool(true))
-}

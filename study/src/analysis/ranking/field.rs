@@ -79,7 +79,7 @@ impl Field<'_> {
             points: points.len(),
             safe: count(&|point| self.points.is_safe(point) == Some(true)),
             deployed: count(&|point| self.points.deploys(point) == Some(true)),
-            failed: count(&|point| self.points.runs[point].failed > 0),
+            failed: count(&|point| self.points.condensed.runs[point].failed > 0),
             safe_runs: sum(&|runs| runs.safe),
             deployed_runs: sum(&|runs| runs.deployed),
             missed: self.missed(&points),
@@ -92,7 +92,7 @@ impl Field<'_> {
 
     /// A proportion over the runs of some points.
     fn sum(&self, points: &[usize], of: &dyn Fn(&Runs) -> Proportion) -> Proportion {
-        let proportions = points.iter().map(|point| of(&self.points.runs[*point]));
+        let proportions = points.iter().map(|point| of(&self.points.condensed.runs[*point]));
         proportions.fold(Proportion::default(), |sum, one| Proportion {
             met: sum.met + one.met,
             of: sum.of + one.of,

@@ -162,7 +162,7 @@ impl Ranking {
         let measures = question.measures.iter().filter_map(|id| table.column(id.name()));
         let measures =
             measures.map(|column| Measure::of_points(&points.condensed, &ended, column, &zipped));
-        let margins = points.runs.iter();
+        let margins = points.condensed.runs.iter();
         let margins = margins.map(|runs| {
             worst_margin(question.table, runs).map(|(margin, measure, _)| (margin, measure))
         });
@@ -190,7 +190,7 @@ impl Ranking {
 fn basis(limits: &[ResultLimit], points: &Points) -> Basis {
     if !limits.is_empty() {
         Basis::Limits
-    } else if points.runs.iter().any(|runs| runs.deployed.of > 0) {
+    } else if points.condensed.runs.iter().any(|runs| runs.deployed.of > 0) {
         Basis::Verdicts
     } else {
         Basis::Measures

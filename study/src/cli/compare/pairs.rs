@@ -132,7 +132,7 @@ impl Comparison<'_> {
         match (value, spread, &self.points) {
             (None, ..) => Value::Null,
             (Some(_), Some(spread), Some(points)) => {
-                let runs = points.condensed.runs[row].done;
+                let runs = points.condensed.runs[row].measured.len();
                 Value::Text(range::text(&spread, &measure.column.shown, runs))
             }
             (Some(value), ..) => Value::Number(value),

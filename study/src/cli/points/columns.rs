@@ -52,6 +52,8 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
         }
         if index == parameters + 1 {
             new.push(counted("runs_done", "number of done runs", |runs| runs.done));
+            let not_trusted = "number of done runs that cannot be trusted";
+            new.push(counted("runs_not_trusted", not_trusted, |runs| runs.not_trusted));
             new.push(counted("runs_failed", "number of failed runs", |runs| runs.failed));
             new.push(counted("runs_pending", "number of runs to come", |runs| runs.pending));
             new.extend(proportion(DEPLOYED, "deployed", condensed, |runs| runs.deployed));

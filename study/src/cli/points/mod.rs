@@ -115,13 +115,17 @@ impl<'a> Points<'a> {
     fn range(&self, column: &Column, row: usize) -> Option<Value> {
         self.table.column(&format!("{}{}", column.name, RANGE[0]))?;
         let Some(spread) = self.spread(&column.name, row) else { return Some(Value::Null) };
-        Some(Value::Text(range::text(&spread, &column.shown, self.condensed.runs[row].done)))
+        Some(Value::Text(range::text(
+            &spread,
+            &column.shown,
+            self.condensed.runs[row].measured.len(),
+        )))
     }
 
     /// Statistics of a measure over the runs of a point.
     pub fn spread(&self, measure: &str, row: usize) -> Option<Spread> {
         let column = self.runs_table.column(measure)?;
-        let runs = self.condensed.runs[row].rows.iter();
+        let runs = self.condensed.runs[row].measured.iter();
         Spread::of(runs.filter_map(|row| measured(self.runs_table, column, *row)))
     }
 
@@ -133,14 +137,15 @@ impl<'a> Points<'a> {
 
 /// How the runs of a point ended: "5", or "4 done, 1 failed".
 fn runs_text(runs: &Runs) -> String {
-    if runs.done == runs.rows.len() {
+    if runs.done == runs.rows.len() && runs.not_trusted == 0 {
         return runs.done.to_string();
     }
     if runs.infeasible == runs.rows.len() {
         return "infeasible".to_owned();
     }
     let parts = [
-        (runs.done, "done"),
+        (runs.done - runs.not_trusted, "done"),
+        (runs.not_trusted, "not trusted"),
         (runs.failed, "failed"),
         (runs.infeasible, "infeasible"),
         (runs.pending, "pending"),

@@ -12,7 +12,7 @@ use crate::job::result_limit::ResultLimit;
 use crate::job::row::{ColumnId, current_column_name};
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
-use crate::study::grid::{Axis, AxisKind, Grid};
+use crate::study::grid::{Axis, AxisKind, Context, Grid};
 use billow_solver::output::measures::Verdict;
 
 /// The member that makes an axis a search.
@@ -45,9 +45,9 @@ impl Grid {
         column: usize,
         json: &Json,
         path: &str,
-        limits: &[ResultLimit],
-        source: &Source,
+        context: Context<'_>,
     ) -> Result<(), InputError> {
+        let Context { limits, source, .. } = context;
         let key = self.columns[column].target.key();
         let file = SearchFile { key, json, path, source };
         if self.search.is_some() {
@@ -197,28 +197,45 @@ impl SearchFile<'_> {
             KeyKind::Quantity(quantity) => quantity.dimension,
             _ => Dimension::Number,
         };
-        let allowed = "a percentage, as in \"5 %\", or a positive quantity of the key";
+        let refuse = |json: &Json, problem: &str| {
+            let width = match dimension {
+                Dimension::Number => "a positive number".to_owned(),
+                other => format!("a positive {} ({})", other.name(), other.units().join(", ")),
+            };
+            let allowed = format!("a percentage of the border, as in \"5 %\", or {width}");
+            Err(self.source.error(
+                &format!("{}.tolerance", self.path),
+                &json.brief(),
+                problem,
+                allowed,
+            ))
+        };
         let default = Json::Text(DEFAULT_TOLERANCE.to_owned());
-        let tolerance = match self.json.get("tolerance").unwrap_or(&default) {
-            Json::Text(text) => match units::parse(text, Dimension::Number) {
-                Ok(part) => Tolerance::Relative(part),
-                Err(_) => match units::parse(text, dimension) {
-                    Ok(width) => Tolerance::Absolute(width),
-                    Err(error) => {
-                        return self.refuse(&format!("`tolerance` {}", error.problem), allowed);
-                    }
-                },
+        let json = self.json.get("tolerance").unwrap_or(&default);
+        let tolerance = match json {
+            Json::Text(text) if text.trim_end().ends_with('%') => {
+                match units::parse(text, Dimension::Number) {
+                    Ok(part) => Tolerance::Relative(part),
+                    Err(error) => return refuse(json, &error.problem),
+                }
+            }
+            Json::Text(text) => match units::parse(text, dimension) {
+                Ok(width) => Tolerance::Absolute(width),
+                Err(error) => return refuse(json, &error.problem),
             },
             Json::Number(number) => Tolerance::Absolute(*number),
             Json::Integer(number) => Tolerance::Absolute(*number as f64),
-            _ => return self.refuse("`tolerance` is not a quantity", allowed),
+            other => return refuse(other, &format!("is {}, not a quantity", other.kind())),
+        };
+        let smallest = match tolerance {
+            Tolerance::Absolute(_) => MIN_RELATIVE_TOLERANCE * (ends[1] - ends[0]),
+            Tolerance::Relative(_) => MIN_RELATIVE_TOLERANCE,
         };
         match tolerance {
-            Tolerance::Absolute(width) if width >= MIN_RELATIVE_TOLERANCE * (ends[1] - ends[0]) => {
+            Tolerance::Absolute(width) | Tolerance::Relative(width) if width >= smallest => {
                 Ok(tolerance)
             }
-            Tolerance::Relative(part) if part >= MIN_RELATIVE_TOLERANCE => Ok(tolerance),
-            _ => self.refuse("`tolerance` is not positive, or below a millionth", allowed),
+            _ => refuse(json, "is not positive, or below a millionth"),
         }
     }
 }

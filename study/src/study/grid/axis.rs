@@ -1,0 +1,158 @@
+//! One axis of a grid: a list of values, a range, or a group of keys that vary together.
+
+use super::{Axis, AxisKind, Context, Grid};
+use crate::input::keys::{KEYS, position};
+use crate::input::settings::read;
+use crate::input::study_file::Json;
+use crate::input::value::Value;
+use crate::platform::error::InputError;
+use crate::study::range::RangeInput;
+use crate::study::search::is_search;
+use crate::study::target::{self, Section, Target};
+
+/// What an axis must look like, for errors.
+const AXIS: &str = "a list of values; {\"from\", \"to\", and \"steps\" or \"step\", \"spacing\"}; or \
+                    {\"bisect\": [low, high], \"on\"}";
+/// The key that names a strategy.
+const STRATEGY: usize = position(KEYS, "strategy");
+
+impl Grid {
+    /// Reads an axis of one column.
+    pub(in crate::study) fn read_axis(
+        &mut self,
+        column: usize,
+        json: &Json,
+        path: &str,
+        kind: AxisKind,
+        context: Context<'_>,
+    ) -> Result<(), InputError> {
+        let values = self.values(column, json, path, context)?;
+        let rows = values.into_iter().map(|value| vec![value]).collect();
+        self.axes.push(Axis { columns: vec![column], rows, kind });
+        Ok(())
+    }
+
+    /// Reads a group of keys that vary together.
+    pub(super) fn read_zip(
+        &mut self,
+        group: &Json,
+        path: &str,
+        context: Context<'_>,
+    ) -> Result<(), InputError> {
+        let allowed = "an object of lists of equal length";
+        let Json::Object(members) = group else {
+            let problem = format!("is {}, not an object", group.kind());
+            return Err(context.source.error(path, &group.brief(), problem, allowed));
+        };
+        let mut columns = Vec::new();
+        let mut lists: Vec<Vec<Value>> = Vec::new();
+        for (name, value) in members {
+            let path = format!("{path}.{name}");
+            let column = self.column(name, &path, value, Section::Grid, context)?;
+            if let (true, [_]) = (is_search(value), members.as_slice()) {
+                return self.read_search(column, value, &path, context);
+            }
+            let values = self.values(column, value, &path, context)?;
+            if let Some(first) = lists.first()
+                && first.len() != values.len()
+            {
+                let problem =
+                    format!("has {} values, the first list {}", values.len(), first.len());
+                return Err(context.source.error(&path, &value.brief(), problem, allowed));
+            }
+            columns.push(column);
+            lists.push(values);
+        }
+        let Some(length) = lists.first().map(Vec::len) else {
+            return Err(context.source.error(path, "{}", "is empty", allowed));
+        };
+        let rows = (0..length)
+            .map(|row| lists.iter().map(|values| values[row].clone()).collect())
+            .collect();
+        self.axes.push(Axis { columns, rows, kind: AxisKind::Values });
+        Ok(())
+    }
+
+    /// Adds the column of a key; refuses a key that another axis varies.
+    pub(in crate::study) fn column(
+        &mut self,
+        name: &str,
+        path: &str,
+        value: &Json,
+        section: Section,
+        context: Context<'_>,
+    ) -> Result<usize, InputError> {
+        let Context { base, source, .. } = context;
+        let column = target::find(name, path, value, base, section, source)?;
+        if self.columns.iter().any(|known| known.target == column.target) {
+            let problem = format!("varies {}, which another axis varies already", column.name);
+            return Err(source.error(path, &value.brief(), problem, "each key once"));
+        }
+        self.columns.push(column);
+        Ok(self.columns.len() - 1)
+    }
+
+    /// The values of an axis of one column: those of a list or of a range.
+    fn values(
+        &self,
+        column: usize,
+        json: &Json,
+        path: &str,
+        context: Context<'_>,
+    ) -> Result<Vec<Value>, InputError> {
+        let Context { source, size, .. } = context;
+        let target = &self.columns[column].target;
+        let items = match json {
+            Json::List(items) => items,
+            Json::Object(members) => {
+                if is_search(json) {
+                    let problem = "is a search, which cannot vary together with another key";
+                    return Err(source.error(
+                        path,
+                        &json.brief(),
+                        problem,
+                        "an axis of its key alone",
+                    ));
+                }
+                let key = target.key();
+                return RangeInput { key, members, json, path, source }.values(size);
+            }
+            other => {
+                let mut error = source.error(
+                    path,
+                    &other.brief(),
+                    format!("is {}, not an axis", other.kind()),
+                    AXIS,
+                );
+                if let Target::Key(key) = target {
+                    error.hint = format!("a single value belongs to {}", KEYS[*key].path);
+                }
+                return Err(error);
+            }
+        };
+        if items.is_empty() {
+            return Err(source.error(path, "[]", "is an empty axis", AXIS));
+        }
+        items
+            .iter()
+            .enumerate()
+            .map(|(number, item)| value(target, item, &format!("{path}[{number}]"), context))
+            .collect()
+    }
+}
+
+/// Reads one value of a column.
+pub(super) fn value(
+    target: &Target,
+    json: &Json,
+    path: &str,
+    context: Context<'_>,
+) -> Result<Value, InputError> {
+    let Context { base, source, .. } = context;
+    let key = target.key();
+    let value = read(key, json, path, source)?;
+    if let (Target::Key(STRATEGY), Value::Text(name)) = (target, &value) {
+        base.check_strategy(name, path, source)?;
+    }
+    Ok(value)
+}

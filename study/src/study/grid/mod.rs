@@ -1,0 +1,170 @@
+//! The grid of a study: axes (single or zipped), single points, a filter.
+
+mod axis;
+mod points;
+mod varied;
+
+use super::REPLICATES;
+use super::base::Base;
+use super::plan_size::PlanSize;
+use super::search::{Search, is_search};
+use super::target::{Column, Section};
+use crate::input::expression::Expression;
+use crate::input::keys::STUDY;
+use crate::input::settings::{list, object};
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::value::{Value, json_value};
+use crate::job::result_limit::ResultLimit;
+use crate::platform::error::InputError;
+pub(super) use varied::refuse_varied;
+
+/// What the values of a grid are read with.
+#[derive(Clone, Copy)]
+pub(super) struct Context<'a> {
+    /// The keys outside the grid, and their values.
+    pub base: &'a Base,
+    /// What results must meet to be safe.
+    pub limits: &'a [ResultLimit],
+    pub source: &'a Source,
+    pub size: PlanSize,
+}
+
+/// What a study varies.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Grid {
+    /// Every key varied on an axis or by a point, in the order of the file.
+    pub columns: Vec<Column>,
+    /// The axes; the first varies slowest.
+    pub axes: Vec<Axis>,
+    /// Single points, after the product: positions in `columns`, and values.
+    pub points: Vec<Vec<(usize, Value)>>,
+    /// Which points the study keeps.
+    pub filter: Option<Expression>,
+    /// The search of a border along one of the axes.
+    pub search: Option<Search>,
+    /// Names of the measures with a limit.
+    limit_names: Vec<String>,
+}
+
+/// One axis: keys that vary together.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Axis {
+    /// Positions in [`Grid::columns`].
+    pub columns: Vec<usize>,
+    /// Values: one row for each step of the axis, one value for each column.
+    pub rows: Vec<Vec<Value>>,
+    /// What its values are.
+    pub kind: AxisKind,
+}
+
+/// What the values of an axis are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AxisKind {
+    /// Those of the file.
+    Values,
+    /// Those with which a search begins.
+    Search,
+    /// Repetitions of each point.
+    Replicates,
+}
+
+impl Grid {
+    /// Reads the grid and the replicates of a study file.
+    pub fn read(tree: &Json, context: Context<'_>) -> Result<Self, InputError> {
+        let limits = context.limits.iter();
+        let limit_names = limits.map(|limit| limit.measure.name().to_owned()).collect();
+        let mut grid = Self { limit_names, ..Self::default() };
+        let members = match tree.get("grid") {
+            Some(json) => object(json, &STUDY, "grid", context.source)?,
+            None => &[],
+        };
+        let mut filter = None;
+        let mut points = None;
+        for (name, value) in members {
+            match name.as_str() {
+                "zip" => {
+                    let allowed = "a list of objects of lists of equal length";
+                    let groups = list(value, "grid.zip", context.source, allowed)?;
+                    for (index, group) in groups.iter().enumerate() {
+                        grid.read_zip(group, &format!("grid.zip[{index}]"), context)?;
+                    }
+                }
+                // Points and filter may name every column, so they are read last.
+                "points" => points = Some(value),
+                "filter" => filter = Some(value),
+                _ => {
+                    let path = format!("grid.{name}");
+                    let column = grid.column(name, &path, value, Section::Grid, context)?;
+                    if is_search(value) {
+                        grid.read_search(column, value, &path, context)?;
+                        continue;
+                    }
+                    grid.read_axis(column, value, &path, AxisKind::Values, context)?;
+                }
+            }
+        }
+        grid.read_replicates(tree.get(REPLICATES), context)?;
+        grid.check_search(context.source)?;
+        if let Some(points) = points {
+            grid.read_points(points, context)?;
+        }
+        if let Some(filter) = filter {
+            grid.read_filter(filter, context)?;
+        }
+        Ok(grid)
+    }
+
+    /// Number of single points, without replicates.
+    pub fn single_points(&self) -> usize {
+        let Some(search) = &self.search else { return self.points.len() };
+        let gives =
+            |point: &&Vec<(usize, Value)>| point.iter().any(|(column, _)| *column == search.column);
+        let given = self.points.iter().filter(gives).count();
+        given + (self.points.len() - given) * search.scan().len()
+    }
+
+    /// The replicates as JSON; empty without any.
+    pub fn resolved_replicates(&self) -> Vec<(String, Json)> {
+        let member = |axis: &Axis| {
+            let values = axis.rows.iter().map(|row| Json::from(json_value(&row[0]))).collect();
+            (self.columns[axis.columns[0]].name.clone(), Json::List(values))
+        };
+        self.replicates().map(member).collect()
+    }
+
+    /// The grid as JSON: each axis is a group of `zip`, since a list keeps the order of the axes and an
+    /// object may not.
+    pub fn resolved(&self) -> Json {
+        let name = |column: usize| self.columns[column].name.clone();
+        let json = |value: &Value| Json::from(json_value(value));
+        let mut grid = Vec::new();
+        let grouped: Vec<&Axis> =
+            self.axes.iter().filter(|axis| axis.kind != AxisKind::Replicates).collect();
+        let groups = grouped.iter().map(|axis| {
+            if let (AxisKind::Search, Some(search)) = (axis.kind, &self.search) {
+                let json = search.to_json(&|limit| self.limit_names[limit].clone());
+                return Json::Object(vec![(name(axis.columns[0]), json)]);
+            }
+            let columns = axis.columns.iter().enumerate().map(|(index, column)| {
+                let values = axis.rows.iter().map(|row| json(&row[index])).collect();
+                (name(*column), Json::List(values))
+            });
+            Json::Object(columns.collect())
+        });
+        if !grouped.is_empty() {
+            grid.push(("zip".to_owned(), Json::List(groups.collect())));
+        }
+        let points = self.points.iter().map(|point| {
+            let members = point.iter().map(|(column, value)| (name(*column), json(value)));
+            Json::Object(members.collect())
+        });
+        if !self.points.is_empty() {
+            grid.push(("points".to_owned(), Json::List(points.collect())));
+        }
+        if let Some(filter) = &self.filter {
+            grid.push(("filter".to_owned(), Json::Text(filter.text().to_owned())));
+        }
+        Json::Object(grid)
+    }
+}
