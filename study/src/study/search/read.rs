@@ -199,8 +199,8 @@ impl SearchFile<'_> {
         };
         let refuse = |json: &Json, problem: &str| {
             let width = match dimension {
-                Dimension::Number => "a positive number".to_owned(),
-                other => format!("a positive {} ({})", other.name(), other.units().join(", ")),
+                Dimension::Number => "a number above 0".to_owned(),
+                other => format!("{} above 0 ({})", other.name(), other.units().join(", ")),
             };
             let allowed = format!("a percentage of the border, as in \"5 %\", or {width}");
             Err(self.source.error(
