@@ -130,9 +130,48 @@ fn a_search_encloses_the_rate_at_which_a_limit_is_missed() {
         json_of(&folder, &["borders", "--where", "strategy == 'rapid' and outcome != 'open'"]);
     assert_eq!(few.as_array().unwrap().len(), 1);
 
+    // In the table the values of a search ascend, although they were planned in generations.
+    let listed = json_of(&folder, &["table", "--where", "strategy == 'rapid'"]);
+    let rates =
+        listed.as_array().unwrap().iter().map(|row| row["mass_flow_rate"].as_f64().unwrap());
+    assert!(rates.is_sorted(), "{listed}");
+
     // Only the values that both strategies have are ranked: the five of the scan.
     let ranked = json_of(&folder, &["rank"]);
     assert!(ranked.as_array().unwrap().iter().all(|row| row["points"] == 5), "{ranked}");
+}
+
+#[test]
+fn other_limits_judge_the_stored_runs() {
+    let folder = TestFolder::new(&safety_study(&json!(["0.5 g/s", "2 g/s", "5 g/s"])));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
+    let set = ["--set", "limits.peak_vz=< 38 m/s"];
+    let output = folder.run(&[&["table", "grid.json", "--runs", "--json"], &set[..]].concat());
+    let said = stderr(&output);
+    assert!(
+        said.contains("note: limits peak_vz < 38 m/s, deployed; the last run had peak_vz < 41 m/s"),
+        "{said}"
+    );
+    let judged: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(judged.as_array().unwrap().len(), rows.len());
+    let safe = |rows: &[Value], limit: f64| {
+        rows.iter().filter(|row| row["peak_vz"].as_f64().unwrap() < limit).count()
+    };
+    assert!(safe(&rows, 38.0) < safe(&rows, 41.0), "the limits differ in what they find safe");
+    for row in judged.as_array().unwrap() {
+        assert_eq!(row["safe"], row["peak_vz"].as_f64().unwrap() < 38.0, "{row}");
+    }
+    let ranked = json_of(&folder, &[&["rank", "grid.json"], &set[..]].concat());
+    let runs = ranked.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
+    assert_eq!(runs.sum::<u64>() as usize, safe(&rows, 38.0));
+    // A folder keeps the limits of its last run; a study that differs in more is named as such.
+    let kept = json_of(&folder, &["rank", "results/grid"]);
+    let runs = kept.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
+    assert_eq!(runs.sum::<u64>() as usize, safe(&rows, 41.0));
+    let other = [&["rank", "grid.json", "--set", "film.youngs_modulus=3 GPa"], &set[..]].concat();
+    let said = stderr(&folder.run(&other));
+    assert!(said.contains("is not the study of these rows"), "{said}");
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn wrong_searches_and_replicates_are_refused_with_their_place() {
     refused(&|study| axis(study, "on", json!("peak_v")), &["did you mean peak_vz"]);
     refused(
         &|study| axis(study, "tolerance", json!("2 Pa")),
-        &["rate.tolerance", "mass flow rate (kg/s, "],
+        &["rate.tolerance", "mass flow rate above 0 (kg/s, "],
     );
     refused(
         &|study| axis(study, "tolerance", json!(0)),

@@ -6,8 +6,6 @@ use crate::analysis::answer::{Effect, Effects, Extremes, MeasureEffect};
 use crate::analysis::compare::{Tolerance, ToleranceSource};
 use crate::input::value::{Value, brief_number};
 use crate::job::row::HEADLINE;
-use crate::platform::error::Result;
-use crate::store::results::Results;
 use crate::store::table::Table;
 use crate::study::Study;
 
@@ -16,16 +14,11 @@ pub const MAX_LINE_WIDTH: usize = 120;
 /// Most values of a parameter that a line names. Chosen: more values need a chart.
 pub const MAX_VALUES: usize = 6;
 
-/// Prints on stderr the best and the worst value of each parameter that varies in some rows of a table.
-///
-/// # Errors
-/// A study.json that cannot be read.
-pub fn print(results: &Results<'_>, table: &Table, rows: &[usize]) -> Result<()> {
+/// Prints on stderr the best and the worst value of each parameter that varies in some rows of a table. With limits
+/// the safest values are the best ones: `billow rank` orders them.
+pub fn print(study: Option<&Study>, table: &Table, rows: &[usize]) {
     // A table without its study cannot say which parameters change together.
-    if results.owner()?.is_none() {
-        return Ok(());
-    }
-    let study = Study::load(&results.study_path(), &[])?;
+    let Some(study) = study.filter(|study| study.result_limits().is_empty()) else { return };
     let effects =
         Effects::of(table, rows, &study.replicates(), &HEADLINE, &|name| study.zipped_with(name));
     for text in lines(&effects) {
@@ -35,7 +28,6 @@ pub fn print(results: &Results<'_>, table: &Table, rows: &[usize]) -> Result<()>
             topic = "";
         }
     }
-    Ok(())
 }
 
 /// One line per parameter, without indentation: for each measure the best and the worst value, with their

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::print::{Heading, print_quantities};
+use super::print::{Heading, count, print_quantities};
 use super::target::{StudyArgs, filtered};
 use super::{Format, study_keys};
 use crate::analysis::answer::{Found, Searches};
@@ -66,6 +66,15 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             "{}: {}; low, high: nearest values at which the outcome is decided",
             searches.parameter, searches.criterion
         );
+        let wide = |found: &&Found| found.undecided_inside(searches.replicates) > 0;
+        let wide = searches.found.iter().filter(wide).count();
+        if wide > 0 {
+            eprintln!(
+                "{}: runs disagree between low and high (not_decided), so the border is wider than the tolerance; more \
+                 replicates make it narrower",
+                count(wide, "search")
+            );
+        }
     }
     Ok(())
 }

@@ -10,27 +10,63 @@ use crate::platform::provenance::PHYSICS_VERSION;
 use crate::scene::summary;
 use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::{JOB_LIMITS, Study, UNITS};
+use crate::study::{JOB_LIMITS, LIMITS, Study, UNITS};
 
-/// Says on stderr in which keys the given study file, with its overrides `set`, differs from the study of
-/// the results.
+/// The study whose questions the rows of some results answer. It is the given study file, with its overrides
+/// `set`, where that differs from the study of the results in its limits alone: limits judge stored rows and change
+/// no job. Otherwise it is the study of the results, and a message on stderr says in which keys the given one
+/// differs. `None` for results without their study.
 ///
 /// # Errors
 /// An invalid study file; a study.json that cannot be read.
-pub fn note(results: &Results<'_>, file: Option<&Path>, set: &[String]) -> Result<()> {
-    let Some(path) = file.filter(|path| path.is_file()) else { return Ok(()) };
-    let study = Study::load(path, set)?;
-    if results.holds(&study.name, &study.resolved())? {
-        return Ok(());
+pub fn asked(results: &Results<'_>, file: Option<&Path>, set: &[String]) -> Result<Option<Asked>> {
+    if results.owner()?.is_none() {
+        return Ok(None);
     }
     let stored = Study::load(&results.study_path(), &[])?;
+    let Some(path) = file.filter(|path| path.is_file()) else {
+        return Ok(Some(Asked { study: stored, other_limits: false }));
+    };
+    let study = Study::load(path, set)?;
+    if results.holds(&study.name, &study.resolved())? {
+        return Ok(Some(Asked { study: stored, other_limits: false }));
+    }
+    if jobs_of(&stored) == jobs_of(&study) {
+        let limits = |study: &Study| match study.result_limits() {
+            [] => "none".to_owned(),
+            limits => limits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+        };
+        let next = match study.searched() {
+            Some(_) => format!("; `billow run {}` continues the search", path.display()),
+            None => String::new(),
+        };
+        eprintln!("note: limits {}; the last run had {}{next}", limits(&study), limits(&stored));
+        return Ok(Some(Asked { study, other_limits: true }));
+    }
     let changes = between(&stored, &study).join(", ");
     eprintln!(
         "billow: {file} is not the study of these rows ({changes}): the last run had another file or \
          --set; give the same --set, or `billow run {file}`: it keeps all finished jobs",
         file = path.display()
     );
-    Ok(())
+    Ok(Some(Asked { study: stored, other_limits: false }))
+}
+
+/// The study whose questions some rows answer.
+pub struct Asked {
+    /// The study.
+    pub study: Study,
+    /// Whether its limits differ from those of the last run.
+    pub other_limits: bool,
+}
+
+/// A study without what changes no job.
+fn jobs_of(study: &Study) -> serde_json::Value {
+    let mut json = serde_json::to_value(study.resolved()).unwrap_or_default();
+    if let Some(keys) = json.as_object_mut() {
+        keys.retain(|name, _| ![UNITS, JOB_LIMITS, LIMITS, "question"].contains(&name.as_str()));
+    }
+    json
 }
 
 /// The keys in which two studies differ, with both values: "film.thickness 2.54e-5 → 3e-5".

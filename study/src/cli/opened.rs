@@ -9,7 +9,8 @@ use crate::store::stored::Stored;
 use crate::store::table::Table;
 
 /// Reads stored results with their study, for commands that need both. Returns them, their table in the units to
-/// show, and these units. Says on stderr what [`super::target::open`] says of the study file.
+/// show, and these units. Judges by the limits of a given study file, and says on stderr what
+/// [`super::changes::asked`] says.
 ///
 /// # Errors
 /// As [`super::target::open`].
@@ -18,8 +19,11 @@ pub fn open_stored(
     set: &[String],
     units: &UnitsOption,
 ) -> Result<(Stored<'static>, Table, DisplayUnits)> {
-    let stored = stored::read(&folder(given, set)?)?;
-    changes::note(&stored.results, given.study.as_deref(), set)?;
+    let mut stored = stored::read(&folder(given, set)?)?;
+    let asked = changes::asked(&stored.results, given.study.as_deref(), set)?;
+    if let Some(asked) = asked.filter(|asked| asked.other_limits) {
+        stored = stored.asked(asked.study);
+    }
     let table = stored.table();
     let units = units.of_table(&table, stored.study.display_units())?;
     let table = table.shown_in(&units);

@@ -8,6 +8,14 @@ use crate::input::units::DisplayUnit;
 use crate::input::value::{Value, brief_number, json_value};
 use crate::platform::error::Result;
 
+/// A number of points with several runs each: "30 points of 5 runs"; `planned` counts every run.
+pub fn points_of_runs(planned: usize, runs: usize) -> String {
+    if runs > 1 && planned.is_multiple_of(runs) {
+        return format!("{} of {}", count(planned / runs, "point"), count(runs, "run"));
+    }
+    count(planned, "point")
+}
+
 /// A column of a list: its name, and the unit in which a table shows its numbers.
 #[derive(Clone)]
 pub struct Heading {

@@ -12,7 +12,7 @@ use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
-use super::print::count;
+use super::print::{count, points_of_runs};
 use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
@@ -254,7 +254,7 @@ impl Ended<'_> {
     fn print(&self, answer: &Answer, format: Format, out: &mut dyn Write) -> io::Result<()> {
         let Self { study, root, summary, .. } = self;
         let (name, counts) = (&study.name, &summary.counts);
-        let points = count(self.points, "point");
+        let points = points_of_runs(self.points, study.replicate_count());
         if format == Format::Json {
             let mut json = serde_json::json!({
                 "study": name,

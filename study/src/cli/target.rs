@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::changes::Asked;
 use super::options::{ResultsOption, UnitsOption};
 use super::{changes, stored, study_keys};
 use crate::input::expression::{Expression, Type, Variable};
@@ -17,6 +18,7 @@ use crate::platform::files::{self, Disk, Files};
 use crate::platform::nearest::did_you_mean;
 use crate::store::journal::Record;
 use crate::store::results::Results;
+use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 use crate::study::Study;
 
@@ -34,6 +36,8 @@ pub struct StudyArgs {
 pub struct Target {
     /// The folder.
     pub results: Results<'static>,
+    /// The study whose questions it answers; `None` for results without one.
+    pub study: Option<Study>,
     /// The table.
     pub table: Table,
     /// The units in which it is shown.
@@ -56,7 +60,7 @@ impl Target {
 
 /// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
 /// stderr says when the given study file, with its overrides `set`, differs from the study of the
-/// results. The table is shown in the units of the given study file, or in those of the results.
+/// results; its limits judge the rows where nothing else differs. The table is shown in the units of the given study file, or in those of the results.
 ///
 /// # Errors
 /// When there are no results, or their table cannot be read; units that do not fit.
@@ -64,8 +68,14 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
     let results = Results::new(&Disk, &folder(given, set)?);
     let journal = results.journal()?;
     stored::note_faults(&journal, &results);
-    let table = stored::table(&results, &journal)?;
-    changes::note(&results, given.study.as_deref(), set)?;
+    let asked = changes::asked(&results, given.study.as_deref(), set)?;
+    let table = match &asked {
+        Some(Asked { study, other_limits: true }) => {
+            Stored::read(results.clone())?.asked(study.clone()).table()
+        }
+        _ => stored::table(&results, &journal)?,
+    };
+    let study = asked.map(|asked| asked.study);
     changes::note_other_physics(&table);
     let display = match given.study.as_deref().filter(|path| path.is_file()) {
         Some(path) => Study::load(path, set)?.display_units().clone(),
@@ -73,7 +83,7 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
     };
     let units = units.of_table(&table, &display)?;
     let table = table.shown_in(&units);
-    Ok(Target { results, table, units, records: journal.records })
+    Ok(Target { results, study, table, units, records: journal.records })
 }
 
 /// The results folder: the given folder, or the folder of the given study file, or the only folder under

@@ -61,6 +61,15 @@ impl<'a> Stored<'a> {
         Ok(Self { results, study, units, journal, points })
     }
 
+    /// The same results, read as those of another study: one that differs in its limits.
+    #[must_use]
+    pub fn asked(mut self, study: Study) -> Self {
+        self.points = planned(&study, &self.journal.records);
+        self.units = study.display_units().clone();
+        self.study = study;
+        self
+    }
+
     /// The row of a point.
     pub fn cells(&self, point: &Point) -> Cells {
         journal::cells_of(point, &self.journal.records)

@@ -5,7 +5,7 @@ use billow_solver::scene::Scene;
 
 use super::base::Base;
 use super::strategy::Strategy;
-use crate::input::keys::{KEYS, Key, named};
+use crate::input::keys::{KEYS, Key, named, position};
 use crate::input::plausible::{Implausible, MIN_SAMPLES};
 use crate::input::source::{Source, shown};
 use crate::input::value::{Value, brief_number};
@@ -38,6 +38,14 @@ impl Schedule<'_> {
         self.check_samples();
     }
 
+    /// The rate of windows that give none, kg/s.
+    fn mass_flow_rate(&self) -> Option<f64> {
+        match self.point.settings.value(const { position(KEYS, "gas.mass_flow_rate") }) {
+            Value::Number(rate) => Some(*rate),
+            _ => None,
+        }
+    }
+
     fn end_time(&self) -> f64 {
         self.scene.solver.end_time
     }
@@ -61,7 +69,11 @@ impl Schedule<'_> {
                 );
                 let next = "start it earlier, or raise solver.end_time";
                 self.warn(&format!("{path}.from"), &seconds(from), problem, next);
-            } else if let Some(to) = window.to.filter(|to| *to > end) {
+                continue;
+            }
+            let rate = window.mass_flow_rate.or(self.mass_flow_rate()).filter(|rate| *rate > 0.0);
+            let of_mass = window.mass.zip(rate).map(|(mass, rate)| from + mass / rate);
+            if let Some(to) = window.to.or(of_mass).filter(|to| *to > end) {
                 let problem = format!(
                     "ends at {}: its part after solver.end_time ({}), {} % of its gas, is ignored",
                     seconds(to),
@@ -69,7 +81,14 @@ impl Schedule<'_> {
                     brief_number(100.0 * (to - end) / (to - from))
                 );
                 let next = "end it earlier, or raise solver.end_time";
-                self.warn(&format!("{path}.to"), &seconds(to), problem, next);
+                match window.to {
+                    Some(_) => self.warn(&format!("{path}.to"), &seconds(to), problem, next),
+                    None => {
+                        let mass = format!("{} kg", shown(window.mass.unwrap_or_default()));
+                        let next = "let less gas in, faster, or raise solver.end_time";
+                        self.warn(&format!("{path}.mass"), &mass, problem, next);
+                    }
+                }
             }
         }
     }

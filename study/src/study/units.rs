@@ -1,5 +1,5 @@
 //! The units in which a study's quantities are shown: those of the section `units`, and those that the
-//! file writes for a key, first under `grid`, then in its section.
+//! file writes for a key, first under `grid`, then in its section; for a measure those of its limit.
 
 use super::base::Base;
 use super::target::{self, Section};
@@ -45,6 +45,14 @@ pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayU
                 suggest(&mut units, &column.name, value);
             }
         });
+    }
+    if let Some(Json::Object(limits)) = tree.get(LIMITS) {
+        for (name, value) in limits {
+            if let Json::Text(text) = value {
+                let bound = text.trim_start_matches(['<', '>', '=', ' ']);
+                suggest(&mut units, current_column_name(name).0, &Json::Text(bound.to_owned()));
+            }
+        }
     }
     written_in_section("", tree, &mut units);
     Ok(units)

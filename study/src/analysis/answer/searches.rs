@@ -97,6 +97,12 @@ impl Found {
         undecided.map(|level| level.value).collect()
     }
 
+    /// Number of values inside the border at which the runs disagree.
+    pub fn undecided_inside(&self, replicates: usize) -> usize {
+        let Outcome::Border { low, high, .. } = self.border.outcome else { return 0 };
+        self.undecided(replicates).iter().filter(|value| low < **value && **value < high).count()
+    }
+
     /// The smallest and the largest value.
     pub fn range(&self) -> Option<[f64; 2]> {
         let levels = &self.border.levels;
@@ -118,18 +124,24 @@ impl Found {
 }
 
 /// The measure that most unsafe runs have as that of their smallest margin, at the value next to the border on
-/// its unsafe side.
+/// its unsafe side, or without a border at every value.
 fn deciding(table: &Table, parameter: &str, border: &Border) -> Option<String> {
-    let Outcome::Border { low, high, met_below } = border.outcome else { return None };
-    let side = if met_below { high } else { low };
+    // Without a border every value that is not safe says what decides.
+    let side = match border.outcome {
+        Outcome::Border { low, high, met_below } => Some(if met_below { high } else { low }),
+        Outcome::NoChange { met: false } => None,
+        _ => return None,
+    };
     let names = table.column(DerivedColumn::SmallestMarginOf.name())?;
     let safe = table.column(DerivedColumn::Safe.name())?;
     let searched = table.parameters().find(|column| column.name == parameter)?;
-    let is_side = |row: &usize| match (searched.cell_type, &searched.cells[*row]) {
-        (CellType::Text, Value::Text(text)) => text.parse() == Ok(side),
-        (_, Value::Number(number)) => number.total_cmp(&side).is_eq(),
-        (_, Value::Integer(number)) => (*number as f64).total_cmp(&side).is_eq(),
-        _ => false,
+    let is_side = |row: &usize| {
+        side.is_none_or(|side| match (searched.cell_type, &searched.cells[*row]) {
+            (CellType::Text, Value::Text(text)) => text.parse() == Ok(side),
+            (_, Value::Number(number)) => number.total_cmp(&side).is_eq(),
+            (_, Value::Integer(number)) => (*number as f64).total_cmp(&side).is_eq(),
+            _ => false,
+        })
     };
     let fixed = |row: &usize| {
         border.parameters.iter().all(|(name, value)| {

@@ -173,6 +173,10 @@ impl<'d> Drawing<'d> {
         let value = if self.partly { "decided value" } else { "value searched" };
         let one = |up: &Option<Up>, letter: &str, text: String| {
             let letter = || Sample::Letter(letter.to_owned());
+            let text = match up {
+                Some(_) => format!("{text}: a border, if any, lies beyond"),
+                None => text,
+            };
             (up.map_or_else(letter, |up| Sample::Arrow(direction(up))), text)
         };
         let entry = |(sign, count): (&Sign, &usize)| {

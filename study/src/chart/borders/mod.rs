@@ -126,7 +126,7 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     let plots = Plots {
         sheet: Sheet {
             title: source.title_or(&title),
-            subtitle: subtitle(&points, &single),
+            subtitle: subtitle(&points, &single, search.criterion),
             legends,
             notes,
         },
@@ -138,7 +138,7 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
 }
 
 /// The lines below the title: a row of the condensed table is a search.
-fn subtitle(points: &Source<'_>, single: &Source<'_>) -> Vec<String> {
+fn subtitle(points: &Source<'_>, single: &Source<'_>, criterion: &str) -> Vec<String> {
     let mut lines = points.subtitle();
     let noun = |count: usize, noun: &str, many: &str| {
         format!("{count} {}", if count == 1 { noun } else { many })
@@ -153,13 +153,20 @@ fn subtitle(points: &Source<'_>, single: &Source<'_>) -> Vec<String> {
             points.choice
         );
     }
+    if criterion == SAFE {
+        let limits: Vec<String> = single.limits.iter().map(ToString::to_string).collect();
+        lines.push(format!("Safe: {}", limits.join(", ")));
+    }
     lines
 }
+
+/// The criterion of all limits.
+const SAFE: &str = "safe";
 
 /// "largest safe mass flow rate", or "largest mass flow rate with" a limit.
 fn quality(most: &str, name: &str, criterion: &str) -> String {
     match criterion {
-        "safe" => format!("{most} safe {name}"),
+        SAFE => format!("{most} safe {name}"),
         "deployed" => format!("{most} {name} that deploys"),
         limit => format!("{most} {name} with {limit}"),
     }

@@ -37,7 +37,11 @@ fn line(searches: &Searches, found: &Found) -> String {
         }
         Outcome::Border { low, high, met_below } => {
             let sides = if *met_below { ("below", "above") } else { ("above", "below") };
-            format!("{name} {}: {what} {}, not {}", interval([*low, *high]), sides.0, sides.1)
+            let open = match found.undecided_inside(searches.replicates) {
+                0 => String::new(),
+                values => format!("; runs disagree at {} between", count(values, "value")),
+            };
+            format!("{name} {}: {what} {}, not {}{open}", interval([*low, *high]), sides.0, sides.1)
         }
         Outcome::NotMonotone(changes) => {
             let changes: Vec<String> = changes.iter().map(|change| interval(*change)).collect();

@@ -11,8 +11,9 @@ use crate::input::units::DisplayUnit;
 use crate::input::value::brief_number;
 use crate::job::row::{ColumnId, HEADLINE};
 
-/// The medians of each parameter, its best and worst values, and what is not compared.
-pub(super) fn print(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
+/// The medians of each parameter, its best and worst values, and what is not compared. With limits the safest values are
+/// the best ones, which `billow rank` orders.
+pub(super) fn print(effects: &Effects, with_limits: bool, out: &mut dyn Write) -> io::Result<()> {
     if !effects.effects.is_empty() {
         writeln!(
             out,
@@ -27,7 +28,8 @@ pub(super) fn print(effects: &Effects, out: &mut dyn Write) -> io::Result<()> {
             writeln!(out, "{line}")?;
         }
     }
-    for (topic, texts) in [("best", best::lines(effects)), ("left out", best::left_out(effects))] {
+    let best = if with_limits { Vec::new() } else { best::lines(effects) };
+    for (topic, texts) in [("best", best), ("left out", best::left_out(effects))] {
         let mut topic = topic;
         for text in &texts {
             for line in best::wrapped(text, TOPIC_WIDTH) {

@@ -72,7 +72,7 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             brief_number(100.0 * answer.largest_strain)
         )?;
     }
-    effects::print(&answer.effects, out)?;
+    effects::print(&answer.effects, answer.safety.is_some(), out)?;
     print_pairs(answer, out)
 }
 

@@ -103,9 +103,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     let mut target = target::open(&args.study, &args.set.set, &args.units)?;
     target.add_keys(&[], args.condition.as_deref())?;
-    let Target { results, table, records, .. } = target;
+    let Target { results, study, table, records, .. } = target;
     let name = study_name(&results);
-    let question = Question::read(&results)?;
+    let question = Question::read(&results, study.as_ref())?;
     let single = Source {
         limits: &question.limits,
         search: question.search(),
@@ -159,7 +159,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     print(&written, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
-        best::print(&results, &table, &single.rows)?;
+        best::print(study.as_ref(), &table, &single.rows);
     }
     Ok(())
 }

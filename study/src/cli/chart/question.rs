@@ -28,22 +28,19 @@ struct Search {
 }
 
 impl Question {
-    /// That of the study that ran last; nothing for results without their study.
+    /// That of a study, with what its search found in some results; nothing for results without their study.
     ///
     /// # Errors
-    /// A study.json that cannot be read.
-    pub fn read(results: &Results<'static>) -> Result<Self> {
-        if results.owner()?.is_none() {
-            return Ok(Self::default());
-        }
-        let study = Study::load(&results.study_path(), &[])?;
+    /// Results that cannot be read.
+    pub fn read(results: &Results<'static>, study: Option<&Study>) -> Result<Self> {
+        let Some(study) = study else { return Ok(Self::default()) };
         let search = match study.searched() {
             None => None,
             Some((parameter, criterion)) => Some(Search {
                 parameter: parameter.to_owned(),
                 criterion: criterion.text(study.result_limits()),
                 replicates: study.replicate_count(),
-                borders: Stored::read(results.clone())?.borders(),
+                borders: Stored::read(results.clone())?.asked(study.clone()).borders(),
             }),
         };
         let (limits, replicates) = (study.result_limits().to_vec(), study.replicates());

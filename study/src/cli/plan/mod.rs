@@ -57,17 +57,12 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let format = args.output.format();
     let counts = PlanCounts::of(&study, &generation);
     if args.summary {
-        return print_summary(&counts, format, out);
+        print_summary(&counts, format, out)?;
+    } else {
+        print_points(args, &study, &generation, out)?;
     }
-    let units = args.units.apply(study.display_units(), &|name| si_unit(&study, name))?;
-    let rows: Vec<Vec<Value>> = generation
-        .points
-        .iter()
-        .map(|point| row(point, format == Format::Table, &|name| units.of(name, study.unit(name))))
-        .collect();
-    print_quantities(&headings(&study, &units), &rows, format, out)?;
     if !args.quiet.quiet {
-        eprintln!("{}: {}", study.name, summary(&counts));
+        eprintln!("{}: {}", study.name, summary(&study, &counts));
         print_progress_and_forecast(args, &study, &generation)?;
         notes::print_warnings(&study);
         notes::print(&study);
@@ -76,6 +71,23 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Prints one row per point.
+fn print_points(
+    args: &Args,
+    study: &Study,
+    generation: &Generation,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let format = args.output.format();
+    let units = args.units.apply(study.display_units(), &|name| si_unit(study, name))?;
+    let rows: Vec<Vec<Value>> = generation
+        .points
+        .iter()
+        .map(|point| row(point, format == Format::Table, &|name| units.of(name, study.unit(name))))
+        .collect();
+    print_quantities(&headings(study, &units), &rows, format, out)
 }
 
 /// Prints how many jobs are finished, if the results folder belongs to this study, the lengths in use,
@@ -106,7 +118,13 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
     }
     let references = results.references().states.into_iter().map(|(id, _)| id).collect();
     let texts = forecast(&missing, references).into_iter().chain(memory.forecast(study));
-    texts.for_each(|text| eprintln!("{text}"));
+    let of_search = study.searched().is_some();
+    for text in texts {
+        match text.strip_prefix("forecast: ").filter(|_| of_search) {
+            Some(rest) => eprintln!("forecast of the first generation: {rest}"),
+            None => eprintln!("{text}"),
+        }
+    }
     Ok(())
 }
 
@@ -199,10 +217,10 @@ fn note(merged: &[Parameters], unit: &dyn Fn(&str) -> DisplayUnit) -> String {
 }
 
 /// The numbers of points and jobs, as one line.
-fn summary(counts: &PlanCounts) -> String {
+fn summary(study: &Study, counts: &PlanCounts) -> String {
     format!(
         "{}: {}, {}, {} infeasible; {} filtered out",
-        print::count(counts.points, "point"),
+        print::points_of_runs(counts.points, study.replicate_count()),
         print::count(counts.jobs, "job"),
         print::count(counts.duplicates, "duplicate"),
         counts.infeasible,

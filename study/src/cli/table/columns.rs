@@ -14,8 +14,8 @@ const STRATEGY: &str = "strategy";
 
 /// Columns shown after the parameters by default, in this order, as far as they fit. Where strategies are
 /// compared, the speed stands beside the energy, although it is noisy: both measure the impact.
-pub fn main_names(table: &Table) -> Vec<&'static str> {
-    let mut names = vec![
+pub fn main_names(table: &Table) -> Vec<&str> {
+    let mut names: Vec<&str> = vec![
         ColumnId::Status.name(),
         ColumnId::Verdict.name(),
         DerivedColumn::Safe.name(),
@@ -23,7 +23,12 @@ pub fn main_names(table: &Table) -> Vec<&'static str> {
         DerivedColumn::SmallestMarginOf.name(),
         DerivedColumn::VerdictDependsOn.name(),
     ];
-    names.extend(main_measures(table));
+    let measures = limited(table).into_iter().chain(main_measures(table));
+    for name in measures {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
     names
 }
 
@@ -43,6 +48,12 @@ pub fn main_measures(table: &Table) -> Vec<&'static str> {
     ];
     let measures = [ColumnId::T90ZRim].iter().chain(impact).chain(&end);
     measures.map(|column| column.name()).collect()
+}
+
+/// The measures that have a limit.
+pub fn limited(table: &Table) -> Vec<&str> {
+    let names = table.columns.iter().filter_map(|column| column.name.strip_prefix("margin_"));
+    names.filter(|name| table.column(name).is_some()).collect()
 }
 
 /// Whether a study compares strategies.
@@ -87,6 +98,7 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     columns.extend(sorting(table, sort, &columns));
     let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
     let shown: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let limited = limited(table);
     let names = main_names(table);
     let mains = names.iter().filter(|name| !shown.contains(name));
     // What the limits say takes the room of three columns.
@@ -94,7 +106,8 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     let most = if judged { MAX_WIDE_LINE_WIDTH } else { MAX_LINE_WIDTH };
     for column in mains.filter_map(|name| table.column(name)).collect::<Vec<_>>() {
         let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
-        let always = is_always_shown(&column.name, has_values);
+        let always =
+            is_always_shown(&column.name, has_values) || limited.contains(&column.name.as_str());
         let fits = width + self::width(column) <= most;
         // The speed does not take the place of the energy.
         let partner = ColumnId::PeakKineticEnergy.name();

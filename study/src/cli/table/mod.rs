@@ -10,11 +10,9 @@ use super::{Format, best};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
-use crate::store::results::Results;
 use crate::store::table::Table;
-use crate::study::Study;
 use columns::{chosen, heading, shown};
-use sort::sorted;
+use sort::{by_search, sorted};
 
 mod columns;
 mod point_columns;
@@ -81,9 +79,14 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let asked = args.columns.iter().map(String::as_str).chain(sorts);
     let asked: Vec<String> = asked.map(|name| name.trim().to_owned()).collect();
     target.add_keys(&asked, args.condition.as_deref())?;
-    let Target { results, table, .. } = target;
-    let replicates = if args.runs { Vec::new() } else { replicates(&results)? };
+    let Target { study, table, .. } = target;
+    let study = study.as_ref();
+    let replicates = match study {
+        Some(study) if !args.runs => study.replicates(),
+        _ => Vec::new(),
+    };
     let rows = chosen_runs(&table, args.condition.as_deref(), &replicates)?;
+    let rows = by_search(&table, rows, study);
     let format = args.output.format();
     let listing = if replicates.is_empty() {
         runs(args, &table, &rows, all_columns)?
@@ -105,17 +108,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         for note in &listing.notes {
             eprintln!("{note}");
         }
-        best::print(&results, &table, &rows)?;
+        best::print(study, &table, &rows);
     }
     Ok(())
-}
-
-/// The replicates of the study of some results; none without a study.
-fn replicates(results: &Results<'_>) -> Result<Vec<String>> {
-    if results.owner()?.is_none() {
-        return Ok(Vec::new());
-    }
-    Ok(Study::load(&results.study_path(), &[])?.replicates())
 }
 
 /// One row per run.

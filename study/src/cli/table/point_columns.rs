@@ -1,7 +1,7 @@
 //! The columns of the points of a study with replicates: those asked for, or those that fit on a line.
 
 use super::MAX_WIDE_LINE_WIDTH;
-use super::columns::{compares_strategies, main_measures, sorting};
+use super::columns::{compares_strategies, limited, main_measures, sorting};
 use crate::cli::Format;
 use crate::cli::points::{DEPLOYED, Points, RANGE, RUNS};
 use crate::cli::print::Heading;
@@ -126,10 +126,14 @@ fn main_columns(points: &Points<'_>, sort: &[String]) -> Vec<Printed> {
     if compares_strategies(table) {
         always.extend([ColumnId::PeakKineticEnergy.name(), ColumnId::PeakVz.name()]);
     }
+    let limited = limited(table);
+    always
+        .extend(limited.iter().filter(|name| ColumnId::from_name(name) != Some(ColumnId::Verdict)));
     let measures = main_measures(table);
     let mut order = always[..4].to_vec();
     order.push(of);
     order.push(always[4]);
+    order.extend(&limited);
     order.extend(&measures);
     let printed = |name: &&str| {
         let column = table.column(name).filter(|_| !first.contains(name))?;
