@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::print::{Heading, count, print_quantities};
+use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, filtered};
 use super::{Format, study_keys};
 use crate::analysis::answer::{Found, Searches};
@@ -72,7 +72,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!(
                 "{}: runs disagree between low and high (not_decided), so the border is wider than the tolerance; more \
                  replicates make it narrower",
-                count(wide, "search")
+                if wide == 1 { "1 search".to_owned() } else { format!("{wide} searches") }
             );
         }
     }

@@ -53,7 +53,7 @@ pub fn main_measures(table: &Table) -> Vec<&'static str> {
 /// The measures that have a limit.
 pub fn limited(table: &Table) -> Vec<&str> {
     let names = table.columns.iter().filter_map(|column| column.name.strip_prefix("margin_"));
-    names.filter(|name| table.column(name).is_some()).collect()
+    names.filter(|name| ColumnId::from_name(name).is_some()).collect()
 }
 
 /// Whether a study compares strategies.

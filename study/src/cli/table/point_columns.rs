@@ -127,8 +127,11 @@ fn main_columns(points: &Points<'_>, sort: &[String]) -> Vec<Printed> {
         always.extend([ColumnId::PeakKineticEnergy.name(), ColumnId::PeakVz.name()]);
     }
     let limited = limited(table);
-    always
-        .extend(limited.iter().filter(|name| ColumnId::from_name(name) != Some(ColumnId::Verdict)));
+    for name in &limited {
+        if !always.contains(name) && ColumnId::from_name(name) != Some(ColumnId::Verdict) {
+            always.push(name);
+        }
+    }
     let measures = main_measures(table);
     let mut order = always[..4].to_vec();
     order.push(of);
