@@ -15,10 +15,11 @@ pub const MAX_LINE_WIDTH: usize = 120;
 pub const MAX_VALUES: usize = 6;
 
 /// Prints on stderr the best and the worst value of each parameter that varies in some rows of a table. With limits
-/// the safest values are the best ones: `billow rank` orders them.
+/// the safest values are the best ones, and of a search its border: `billow rank`, `billow borders`.
 pub fn print(study: Option<&Study>, table: &Table, rows: &[usize]) {
     // A table without its study cannot say which parameters change together.
-    let Some(study) = study.filter(|study| study.result_limits().is_empty()) else { return };
+    let has_best = |study: &&Study| study.result_limits().is_empty() && study.searched().is_none();
+    let Some(study) = study.filter(has_best) else { return };
     let effects =
         Effects::of(table, rows, &study.replicates(), &HEADLINE, &|name| study.zipped_with(name));
     for text in lines(&effects) {

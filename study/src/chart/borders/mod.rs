@@ -6,9 +6,11 @@
 use std::collections::BTreeMap;
 
 mod drawing;
+mod one_factor;
 mod vertical;
 
 use self::drawing::{Drawing, is_word};
+use self::one_factor::OneFactor;
 use self::vertical::Vertical;
 use super::encoding::{Encoding, PREFERRED_LINES};
 use super::names;
@@ -78,12 +80,20 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     };
     let (varying, _) = parameters::varying(table, &points.rows, &[]);
     let first = varying.iter().find(|parameter| parameter.is_number(&points.rows));
-    let x = match over {
-        Some(name) => points.parameter("--over", name)?,
-        None => first.or(varying.first()).map_or(&none, |parameter| parameter.column),
+    let one_factor = match over {
+        None if by.is_empty() => OneFactor::of(&points, &varying),
+        _ => None,
+    };
+    let x = match (over, &one_factor) {
+        (Some(name), _) => points.parameter("--over", name)?,
+        (None, Some(named)) => &named.column,
+        (None, None) => first.or(varying.first()).map_or(&none, |parameter| parameter.column),
     };
     let x = Parameter::new(x, &points.rows);
-    let (others, notes) = parameters::varying(table, &points.rows, &[x.column]);
+    let (others, notes) = match one_factor {
+        Some(_) => (Vec::new(), Vec::new()),
+        None => parameters::varying(table, &points.rows, &[x.column]),
+    };
     let others = parameters::strategy_first(others);
     let positions = Positions::new(&x, &points.rows);
     let asked = ("--borders", search.parameter);
@@ -126,7 +136,10 @@ pub fn svg(source: &Source<'_>, over: Option<&str>, by: &[String]) -> Result<Str
     let plots = Plots {
         sheet: Sheet {
             title: source.title_or(&title),
-            subtitle: subtitle(&points, &single, search.criterion),
+            subtitle: subtitle(&points, &single, search.criterion)
+                .into_iter()
+                .chain(one_factor.map(|named| named.base))
+                .collect(),
             legends,
             notes,
         },
@@ -153,7 +166,7 @@ fn subtitle(points: &Source<'_>, single: &Source<'_>, criterion: &str) -> Vec<St
             points.choice
         );
     }
-    if criterion == SAFE {
+    if criterion == SAFE && !single.limits.is_empty() {
         let limits: Vec<String> = single.limits.iter().map(ToString::to_string).collect();
         lines.push(format!("Safe: {}", limits.join(", ")));
     }

@@ -88,8 +88,8 @@ fn borders_are_intervals_arrows_and_letters_between_the_ends_of_the_search() {
         "Residual gas mass (g)",
         "Inflation strategy",
         "interval of the border (1)",
-        "safe at every value searched (1)",
-        "safe at no value searched (1)",
+        "safe at every value searched: a border, if any, lies beyond (1)",
+        "safe at no value searched: a border, if any, lies beyond (1)",
         "not monotone: changes more than once (1)",
         "safe up to the border",
         "value searched: some runs safe",
@@ -117,6 +117,34 @@ fn borders_are_intervals_arrows_and_letters_between_the_ends_of_the_search() {
 }
 
 #[test]
+fn searches_that_change_one_factor_at_a_time_stand_under_their_names() {
+    let with_thickness = |mut border: Border, thickness: f64| {
+        border.parameters.push(("thickness".to_owned(), Value::Number(thickness)));
+        border
+    };
+    let all = [
+        with_thickness(border("direct", 0.0, [4, 4, 3, 0, 0], FOUND), 3e-5),
+        with_thickness(border("rapid", 0.0, [4, 4, 3, 0, 0], FOUND), 3e-5),
+        with_thickness(border("direct", 1e-4, [4, 4, 3, 0, 0], FOUND), 3e-5),
+        with_thickness(border("direct", 0.0, [4, 4, 3, 0, 0], FOUND), 4e-5),
+    ];
+    let (_, texts) = drawn(&all, "safe");
+    assert!(contains(&texts, "Largest safe mass flow rate"), "{texts:?}");
+    for text in ["base", "inflation strategy rapid", "residual gas mass 0.1 g"] {
+        assert!(contains(&texts, text), "{text}: {texts:?}");
+    }
+    assert!(
+        texts.iter().any(|text| text.starts_with("Base: Inflation strategy direct")),
+        "{texts:?}"
+    );
+    // Two changes in one search: no names.
+    let mut both = all.to_vec();
+    both.push(with_thickness(border("rapid", 1e-4, [4, 4, 3, 0, 0], FOUND), 4e-5));
+    let (_, texts) = drawn(&both, "safe");
+    assert!(!contains(&texts, "base"), "{texts:?}");
+}
+
+#[test]
 fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie() {
     let met = Outcome::NoChange { met: true };
     // No search says on which side the criterion is met.
@@ -132,13 +160,20 @@ fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie(
         border("rapid", 0.0, [4, 4, 4, 4, 3], met.clone()),
     ];
     let (_, texts) = drawn(&open_end, "safe");
-    for text in ["A", "safe at every decided value (1)", "interval of the border (1)"] {
+    for text in [
+        "A",
+        "safe at every decided value: a border, if any, lies beyond (1)",
+        "interval of the border (1)",
+    ] {
         assert!(contains(&texts, text), "{text}: {texts:?}");
     }
     let closed_end = [open_end[0].clone(), border("rapid", 0.0, [3, 4, 4, 4, 4], met)];
     let (_, texts) = drawn(&closed_end, "safe");
     assert!(!contains(&texts, "A"), "an arrow: {texts:?}");
-    assert!(contains(&texts, "safe at every decided value (1)"), "{texts:?}");
+    assert!(
+        contains(&texts, "safe at every decided value: a border, if any, lies beyond (1)"),
+        "{texts:?}"
+    );
 }
 
 #[test]

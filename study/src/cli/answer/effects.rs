@@ -13,7 +13,7 @@ use crate::job::row::{ColumnId, HEADLINE};
 
 /// The medians of each parameter, its best and worst values, and what is not compared. With limits the safest values are
 /// the best ones, which `billow rank` orders.
-pub(super) fn print(effects: &Effects, with_limits: bool, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn print(effects: &Effects, is_asked: bool, out: &mut dyn Write) -> io::Result<()> {
     if !effects.effects.is_empty() {
         writeln!(
             out,
@@ -28,7 +28,7 @@ pub(super) fn print(effects: &Effects, with_limits: bool, out: &mut dyn Write) -
             writeln!(out, "{line}")?;
         }
     }
-    let best = if with_limits { Vec::new() } else { best::lines(effects) };
+    let best = if is_asked { Vec::new() } else { best::lines(effects) };
     for (topic, texts) in [("best", best), ("left out", best::left_out(effects))] {
         let mut topic = topic;
         for text in &texts {

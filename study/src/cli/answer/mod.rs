@@ -72,7 +72,8 @@ pub fn print(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             brief_number(100.0 * answer.largest_strain)
         )?;
     }
-    effects::print(&answer.effects, answer.safety.is_some(), out)?;
+    let asked = answer.safety.is_some() || answer.searches.is_some();
+    effects::print(&answer.effects, asked, out)?;
     print_pairs(answer, out)
 }
 

@@ -81,6 +81,8 @@ pub struct Panel {
 const GAP: f64 = 5.0;
 /// Least distance between the texts of an axis, mm.
 const MIN_TEXT_GAP: f64 = 1.5;
+/// Most lines of names below an axis. Chosen: eleven names of 25 characters fit.
+const MAX_NAME_LINES: f64 = 4.0;
 
 /// Sizes of the figure, mm.
 struct Layout {
@@ -251,7 +253,8 @@ impl Plots {
         Vec::new()
     }
 
-    /// Draws the x axis of a panel below `top`. Names that are too wide stand alternately on two lines.
+    /// Draws the x axis of a panel below `top`. Names that are too wide stand in turn on several
+    /// lines.
     /// Returns its height, mm.
     fn draw_x_axis(&self, page: &mut Page, frame: &Frame, top: f64) -> f64 {
         let ticks = &frame.x_ticks;
@@ -259,7 +262,9 @@ impl Plots {
         let nearest =
             positions.windows(2).map(|pair| pair[1] - pair[0]).fold(frame.width, f64::min);
         let widest = ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
-        let lines: usize = if self.x.names && widest + MIN_TEXT_GAP > nearest { 2 } else { 1 };
+        let needed = ((widest + MIN_TEXT_GAP) / nearest).ceil();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 4")]
+        let lines = if self.x.names { needed.clamp(1.0, MAX_NAME_LINES) as usize } else { 1 };
         for (number, ((_, text), x)) in ticks.iter().zip(&positions).enumerate() {
             page.line([*x, top], [*x, top + 1.0], &AXIS);
             let down = (number % lines) as f64 * 1.25 * SMALL;
