@@ -162,7 +162,7 @@ fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie(
     let (_, texts) = drawn(&open_end, "safe");
     for text in [
         "A",
-        "safe at every decided value: a border, if any, lies beyond (1)",
+        "safe at every decided value (1)",
         "interval of the border (1)",
     ] {
         assert!(contains(&texts, text), "{text}: {texts:?}");
