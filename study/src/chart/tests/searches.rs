@@ -160,11 +160,7 @@ fn a_search_without_a_change_has_an_arrow_only_where_the_border_is_known_to_lie(
         border("rapid", 0.0, [4, 4, 4, 4, 3], met.clone()),
     ];
     let (_, texts) = drawn(&open_end, "safe");
-    for text in [
-        "A",
-        "safe at every decided value (1)",
-        "interval of the border (1)",
-    ] {
+    for text in ["A", "safe at every decided value (1)", "interval of the border (1)"] {
         assert!(contains(&texts, text), "{text}: {texts:?}");
     }
     let closed_end = [open_end[0].clone(), border("rapid", 0.0, [3, 4, 4, 4, 4], met)];
