@@ -164,11 +164,11 @@ fn other_limits_judge_the_stored_runs() {
     }
     let ranked = json_of(&folder, &[&["rank", "grid.json"], &set[..]].concat());
     let runs = ranked.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
-    assert_eq!(runs.sum::<u64>() as usize, safe(&rows, 38.0));
+    assert_eq!(usize::try_from(runs.sum::<u64>()), Ok(safe(&rows, 38.0)));
     // A folder keeps the limits of its last run; a study that differs in more is named as such.
     let kept = json_of(&folder, &["rank", "results/grid"]);
     let runs = kept.as_array().unwrap().iter().map(|row| row["safe_runs"].as_u64().unwrap());
-    assert_eq!(runs.sum::<u64>() as usize, safe(&rows, 41.0));
+    assert_eq!(usize::try_from(runs.sum::<u64>()), Ok(safe(&rows, 41.0)));
     let other = [&["rank", "grid.json", "--set", "film.youngs_modulus=3 GPa"], &set[..]].concat();
     let said = stderr(&folder.run(&other));
     assert!(said.contains("is not the study of these rows"), "{said}");

@@ -81,13 +81,12 @@ impl Schedule<'_> {
                     brief_number(100.0 * (to - end) / (to - from))
                 );
                 let next = "end it earlier, or raise solver.end_time";
-                match window.to {
-                    Some(_) => self.warn(&format!("{path}.to"), &seconds(to), problem, next),
-                    None => {
-                        let mass = format!("{} kg", shown(window.mass.unwrap_or_default()));
-                        let next = "let less gas in, faster, or raise solver.end_time";
-                        self.warn(&format!("{path}.mass"), &mass, problem, next);
-                    }
+                if window.to.is_some() {
+                    self.warn(&format!("{path}.to"), &seconds(to), problem, next);
+                } else {
+                    let mass = format!("{} kg", shown(window.mass.unwrap_or_default()));
+                    let next = "let in less gas, raise its rate, or raise solver.end_time";
+                    self.warn(&format!("{path}.mass"), &mass, problem, next);
                 }
             }
         }
