@@ -218,18 +218,6 @@ fn status(table: &Table, runs: &Runs) -> Status {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::units::DisplayUnit;
-
-    fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-        Column {
-            name: name.to_owned(),
-            cell_type,
-            unit: String::new(),
-            shown: DisplayUnit::si(""),
-            meaning: String::new(),
-            cells,
-        }
-    }
 
     fn text(values: &[&str]) -> Vec<Value> {
         let value = |text: &&str| match *text {
@@ -244,21 +232,25 @@ mod tests {
         let numbers = |values: [f64; 5]| values.map(Value::Number).to_vec();
         Table {
             columns: vec![
-                column("job", CellType::Text, text(&["1", "2", "3", "4", "4"])),
-                column("strategy", CellType::Text, text(&["a", "a", "a", "b", "b"])),
-                column("seed", CellType::Integer, [1, 2, 3, 1, 2].map(Value::Integer).to_vec()),
-                column(
+                Column::plain("job", CellType::Text, text(&["1", "2", "3", "4", "4"])),
+                Column::plain("strategy", CellType::Text, text(&["a", "a", "a", "b", "b"])),
+                Column::plain(
+                    "seed",
+                    CellType::Integer,
+                    [1, 2, 3, 1, 2].map(Value::Integer).to_vec(),
+                ),
+                Column::plain(
                     "status",
                     CellType::Text,
                     text(&["done", "done", "unstable", "done", "done"]),
                 ),
-                column(
+                Column::plain(
                     "verdict",
                     CellType::Text,
                     text(&["deployed", "stalled", "", "deployed", "deployed"]),
                 ),
-                column("peak_vz", CellType::Number, numbers([10.0, 14.0, 99.0, 5.0, 5.0])),
-                column(
+                Column::plain("peak_vz", CellType::Number, numbers([10.0, 14.0, 99.0, 5.0, 5.0])),
+                Column::plain(
                     "safe",
                     CellType::Bool,
                     [true, false, false, true, true].map(Value::Bool).to_vec(),

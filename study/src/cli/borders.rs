@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
-use super::print::{Heading, print_quantities};
+use super::print::{Heading, count, print_quantities};
 use super::target::{StudyArgs, filtered};
 use super::{Format, study_keys};
 use crate::analysis::answer::{Found, Searches};
@@ -39,7 +39,7 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read; a study without a search; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let (stored, table, units) = open_stored(&args.study, &args.set.set, &args.units)?;
+    let (stored, table, units) = open_stored(&args.study, &args.set.set, &args.units, None)?;
     let Some(searches) = Searches::of(&stored, &table) else {
         let name = stored.study.name.as_str();
         let allowed = "an axis of the grid as {\"bisect\": [low, high], \"on\": \"verdict\", \"safe\" or a limit}";
@@ -72,7 +72,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!(
                 "{}: runs disagree between low and high (not_decided), so the border is wider than the tolerance; more \
                  replicates make it narrower",
-                if wide == 1 { "1 search".to_owned() } else { format!("{wide} searches") }
+                count(wide, "search")
             );
         }
     }
@@ -112,13 +112,8 @@ const COLUMNS: [&str; 13] = [
 /// The searches as a table: an outcome first, then the parameters, then what was found.
 fn borders(searches: &Searches, table: &Table) -> Table {
     let found = &searches.found;
-    let column = |name: &str, cell_type, of: &dyn Fn(&Found) -> Value| Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: String::new(),
-        cells: found.iter().map(of).collect(),
+    let column = |name: &str, cell_type, of: &dyn Fn(&Found) -> Value| {
+        Column::plain(name, cell_type, found.iter().map(of).collect())
     };
     let text = |text: &str| Value::Text(text.to_owned());
     let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));

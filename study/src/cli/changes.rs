@@ -12,26 +12,23 @@ use crate::store::results::Results;
 use crate::store::table::Table;
 use crate::study::{JOB_LIMITS, LIMITS, Study, UNITS};
 
-/// The study whose questions the rows of some results answer. It is the given study file, with its overrides
-/// `set`, where that differs from the study of the results in its limits alone: limits judge stored rows and change
-/// no job. Otherwise it is the study of the results, and a message on stderr says in which keys the given one
-/// differs. `None` for results without their study.
+/// The given study file, with its overrides `set`, where it differs from `stored`, the study of the results, in its
+/// limits alone: limits judge stored rows and change no job. Says on stderr in which keys the given study differs.
 ///
 /// # Errors
 /// An invalid study file; a study.json that cannot be read.
-pub fn asked(results: &Results<'_>, file: Option<&Path>, set: &[String]) -> Result<Option<Asked>> {
-    if results.owner()?.is_none() {
-        return Ok(None);
-    }
-    let stored = Study::load(&results.study_path(), &[])?;
-    let Some(path) = file.filter(|path| path.is_file()) else {
-        return Ok(Some(Asked { study: stored, other_limits: false }));
-    };
+pub fn other_limits(
+    results: &Results<'_>,
+    stored: &Study,
+    file: Option<&Path>,
+    set: &[String],
+) -> Result<Option<Study>> {
+    let Some(path) = file.filter(|path| path.is_file()) else { return Ok(None) };
     let study = Study::load(path, set)?;
     if results.holds(&study.name, &study.resolved())? {
-        return Ok(Some(Asked { study: stored, other_limits: false }));
+        return Ok(None);
     }
-    if jobs_of(&stored) == jobs_of(&study) {
+    if study.result_limits() != stored.result_limits() && jobs_of(stored) == jobs_of(&study) {
         let limits = |study: &Study| match study.result_limits() {
             [] => "none".to_owned(),
             limits => limits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
@@ -40,24 +37,16 @@ pub fn asked(results: &Results<'_>, file: Option<&Path>, set: &[String]) -> Resu
             Some(_) => format!("; `billow run {}` continues the search", path.display()),
             None => String::new(),
         };
-        eprintln!("note: limits {}; the last run had {}{next}", limits(&study), limits(&stored));
-        return Ok(Some(Asked { study, other_limits: true }));
+        eprintln!("note: limits {}; the last run had {}{next}", limits(&study), limits(stored));
+        return Ok(Some(study));
     }
-    let changes = between(&stored, &study).join(", ");
+    let changes = between(stored, &study).join(", ");
     eprintln!(
         "billow: {file} is not the study of these rows ({changes}): the last run had another file or \
          --set; give the same --set, or `billow run {file}`: it keeps all finished jobs",
         file = path.display()
     );
-    Ok(Some(Asked { study: stored, other_limits: false }))
-}
-
-/// The study whose questions some rows answer.
-pub struct Asked {
-    /// The study.
-    pub study: Study,
-    /// Whether its limits differ from those of the last run.
-    pub other_limits: bool,
+    Ok(None)
 }
 
 /// A study without what changes no job.

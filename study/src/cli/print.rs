@@ -220,9 +220,14 @@ fn json(columns: &[&str], rows: &[Vec<Value>], out: &mut dyn Write) -> io::Resul
     writeln!(out, "{}]", if rows.is_empty() { "" } else { "\n" })
 }
 
-/// A number with its noun: "1 job", "2 jobs".
+/// A number with its noun: "1 job", "2 jobs", "2 searches".
 pub fn count(number: usize, word: &str) -> String {
-    format!("{number} {word}{}", if number == 1 { "" } else { "s" })
+    let end = match number {
+        1 => "",
+        _ if word.ends_with("ch") => "es",
+        _ => "s",
+    };
+    format!("{number} {word}{end}")
 }
 
 /// A duration in a readable unit: "12 s", "3.5 min", "2.0 h".

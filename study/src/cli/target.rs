@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::changes::Asked;
 use super::options::{ResultsOption, UnitsOption};
 use super::{changes, stored, study_keys};
 use crate::input::expression::{Expression, Type, Variable};
@@ -60,7 +59,8 @@ impl Target {
 
 /// Opens the results that [`folder`] finds. Rows of jobs that have not run yet are pending. A message on
 /// stderr says when the given study file, with its overrides `set`, differs from the study of the
-/// results; its limits judge the rows where nothing else differs. The table is shown in the units of the given study file, or in those of the results.
+/// results; its limits judge the rows where nothing else differs. The table is shown in the units of the given
+/// study file, or in those of the results.
 ///
 /// # Errors
 /// When there are no results, or their table cannot be read; units that do not fit.
@@ -68,14 +68,19 @@ pub fn open(given: &StudyArgs, set: &[String], units: &UnitsOption) -> Result<Ta
     let results = Results::new(&Disk, &folder(given, set)?);
     let journal = results.journal()?;
     stored::note_faults(&journal, &results);
-    let asked = changes::asked(&results, given.study.as_deref(), set)?;
-    let table = match &asked {
-        Some(Asked { study, other_limits: true }) => {
-            Stored::read(results.clone())?.asked(study.clone()).table()
-        }
-        _ => stored::table(&results, &journal)?,
+    let stored_study = match results.owner()? {
+        Some(_) => Some(Study::load(&results.study_path(), &[])?),
+        None => None,
     };
-    let study = asked.map(|asked| asked.study);
+    let other = match &stored_study {
+        Some(study) => changes::other_limits(&results, study, given.study.as_deref(), set)?,
+        None => None,
+    };
+    let table = match &other {
+        Some(study) => Stored::read(results.clone())?.asked(study.clone()).table(),
+        None => stored::table(&results, &journal)?,
+    };
+    let study = other.or(stored_study);
     changes::note_other_physics(&table);
     let display = match given.study.as_deref().filter(|path| path.is_file()) {
         Some(path) => Study::load(path, set)?.display_units().clone(),

@@ -11,13 +11,8 @@ use crate::store::table::Column;
 type Run = (&'static str, f64, i64, f64, f64, &'static str);
 
 fn table(runs: &[Run]) -> Table {
-    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: String::new(),
-        cells: runs.iter().map(of).collect(),
+    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| {
+        Column::plain(name, cell_type, runs.iter().map(of).collect())
     };
     let text = |text: &str| Value::Text(text.to_owned());
     let columns = vec![

@@ -1,7 +1,6 @@
 //! Rankings of an invented table.
 
 use super::*;
-use crate::input::units::DisplayUnit;
 use crate::job::result_limit::Condition;
 use crate::job::row::CellType;
 use crate::store::table::Column;
@@ -19,13 +18,8 @@ fn limits() -> Vec<ResultLimit> {
 }
 
 fn table(runs: &[Run]) -> Table {
-    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: String::new(),
-        cells: runs.iter().map(of).collect(),
+    let column = |name: &str, cell_type, of: &dyn Fn(&Run) -> Value| {
+        Column::plain(name, cell_type, runs.iter().map(of).collect())
     };
     let text = |text: &str| Value::Text(text.to_owned());
     let columns = vec![

@@ -7,7 +7,6 @@ use crate::analysis::compare::canonical;
 use crate::chart::Source;
 use crate::chart::names::capital;
 use crate::chart::parameters::Parameter;
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::row::CellType;
 use crate::store::table::Column;
@@ -51,14 +50,7 @@ impl OneFactor {
         }
         let values = varying.iter().map(|parameter| parameter.named(base_row?).into());
         let values: Option<Vec<String>> = values.collect();
-        let column = Column {
-            name: String::new(),
-            cell_type: CellType::Text,
-            unit: String::new(),
-            shown: DisplayUnit::si(""),
-            meaning: String::new(),
-            cells,
-        };
+        let column = Column::plain("", CellType::Text, cells);
         Some(Self { column, base: format!("Base: {}", capital(&values?.join(", "))) })
     }
 }

@@ -6,7 +6,7 @@ use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::target::{StudyArgs, find};
-use super::{Format, output_error, study_keys};
+use super::{Format, output_error};
 use crate::analysis::compare::{self, Measure, Pair, Sets, Tolerance, measures_with};
 use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
@@ -84,9 +84,8 @@ struct Comparison<'a> {
 /// # Errors
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let (stored, mut table, units) = open_stored(&args.study, &args.set.set, &args.units)?;
-    let names = study_keys::names_in(args.condition.as_deref());
-    study_keys::add(&stored.study, &mut table, &units, &names);
+    let condition = args.condition.as_deref();
+    let (stored, table, _) = open_stored(&args.study, &args.set.set, &args.units, condition)?;
     let by = parameter(&table, &args.by)?;
     let base = base(&stored, by, &args.base)?;
     let format = args.output.format();

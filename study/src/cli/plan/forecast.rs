@@ -29,8 +29,13 @@ const STATIC_EXPONENT: f64 = 1.75;
 const MAX_MESHES: usize = 100;
 
 /// Estimated cost of jobs, as text; `None` without jobs. `known_states` are the static states that are
-/// computed already.
-pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> Option<String> {
+/// computed already; a study that searches runs these jobs first.
+pub(super) fn forecast(
+    points: &[&Point],
+    mut known_states: BTreeSet<JobId>,
+    of_search: bool,
+) -> Option<String> {
+    let title = if of_search { "forecast of the first generation" } else { "forecast" };
     let mut costs: BTreeMap<String, Cost> = BTreeMap::new();
     let mut static_seconds = 0.0;
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
@@ -44,7 +49,7 @@ pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> 
         let key = canonical_json(&parts);
         if !costs.contains_key(&key) {
             if costs.len() == MAX_MESHES {
-                return Some(format!("forecast: no estimate for more than {MAX_MESHES} meshes"));
+                return Some(format!("{title}: no estimate for more than {MAX_MESHES} meshes"));
             }
             costs.insert(key.clone(), models::cost(scene).ok()?);
         }
@@ -67,5 +72,5 @@ pub(super) fn forecast(points: &[&Point], mut known_states: BTreeSet<JobId>) -> 
     } else {
         format!("{} without film, less than a second each", count(points.len(), "job"))
     };
-    (!points.is_empty()).then(|| format!("forecast: {text}"))
+    (!points.is_empty()).then(|| format!("{title}: {text}"))
 }

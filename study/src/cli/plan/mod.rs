@@ -117,14 +117,8 @@ fn print_progress_and_forecast(args: &Args, study: &Study, generation: &Generati
         eprintln!("{text}");
     }
     let references = results.references().states.into_iter().map(|(id, _)| id).collect();
-    let texts = forecast(&missing, references).into_iter().chain(memory.forecast(study));
-    let of_search = study.searched().is_some();
-    for text in texts {
-        match text.strip_prefix("forecast: ").filter(|_| of_search) {
-            Some(rest) => eprintln!("forecast of the first generation: {rest}"),
-            None => eprintln!("{text}"),
-        }
-    }
+    let cost = forecast(&missing, references, study.searched().is_some());
+    cost.into_iter().chain(memory.forecast(study)).for_each(|text| eprintln!("{text}"));
     Ok(())
 }
 

@@ -33,10 +33,7 @@ fn search(study: &Study, counts: &PlanCounts) -> Option<String> {
     let more = study.most_search_values()?.saturating_sub(begins) * study.replicate_count();
     Some(format!(
         "search: {} along {name}; first generation {}; up to {more} more per search",
-        match searches.len() {
-            1 => "1 search".to_owned(),
-            number => format!("{number} searches"),
-        },
+        count(searches.len(), "search"),
         count(counts.jobs, "job"),
     ))
 }

@@ -2,19 +2,7 @@
 
 use super::*;
 use crate::cli::range::rounded;
-use crate::input::units::DisplayUnit;
 use crate::job::row::SAME_JOB_AS;
-
-fn column(name: &str, cell_type: CellType, cells: Vec<Value>) -> Column {
-    Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: String::new(),
-        cells,
-    }
-}
 
 fn texts(values: [&str; 6]) -> Vec<Value> {
     let value = |text: &str| match text {
@@ -27,20 +15,24 @@ fn texts(values: [&str; 6]) -> Vec<Value> {
 /// Strategy a: three seeds, one failed. Strategy b: three seeds, all safe.
 fn table() -> Table {
     let numbers = |name: &str, values: [f64; 6]| {
-        column(name, CellType::Number, values.map(Value::Number).to_vec())
+        Column::plain(name, CellType::Number, values.map(Value::Number).to_vec())
     };
-    let text = |name: &str, values: [&str; 6]| column(name, CellType::Text, texts(values));
+    let text = |name: &str, values: [&str; 6]| Column::plain(name, CellType::Text, texts(values));
     let mut safe = [true, false, false, true, true, true].map(Value::Bool);
     safe[2] = Value::Null;
     Table {
         columns: vec![
             text("job", ["1", "2", "3", "4", "5", "6"]),
             text("strategy", ["a", "a", "a", "b", "b", "b"]),
-            column("seed", CellType::Integer, [1, 2, 3, 1, 2, 3].map(Value::Integer).to_vec()),
+            Column::plain(
+                "seed",
+                CellType::Integer,
+                [1, 2, 3, 1, 2, 3].map(Value::Integer).to_vec(),
+            ),
             text("status", ["done", "done", "unstable", "done", "done", "done"]),
             text("verdict", ["deployed", "stalled", "", "deployed", "deployed", "deployed"]),
             numbers("peak_vz", [20.0, 30.0, 99.0, 10.0, 11.0, 15.0]),
-            column("safe", CellType::Bool, safe.to_vec()),
+            Column::plain("safe", CellType::Bool, safe.to_vec()),
             numbers("smallest_margin", [0.2, -0.2, 9.0, 0.6, 0.5612, 0.4]),
             text("smallest_margin_of", ["peak_vz", "verdict", "", "peak_vz", "peak_vz", "peak_vz"]),
             text("verdict_depends_on", ["seed", "seed", "", "", "", ""]),

@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
+use super::Format;
 use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::chosen_runs;
 use super::target::{StudyArgs, current_name};
-use super::{Format, study_keys};
 use crate::analysis::compare::{self, measures_with};
 use crate::analysis::ranking::{DEFAULT_MEASURES, Question, Ranking};
 use crate::job::row::{BetterSide, ColumnId};
@@ -60,9 +60,8 @@ struct Printed<'a> {
 /// # Errors
 /// An unknown parameter, measure or column; results that cannot be read, or of which nothing can be ranked.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let (stored, mut table, units) = open_stored(&args.study, &args.set.set, &args.units)?;
-    let names = study_keys::names_in(args.condition.as_deref());
-    study_keys::add(&stored.study, &mut table, &units, &names);
+    let condition = args.condition.as_deref();
+    let (stored, table, _) = open_stored(&args.study, &args.set.set, &args.units, condition)?;
     if args.top == Some(0) {
         return Err(Error::invalid_option("--top", "0", "prints nothing", "1 or more", ""));
     }

@@ -1,28 +1,23 @@
 //! The rows that a ranking reads.
 
 use super::*;
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::row::CellType;
 
 /// Strategies a and b with two seeds each. One run of a is not safe.
 fn table() -> Table {
-    let column = |name: &str, cell_type, cells| Column {
-        name: name.to_owned(),
-        cell_type,
-        unit: String::new(),
-        shown: DisplayUnit::si(""),
-        meaning: String::new(),
-        cells,
-    };
     let text = |words: [&str; 4]| words.map(|word| Value::Text(word.to_owned())).to_vec();
     Table {
         columns: vec![
-            column("job", CellType::Text, text(["1", "2", "3", "4"])),
-            column("strategy", CellType::Text, text(["a", "a", "b", "b"])),
-            column("seed", CellType::Integer, [1, 2, 1, 2].map(Value::Integer).to_vec()),
-            column("status", CellType::Text, text(["done"; 4])),
-            column("safe", CellType::Bool, [true, false, true, true].map(Value::Bool).to_vec()),
+            Column::plain("job", CellType::Text, text(["1", "2", "3", "4"])),
+            Column::plain("strategy", CellType::Text, text(["a", "a", "b", "b"])),
+            Column::plain("seed", CellType::Integer, [1, 2, 1, 2].map(Value::Integer).to_vec()),
+            Column::plain("status", CellType::Text, text(["done"; 4])),
+            Column::plain(
+                "safe",
+                CellType::Bool,
+                [true, false, true, true].map(Value::Bool).to_vec(),
+            ),
         ],
     }
 }

@@ -50,6 +50,20 @@ pub struct Column {
     pub cells: Vec<Value>,
 }
 
+impl Column {
+    /// A column without unit and meaning.
+    pub fn plain(name: &str, cell_type: CellType, cells: Vec<Value>) -> Self {
+        Self {
+            name: name.to_owned(),
+            cell_type,
+            unit: String::new(),
+            shown: DisplayUnit::si(""),
+            meaning: String::new(),
+            cells,
+        }
+    }
+}
+
 impl Table {
     /// Builds the table of a plan. `unit` gives the SI unit of a parameter.
     pub fn build(
