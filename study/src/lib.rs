@@ -23,6 +23,7 @@
 //! | [`run`] | runs jobs in parallel |
 //! | [`store`] | what a study stores on disk |
 //! | [`study`] | a study: axes, points, jobs |
+//! | [`accuracy`] | what is known about the error of a result |
 //! | [`job`] | one job: its id, its row |
 //! | [`input`] | keys, units, expressions, the JSON of a file |
 //! | [`platform`] | files, signals, errors |
@@ -35,6 +36,7 @@ macro_rules! eprintln {
     };
 }
 
+pub mod accuracy;
 pub mod analysis;
 pub mod bench;
 pub mod cases;

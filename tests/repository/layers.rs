@@ -27,8 +27,8 @@ const ROOMS: [(&str, &[&str]); 2] = [
     (
         "study",
         &[
-            "platform", "input", "job", "study", "store", "run", "scene", "analysis", "render",
-            "chart", "cases", "bench", "cli",
+            "platform", "input", "job", "accuracy", "study", "store", "run", "scene", "analysis",
+            "render", "chart", "cases", "bench", "cli",
         ],
     ),
 ];

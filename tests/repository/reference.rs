@@ -7,7 +7,7 @@ use std::fs;
 
 use billow_study::cli::reference::{commands, exit_codes};
 use billow_study::input::keys::listing::reference_page as keys;
-use billow_study::job::row::reference::page as columns;
+use billow_study::store::table::reference::page as columns;
 
 use crate::sources::root;
 

@@ -2,6 +2,7 @@
 
 pub mod answer;
 pub mod compare;
+pub mod convergence;
 pub mod ranking;
 pub mod replicates;
 pub mod statistics;

@@ -13,12 +13,13 @@ use std::collections::BTreeMap;
 use billow_solver::output::measures::Verdict;
 
 use super::statistics::Spread;
-use super::values::{canonical, is_trusted, measured};
+use super::values::{canonical, measured};
+use crate::accuracy::PROMISED;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
 use crate::job::row::{CellType, ColumnId, DerivedColumn, SAME_JOB_AS};
-use crate::store::table::{Column, Table};
+use crate::store::table::{Column, Table, extrapolated};
 
 /// A table with one row per point.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,8 @@ pub struct Condensed {
 pub struct Runs {
     /// Rows of the table, one per different job.
     pub rows: Vec<usize>,
+    /// Of these, those on the finest mesh, where the study has several meshes; otherwise all.
+    pub finest: Vec<usize>,
     /// Of the runs with a verdict, those that deployed.
     pub deployed: Proportion,
     /// Of the runs that the limits can judge, those that are safe.
@@ -100,13 +103,14 @@ impl Runs {
     }
 
     /// The runs in some rows of a table.
-    fn of(table: &Table, rows: Vec<usize>) -> Self {
+    fn of(table: &Table, all: Vec<usize>) -> Self {
         let status = |wanted: fn(Status) -> bool| {
-            rows.iter().filter(|row| table.status(**row).is_some_and(wanted)).count()
+            all.iter().filter(|row| table.status(**row).is_some_and(wanted)).count()
         };
-        let done = status(|status| status == Status::Done);
+        let rows = finest(table, &all);
         let of_done = |row: &usize| table.status(*row) == Some(Status::Done);
-        let trusted = |row: &usize| is_trusted(table, *row);
+        let done = rows.iter().filter(|row| of_done(row)).count();
+        let trusted = |row: &usize| table.is_trusted(*row);
         let measured: Vec<usize> = rows.iter().copied().filter(trusted).collect();
         let not_trusted = done - measured.len();
         let measured = match measured.len() {
@@ -127,12 +131,35 @@ impl Runs {
             done,
             not_trusted,
             measured,
-            failed: rows.len() - done - pending - infeasible,
+            failed: all.len() - status(|status| status == Status::Done) - pending - infeasible,
             infeasible,
             pending,
-            rows,
+            finest: rows,
+            rows: all,
         }
     }
+}
+
+/// Of the runs of a point, those on the finest mesh, where values are extrapolated from several.
+fn finest(table: &Table, rows: &[usize]) -> Vec<usize> {
+    let mesh = table.parameters().find(|column| column.name == extrapolated::MESH);
+    let Some(mesh) = mesh.filter(|_| table.has_extrapolated()) else { return rows.to_vec() };
+    let n = |row: usize| match mesh.cells[row] {
+        Value::Integer(n) => n,
+        _ => 0,
+    };
+    let largest = rows.iter().map(|row| n(*row)).max();
+    rows.iter().copied().filter(|row| Some(n(*row)) == largest).collect()
+}
+
+/// The column with the values that a point takes for a measure: the extrapolated ones, where there are.
+pub fn source<'a>(table: &'a Table, column: &'a Column) -> &'a Column {
+    let of_error = PROMISED.iter().find(|promised| promised.error_column == column.name);
+    let name = match of_error {
+        Some(promised) => extrapolated::names(promised.measure.name())[1].clone(),
+        None => extrapolated::names(&column.name)[0].clone(),
+    };
+    table.column(&name).unwrap_or(column)
 }
 
 /// The rows of each point, one row per job, in the order of their first rows.
@@ -160,13 +187,18 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
     let is_replicate = |column: &Column| replicates.contains(&column.name);
     let parameters = table.parameters().count();
     let columns = table.columns.iter().enumerate();
-    let columns = columns.filter(|(index, column)| *index > parameters || !is_replicate(column));
+    let columns = columns.filter(|(index, column)| {
+        let left_out = *index <= parameters && is_replicate(column);
+        !left_out && !extrapolated::is_extrapolated(&column.name)
+    });
     let column = |(index, column): (usize, &Column)| {
         let number = matches!(column.cell_type, CellType::Number | CellType::Integer);
         let is_measure = index > parameters && number;
+        let values_of = source(table, column);
         let cell = |runs: &Runs| {
             if is_measure {
-                let values = runs.measured.iter().filter_map(|row| measured(table, column, *row));
+                let values =
+                    runs.measured.iter().filter_map(|row| measured(table, values_of, *row));
                 return Spread::of(values).map_or(Value::Null, |spread| {
                     Value::Number(match statistic {
                         Statistic::Least => spread.least,
@@ -189,7 +221,8 @@ fn condensed(table: &Table, runs: &[Runs], replicates: &[String], statistic: Sta
                 let mut cells = runs.rows.iter().map(|row| &column.cells[*row]);
                 return cells.find(|cell| **cell != Value::Null).cloned().unwrap_or(Value::Null);
             }
-            let same = runs.rows.iter().all(|row| column.cells[*row] == *first);
+            let first = &column.cells[runs.finest[0]];
+            let same = runs.finest.iter().all(|row| column.cells[*row] == *first);
             if same && column.name != SAME_JOB_AS { first.clone() } else { Value::Null }
         };
         Column {

@@ -1,8 +1,7 @@
-//! The values of a table's rows: as they are matched, as measures, and whether they can be trusted.
+//! The values of a table's rows: as they are matched, and as measures.
 
 use crate::input::value::Value;
 use crate::job::Status;
-use crate::job::row::ColumnId;
 use crate::store::table::{Column, Table};
 
 /// The text by which values are matched: numbers in shortest digits (8 = 8.0, −0 = 0), texts in
@@ -25,14 +24,4 @@ pub fn measured(table: &Table, measure: &Column, row: usize) -> Option<f64> {
         Value::Integer(number) => Some(number as f64),
         _ => None,
     }
-}
-
-/// Whether a job is done and its audit found nothing: no passage, no intersection, no motion damped by the
-/// numerics.
-pub fn is_trusted(table: &Table, row: usize) -> bool {
-    let none = |column| !matches!(table.value(column, row), Some(Value::Integer(1..)));
-    table.status(row) == Some(Status::Done)
-        && none(ColumnId::Passages)
-        && none(ColumnId::Intersections)
-        && table.value(ColumnId::NumericallyDamped, row) != Some(&Value::Bool(true))
 }

@@ -34,7 +34,8 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     let values = || {
         let ranges = source.rows.iter().filter_map(|row| source.range(measure, *row));
         let medians = source.rows.iter().filter_map(|row| outcome::value(source, measure, *row));
-        medians.chain(ranges.flatten())
+        let errors = source.rows.iter().filter_map(|row| source.mesh_error(measure, *row));
+        medians.chain(ranges.flatten()).chain(errors.flatten())
     };
     let unit = parameters::shown_unit(measure, values());
     let mut extent = values().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
@@ -70,6 +71,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
             let value = |row| Shown {
                 value: outcome::value(source, measure, row).map(|value| unit.shown(value)),
                 range: source.range(measure, row).map(|range| range.map(|end| unit.shown(end))),
+                error: source.mesh_error(measure, row).map(|ends| ends.map(|end| unit.shown(end))),
                 text: outcome::mixed_text(source, row),
             };
             add_lines(&mut panel, rows, &encoding, &value, &positions, &mut outcomes);
@@ -84,6 +86,7 @@ pub fn svg(source: &Source<'_>, measure: &str, over: &str, by: &[String]) -> Res
     let mut legends = encoding.legends(positions.names);
     let range = if positions.names { Sample::Bar } else { Sample::Band };
     legends.extend(source.runs_legend(range));
+    legends.extend(source.mesh_error_legend(measure));
     legends.push(outcomes.legend(false));
     legends.extend(bound.map(|bound| Legend {
         heading: "Limit".to_owned(),
@@ -110,6 +113,8 @@ struct Shown {
     value: Option<f64>,
     /// Least and largest value of its runs.
     range: Option<[f64; 2]>,
+    /// Value less and plus its mesh error.
+    error: Option<[f64; 2]>,
     /// Text beside it.
     text: String,
 }
@@ -178,6 +183,7 @@ fn line(
             line.texts.push((point, shown.text));
         }
         piece.push(point);
+        line.errors.extend(shown.error.map(|[low, high]| [point[0], low, high]));
         let [low, high] = shown.range.unwrap_or([value; 2]);
         if positions.names {
             line.pieces.push(std::mem::take(&mut piece));

@@ -1,6 +1,8 @@
 //! The runs behind the points of a chart, where replicates repeat a point: median, range, k of n.
 
 use super::{Source, names};
+use crate::accuracy::error_column;
+use crate::accuracy::promised::promise;
 use crate::analysis::compare::measured;
 use crate::analysis::replicates::{Condensed, Runs};
 use crate::render::figure::legend::{Legend, Sample};
@@ -27,6 +29,28 @@ impl<'a> Source<'a> {
     pub(super) fn range(&self, measure: &Column, row: usize) -> Option<[f64; 2]> {
         let [least, _, largest] = self.runs?.condensed.spread(&measure.name, row)?;
         (least < largest).then_some([least, largest])
+    }
+
+    /// Value less and plus mesh error of a measure at a row; of several runs of their medians.
+    pub(super) fn mesh_error(&self, measure: &Column, row: usize) -> Option<[f64; 2]> {
+        let errors = self.table.column(error_column(&measure.name)?)?;
+        let value = measured(self.table, measure, row)?;
+        let error = measured(self.table, errors, row)?;
+        Some([value - error, value + error])
+    }
+
+    /// The legend of mesh errors; `None` where no row has one.
+    pub(super) fn mesh_error_legend(&self, measure: &Column) -> Option<Legend> {
+        let has_error = self.rows.iter().any(|row| self.mesh_error(measure, *row).is_some());
+        let meaning = if promise(&measure.name)?.has_limit {
+            "against the limit of fine meshes, 9 of 10 runs"
+        } else {
+            "change up to n 24, 9 of 10 runs"
+        };
+        has_error.then(|| Legend {
+            heading: "Mesh error".to_owned(),
+            entries: vec![(Sample::Error, meaning.to_owned())],
+        })
     }
 
     /// The single runs of the chart.

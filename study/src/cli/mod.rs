@@ -12,6 +12,7 @@ use crate::platform::error::{Error, Result};
 use crate::platform::exit_code::{EXIT_CODES, Exit};
 use crate::platform::output::Output;
 
+mod advise;
 mod answer;
 pub mod bench;
 mod best;
@@ -20,6 +21,7 @@ mod changes;
 mod chart;
 mod compare;
 mod completions;
+mod converge;
 mod doctor;
 mod fold;
 mod frames;
@@ -74,6 +76,8 @@ pub enum Command {
     Fold(fold::Args),
     /// List the jobs of a study; run nothing.
     Plan(plan::Args),
+    /// Name the cheapest model and mesh that keep an error; run nothing.
+    Advise(advise::Args),
     /// Run the jobs of a study that are not finished.
     Run(run::Args),
     /// Run finished jobs again and check that they give the same bits.
@@ -86,6 +90,8 @@ pub enum Command {
     Show(show::Args),
     /// Compare the values of one parameter, all other parameters being equal.
     Compare(compare::Args),
+    /// Show to what each measure tends as the mesh is refined.
+    Converge(converge::Args),
     /// Check a results folder, or repair it. Exit code 1 if something is broken.
     Doctor(doctor::Args),
     /// Draw the shapes of one job side by side, as SVG and PNG.
@@ -138,12 +144,14 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
     match command {
         Command::Fold(args) => fold::run(args, out),
         Command::Plan(args) => plan::run(args, out),
+        Command::Advise(args) => advise::run(args, out),
         Command::Run(args) => run::run(args, out),
         Command::Rerun(args) => rerun::run(args, out),
         Command::Status(args) => status::run(args, out),
         Command::Why(args) => why::run(args, out),
         Command::Show(args) => show::run(args, out),
         Command::Compare(args) => compare::run(args, out),
+        Command::Converge(args) => converge::run(args, out),
         Command::Doctor(args) => doctor::run(args, out),
         Command::Frames(args) => frames::run(args, out),
         Command::Solve(args) => solve::run(args, out),

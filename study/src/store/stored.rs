@@ -85,6 +85,7 @@ impl<'a> Stored<'a> {
     fn built(&self, points: &[Point]) -> Table {
         let unit = |name: &str| self.study.unit(name).to_owned();
         let table = Table::build(points, &self.journal.records, &unit);
+        let table = table.with_extrapolated(points, &self.study.meshes());
         table.judged(self.study.result_limits()).shown_in(&self.units)
     }
 

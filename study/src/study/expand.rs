@@ -113,7 +113,7 @@ fn set_axes(point: &mut Base, grid: &Grid, axes: &[&Axis], number: usize) {
 /// # Errors
 /// When a plan may not have as many.
 fn count(grid: &Grid, source: &Source, size: PlanSize) -> Result<(usize, usize), InputError> {
-    let has_axes = grid.axes.iter().any(|axis| axis.kind != AxisKind::Replicates);
+    let has_axes = grid.axes.iter().any(|axis| !axis.kind.repeats());
     let product = match (has_axes, grid.points.is_empty()) {
         // Without axes, single points stand alone; without either, the study is one point.
         (false, false) => Some(0),

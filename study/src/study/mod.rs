@@ -6,6 +6,7 @@
 //! ```
 //! Every error of a study is found here, before anything runs.
 
+mod accuracy;
 mod base;
 mod expand;
 pub mod finished;
@@ -13,6 +14,7 @@ mod fold;
 mod grid;
 pub(crate) mod ground;
 pub mod job_limits;
+mod meshes;
 mod parameters;
 pub mod plan;
 mod plan_size;
@@ -39,6 +41,7 @@ use crate::input::value::Value;
 use crate::job::limits::JobLimits;
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
+use accuracy::{ACCURACY, Accuracy};
 use base::Base;
 use expand::Points;
 use grid::{Context, Grid};
@@ -77,6 +80,8 @@ pub struct Study {
     grid: Grid,
     /// What its results must meet to be safe.
     result_limits: Vec<ResultLimit>,
+    /// The errors that its results must keep.
+    accuracy: Option<Accuracy>,
     points: Points,
 }
 
@@ -140,15 +145,37 @@ impl Study {
         let base = Base::read(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let context = Context { base: &base, limits: &result_limits, source: &source, size };
-        let grid = Grid::read(&tree, context)?;
+        let mut grid = Grid::read(&tree, context)?;
         grid::refuse_varied(&grid, &source)?;
         let units = units::read(&tree, &base, &source)?;
-        let points = expand::points(&base, &grid, &source, size)?;
+        let mut points = expand::points(&base, &grid, &source, size)?;
+        let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
+        let mut base = base;
+        if let Some(accuracy) = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty()) {
+            accuracy::refuse_given_mesh(&tree, &source)?;
+            accuracy.choose(&points.points, &source)?;
+            accuracy::set_meshes(&mut tree, &accuracy.meshes);
+            base = Base::read(&tree, &source)?;
+            let context = Context { base: &base, limits: &result_limits, source: &source, size };
+            grid = Grid::read(&tree, context)?;
+            points = expand::points(&base, &grid, &source, size)?;
+        }
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
         let warnings = source.warnings();
-        Ok(Self { name, question, renamed, warnings, units, base, grid, result_limits, points })
+        Ok(Self {
+            name,
+            question,
+            renamed,
+            warnings,
+            units,
+            base,
+            grid,
+            result_limits,
+            accuracy,
+            points,
+        })
     }
 
     /// What its results must meet to be safe.
@@ -160,6 +187,11 @@ impl Study {
     pub fn replicates(&self) -> Vec<String> {
         let columns = self.grid.replicates().flat_map(|axis| &axis.columns);
         columns.map(|column| self.grid.columns[*column].name.clone()).collect()
+    }
+
+    /// The meshes from which the values of each point are extrapolated, coarsest first; empty without any.
+    pub fn meshes(&self) -> Vec<u32> {
+        self.grid.meshes()
     }
 
     /// Number of runs of each point: 1 without replicates.
@@ -202,9 +234,18 @@ impl Study {
         if !self.result_limits.is_empty() {
             json.set(LIMITS, result_limits::to_json(&self.result_limits));
         }
+        if let Some(accuracy) = &self.accuracy {
+            json.set(ACCURACY, accuracy.to_json());
+        }
         let replicates = self.grid.resolved_replicates();
         if !replicates.is_empty() {
             json.set(REPLICATES, Json::Object(replicates));
+        }
+        let meshes = self.meshes().into_iter().map(|n| Json::Integer(n.into())).collect::<Vec<_>>();
+        if !meshes.is_empty()
+            && let Some(solver) = json.get_mut("solver")
+        {
+            solver.set("meshes", Json::List(meshes));
         }
         let grid = self.grid.resolved();
         if grid != Json::Object(Vec::new()) {

@@ -62,9 +62,9 @@ impl Grid {
         Ok(())
     }
 
-    /// The axes of replicates.
+    /// The axes whose values repeat a point: replicates and meshes.
     pub(super) fn replicates(&self) -> impl Iterator<Item = &Axis> {
-        self.axes.iter().filter(|axis| axis.kind == AxisKind::Replicates)
+        self.axes.iter().filter(|axis| axis.kind.repeats())
     }
 
     /// Number of runs of each point.

@@ -15,7 +15,6 @@ use billow_solver::output::measures::Verdict;
 use super::medians::{Extremes, Set, block, extremes};
 use super::points::Points;
 use crate::analysis::compare::{self, Measure, Range, Sets, Tolerance, canonical, median_range};
-use crate::analysis::values::is_trusted;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -81,18 +80,19 @@ impl Effects {
         zipped: &dyn Fn(&str) -> Vec<Zipped>,
     ) -> Self {
         if replicates.is_empty() {
-            let trusted = |row| is_trusted(table, row);
+            let trusted = |row| table.is_trusted(row);
             let deploys = |row| table.verdict(row) == Some(Verdict::Deployed) && trusted(row);
             let judged = rows.iter().any(|row| table.verdict(*row).is_some());
             let judges = Judges { trusted: &trusted, deploys: &deploys, judged };
             let of_runs = |column| {
-                Measure::of_runs(column, Tolerance::of(table, rows, column, &zipped("seed")))
+                let tolerance = Tolerance::of(table, rows, column, &zipped("seed"));
+                Measure::of_runs(column, tolerance).with_errors(table)
             };
             return Self::of_rows(table, rows, &judges, (measures, &of_runs), zipped);
         }
         let points = Points::of(table, rows, replicates);
         let all_trusted = |point: usize| {
-            points.condensed.runs[point].rows.iter().all(|row| is_trusted(table, *row))
+            points.condensed.runs[point].rows.iter().all(|row| table.is_trusted(*row))
         };
         let trusted = |point: usize| points.trusted[point];
         let deploys = |point| points.deploys(point) == Some(true) && all_trusted(point);

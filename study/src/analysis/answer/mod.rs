@@ -5,7 +5,6 @@
 use billow_solver::output::measures::Verdict;
 
 use crate::analysis::compare;
-use crate::analysis::values::is_trusted;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -121,7 +120,7 @@ impl Answer {
         let judged = rows.iter().any(|row| table.verdict(*row).is_some());
         let can_be_best = |row: &usize| {
             let deployed = table.verdict(*row) == Some(Verdict::Deployed);
-            is_trusted(table, *row) && (deployed || !judged)
+            table.is_trusted(*row) && (deployed || !judged)
         };
         let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
         answer.fastest = extreme(table, &best, HEADLINE[0], |value, best| value < best);

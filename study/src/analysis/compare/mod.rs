@@ -18,6 +18,7 @@ use std::collections::BTreeSet;
 
 use super::replicates::Condensed;
 use super::statistics::Spread;
+use crate::accuracy::error_column;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::{BetterSide, COLUMNS, CellType, ColumnId, DerivedColumn};
@@ -129,6 +130,8 @@ pub struct Measure<'a> {
     pub tolerance: Tolerance,
     /// The smallest and the largest values over the runs of each point; `None` for single runs.
     pub ranges: Option<[&'a Column; 2]>,
+    /// Its mesh errors, where they decide what is equal.
+    pub errors: Option<&'a Column>,
 }
 
 /// Least, median and largest value over the runs of a point; of a single run its value.
@@ -143,7 +146,15 @@ pub fn median_range(ranges: &[Range]) -> Option<Range> {
 impl<'a> Measure<'a> {
     /// A measure of single runs.
     pub fn of_runs(column: &'a Column, tolerance: Tolerance) -> Self {
-        Self { column, tolerance, ranges: None }
+        Self { column, tolerance, ranges: None, errors: None }
+    }
+
+    /// The same with the mesh errors of a table, if the tolerance is that of the mesh error.
+    #[must_use]
+    pub fn with_errors(self, table: &'a Table) -> Self {
+        let errors = error_column(&self.column.name).and_then(|name| table.column(name));
+        let decide = self.tolerance.source == ToleranceSource::MeshError;
+        Self { errors: errors.filter(|_| decide), ..self }
     }
 
     /// A measure of points: a column of their medians. `zipped` are the parameters on the axis of the seeds.
@@ -156,7 +167,8 @@ impl<'a> Measure<'a> {
         let tolerance = Tolerance::of_points(points, rows, column, zipped);
         let end = |table: &'a Table| table.column(&column.name);
         let ranges = end(&points.least).zip(end(&points.largest));
-        Self { column, tolerance, ranges: ranges.map(|(least, largest)| [least, largest]) }
+        let ranges = ranges.map(|(least, largest)| [least, largest]);
+        Self { column, tolerance, ranges, errors: None }.with_errors(&points.table)
     }
 
     /// The value at a row, with its range.
@@ -169,6 +181,15 @@ impl<'a> Measure<'a> {
     /// Whether two values are equal: within the tolerance, or because their ranges overlap.
     pub fn are_equal(&self, a: Range, b: Range) -> bool {
         self.tolerance.is_tie(a[1], b[1]) || (a[0] <= b[2] && b[0] <= a[2])
+    }
+
+    /// Whether the values of two rows differ by less than the larger of their mesh errors, or their ranges overlap;
+    /// `None` where an error is not known.
+    fn equal_by_errors(&self, table: &Table, pair: Pair, a: Range, b: Range) -> Option<bool> {
+        let error = |row: usize| measured(table, self.errors?, row);
+        let larger = error(pair.base)?.max(error(pair.other)?);
+        let overlap = a[0] <= b[2] && b[0] <= a[2];
+        Some(overlap || (a[1] - b[1]).abs() <= larger)
     }
 
     /// Which of two values is better; neither while no spread is known.
@@ -219,7 +240,11 @@ pub fn compared(table: &Table, pair: Pair, measure: &Measure<'_>) -> Compared {
         (None, None) => Better::Neither,
         (Some(_), None) => Better::OnlyBase,
         (None, Some(_)) => Better::OnlyOther,
-        (Some(base), Some(other)) => judge(measure, base, other),
+        (Some(base), Some(other)) => match measure.equal_by_errors(table, pair, base, other) {
+            Some(true) => Better::Tie,
+            Some(false) => better_of(measure, base, other),
+            None => judge(measure, base, other),
+        },
     };
     let [base, other] = [base, other].map(|side| side.map(|range| range[1]));
     Compared { base, other, better, signed: measure.is_signed() }
@@ -234,11 +259,13 @@ fn same_job(table: &Table, pair: Pair) -> bool {
 }
 
 fn judge(measure: &Measure<'_>, base: Range, other: Range) -> Better {
+    if measure.are_equal(base, other) { Better::Tie } else { better_of(measure, base, other) }
+}
+
+/// Which of two different values is better.
+fn better_of(measure: &Measure<'_>, base: Range, other: Range) -> Better {
     let base_is_smaller = base[1] < other[1];
     let smaller = if base_is_smaller { Better::Base } else { Better::Other };
-    if measure.are_equal(base, other) {
-        return Better::Tie;
-    }
     match measure.side() {
         BetterSide::Smaller => smaller,
         BetterSide::Larger => smaller.exchanged(),

@@ -5,13 +5,15 @@
 //! points of several runs:  also if their ranges [least, largest] overlap
 //! ```
 //!
-//! Without a given tolerance it is the spread of the method as the documents give it; for single runs the
+//! Without a given tolerance it is the mesh error of the measure, of a pair the larger one and over several rows
+//! the median, or, where none is known, the spread of the method as the documents give it; for single runs the
 //! largest spread over the seeds and replicates of any point, if that is larger. Points of several runs have
 //! their ranges instead, so one chaotic point makes no others equal. A measure with no known spread has values
 //! that are lower or higher, not better. A margin is the distance of a measure from its
 //! limit over the limit: near the limit its spread is the relative spread of the measure.
 
 use super::Sets;
+use crate::accuracy::error_column;
 use crate::analysis::replicates::Condensed;
 use crate::analysis::statistics::Spread;
 use crate::input::value::Value;
@@ -47,6 +49,8 @@ pub enum ToleranceSource {
     Ranges,
     /// The spread of the method, README, "Models and their limits".
     Method,
+    /// The mesh error: of a pair the larger one, over several rows the median.
+    MeshError,
     /// No spread is known: rounding alone.
     Unknown,
 }
@@ -73,8 +77,12 @@ impl Tolerance {
     ) -> Self {
         let absolute = super::is_signed(&measure.name);
         let mut tolerance = Self { limit: ROUNDING, source: ToleranceSource::Unknown, absolute };
-        let method = spread_of_method(table, rows, &measure.name)
-            .map(|limit| (limit, ToleranceSource::Method));
+        let of_mesh = mesh_error(table, rows, measure);
+        let method = match of_mesh {
+            Some(error) => Some((error, ToleranceSource::MeshError)),
+            None => spread_of_method(table, rows, &measure.name)
+                .map(|limit| (limit, ToleranceSource::Method)),
+        };
         let seeds = spread_of_runs(table, rows, measure, absolute, replicates, zipped)
             .map(|limit| (limit, ToleranceSource::Seeds));
         for (limit, source) in [method, seeds].into_iter().flatten() {
@@ -113,6 +121,17 @@ impl Tolerance {
     pub fn judges(&self) -> bool {
         self.source != ToleranceSource::Unknown
     }
+}
+
+/// The median of the mesh errors of a measure over some rows, relative to its values; `None` where no row has one.
+fn mesh_error(table: &Table, rows: &[usize], measure: &Column) -> Option<f64> {
+    let errors = table.column(error_column(&measure.name)?)?;
+    let relative = |row: &usize| {
+        let value = super::measured(table, measure, *row)?;
+        Some(super::measured(table, errors, *row)? / value.abs())
+    };
+    let errors = rows.iter().filter_map(relative).filter(|error| error.is_finite());
+    Spread::of(errors).map(|errors| errors.median)
 }
 
 /// The spread of the method for a measure, or for a margin. That of the smallest margin is the largest of the

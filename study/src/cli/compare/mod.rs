@@ -114,7 +114,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             }
             (None, None) => {
                 let over = Tolerance::over(&table, &rows, column, &repeated, &zipped("seed"));
-                Measure::of_runs(column, over)
+                Measure::of_runs(column, over).with_errors(&table)
             }
         })
         .collect();

@@ -28,6 +28,7 @@ impl Comparison<'_> {
                 ToleranceSource::Given => "--tie",
                 ToleranceSource::Ranges => "no spread of the method is known",
                 ToleranceSource::Seeds => "spread over the seeds",
+                ToleranceSource::MeshError => "median mesh error; of each pair the larger one",
                 ToleranceSource::Method => "spread of the method",
                 ToleranceSource::Unknown => "spread not known: lower or higher, not better",
             };

@@ -1,6 +1,7 @@
 //! The columns of a table of points, one number per column.
 
 use super::{DEPLOYED, RANGE, RUNS};
+use crate::accuracy::is_error_column;
 use crate::analysis::replicates::{Condensed, Runs};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
@@ -33,6 +34,7 @@ pub fn columns(table: &Table, condensed: &Condensed) -> Vec<Column> {
         };
         let [least, largest] = RANGE;
         match median.name.as_str() {
+            name if is_error_column(name) => new.push(median.clone()),
             _ if index <= parameters || !number && median.name != DerivedColumn::Safe.name() => {
                 new.push(median.clone());
             }

@@ -3,8 +3,9 @@
 use super::range;
 use super::study_keys;
 use super::target::filtered;
+use crate::accuracy::error_column;
 use crate::analysis::compare::measured;
-use crate::analysis::replicates::{Condensed, Runs};
+use crate::analysis::replicates::{self, Condensed, Runs};
 use crate::analysis::statistics::Spread;
 use crate::input::keys;
 use crate::input::value::Value;
@@ -115,16 +116,24 @@ impl<'a> Points<'a> {
     fn range(&self, column: &Column, row: usize) -> Option<Value> {
         self.table.column(&format!("{}{}", column.name, RANGE[0]))?;
         let Some(spread) = self.spread(&column.name, row) else { return Some(Value::Null) };
-        Some(Value::Text(range::text(
-            &spread,
-            &column.shown,
-            self.condensed.runs[row].measured.len(),
-        )))
+        let text = range::text(&spread, &column.shown, self.condensed.runs[row].measured.len());
+        // The mesh error is that of the median.
+        let error = error_column(&column.name).and_then(|name| self.spread(name, row));
+        Some(Value::Text(match error {
+            Some(error) => {
+                let alone = range::with_error(spread.median, error.median, &column.shown);
+                match (alone.split_once(" ± "), spread.least < spread.largest) {
+                    (Some((_, error)), true) => format!("{text} ± {error}"),
+                    _ => alone,
+                }
+            }
+            None => text,
+        }))
     }
 
     /// Statistics of a measure over the runs of a point.
     pub fn spread(&self, measure: &str, row: usize) -> Option<Spread> {
-        let column = self.runs_table.column(measure)?;
+        let column = replicates::source(self.runs_table, self.runs_table.column(measure)?);
         let runs = self.condensed.runs[row].measured.iter();
         Spread::of(runs.filter_map(|row| measured(self.runs_table, column, *row)))
     }

@@ -1,9 +1,10 @@
 //! The columns of the single runs: those asked for, or those that fit on a line.
 
 use super::{MAX_LINE_WIDTH, MAX_WIDE_LINE_WIDTH};
-use crate::cli::Format;
+use crate::accuracy::error_column;
 use crate::cli::print::Heading;
 use crate::cli::target::find;
+use crate::cli::{Format, range};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, DerivedColumn, current_column_name};
 use crate::platform::error::Result;
@@ -96,7 +97,7 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     let mut columns: Vec<&Column> = table.columns.iter().take(1).collect();
     columns.extend(table.parameters());
     columns.extend(sorting(table, sort, &columns));
-    let mut width: usize = columns.iter().map(|column| width(column) + 2).sum();
+    let mut width: usize = columns.iter().map(|column| width(table, column) + 2).sum();
     let shown: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let limited = limited(table);
     let names = main_names(table);
@@ -108,13 +109,13 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
         let has_values = column.cells.iter().any(|cell| *cell != Value::Null);
         let always =
             is_always_shown(&column.name, has_values) || limited.contains(&column.name.as_str());
-        let fits = width + self::width(column) <= most;
+        let fits = width + self::width(table, column) <= most;
         // The speed does not take the place of the energy.
         let partner = ColumnId::PeakKineticEnergy.name();
         let alone = column.name == ColumnId::PeakVz.name()
             && columns.iter().all(|known| known.name != partner);
         if always || (has_values && fits && !alone) {
-            width += self::width(column) + 2;
+            width += self::width(table, column) + 2;
             columns.push(column);
         }
     }
@@ -135,21 +136,32 @@ pub fn heading(column: &Column) -> Heading {
 }
 
 /// Width of a column, characters.
-fn width(column: &Column) -> usize {
+fn width(table: &Table, column: &Column) -> usize {
     let rows = 0..column.cells.len();
-    let widest = rows.map(|row| match shown(column, row, Format::Table) {
+    let widest = rows.map(|row| match shown(table, column, row, Format::Table) {
         Value::Null => 1,
         value => column.shown.text(&value).chars().count(),
     });
     widest.max().unwrap_or(0).max(heading(column).width())
 }
 
-/// A cell as printed: a table has short job ids.
-pub fn shown(column: &Column, row: usize, format: Format) -> Value {
+/// A cell as printed: a table has short job ids, and values with their mesh error.
+pub fn shown(table: &Table, column: &Column, row: usize, format: Format) -> Value {
     match &column.cells[row] {
-        Value::Text(id) if format == Format::Table && column.name == "job" => {
-            Value::Text(id.chars().take(8).collect())
-        }
+        value if format != Format::Table => value.clone(),
+        Value::Text(id) if column.name == "job" => Value::Text(id.chars().take(8).collect()),
+        Value::Number(value) => match mesh_error(table, &column.name, row) {
+            Some(error) => Value::Text(range::with_error(*value, error, &column.shown)),
+            None => Value::Number(*value),
+        },
         value => value.clone(),
+    }
+}
+
+/// The mesh error of a measure at a row.
+pub fn mesh_error(table: &Table, measure: &str, row: usize) -> Option<f64> {
+    match table.column(error_column(measure)?)?.cells[row] {
+        Value::Number(error) => Some(error),
+        _ => None,
     }
 }

@@ -118,7 +118,8 @@ fn runs(args: &Args, table: &Table, rows: &[usize], all_columns: usize) -> Resul
     let format = args.output.format();
     let rows = sorted(table, rows.to_vec(), &args.sort)?;
     let columns = chosen(table, &args.columns, &args.sort, format)?;
-    let row = |row: &usize| columns.iter().map(|column| shown(column, *row, format)).collect();
+    let row =
+        |row: &usize| columns.iter().map(|column| shown(table, column, *row, format)).collect();
     let mut notes = Vec::new();
     let jobs = table.one_row_per_job(&rows).len();
     if jobs < rows.len() {

@@ -33,7 +33,10 @@ pub fn study_schema() -> Json {
         properties.insert(key.path.to_owned(), property(&mut definitions, key));
     }
     for (section, _) in STUDY.sections.iter().filter(|(path, _)| !path.contains('.')) {
-        let schema = definitions.section(&STUDY, section, &property);
+        let mut schema = definitions.section(&STUDY, section, &property);
+        if *section == "solver" {
+            schema["properties"]["meshes"] = meshes();
+        }
         properties.insert((*section).to_owned(), schema);
     }
     properties.insert("supports".to_owned(), supports(&mut definitions));
@@ -41,6 +44,7 @@ pub fn study_schema() -> Json {
     properties.insert("grid".to_owned(), grid(&mut definitions));
     properties.insert("replicates".to_owned(), replicates(&mut definitions));
     properties.insert("limits".to_owned(), limits());
+    properties.insert("accuracy".to_owned(), accuracy());
     properties.insert(
         "units".to_owned(),
         json!({
@@ -73,6 +77,35 @@ pub fn study_schema() -> Json {
 /// What a key of the study may hold, as a definition: its section, axes and points refer to it.
 fn value(definitions: &mut Definitions, key: &Key) -> Json {
     definitions.refer(&format!("value.{}", key.path), |definitions| definitions.kind(key))
+}
+
+fn accuracy() -> Json {
+    json!({
+        "title": "accuracy",
+        "description": STUDY.meaning("accuracy"),
+        "type": "object",
+        "properties": {"meshes": {
+            "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 1, "maxItems": 3,
+        }},
+        // Any other member is a measure.
+        "additionalProperties": {"oneOf": [
+            {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+            {"type": "string", "pattern": r"^\s*[0-9.]+(e-?[0-9]+)?\s*%?\s*$"},
+        ]},
+        "minProperties": 1,
+    })
+}
+
+fn meshes() -> Json {
+    json!({
+        "title": "meshes",
+        "description": STUDY.meaning("solver.meshes"),
+        "type": "array",
+        "items": {"type": "integer", "minimum": 1},
+        "minItems": 2,
+        "maxItems": 3,
+        "uniqueItems": true,
+    })
 }
 
 fn supports(definitions: &mut Definitions) -> Json {

@@ -13,7 +13,6 @@ mod counts;
 mod derived;
 mod job_end;
 mod noisy;
-pub mod reference;
 mod renamed;
 
 pub use cell::Cell;
@@ -83,6 +82,16 @@ impl Cells {
     /// The verdict; `None` for a row without one.
     pub fn verdict(&self) -> Option<Verdict> {
         Verdict::from_name(self.text(ColumnId::Verdict))
+    }
+
+    /// Whether the job is done and its audit found nothing: no passage, no intersection, no motion damped by
+    /// the numerics.
+    pub fn is_trusted(&self) -> bool {
+        let none = |column| !matches!(self.get(column), Value::Integer(1..));
+        self.status == Status::Done
+            && none(ColumnId::Passages)
+            && none(ColumnId::Intersections)
+            && *self.get(ColumnId::NumericallyDamped) != Value::Bool(true)
     }
 
     /// Sets a cell. The status is set by [`Self::new`] alone.

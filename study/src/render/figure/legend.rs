@@ -42,6 +42,8 @@ pub enum Sample {
     Band,
     /// An error bar.
     Bar,
+    /// A thin error bar.
+    Error,
     /// The hatch of the side that is not allowed.
     Closed,
     /// A dashed line across the plot.
@@ -151,6 +153,14 @@ fn draw_sample(page: &mut Page, sample: &Sample, left: Position) {
         }
         Sample::Bar => {
             range::draw_bar(page, [[middle[0], left[1] + 1.7], [middle[0], left[1] - 1.7]], PLAIN);
+            style::plain_marker(page, middle, PLAIN, Fill::Filled, range::FAINT);
+        }
+        Sample::Error => {
+            range::draw_error(
+                page,
+                [[middle[0], left[1] + 1.7], [middle[0], left[1] - 1.7]],
+                PLAIN,
+            );
             style::plain_marker(page, middle, PLAIN, Fill::Filled, range::FAINT);
         }
         Sample::Closed => rule::draw_closed(page, [left[0], left[1] - 1.7], [4.2, 3.4], 1.2),

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Table;
+use super::extrapolated::is_extrapolated;
+use super::{Column, Table};
+use crate::accuracy::{NO_ERROR_REASON, is_error_column};
 use crate::input::value::Value;
 use crate::job::row::{COLUMNS, ColumnId};
 use crate::job::{JobId, Status};
@@ -40,20 +42,31 @@ pub fn is_of_other_physics(table: &Table, records: &BTreeMap<JobId, Record>) -> 
     !versions.is_empty() && versions.iter().all(other) && agrees(table, records)
 }
 
-/// Number of rows in which two tables differ; all rows when their columns differ.
+/// Number of rows in which two tables differ; all rows when their columns differ. Mesh errors do not count: a
+/// table of an older version has none, or others.
 pub fn different_rows(a: &Table, b: &Table) -> usize {
-    let names = |table: &Table| -> Vec<String> {
-        table.columns.iter().map(|column| column.name.clone()).collect()
+    let compared = |table: &Table| -> Vec<usize> {
+        let columns = table.columns.iter().enumerate();
+        columns.filter(|(_, column)| !is_mesh_error(&column.name)).map(|(index, _)| index).collect()
     };
+    let pairs: Vec<[&Column; 2]> = compared(a)
+        .into_iter()
+        .zip(compared(b))
+        .map(|(in_a, in_b)| [&a.columns[in_a], &b.columns[in_b]])
+        .collect();
     let rows = a.rows().max(b.rows());
-    if a.rows() != b.rows() || names(a) != names(b) {
+    let same_columns =
+        compared(a).len() == compared(b).len() && pairs.iter().all(|[a, b]| a.name == b.name);
+    if a.rows() != b.rows() || !same_columns {
         return rows;
     }
-    let differs = |row: &usize| {
-        let mut columns = a.columns.iter().zip(&b.columns);
-        columns.any(|(a, b)| !same(&a.cells[*row], &b.cells[*row]))
-    };
+    let differs = |row: &usize| pairs.iter().any(|[a, b]| !same(&a.cells[*row], &b.cells[*row]));
     (0..rows).filter(differs).count()
+}
+
+/// Whether a column holds what the table of mesh errors says, and not what a run gave.
+fn is_mesh_error(name: &str) -> bool {
+    is_error_column(name) || name == NO_ERROR_REASON || is_extrapolated(name)
 }
 
 /// Whether two values are the same; NaN is the same as NaN.

@@ -1,8 +1,8 @@
 //! The summary table: one row per planned point, in plan order, built from plan and journal. Points
 //! that are one job stand one after the other and have the same job id.
 //!
-//! Columns: `job`, the parameters of the study, [`crate::job::row::COLUMNS`], then
-//! [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the
+//! Columns: `job`, the parameters of the study, [`crate::job::row::COLUMNS`], the mesh errors of
+//! [`crate::accuracy::PROMISED`], then [`crate::job::row::SAME_JOB_AS`]. A parameter keeps its name when a later column has the same one; the
 //! later column is then called `<name>_resolved`.
 
 use std::collections::BTreeMap;
@@ -17,8 +17,11 @@ use crate::job::{JobId, Status};
 use crate::store::journal::{self, Record};
 
 pub mod agreement;
+pub mod extrapolated;
 mod judged;
+mod mesh_errors;
 pub mod parquet;
+pub mod reference;
 pub mod same_job;
 
 use same_job::PointRow;
@@ -101,6 +104,7 @@ impl Table {
                 cells: rows.iter().map(|row| row.get(column.id).clone()).collect(),
             });
         }
+        columns.extend(mesh_errors::columns(points, &rows));
         columns.push(same_job::column(points));
         Self { columns }
     }
@@ -147,6 +151,16 @@ impl Table {
             Some(Value::Text(name)) => Verdict::from_name(name),
             _ => None,
         }
+    }
+
+    /// Whether a job is done and its audit found nothing: no passage, no intersection, no motion damped by the
+    /// numerics.
+    pub fn is_trusted(&self, row: usize) -> bool {
+        let none = |column| !matches!(self.value(column, row), Some(Value::Integer(1..)));
+        self.status(row) == Some(Status::Done)
+            && none(ColumnId::Passages)
+            && none(ColumnId::Intersections)
+            && self.value(ColumnId::NumericallyDamped, row) != Some(&Value::Bool(true))
     }
 
     /// The parameters of the study: the columns between `job` and `status`.

@@ -67,6 +67,15 @@ pub(super) enum AxisKind {
     Search,
     /// Repetitions of each point.
     Replicates,
+    /// Meshes from which values are extrapolated.
+    Meshes,
+}
+
+impl AxisKind {
+    /// Whether its values repeat a point: they make no point of their own.
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Replicates | Self::Meshes)
+    }
 }
 
 impl Grid {
@@ -105,6 +114,7 @@ impl Grid {
             }
         }
         grid.read_replicates(tree.get(REPLICATES), context)?;
+        grid.read_meshes(tree.get("solver").and_then(|solver| solver.get("meshes")), context)?;
         grid.check_search(context.source)?;
         if let Some(points) = points {
             grid.read_points(points, context)?;
@@ -130,7 +140,8 @@ impl Grid {
             let values = axis.rows.iter().map(|row| Json::from(json_value(&row[0]))).collect();
             (self.columns[axis.columns[0]].name.clone(), Json::List(values))
         };
-        self.replicates().map(member).collect()
+        let replicates = self.axes.iter().filter(|axis| axis.kind == AxisKind::Replicates);
+        replicates.map(member).collect()
     }
 
     /// The grid as JSON: each axis is a group of `zip`, since a list keeps the order of the axes and an
@@ -139,8 +150,7 @@ impl Grid {
         let name = |column: usize| self.columns[column].name.clone();
         let json = |value: &Value| Json::from(json_value(value));
         let mut grid = Vec::new();
-        let grouped: Vec<&Axis> =
-            self.axes.iter().filter(|axis| axis.kind != AxisKind::Replicates).collect();
+        let grouped: Vec<&Axis> = self.axes.iter().filter(|axis| !axis.kind.repeats()).collect();
         let groups = grouped.iter().map(|axis| {
             if let (AxisKind::Search, Some(search)) = (axis.kind, &self.search) {
                 let json = search.to_json(&|limit| self.limit_names[limit].clone());

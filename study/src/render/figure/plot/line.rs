@@ -25,6 +25,8 @@ pub struct Line {
     pub columns: Vec<([f64; 3], f64)>,
     /// Error bars: x, lower and upper value; all finite.
     pub bars: Vec<[f64; 3]>,
+    /// Thin error bars of the method: x, lower and upper value; all finite.
+    pub errors: Vec<[f64; 3]>,
     /// Faint points behind the line.
     pub faint: Vec<([f64; 2], Fill)>,
     /// Short texts beside points.
@@ -48,6 +50,7 @@ impl Line {
             bands: Vec::new(),
             columns: Vec::new(),
             bars: Vec::new(),
+            errors: Vec::new(),
             faint: Vec::new(),
             texts: Vec::new(),
             arrows: Vec::new(),

@@ -13,6 +13,10 @@ const COLUMN_OPACITY: f64 = 0.3;
 const BAR: f64 = 0.45;
 /// Half the width of the ends of an error bar, mm.
 const CAP: f64 = 1.0;
+/// Width of a thin error bar, mm.
+const ERROR_BAR: f64 = 0.18;
+/// Half the width of the ends of a thin error bar, mm.
+const ERROR_CAP: f64 = 0.7;
 /// Size of a faint point, mm.
 pub const FAINT: f64 = 1.3;
 /// Opacity of a faint point.
@@ -57,6 +61,10 @@ pub(super) fn draw_points(page: &mut Page, lines: &[Line], frame: &Frame) {
             let ends = [*low, *high].map(|y| shifted(frame.position([*x, y]), line));
             draw_bar(page, ends, line.series.colour);
         }
+        for [x, low, high] in &line.errors {
+            let ends = [*low, *high].map(|y| shifted(frame.position([*x, y]), line));
+            draw_error(page, ends, line.series.colour);
+        }
         for (point, fill) in &line.faint {
             let position = shifted(frame.position(*point), line);
             let faint = Series { marker: Some(0), ..line.series };
@@ -70,12 +78,20 @@ pub(super) fn draw_points(page: &mut Page, lines: &[Line], frame: &Frame) {
     }
 }
 
-/// An error bar with short lines at its ends.
-pub fn draw_bar(page: &mut Page, [low, high]: [Position; 2], colour: &'static str) {
-    let stroke = Stroke::solid(colour, BAR);
-    page.line(low, high, &stroke);
+/// An error bar with short lines at its ends: the range of several runs.
+pub fn draw_bar(page: &mut Page, ends: [Position; 2], colour: &'static str) {
+    bar(page, ends, CAP, &Stroke::solid(colour, BAR));
+}
+
+/// A thin error bar with short lines at its ends: the error of the method.
+pub fn draw_error(page: &mut Page, ends: [Position; 2], colour: &'static str) {
+    bar(page, ends, ERROR_CAP, &Stroke::solid(colour, ERROR_BAR));
+}
+
+fn bar(page: &mut Page, [low, high]: [Position; 2], cap: f64, stroke: &Stroke) {
+    page.line(low, high, stroke);
     for end in [low, high] {
-        page.line([end[0] - CAP, end[1]], [end[0] + CAP, end[1]], &stroke);
+        page.line([end[0] - cap, end[1]], [end[0] + cap, end[1]], stroke);
     }
 }
 

@@ -31,7 +31,7 @@ impl Words {
             line.marks.iter().map(|(point, _)| place(*point)).collect()
         };
         let points = |line: &Line| -> Vec<Position> {
-            let bands = line.bands.iter().flatten().chain(&line.bars);
+            let bands = line.bands.iter().flatten().chain(&line.bars).chain(&line.errors);
             let bands = bands.flat_map(|[x, low, high]| [[*x, *low], [*x, *high]]);
             let faint = line.faint.iter().map(|(point, _)| *point);
             let arrows = line.arrows.iter().map(|(point, _)| *point);

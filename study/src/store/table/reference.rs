@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use billow_solver::models::film::{CONTACT_COLUMNS, FILM_STRESS_99};
 use billow_solver::output::history::{COLUMNS as HISTORY_COLUMNS, RING_COLUMNS};
 
-use super::{
+use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
+use crate::job::row::{
     BetterSide, COLUMNS, CellType, DERIVED_COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS,
     RowColumn, SAME_JOB_AS, SAME_JOB_AS_MEANING,
 };
@@ -69,6 +70,13 @@ fn table_columns(page: &mut String) {
         "| `margin_<measure>` | {number} | 1 |  |  |  | distance of a measure from its limit over the limit; negative \
          beyond it |"
     );
+    for promised in &PROMISED {
+        let (name, unit) = (promised.error_column, promised.measure.column().unit);
+        let _ =
+            writeln!(page, "| `{name}` | {number} | {unit} |  |  |  | {} |", promised.meaning());
+    }
+    let _ =
+        writeln!(page, "| `{NO_ERROR_REASON}` | {text} |  |  |  |  | {NO_ERROR_REASON_MEANING} |");
     let _ = writeln!(page, "| `{SAME_JOB_AS}` | {text} |  |  |  |  | {SAME_JOB_AS_MEANING} |");
 }
 

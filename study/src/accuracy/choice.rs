@@ -1,0 +1,73 @@
+//! Which methods keep an error, and what they cost.
+//!
+//! ```text
+//! cost of film on n subdivisions = (n/n_ref)³     element-steps: elements ∝ n², steps ∝ n
+//! cost of an extrapolated value  = sum over its meshes
+//! ```
+//! The cost of a run on the finest mesh of the table is 1. No clock has a part in it.
+
+use billow_solver::scene::{ModelKind, Scene};
+
+use super::features::Features;
+use super::promised::PROMISED;
+use super::table::{Entry, MeshErrors, Method};
+
+/// Cost of a run of the piston. Measured: 1 ms against 150 s of film on 24 subdivisions.
+const PISTON_COST: f64 = 7e-6;
+
+/// A method with its cost and its errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// The method.
+    pub method: Method,
+    /// Its cost over that of film on the finest mesh.
+    pub cost: f64,
+    /// Relative error of each promised measure: the largest over some scenes.
+    pub errors: [f64; PROMISED.len()],
+}
+
+impl Choice {
+    /// Whether every measure with a tolerance keeps it.
+    pub fn keeps(&self, tolerances: &[Option<f64>; PROMISED.len()]) -> bool {
+        let pairs = self.errors.iter().zip(tolerances);
+        pairs.into_iter().all(|(error, tolerance)| tolerance.is_none_or(|most| *error <= most))
+    }
+}
+
+/// Cost of a method over that of film on the finest mesh.
+pub fn cost(table: &MeshErrors, method: &Method) -> f64 {
+    let of_mesh = |n: &u32| {
+        let ratio = f64::from(*n) / f64::from(table.reference);
+        ratio * ratio * ratio
+    };
+    match method.model {
+        ModelKind::Film => method.meshes.iter().map(of_mesh).sum(),
+        ModelKind::Piston => PISTON_COST,
+    }
+}
+
+/// The methods of the table for these scenes, the cheapest first.
+///
+/// # Errors
+/// Why the table does not cover a scene.
+pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<Choice>, String> {
+    if let Some(gap) = scenes.iter().find_map(|(scene, features)| table.gap(scene, features)) {
+        return Err(gap);
+    }
+    let of_measure = |entry: &&Entry| entry.measure == PROMISED[0].measure.name();
+    let methods = table.errors.iter().filter(of_measure);
+    let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
+    let mut choices: Vec<Choice> = methods
+        .map(|method| {
+            let largest = |promised| {
+                let errors =
+                    scenes.iter().map(|(_, features)| table.error(&method, features, &promised));
+                // A method without an error of a measure promises nothing for it.
+                errors.map(|error| error.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
+            };
+            Choice { cost: cost(table, &method), errors: PROMISED.map(largest), method }
+        })
+        .collect();
+    choices.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    Ok(choices)
+}

@@ -1,0 +1,226 @@
+//! What the mesh error of a run may depend on, and whether the table of mesh errors covers a scene.
+//!
+//! ```text
+//! m_release = gas inside at the release of the lid
+//! m_burst   = ∫ max(ṁ − ṁ_last, 0) dt  from the release
+//! ṁ_last    = mass flow rate of the last interval with inflow
+//! ```
+//! A scene is covered if its features lie within those of the runs that the table was made from, and all else in
+//! it is as in these runs.
+
+use billow_solver::geometry::fold::Fit;
+use billow_solver::scene::inflow::Schedule;
+use billow_solver::scene::{ModelKind, Outputs, Scene, Stepping, Thresholds};
+use serde::{Deserialize, Serialize};
+
+use crate::input::value::short_number;
+
+/// Fraction of the stable step of the runs of the table. The piston has none; its steps have no part in its error.
+const STEP: f64 = 0.45;
+
+/// Number of features of a scene.
+pub const FEATURES: usize = 11;
+
+/// Names and units of the features, in the order of [`Features::values`].
+pub const FEATURE_NAMES: [(&str, &str); FEATURES] = [
+    ("N", ""),
+    ("M", ""),
+    ("bottom_radius", " m"),
+    ("top_radius over bottom_radius", ""),
+    ("height over bottom_radius", ""),
+    ("mass_flow_rate", " kg/s"),
+    ("residual gas let in", " kg"),
+    ("gas inside at the release", " kg"),
+    ("time from release to inflow", " s"),
+    ("inflow_temperature", " K"),
+    ("duration of inflow, up to 0.2", " s"),
+];
+
+/// An inflow that lasts longer after the release is like one of this duration, s. Chosen: capsules of the table are
+/// nine tenths deployed by then, or gas flows until they are.
+const LONG_INFLOW: f64 = 0.2;
+
+/// Largest relative distance outside a range that counts as inside: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What the mesh error of a run may depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Features {
+    /// The numbers, in the order of [`FEATURE_NAMES`], SI.
+    pub values: [f64; FEATURES],
+}
+
+impl Features {
+    /// The features of a scene. `top_radius` and `height` (m) are those of its solved pattern.
+    pub fn of(scene: &Scene, top_radius: f64, height: f64) -> Self {
+        let schedule = Schedule::new(&scene.gas.windows);
+        let release = scene.release_time;
+        let at_release = scene.gas.initial_mass + schedule.mass_until(release);
+        let times = schedule.change_times();
+        let intervals = || times.windows(2).map(|pair| [pair[0], pair[1]]);
+        let rate = |[from, to]: [f64; 2]| schedule.between(from, to).mass_flow_rate;
+        let last = intervals().map(rate).rfind(|rate| *rate > 0.0).unwrap_or(0.0);
+        let burst = intervals().map(|[from, to]| {
+            let length = (to - from.max(release)).max(0.0);
+            (rate([from, to]) - last).max(0.0) * length
+        });
+        let burst: f64 = burst.sum();
+        let first = intervals().find(|[from, to]| *to > release && rate([*from, *to]) > 0.0);
+        let delay = first.map_or(0.0, |[from, _]| (from - release).max(0.0));
+        let windows = scene.gas.windows.iter();
+        let stop = windows.clone().map(|window| window.to).fold(release, f64::max);
+        let temperature =
+            windows.map(|window| window.temperature).next_back().unwrap_or(scene.film.temperature);
+        let design = &scene.design;
+        let radius = design.bottom_radius;
+        Self {
+            values: [
+                f64::from(design.panels),
+                f64::from(design.storeys),
+                radius,
+                top_radius / radius,
+                height / radius,
+                last,
+                burst,
+                at_release,
+                delay,
+                temperature,
+                LONG_INFLOW.min(stop - release),
+            ],
+        }
+    }
+}
+
+/// The scenes that the table covers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Coverage {
+    /// Smallest and largest value of each feature.
+    pub ranges: Vec<FeatureRange>,
+    /// A scene of the runs; all that is no feature must be as in it.
+    pub scene: Scene,
+}
+
+/// The range of one feature over the runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FeatureRange {
+    /// Name of the feature, from [`FEATURE_NAMES`].
+    pub name: String,
+    /// Smallest value.
+    pub least: f64,
+    /// Largest value.
+    pub largest: f64,
+}
+
+impl Coverage {
+    /// The coverage of these runs; `None` without any.
+    pub fn of<'a>(runs: impl IntoIterator<Item = (&'a Scene, Features)>) -> Option<Self> {
+        let mut runs = runs.into_iter();
+        let (scene, first) = runs.next()?;
+        let mut ranges = first.values.map(|value| [value; 2]);
+        for (_, features) in runs {
+            for (range, value) in ranges.iter_mut().zip(features.values) {
+                *range = [range[0].min(value), range[1].max(value)];
+            }
+        }
+        let named = FEATURE_NAMES.iter().zip(ranges).map(|((name, _), [least, largest])| {
+            FeatureRange { name: (*name).to_owned(), least, largest }
+        });
+        Some(Self { ranges: named.collect(), scene: scene.clone() })
+    }
+
+    /// Why a scene is not covered; `None` if it is.
+    pub fn gap(&self, scene: &Scene, features: &Features) -> Option<String> {
+        if scene.seed == 0 {
+            return Some("seed 0 has no imperfection; the runs of the table have one".to_owned());
+        }
+        let [given, runs] = [scene, &self.scene].map(without_features);
+        if given != runs {
+            let [given, runs] =
+                [&given, &runs].map(|scene| serde_json::to_value(scene).unwrap_or_default());
+            if let Some(difference) = different_key(&given, &runs) {
+                return Some(difference);
+            }
+        }
+        let units = FEATURE_NAMES.iter().map(|(_, unit)| unit);
+        for ((range, value), unit) in self.ranges.iter().zip(features.values).zip(units) {
+            let width = ROUNDING * range.largest.abs();
+            if value < range.least - width || value > range.largest + width {
+                let [value, least, largest] = [value, range.least, range.largest].map(short_number);
+                let name = &range.name;
+                let runs = if least == largest { least } else { format!("{least} to {largest}") };
+                return Some(format!(
+                    "{name} {value}{unit}: the runs of the table have {runs}{unit}"
+                ));
+            }
+        }
+        None
+    }
+}
+
+/// A scene without its features and without what changes no error.
+fn without_features(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let design = &mut scene.design;
+    let relative = |height: f64| height / design.bottom_radius;
+    let stowed = relative(design.stowed_height);
+    design.stowed_height = stowed;
+    design.fit = Fit::Cone;
+    design.panels = 0;
+    design.storeys = 0;
+    design.bottom_radius = 1.0;
+    design.subdivisions = 0;
+    for length in [
+        &mut design.top_radius,
+        &mut design.height,
+        &mut design.half_angle,
+        &mut design.alpha1_over_phi,
+    ] {
+        *length = None;
+    }
+    scene.gas.windows.clear();
+    scene.gas.initial_mass = 0.0;
+    scene.release_time = 0.0;
+    scene.seed = 1;
+    scene.solver.end_time = 1.0;
+    scene.solver.step_limit = 1;
+    if scene.solver.model == ModelKind::Piston {
+        scene.solver.stepping = Stepping::Stable(STEP);
+    }
+    scene.outputs = Outputs { sample_interval: 1.0, frames: 0, thresholds: Thresholds::default() };
+    scene.solver.model = ModelKind::Film;
+    scene
+}
+
+/// The first key in which two scenes differ, as text; `None` if they do not.
+fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<String> {
+    use serde_json::Value::Object;
+    match (scene, runs) {
+        (Object(a), Object(b)) => {
+            let mut keys: Vec<&String> = a.keys().chain(b.keys()).collect();
+            keys.sort();
+            keys.dedup();
+            keys.into_iter().find_map(|key| {
+                let [a, b] =
+                    [a, b].map(|object| object.get(key).unwrap_or(&serde_json::Value::Null));
+                let difference = different_key(a, b)?;
+                let joint = if difference.starts_with(' ') { "" } else { "." };
+                // Stored names are part of job ids.
+                let key = match key.as_str() {
+                    "viscosity" => "numerical_damping",
+                    "stable" => "cfl",
+                    key => key,
+                };
+                Some(format!("{key}{joint}{difference}"))
+            })
+        }
+        _ if same(scene, runs) => None,
+        _ => Some(format!(" {scene}: the runs of the table have {runs}")),
+    }
+}
+
+fn same(a: &serde_json::Value, b: &serde_json::Value) -> bool {
+    match (a.as_f64(), b.as_f64()) {
+        (Some(a), Some(b)) => (a - b).abs() <= ROUNDING * a.abs().max(b.abs()),
+        _ => a == b,
+    }
+}

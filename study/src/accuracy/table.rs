@@ -1,0 +1,266 @@
+//! The table of mesh errors: how far a measure is from its value on the finest mesh, by model, mesh and kind of
+//! scene. `billow converge --table` writes it from stored results; the program contains it.
+//!
+//! ```text
+//! b = m/m_ref − 1                              bias of a mesh: median over seeds, m_ref on the finest mesh
+//! b(x) = b_base + Σ_f Δ_f(x_f)                 Δ_f: change of the bias with one feature f, linear between levels
+//! error = |b(x)| + k √(s² + c² Σ_f Δ_f²)       s: scatter of single runs, c: how far features do not add up
+//! with a limit m_∞:  error + |m_∞/m_ref − 1| + uncertainty of m_∞
+//! ```
+//! k = 1.64 holds nine of ten normal deviations. Between two meshes of the table the error is linear in ln n.
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use billow_solver::scene::{ModelKind, Scene};
+use serde::{Deserialize, Serialize};
+
+use super::features::{Coverage, FEATURE_NAMES, FEATURES, Features};
+use super::promised::Promised;
+
+/// Name of the format.
+pub const FORMAT: &str = "billow-mesh-errors";
+/// Version of the format that this program writes and reads.
+pub const VERSION: u64 = 1;
+
+/// Normal deviations of which nine of ten are smaller, over the standard deviation.
+const DEVIATIONS: f64 = 1.64;
+
+/// The table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshErrors {
+    /// Name of the format.
+    pub format: String,
+    /// Version of the format.
+    pub version: u64,
+    /// Version of the physics of the runs.
+    pub physics_version: u32,
+    /// Studies whose results it was made from.
+    pub studies: Vec<String>,
+    /// Subdivisions of the finest mesh.
+    pub reference: u32,
+    /// The scenes that it covers.
+    pub coverage: Coverage,
+    /// The features of the scene from which the others differ.
+    pub base: [f64; FEATURES],
+    /// The limit of each measure.
+    pub limits: BTreeMap<String, Limit>,
+    /// The errors.
+    pub errors: Vec<Entry>,
+}
+
+/// To what a measure tends as the mesh is refined.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limit {
+    /// Whether a limit is known.
+    pub known: bool,
+    /// Limit over the value on the finest mesh, minus 1; of several scenes the largest in magnitude.
+    pub change: f64,
+    /// Relative uncertainty of the limit, 95 %; of several scenes the largest.
+    pub uncertainty: f64,
+    /// Observed order of convergence in the edge length; of several scenes the smallest.
+    pub order: f64,
+}
+
+/// The error of one measure, for one model and mesh.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entry {
+    /// Measure.
+    pub measure: String,
+    /// Model.
+    pub model: ModelKind,
+    /// Subdivisions: of one mesh, or of the two meshes of an extrapolated value; none for a model without mesh.
+    pub meshes: Vec<u32>,
+    /// Weight w of an extrapolated value, m₂ + w (m₂ − m₁) of a coarse mesh 1 and a fine mesh 2; 0 for one mesh.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub weight: f64,
+    /// Bias of the base scene: median over the seeds of the value over that on the finest mesh, minus 1.
+    pub bias: f64,
+    /// Change of the bias with one feature: level and change, in ascending order, the level of the base scene included.
+    pub effects: BTreeMap<String, Vec<[f64; 2]>>,
+    /// Standard deviation of single runs about these medians, relative.
+    pub scatter: f64,
+    /// Deviation of scenes that differ in several features from the sum of the changes, over the root of the sum of
+    /// their squares.
+    pub interaction: f64,
+    /// Number of scenes from which `interaction` follows; 0 where it is assumed.
+    pub checked_scenes: usize,
+    /// Number of runs.
+    pub runs: usize,
+    /// Number of scenes.
+    pub scenes: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+impl Entry {
+    /// Bias of a scene, and the root of the sum of the squares of the changes.
+    pub fn bias(&self, values: &[f64; FEATURES]) -> (f64, f64) {
+        let mut bias = self.bias;
+        let mut squares = 0.0;
+        for ((name, _), value) in FEATURE_NAMES.iter().zip(values) {
+            if let Some(levels) = self.effects.get(*name) {
+                let change = interpolated(levels, *value);
+                bias += change;
+                squares += change * change;
+            }
+        }
+        (bias, squares.sqrt())
+    }
+
+    /// The relative error of nine of ten runs against the finest mesh.
+    pub fn error(&self, values: &[f64; FEATURES]) -> f64 {
+        let (bias, changes) = self.bias(values);
+        let interaction = self.interaction * changes;
+        bias.abs() + DEVIATIONS * (self.scatter * self.scatter + interaction * interaction).sqrt()
+    }
+}
+
+/// The change at a level, linear between the levels known; beyond them that of the last one.
+fn interpolated(levels: &[[f64; 2]], at: f64) -> f64 {
+    let above = levels.iter().position(|[level, _]| *level >= at);
+    match above {
+        Some(0) => levels[0][1],
+        None => levels.last().map_or(0.0, |[_, change]| *change),
+        Some(index) => {
+            let [[x0, y0], [x1, y1]] = [levels[index - 1], levels[index]];
+            y0 + (at - x0) / (x1 - x0) * (y1 - y0)
+        }
+    }
+}
+
+/// How the value of a row was computed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Method {
+    /// Model.
+    pub model: ModelKind,
+    /// Subdivisions of its mesh or meshes, coarsest first; none for a model without mesh.
+    pub meshes: Vec<u32>,
+}
+
+impl Method {
+    /// The method of a single run.
+    pub fn of(scene: &Scene) -> Self {
+        let meshes = match scene.solver.model {
+            ModelKind::Film => vec![scene.design.subdivisions],
+            ModelKind::Piston => Vec::new(),
+        };
+        Self { model: scene.solver.model, meshes }
+    }
+
+    /// Name for messages: "film, n 4".
+    pub fn name(&self) -> String {
+        let model = match self.model {
+            ModelKind::Film => "film",
+            ModelKind::Piston => "piston",
+        };
+        match self.meshes.as_slice() {
+            [] => model.to_owned(),
+            [n] => format!("{model}, n {n}"),
+            meshes => {
+                let meshes: Vec<String> = meshes.iter().map(ToString::to_string).collect();
+                format!("{model}, n {} extrapolated", meshes.join(" and "))
+            }
+        }
+    }
+}
+
+impl MeshErrors {
+    /// The table that the program contains.
+    pub fn shipped() -> &'static Self {
+        static TABLE: OnceLock<MeshErrors> = OnceLock::new();
+        TABLE.get_or_init(|| {
+            let text = include_str!("mesh_errors.json");
+            serde_json::from_str(text)
+                .unwrap_or_else(|error| unreachable!("mesh_errors.json: {error}"))
+        })
+    }
+
+    /// The meshes of which it has errors, coarsest first.
+    pub fn meshes(&self) -> Vec<u32> {
+        let single = self.errors.iter().filter_map(|entry| match entry.meshes[..] {
+            [n] => Some(n),
+            _ => None,
+        });
+        let mut meshes: Vec<u32> = single.collect();
+        meshes.sort_unstable();
+        meshes.dedup();
+        meshes
+    }
+
+    /// Why the error of a run is not known, for any measure; `None` if the scene is covered.
+    pub fn gap(&self, scene: &Scene, features: &Features) -> Option<String> {
+        self.coverage.gap(scene, features)
+    }
+
+    /// Relative error of a measure of a scene that is covered.
+    ///
+    /// # Errors
+    /// Why it is not known.
+    pub fn error(
+        &self,
+        method: &Method,
+        features: &Features,
+        promised: &Promised,
+    ) -> Result<f64, String> {
+        let measure = promised.measure.name();
+        let error = self.to_reference(method, features, measure)?;
+        match self.limits.get(measure) {
+            Some(limit) if limit.known && promised.has_limit => {
+                Ok(error + limit.change.abs() + limit.uncertainty)
+            }
+            _ => Ok(error),
+        }
+    }
+
+    /// The entry of a method, as it stands in the table.
+    pub fn entry(&self, method: &Method, measure: &str) -> Option<&Entry> {
+        self.errors.iter().find(|entry| {
+            entry.measure == measure && entry.model == method.model && entry.meshes == method.meshes
+        })
+    }
+
+    /// Relative error against the finest mesh.
+    fn to_reference(
+        &self,
+        method: &Method,
+        features: &Features,
+        measure: &str,
+    ) -> Result<f64, String> {
+        if let Some(entry) = self.entry(method, measure) {
+            return Ok(entry.error(&features.values));
+        }
+        let known: Vec<&Entry> = self
+            .errors
+            .iter()
+            .filter(|entry| entry.measure == measure && entry.model == method.model)
+            .filter(|entry| entry.meshes.len() == method.meshes.len())
+            .collect();
+        let name = method.name();
+        let [n] = method.meshes[..] else {
+            return Err(format!("{name}: the table has no errors of it"));
+        };
+        let meshes = || known.iter().map(|entry| (entry.meshes[0], entry.error(&features.values)));
+        let below = meshes().filter(|(mesh, _)| *mesh < n).max_by_key(|(mesh, _)| *mesh);
+        let above = meshes().filter(|(mesh, _)| *mesh > n).min_by_key(|(mesh, _)| *mesh);
+        if let (Some((coarse, coarse_error)), Some((fine, fine_error))) = (below, above) {
+            let log = |mesh: u32| libm::log(f64::from(mesh));
+            let part = (log(n) - log(coarse)) / (log(fine) - log(coarse));
+            return Ok(coarse_error + part * (fine_error - coarse_error));
+        }
+        let mut meshes: Vec<u32> = meshes().map(|(mesh, _)| mesh).collect();
+        meshes.sort_unstable();
+        Err(match meshes.as_slice() {
+            [first, .., last] => {
+                format!("design.subdivisions {n}: the table has {first} to {last}")
+            }
+            _ => format!("{name}: the table has no errors of it"),
+        })
+    }
+}

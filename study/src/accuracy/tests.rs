@@ -1,0 +1,173 @@
+//! Kinds of scenes, coverage, interpolation between meshes, and the table that the program contains.
+
+use billow_solver::scene::paper::{capsule, window};
+use billow_solver::scene::{ModelKind, Scene, Stepping};
+
+use super::promised::promise;
+use super::*;
+
+/// The capsule of the paper at 5 g/s.
+fn scene() -> Scene {
+    let mut scene = capsule(8, 0.3);
+    scene.solver.model = ModelKind::Film;
+    scene.solver.stepping = Stepping::Stable(0.45);
+    scene.seed = 1;
+    scene
+}
+
+fn features(scene: &Scene) -> Features {
+    Features::of(scene, 0.365, 1.0)
+}
+
+fn value(features: &Features, name: &str) -> f64 {
+    let index = features::FEATURE_NAMES.iter().position(|(known, _)| *known == name).unwrap();
+    features.values[index]
+}
+
+#[test]
+fn the_features_of_a_scene_say_how_gas_reaches_the_released_capsule() {
+    let mut scene = scene();
+    scene.gas.windows = vec![window(0.0, 0.3, 5e-3)];
+    let near = |features: Features, name: &str, expected: f64| {
+        let value = value(&features, name);
+        assert!(
+            (value - expected).abs() <= 1e-12 * expected.abs(),
+            "{name}: {value}, not {expected}"
+        );
+    };
+    near(features(&scene), "residual gas let in", 0.0);
+    near(features(&scene), "mass_flow_rate", 5e-3);
+    near(features(&scene), "duration of inflow, up to 0.2", 0.2);
+    scene.gas.windows = vec![window(0.0, 0.01, 5e-3), window(0.0, 0.3, 5e-3)];
+    near(features(&scene), "residual gas let in", 5e-5);
+    near(features(&scene), "mass_flow_rate", 5e-3);
+    scene.release_time = 0.005;
+    near(features(&scene), "gas inside at the release", 5e-5);
+    scene.gas.windows = vec![window(0.105, 0.205, 5e-3)];
+    scene.gas.initial_mass = 1e-4;
+    near(features(&scene), "gas inside at the release", 1e-4);
+    near(features(&scene), "time from release to inflow", 0.1);
+    scene.gas.windows = vec![window(0.005, 0.015, 5e-3)];
+    near(features(&scene), "duration of inflow, up to 0.2", 0.01);
+}
+
+#[test]
+fn a_scene_unlike_the_runs_is_not_covered_and_the_reason_names_its_key() {
+    let base = scene();
+    let coverage = Coverage::of([(&base, features(&base))]).unwrap();
+    let gap = |scene: &Scene| coverage.gap(scene, &features(scene));
+    assert_eq!(gap(&base), None);
+    let mut other = base.clone();
+    other.design.subdivisions = 16;
+    other.solver.end_time = 9.0;
+    other.seed = 7;
+    other.outputs.frames = 5;
+    assert_eq!(gap(&other), None, "mesh, end, seed and outputs are no part of it");
+    let reason = |change: fn(&mut Scene)| {
+        let mut scene = scene();
+        change(&mut scene);
+        gap(&scene).unwrap()
+    };
+    let thickness = reason(|scene| scene.film.thickness = 50e-6);
+    assert_eq!(thickness, "film.thickness 0.00005: the runs of the table have 0.0000254");
+    assert!(
+        reason(|scene| scene.film.numerical_damping = 0.01).starts_with("film.numerical_damping ")
+    );
+    assert!(reason(|scene| scene.contact.friction = 0.3).starts_with("contact.friction 0.3"));
+    assert!(reason(|scene| scene.gravity = -9.8).starts_with("gravity -9.8"));
+    assert!(reason(|scene| scene.design.panels = 9).starts_with("N 9: "));
+    assert!(reason(|scene| scene.seed = 0).starts_with("seed 0"));
+}
+
+/// A table of one measure with two meshes.
+fn table(known: bool) -> MeshErrors {
+    let base = scene();
+    let entry = |n: u32, error: f64| Entry {
+        measure: "t_90_z_rim".to_owned(),
+        model: ModelKind::Film,
+        meshes: vec![n],
+        weight: 0.0,
+        bias: -error,
+        effects: [("M".to_owned(), vec![[2.0, -0.04], [3.0, 0.0]])].into(),
+        scatter: 0.0,
+        interaction: 0.5,
+        checked_scenes: 0,
+        runs: 1,
+        scenes: 1,
+    };
+    let limit = Limit { known, change: -0.01, uncertainty: 0.002, order: 1.0 };
+    MeshErrors {
+        format: table::FORMAT.to_owned(),
+        version: table::VERSION,
+        physics_version: 0,
+        studies: Vec::new(),
+        reference: 24,
+        coverage: Coverage::of([(&base, features(&base))]).unwrap(),
+        base: features(&base).values,
+        limits: [("t_90_z_rim".to_owned(), limit)].into(),
+        errors: vec![entry(4, 0.08), entry(16, 0.02)],
+    }
+}
+
+#[test]
+fn between_two_meshes_the_error_is_linear_in_the_logarithm_of_n() {
+    let table = table(false);
+    let promised = promise("t_90_z_rim_since_release").unwrap();
+    let error = |n: u32| {
+        let method = Method { model: ModelKind::Film, meshes: vec![n] };
+        table.error(&method, &features(&scene()), promised)
+    };
+    assert!((error(4).unwrap() - 0.08).abs() < 1e-15);
+    assert!((error(8).unwrap() - 0.05).abs() < 1e-15);
+    assert_eq!(error(24).unwrap_err(), "design.subdivisions 24: the table has 4 to 16");
+    assert_eq!(error(3).unwrap_err(), "design.subdivisions 3: the table has 4 to 16");
+    let method = Method { model: ModelKind::Piston, meshes: Vec::new() };
+    let error = table.error(&method, &features(&scene()), promised).unwrap_err();
+    assert_eq!(error, "piston: the table has no errors of it");
+}
+
+#[test]
+fn a_feature_changes_the_bias_and_makes_the_error_wider() {
+    let table = table(false);
+    let promised = promise("t_90_z_rim").unwrap();
+    let method = Method { model: ModelKind::Film, meshes: vec![4] };
+    let mut two_storeys = scene();
+    two_storeys.design.storeys = 2;
+    let error = table.error(&method, &features(&two_storeys), promised).unwrap();
+    assert!((error - (0.12 + 1.64 * 0.5 * 0.04)).abs() < 1e-12, "{error}");
+    // Beyond the levels of the table: the last one.
+    two_storeys.design.storeys = 1;
+    let beyond = table.error(&method, &features(&two_storeys), promised).unwrap();
+    assert!((beyond - error).abs() < 1e-15);
+}
+
+#[test]
+fn the_distance_of_a_known_limit_is_part_of_the_error() {
+    let promised = promise("t_90_z_rim").unwrap();
+    assert!(promised.has_limit);
+    let method = Method { model: ModelKind::Film, meshes: vec![4] };
+    let error = table(true).error(&method, &features(&scene()), promised).unwrap();
+    assert!((error - (0.08 + 0.01 + 0.002)).abs() < 1e-15);
+}
+
+#[test]
+fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_columns() {
+    let table = MeshErrors::shipped();
+    assert_eq!(table.format, table::FORMAT);
+    assert_eq!(table.physics_version, billow_solver::PHYSICS_VERSION, "calibrate again");
+    for promised in &PROMISED {
+        let name = promised.measure.name();
+        assert_eq!(table.limits[name].known, promised.has_limit, "{name}");
+        let ends = if promised.has_limit {
+            "_error".to_owned()
+        } else {
+            format!("_change_to_n{}", table.reference)
+        };
+        assert_eq!(promised.error_column, format!("{name}{ends}"));
+        for n in [4, 5, 8, 10] {
+            let method = Method { model: ModelKind::Film, meshes: vec![n] };
+            let error = table.error(&method, &features(&scene()), promised).unwrap();
+            assert!((1e-4..0.5).contains(&error), "{name} n {n}: {error}");
+        }
+    }
+}

@@ -1,0 +1,322 @@
+//! The table of mesh errors, from runs on several meshes.
+//!
+//! ```text
+//! v = m/m_ref − 1        one run; m_ref: median of the runs of its scene on the finest mesh
+//! bias of a scene = median of v;  s² = Σ (v − bias)²/(runs − scenes) + the same of the finest mesh with several runs
+//! Δ_f(x_f) = bias − bias_base of a scene that differs from the base scene in the feature f alone
+//! c² = Σ (bias − bias_base − Σ_f Δ_f)²/Σ Σ_f Δ_f²   over scenes that differ in several features
+//! ```
+//! The base scene is the one from which most others differ in one feature. A value extrapolated from two meshes is
+//! m₂ + w (m₂ − m₁), with the weight w for which it is nearest to the value on the finest mesh.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use billow_solver::scene::ModelKind;
+
+use super::fit::{self, Level};
+use super::runs::{MeshRun, SceneRuns};
+use crate::accuracy::features::{FEATURE_NAMES, FEATURES};
+use crate::accuracy::table::{FORMAT, VERSION};
+use crate::accuracy::{Coverage, Entry, Limit, MeshErrors, PROMISED};
+use crate::analysis::statistics::Spread;
+use crate::job::row::ColumnId;
+use crate::platform::provenance::PHYSICS_VERSION;
+
+/// Deviation from the sum of the changes where no scene differs in several features. Assumed.
+const ASSUMED_INTERACTION: f64 = 0.5;
+/// Weights of an extrapolated value are at most this. Chosen: first order of meshes that differ by half gives 1, by
+/// a quarter 3.
+const MAX_WEIGHT: f64 = 3.0;
+/// Runs on a mesh from which a limit may follow, at least; and number of such meshes.
+const LIMIT_RUNS: usize = 4;
+const LIMIT_MESHES: usize = 4;
+
+/// One scene for one measure: v by model, subdivisions and seed.
+struct Scene {
+    features: [f64; FEATURES],
+    values: BTreeMap<(u8, u32), BTreeMap<u64, f64>>,
+}
+
+/// A model and its mesh or meshes.
+type Method = (ModelKind, Vec<u32>);
+
+/// The table from these scenes, with the errors against the mesh of `reference` subdivisions; `None` if no scene
+/// has a run on it.
+pub fn calibrate(scenes: &[SceneRuns], studies: Vec<String>, reference: u32) -> Option<MeshErrors> {
+    let scenes = longest(scenes, reference);
+    let all = || scenes.iter().flat_map(|scene| &scene.runs);
+    let coverage = Coverage::of(all().map(|run| (&run.scene, run.features)))?;
+    let base = base(&scenes)?;
+    let mut errors = Vec::new();
+    let mut limits = BTreeMap::new();
+    for promised in &PROMISED {
+        let measure = promised.measure;
+        let of_measure: Vec<Scene> =
+            scenes.iter().filter_map(|scene| Scene::of(scene, measure, reference)).collect();
+        limits.insert(measure.name().to_owned(), limit(&scenes, measure, reference));
+        errors.extend(entries(&of_measure, &base, measure, reference));
+    }
+    Some(MeshErrors {
+        format: FORMAT.to_owned(),
+        version: VERSION,
+        physics_version: PHYSICS_VERSION,
+        studies,
+        reference,
+        coverage,
+        base,
+        limits,
+        errors,
+    })
+}
+
+/// The features of the scene from which most others differ in one.
+fn base(scenes: &[&SceneRuns]) -> Option<[f64; FEATURES]> {
+    let all: Vec<[f64; FEATURES]> =
+        scenes.iter().filter_map(|scene| Some(scene.runs.first()?.features.values)).collect();
+    let neighbours =
+        |one: &[f64; FEATURES]| all.iter().filter(|other| different(one, other).len() == 1).count();
+    all.iter().copied().rev().max_by_key(neighbours)
+}
+
+/// Positions of the features in which two scenes differ.
+fn different(a: &[f64; FEATURES], b: &[f64; FEATURES]) -> Vec<usize> {
+    (0..FEATURES)
+        .filter(|index| (a[*index] - b[*index]).abs() > 1e-9 * a[*index].abs().max(b[*index].abs()))
+        .collect()
+}
+
+/// The scenes with a run on the finest mesh; of scenes that differ in their end alone the longest one.
+fn longest(scenes: &[SceneRuns], reference: u32) -> Vec<&SceneRuns> {
+    let mut longest: BTreeMap<String, &SceneRuns> = BTreeMap::new();
+    let end = |scene: &SceneRuns| scene.runs.first().map_or(0.0, |run| run.scene.solver.end_time);
+    let has_reference = |scene: &&SceneRuns| {
+        scene.runs.iter().any(|run| run.mesh() == (ModelKind::Film, reference))
+    };
+    for scene in scenes.iter().filter(has_reference) {
+        let key = format!("{:?}", scene.runs[0].features);
+        let known = longest.entry(key).or_insert(scene);
+        if end(scene) > end(known) {
+            *known = scene;
+        }
+    }
+    longest.into_values().collect()
+}
+
+impl Scene {
+    fn of(scene: &SceneRuns, measure: ColumnId, reference: u32) -> Option<Self> {
+        let on = |run: &&MeshRun| run.mesh() == (ModelKind::Film, reference);
+        let finest = scene.runs.iter().filter(on).filter_map(|run| run.measure(measure));
+        let finest = Spread::of(finest)?.median;
+        let mut values: BTreeMap<(u8, u32), BTreeMap<u64, f64>> = BTreeMap::new();
+        for run in &scene.runs {
+            if let Some(value) = run.measure(measure)
+                && finest != 0.0
+            {
+                let (model, n) = run.mesh();
+                let of_mesh = values.entry((model as u8, n)).or_default();
+                of_mesh.insert(run.scene.seed, value / finest - 1.0);
+            }
+        }
+        Some(Self { features: scene.runs.first()?.features.values, values })
+    }
+
+    /// The values of a method, one per run; of two meshes by equal seed.
+    fn of_method(&self, (model, meshes): &Method, weight: f64) -> Vec<f64> {
+        let on = |n: u32| self.values.get(&(*model as u8, n));
+        match meshes.as_slice() {
+            [coarse, fine] => {
+                let (Some(coarse), Some(fine)) = (on(*coarse), on(*fine)) else {
+                    return Vec::new();
+                };
+                let pairs = coarse.iter().filter_map(|(seed, a)| Some((a, fine.get(seed)?)));
+                pairs.map(|(a, b)| b + weight * (b - a)).collect()
+            }
+            meshes => {
+                let values = on(meshes.first().copied().unwrap_or(0));
+                values.map(|values| values.values().copied().collect()).unwrap_or_default()
+            }
+        }
+    }
+
+    fn bias(&self, method: &Method, weight: f64) -> Option<f64> {
+        Some(Spread::of(self.of_method(method, weight))?.median)
+    }
+}
+
+/// The entries of a measure: each mesh, the piston, each pair of meshes.
+fn entries(
+    scenes: &[Scene],
+    base: &[f64; FEATURES],
+    measure: ColumnId,
+    reference: u32,
+) -> Vec<Entry> {
+    let film = scenes.iter().flat_map(|scene| scene.values.keys());
+    let film = film.filter(|(model, n)| *model == ModelKind::Film as u8 && *n < reference);
+    let meshes: BTreeSet<u32> = film.map(|(_, n)| *n).collect();
+    let meshes: Vec<u32> = meshes.into_iter().collect();
+    // Single runs of the finest mesh scatter as those of the finest mesh with several.
+    let of_mesh = |n: &u32| scatter(scenes, &(ModelKind::Film, vec![*n]), 0.0);
+    let finest = meshes.iter().rev().find_map(of_mesh).unwrap_or(0.0);
+    let mut methods: Vec<Method> = vec![(ModelKind::Piston, Vec::new())];
+    methods.extend(meshes.iter().map(|n| (ModelKind::Film, vec![*n])));
+    for (index, coarse) in meshes.iter().enumerate() {
+        let pairs = meshes[index + 1..].iter().map(|fine| (ModelKind::Film, vec![*coarse, *fine]));
+        methods.extend(pairs);
+    }
+    let entry = |method: &Method| {
+        let weight = weight(scenes, method);
+        let biases: Vec<(&Scene, f64)> =
+            scenes.iter().filter_map(|scene| Some((scene, scene.bias(method, weight)?))).collect();
+        let of_base: Vec<f64> = biases
+            .iter()
+            .filter(|(scene, _)| different(&scene.features, base).is_empty())
+            .map(|(_, bias)| *bias)
+            .collect();
+        let bias = Spread::of(of_base)?.median;
+        let effects = effects(&biases, base, bias);
+        // Pairs with one run each scatter as their finer mesh.
+        let own = scatter(scenes, method, weight)
+            .or_else(|| {
+                method
+                    .1
+                    .last()
+                    .and_then(|n| meshes.iter().filter(|m| *m <= n).rev().find_map(of_mesh))
+            })
+            .unwrap_or(0.0);
+        let mut entry = Entry {
+            measure: measure.name().to_owned(),
+            model: method.0,
+            meshes: method.1.clone(),
+            weight,
+            bias,
+            effects,
+            scatter: (own * own + finest * finest).sqrt(),
+            interaction: ASSUMED_INTERACTION,
+            checked_scenes: 0,
+            runs: scenes.iter().map(|scene| scene.of_method(method, weight).len()).sum(),
+            scenes: biases.len(),
+        };
+        let several: Vec<(f64, f64)> = biases
+            .iter()
+            .filter(|(scene, _)| different(&scene.features, base).len() > 1)
+            .map(|(scene, bias)| {
+                let (expected, changes) = entry.bias(&scene.features);
+                (bias - expected, changes)
+            })
+            .collect();
+        let squares: f64 = several.iter().map(|(_, changes)| changes * changes).sum();
+        if squares > 0.0 {
+            let deviations: f64 = several.iter().map(|(deviation, _)| deviation * deviation).sum();
+            entry.interaction = (deviations / squares).sqrt();
+            entry.checked_scenes = several.len();
+        }
+        Some(entry)
+    };
+    methods.iter().filter_map(entry).collect()
+}
+
+/// The changes of the bias with one feature.
+fn effects(
+    biases: &[(&Scene, f64)],
+    base: &[f64; FEATURES],
+    of_base: f64,
+) -> BTreeMap<String, Vec<[f64; 2]>> {
+    let mut effects: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
+    for (scene, bias) in biases {
+        if let [feature] = different(&scene.features, base)[..] {
+            let levels = effects.entry(FEATURE_NAMES[feature].0.to_owned());
+            let levels = levels.or_insert_with(|| vec![[base[feature], 0.0]]);
+            levels.push([scene.features[feature], bias - of_base]);
+        }
+    }
+    for levels in effects.values_mut() {
+        levels.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        levels.dedup_by(|a, b| a[0].total_cmp(&b[0]).is_eq());
+    }
+    effects
+}
+
+/// Standard deviation of the runs of a method about the medians of their scenes; `None` where no scene has several.
+fn scatter(scenes: &[Scene], method: &Method, weight: f64) -> Option<f64> {
+    let mut squares = 0.0;
+    let mut free = 0;
+    for scene in scenes {
+        let values = scene.of_method(method, weight);
+        if let (Some(spread), 2..) = (Spread::of(values.iter().copied()), values.len()) {
+            squares +=
+                values.iter().map(|v| (v - spread.median) * (v - spread.median)).sum::<f64>();
+            free += values.len() - 1;
+        }
+    }
+    (free > 0).then(|| (squares / free as f64).sqrt())
+}
+
+/// The weight w for which m₂ + w (m₂ − m₁) is nearest to the value on the finest mesh, over all scenes; 0 for one
+/// mesh.
+fn weight(scenes: &[Scene], (model, meshes): &Method) -> f64 {
+    let [coarse, fine] = meshes[..] else { return 0.0 };
+    let mut product = 0.0;
+    let mut square = 0.0;
+    for scene in scenes {
+        let bias = |n: u32| scene.bias(&(*model, vec![n]), 0.0);
+        if let (Some(a), Some(b)) = (bias(coarse), bias(fine)) {
+            product -= b * (b - a);
+            square += (b - a) * (b - a);
+        }
+    }
+    if square > 0.0 { (product / square).clamp(0.0, MAX_WEIGHT) } else { 0.0 }
+}
+
+/// To what a measure tends, from the scenes with several runs on several meshes.
+fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
+    let mut worst: Option<Limit> = None;
+    for scene in scenes {
+        let levels = levels(scene, measure);
+        if levels.iter().filter(|level| level.runs >= LIMIT_RUNS).count() < LIMIT_MESHES {
+            continue;
+        }
+        let Some(finest) = levels.iter().find(|level| level.subdivisions == reference) else {
+            continue;
+        };
+        let finest = finest.value;
+        let (Some(fit), true) = (fit::fit(&levels), finest != 0.0) else { continue };
+        let change = fit.limit / finest - 1.0;
+        let uncertainty = (fit.uncertainty / finest).abs();
+        let known = super::trend(&levels, &fit) == super::Trend::Limit;
+        let so_far = worst.get_or_insert(Limit { known, change, uncertainty, order: fit.order });
+        so_far.known &= known;
+        if change.abs() > so_far.change.abs() {
+            so_far.change = change;
+        }
+        so_far.uncertainty = so_far.uncertainty.max(uncertainty);
+        so_far.order = so_far.order.min(fit.order);
+    }
+    worst.unwrap_or(Limit { known: false, change: 0.0, uncertainty: 0.0, order: 0.0 })
+}
+
+/// The medians of a measure by mesh, coarsest first.
+pub fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
+    let mut values: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for run in &scene.runs {
+        if let ((ModelKind::Film, n), Some(value)) = (run.mesh(), run.measure(measure)) {
+            values.entry(n).or_default().push(value);
+        }
+    }
+    // Where a mesh has one run, the spread is that of the meshes with several.
+    let half_range = |values: &Vec<f64>| {
+        Spread::of(values.iter().copied())
+            .filter(|spread| spread.count > 1)
+            .map(|spread| 0.5 * (spread.largest - spread.least))
+    };
+    let typical =
+        Spread::of(values.values().filter_map(half_range)).map_or(0.0, |spread| spread.median);
+    values
+        .iter()
+        .filter_map(|(n, values)| {
+            let spread = Spread::of(values.iter().copied())?;
+            let half_range = half_range(values).unwrap_or(typical);
+            let noise = half_range / (spread.count as f64).sqrt();
+            Some(Level { subdivisions: *n, value: spread.median, noise, runs: spread.count })
+        })
+        .collect()
+}

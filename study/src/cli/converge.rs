@@ -1,0 +1,165 @@
+//! `billow converge`: to what each measure tends as the mesh is refined, and the table of mesh errors.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::options::{OutputOptions, QuietOption, ResultsOption};
+use super::print::{Heading, print_quantities};
+use super::target::{StudyArgs, folder};
+use super::{Format, stored};
+use crate::accuracy::PROMISED;
+use crate::analysis::convergence::{self, SceneRuns, calibrate, fit, levels};
+use crate::input::value::Value;
+use crate::job::row::ColumnId;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::{Disk, disk_error, write_output};
+
+/// Measures that are looked at beside the promised ones.
+const MEASURES: [ColumnId; 8] = [
+    ColumnId::T50Volume,
+    ColumnId::T90Volume,
+    ColumnId::TDeployed,
+    ColumnId::FirstPeakZRim,
+    ColumnId::FilmStress99,
+    ColumnId::FinalPressure,
+    ColumnId::VolumeRatio,
+    ColumnId::HeightRatio,
+];
+
+/// Arguments of `billow converge`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Study files, or folders of their results.
+    #[arg(required = true, value_name = "STUDY")]
+    studies: Vec<PathBuf>,
+    /// Write the table of mesh errors to this file, JSON.
+    #[arg(long, value_name = "FILE")]
+    table: Option<PathBuf>,
+    /// Subdivisions of the finest mesh of that table.
+    #[arg(long, value_name = "N", default_value_t = 24, requires = "table")]
+    reference: u32,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
+}
+
+/// Runs `billow converge`: one row per scene and measure.
+///
+/// # Errors
+/// Results that cannot be read, or that have no scene on four meshes; a table that cannot be written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let mut scenes: Vec<SceneRuns> = Vec::new();
+    let mut names = Vec::new();
+    for study in &args.studies {
+        let given = StudyArgs { study: Some(study.clone()), results: ResultsOption::default() };
+        let stored = stored::read(&folder(&given, &[])?)?;
+        names.push(stored.study.name.clone());
+        scenes.extend(convergence::by_scene(&stored));
+    }
+    let rows: Vec<Vec<Value>> = scenes.iter().flat_map(rows).collect();
+    if rows.is_empty() {
+        let allowed =
+            "results with film on at least four meshes (design.subdivisions), all else equal";
+        let value = names.join(", ");
+        return Err(Error::invalid_option("study", &value, "has no series of meshes", allowed, ""));
+    }
+    let headings: Vec<Heading> = COLUMNS.iter().map(|name| Heading::plain(*name)).collect();
+    let format = args.output.format();
+    print_quantities(&headings, &rows, format, out)?;
+    if format == Format::Table && !args.quiet.quiet {
+        eprintln!(
+            "{} scenes; limit: of the fit f0 + a h^order, h = 1/n; change: limit over the finest value, minus 1; \
+             uncertainty: 95 %, of the limit",
+            scenes.len()
+        );
+    }
+    match &args.table {
+        Some(path) => write_table(&scenes, names, args.reference, path),
+        None => Ok(()),
+    }
+}
+
+const COLUMNS: [&str; 10] = [
+    "scene",
+    "measure",
+    "unit",
+    "meshes",
+    "finest",
+    "limit",
+    "change",
+    "uncertainty",
+    "order",
+    "trend",
+];
+
+/// The rows of a scene: one per measure that has values on at least four meshes.
+fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
+    let measures = PROMISED.iter().map(|promised| promised.measure).chain(MEASURES);
+    let row = |measure: ColumnId| {
+        let levels = levels(scene, measure);
+        let fit = fit(&levels)?;
+        let (first, last) = (levels.first()?, levels.last()?);
+        let relative = |value: f64| {
+            if last.value == 0.0 { Value::Null } else { Value::Number(value / last.value) }
+        };
+        let text = |text: &str| Value::Text(text.to_owned());
+        Some(vec![
+            text(&scene.label),
+            text(measure.name()),
+            text(measure.column().unit),
+            Value::Text(format!("{} to {}", first.subdivisions, last.subdivisions)),
+            Value::Number(last.value),
+            Value::Number(fit.limit),
+            relative(fit.limit - last.value),
+            relative(fit.uncertainty),
+            Value::Number(fit.order),
+            text(convergence::trend(&levels, &fit).name()),
+        ])
+    };
+    measures.filter_map(row).collect()
+}
+
+fn write_table(
+    scenes: &[SceneRuns],
+    names: Vec<String>,
+    reference: u32,
+    path: &Path,
+) -> Result<()> {
+    let Some(table) = calibrate(scenes, names, reference) else {
+        let allowed = "the subdivisions of a mesh that a run of these results has";
+        let value = reference.to_string();
+        return Err(Error::invalid_option(
+            "--reference",
+            &value,
+            "no scene has this mesh",
+            allowed,
+            "",
+        ));
+    };
+    let mut text = serde_json::to_string_pretty(&table).unwrap_or_default();
+    text.push('\n');
+    write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
+    let scenes = table.errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
+    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.len());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measure_is_a_number_and_stands_once() {
+        let mut names: Vec<&str> = PROMISED
+            .iter()
+            .map(|promised| promised.measure)
+            .chain(MEASURES)
+            .map(ColumnId::name)
+            .collect();
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+}

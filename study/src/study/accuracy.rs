@@ -1,0 +1,191 @@
+//! The section `accuracy` of a study: the errors that its results must keep. The meshes follow from the table of
+//! mesh errors.
+//!
+//! ```text
+//! {"t_90_z_rim": 0.02}  →  the cheapest of one or two meshes whose errors of every point are within these
+//! ```
+//! The choice stands in study.json beside the errors, so that another version of the table changes no stored study.
+
+use billow_solver::scene::ModelKind;
+
+use super::StudyPoint;
+use crate::accuracy::{Choice, Features, MeshErrors, PROMISED, choices};
+use crate::input::keys::STUDY;
+use crate::input::settings::object;
+use crate::input::source::Source;
+use crate::input::study_file::Json;
+use crate::input::units::{self, Dimension};
+use crate::platform::error::InputError;
+use crate::platform::nearest::nearest;
+
+/// The section.
+pub(super) const ACCURACY: &str = "accuracy";
+/// Its member with the meshes that were chosen.
+const MESHES: &str = "meshes";
+/// What a tolerance may be, for errors.
+const TOLERANCE: &str = "a relative error above 0 and below 1, as 0.02 or \"2 %\"";
+
+/// The errors that results must keep.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Accuracy {
+    /// Largest relative error of each promised measure.
+    tolerances: [Option<f64>; PROMISED.len()],
+    /// The meshes that keep them, coarsest first; empty until they are chosen.
+    pub meshes: Vec<u32>,
+}
+
+impl Accuracy {
+    /// Reads the section.
+    ///
+    /// # Errors
+    /// A measure without a promise, a value that is no relative error.
+    pub fn read(json: Option<&Json>, source: &Source) -> Result<Option<Self>, InputError> {
+        let Some(json) = json else { return Ok(None) };
+        let mut accuracy = Self { tolerances: [None; PROMISED.len()], meshes: Vec::new() };
+        for (name, value) in object(json, &STUDY, ACCURACY, source)? {
+            let path = format!("{ACCURACY}.{name}");
+            if name == MESHES {
+                accuracy.meshes = meshes(value, &path, source)?;
+                continue;
+            }
+            let names = || PROMISED.iter().map(|promised| promised.measure.name());
+            let Some(index) = names().position(|known| known == name) else {
+                let near = nearest(name, names())
+                    .map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                let problem = format!("is not a measure with a known mesh error{near}");
+                let allowed = names().collect::<Vec<_>>().join(", ");
+                return Err(source.error(&path, &value.brief(), problem, allowed));
+            };
+            let number = match value {
+                Json::Text(text) => units::parse(text, Dimension::Number).ok(),
+                Json::Number(number) => Some(*number),
+                _ => None,
+            };
+            let tolerance = number.filter(|number| *number > 0.0 && *number < 1.0);
+            let tolerance = tolerance.ok_or_else(|| {
+                source.error(&path, &value.brief(), "is not a relative error", TOLERANCE)
+            })?;
+            accuracy.tolerances[index] = Some(tolerance);
+        }
+        if accuracy.tolerances.iter().all(Option::is_none) {
+            let allowed = "measures and their relative errors, as in {\"t_90_z_rim\": 0.02}";
+            return Err(source.error(ACCURACY, &json.brief(), "names no measure", allowed));
+        }
+        Ok(Some(accuracy))
+    }
+
+    /// Chooses the meshes for these points.
+    ///
+    /// # Errors
+    /// Points that the table does not cover; errors that no method keeps.
+    pub fn choose(&mut self, points: &[StudyPoint], source: &Source) -> Result<(), InputError> {
+        let refuse = |problem: String, allowed: String| {
+            Err(source.error(ACCURACY, &self.shown(), problem, allowed))
+        };
+        if points.iter().any(|point| point.scene.solver.model != ModelKind::Film) {
+            return refuse(
+                "chooses the meshes of the model film".to_owned(),
+                "solver.model film".to_owned(),
+            );
+        }
+        let scenes: Vec<_> = points
+            .iter()
+            .filter_map(|point| {
+                let solved = point.solved?;
+                Some((&point.scene, Features::of(&point.scene, solved.top_radius, solved.height)))
+            })
+            .collect();
+        let table = MeshErrors::shipped();
+        let film = match choices(table, &scenes) {
+            Ok(choices) => {
+                choices.into_iter().filter(|choice| choice.method.model == ModelKind::Film)
+            }
+            Err(gap) => {
+                let problem = format!("is not known for every point: {gap}");
+                return refuse(problem, "points that the table of mesh errors covers".to_owned());
+            }
+        };
+        let film: Vec<Choice> = film.collect();
+        let Some(choice) = film.iter().find(|choice| choice.keeps(&self.tolerances)) else {
+            let best =
+                PROMISED.iter().enumerate().filter(|(index, _)| self.tolerances[*index].is_some());
+            let best = best.map(|(index, promised)| {
+                let least =
+                    film.iter().map(|choice| choice.errors[index]).fold(f64::INFINITY, f64::min);
+                format!("{} {:.2} % or more", promised.measure.name(), 100.0 * least)
+            });
+            let best = best.collect::<Vec<_>>().join(", ");
+            return refuse("is kept by no mesh of the table of mesh errors".to_owned(), best);
+        };
+        self.meshes.clone_from(&choice.method.meshes);
+        Ok(())
+    }
+
+    /// The section as a study file has it, with the meshes that were chosen.
+    pub fn to_json(&self) -> Json {
+        let mut members = self.members();
+        let meshes = self.meshes.iter().map(|n| Json::Integer(i64::from(*n)));
+        members.push((MESHES.to_owned(), Json::List(meshes.collect())));
+        Json::Object(members)
+    }
+
+    fn members(&self) -> Vec<(String, Json)> {
+        let tolerances = PROMISED.iter().zip(self.tolerances);
+        tolerances
+            .filter_map(|(promised, tolerance)| {
+                Some((promised.measure.name().to_owned(), Json::Number(tolerance?)))
+            })
+            .collect()
+    }
+
+    fn shown(&self) -> String {
+        Json::Object(self.members()).brief()
+    }
+}
+
+/// The meshes of a study.json.
+fn meshes(json: &Json, path: &str, source: &Source) -> Result<Vec<u32>, InputError> {
+    let known = MeshErrors::shipped().meshes();
+    let items = match json {
+        Json::List(items) => items.as_slice(),
+        _ => &[],
+    };
+    let whole = items.iter().map(|item| match item {
+        Json::Integer(n) => u32::try_from(*n).ok(),
+        _ => None,
+    });
+    let meshes: Option<Vec<u32>> = whole.collect();
+    meshes.filter(|meshes| !meshes.is_empty()).ok_or_else(|| {
+        let names: Vec<String> = known.iter().map(ToString::to_string).collect();
+        let allowed = format!("one or two of {}; without it billow chooses", names.join(", "));
+        source.error(path, &json.brief(), "is not a list of meshes", allowed)
+    })
+}
+
+/// Refuses a mesh that the file gives beside an accuracy, which chooses it.
+pub(super) fn refuse_given_mesh(tree: &Json, source: &Source) -> Result<(), InputError> {
+    let given = [("design", "subdivisions"), ("solver", MESHES)];
+    for (section, key) in given {
+        if let Some(value) = tree.get(section).and_then(|section| section.get(key)) {
+            let path = format!("{section}.{key}");
+            let problem = "is given beside accuracy, which chooses the meshes";
+            return Err(source.error(&path, &value.brief(), problem, "one of the two"));
+        }
+    }
+    Ok(())
+}
+
+/// Puts the chosen meshes into the tree of a study file.
+pub(super) fn set_meshes(tree: &mut Json, meshes: &[u32]) {
+    let whole = |n: &u32| Json::Integer(i64::from(*n));
+    let (section, key, value) = match meshes {
+        [n] => ("design", "subdivisions", whole(n)),
+        meshes => ("solver", MESHES, Json::List(meshes.iter().map(whole).collect())),
+    };
+    if tree.get(section).is_none() {
+        tree.set(section, Json::Object(Vec::new()));
+    }
+    if let Some(section) = tree.get_mut(section) {
+        section.set(key, value);
+    }
+}

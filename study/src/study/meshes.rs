@@ -1,0 +1,81 @@
+//! `solver.meshes` of a study: each point runs on several meshes, and its row has the values extrapolated from them.
+//!
+//! The meshes are an axis that varies fastest, as replicates do. They must be meshes of the table of mesh errors,
+//! which has the weights of the extrapolation.
+
+use super::grid::{Axis, AxisKind, Context, Grid};
+use super::target::{Column, Target};
+use crate::accuracy::MeshErrors;
+use crate::input::keys::{KEYS, position, short_name};
+use crate::input::study_file::Json;
+use crate::input::value::Value;
+use crate::platform::error::InputError;
+
+/// The key, for errors.
+const MESHES: &str = "solver.meshes";
+/// The key that the meshes vary.
+const SUBDIVISIONS: usize = position(KEYS, "design.subdivisions");
+/// Number of meshes.
+const COUNT: std::ops::RangeInclusive<usize> = 2..=3;
+
+impl Grid {
+    /// Reads the meshes, as the last axis.
+    ///
+    /// # Errors
+    /// A list that is not two or three ascending meshes of the table; a study that varies the mesh, or searches.
+    pub(super) fn read_meshes(
+        &mut self,
+        json: Option<&Json>,
+        context: Context<'_>,
+    ) -> Result<(), InputError> {
+        let Some(json) = json else { return Ok(()) };
+        let source = context.source;
+        let known = MeshErrors::shipped().meshes();
+        let names: Vec<String> = known.iter().map(ToString::to_string).collect();
+        let allowed =
+            format!("two or three of {}, the coarsest first, as in [4, 8]", names.join(", "));
+        let refuse =
+            |problem: String| source.error(MESHES, &json.brief(), problem, allowed.clone());
+        let Json::List(items) = json else {
+            return Err(refuse(format!("is {}, not a list of meshes", json.kind())));
+        };
+        let whole = |item: &Json| match item {
+            Json::Integer(n) => u32::try_from(*n).ok().filter(|n| known.contains(n)),
+            _ => None,
+        };
+        let meshes: Vec<u32> = items.iter().filter_map(whole).collect();
+        if meshes.len() < items.len() {
+            return Err(refuse("has a mesh that the table of mesh errors has not".to_owned()));
+        }
+        if !COUNT.contains(&meshes.len()) || !meshes.is_sorted_by(|a, b| a < b) {
+            return Err(refuse("is not two or three meshes in ascending order".to_owned()));
+        }
+        let target = Target::Key(SUBDIVISIONS);
+        if self.columns.iter().any(|column| column.target == target) {
+            return Err(refuse(
+                "varies subdivisions, which another axis varies already".to_owned(),
+            ));
+        }
+        if self.search.is_some() {
+            let problem = "extrapolates from several meshes, and a search judges single runs";
+            return Err(refuse(problem.to_owned()));
+        }
+        self.columns.push(Column { name: short_name(SUBDIVISIONS).to_owned(), target });
+        let rows = meshes.iter().map(|n| vec![Value::Integer(i64::from(*n))]).collect();
+        let columns = vec![self.columns.len() - 1];
+        self.axes.push(Axis { columns, rows, kind: AxisKind::Meshes });
+        Ok(())
+    }
+
+    /// The meshes of each point, coarsest first; empty without any.
+    pub(super) fn meshes(&self) -> Vec<u32> {
+        let axes = self.axes.iter().filter(|axis| axis.kind == AxisKind::Meshes);
+        let values = axes.flat_map(|axis| &axis.rows).flatten();
+        values
+            .filter_map(|value| match value {
+                Value::Integer(n) => u32::try_from(*n).ok(),
+                _ => None,
+            })
+            .collect()
+    }
+}
