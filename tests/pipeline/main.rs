@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests read and damage files directly")]
 
+mod accuracy;
 mod bench;
 mod chart;
 mod checkpoints;

@@ -146,7 +146,9 @@ fn print_advice(
             format!("{} {:.1} %", promised.measure.name(), 100.0 * least)
         });
         let best = best.collect::<Vec<_>>().join(", ");
-        eprintln!("advice: none: no method of the table keeps this; the smallest errors are {best}");
+        eprintln!(
+            "advice: none: no method of the table keeps this; the smallest errors are {best}"
+        );
     }
     if !limits.is_empty() {
         eprintln!("promised against the limit of fine meshes: {}", names(&limits));

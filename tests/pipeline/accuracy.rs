@@ -1,0 +1,184 @@
+//! Mesh errors of rows, several meshes, the choice of a mesh, convergence.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use crate::support::{TestFolder, grid, json_of, stderr};
+
+/// The paper's capsule on coarse film for some milliseconds.
+fn film(more: &Value) -> Value {
+    let mut study = json!({
+        "design": {
+            "N": 6, "M": 3, "bottom_radius": "500 mm", "top_radius": "365 mm", "height": "1 m"
+        },
+        "gas": {"mass_flow_rate": "5 g/s"},
+        "solver": {"model": "film", "end_time": "0.21 s"},
+        "outputs": {"frames": 0},
+        "seed": 1
+    });
+    for (key, value) in more.as_object().unwrap() {
+        match (study.get_mut(key).and_then(Value::as_object_mut), value.as_object()) {
+            (Some(section), Some(members)) => section.extend(members.clone()),
+            _ => study[key] = value.clone(),
+        }
+    }
+    study
+}
+
+/// A study on two meshes has one row, with values between which and the finest run the table of mesh errors stands.
+#[test]
+fn two_meshes_give_one_row_with_extrapolated_values_and_the_runs_are_kept() {
+    let folder = TestFolder::new(&film(&json!({"solver": {"meshes": [3, 4]}})));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let (points, runs) = (folder.points("results/grid"), folder.rows("results/grid"));
+    assert_eq!((points.len(), runs.len()), (1, 2));
+    let of_mesh = |n: i64| runs.iter().find(|run| run["subdivisions"] == n).unwrap();
+    let number =
+        |row: &Value, name: &str| row[name].as_f64().unwrap_or_else(|| panic!("{name}: {row}"));
+    for name in ["t_50_z_rim", "peak_kinetic_energy"] {
+        let [coarse, fine] = [3, 4].map(|n| number(of_mesh(n), name));
+        let value = number(&points[0], name);
+        assert_eq!(value, number(of_mesh(4), &format!("{name}_extrapolated")));
+        let beyond = (value - fine) * (fine - coarse) >= 0.0;
+        assert!(beyond && (value - fine).abs() <= 3.0 * (fine - coarse).abs(), "{name}: {value}");
+    }
+    let error = |row: &Value| number(row, "t_50_z_rim_change_to_n24");
+    assert!(error(of_mesh(3)) > error(of_mesh(4)), "a finer mesh has a smaller error");
+    assert!(error(&points[0]) < error(of_mesh(4)), "so has an extrapolated value");
+    assert_eq!(of_mesh(3)["no_error_reason"], Value::Null);
+    let table = folder.stdout(&["table", "-q"]);
+    assert!(table.contains(" ± "), "{table}");
+    // The stored study plans the same jobs.
+    let again = folder.run(&["run", "results/grid/study.json", "--results", "results/grid"]);
+    assert!(stderr(&again).contains("2 of 2 jobs finished"), "{}", stderr(&again));
+}
+
+#[test]
+fn a_row_outside_the_table_says_why_it_has_no_error() {
+    let mut study = film(&json!({"contact": {"friction": 0.2}, "design": {"subdivisions": 2}}));
+    study["solver"]["end_time"] = json!("20 ms");
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let row = &folder.rows("results/grid")[0];
+    assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0.0");
+    assert_eq!(row["peak_vz_change_to_n24"], Value::Null);
+}
+
+#[test]
+fn meshes_that_cannot_be_extrapolated_are_refused() {
+    let refused = |more: Value| {
+        let output = TestFolder::new(&film(&more)).run(&["plan", "grid.json"]);
+        assert_eq!(output.status.code(), Some(2));
+        stderr(&output)
+    };
+    assert!(refused(json!({"solver": {"meshes": [8, 4]}})).contains("ascending"));
+    assert!(refused(json!({"solver": {"meshes": [4]}})).contains("two or three meshes"));
+    assert!(refused(json!({"solver": {"meshes": [4, 7]}})).contains("has a mesh that the table"));
+    let both = json!({"solver": {"meshes": [4, 8]}, "grid": {"subdivisions": [4, 8]}});
+    assert!(refused(both).contains("which another axis varies already"));
+    let search = json!({
+        "solver": {"meshes": [4, 8]}, "limits": {"verdict": "deployed"},
+        "grid": {"residual_gas_mass": {"bisect": ["0.01 g", "0.1 g"], "on": "safe"}}
+    });
+    assert!(refused(search).contains("a search judges single runs"));
+}
+
+#[test]
+fn an_accuracy_chooses_the_cheapest_meshes_that_keep_it() {
+    let planned = |tolerance: Value| {
+        let folder = TestFolder::new(&film(&json!({"accuracy": tolerance})));
+        let rows = json_of(&folder, &["plan", "grid.json"]);
+        let rows = rows.as_array().unwrap().clone();
+        let mesh = |row: &Value| row["subdivisions"].as_i64();
+        rows.iter().map(mesh).collect::<Vec<_>>()
+    };
+    let loose = planned(json!({"final_volume": "15 %"}));
+    let strict = planned(json!({"final_volume": 0.03}));
+    let cost = |meshes: &[Option<i64>]| meshes.iter().flatten().map(|n| n * n * n).sum::<i64>();
+    // One mesh is no axis.
+    assert!(loose.len() == 1, "{loose:?}");
+    assert!(strict.len() == 2 && cost(&strict) > 0 || strict.len() == 1, "{strict:?}");
+    let refused = |more: Value| {
+        let output = TestFolder::new(&film(&more)).run(&["plan", "grid.json"]);
+        assert_eq!(output.status.code(), Some(2));
+        stderr(&output)
+    };
+    let message = refused(json!({"accuracy": {"final_volume": 1e-6}}));
+    assert!(message.contains("is kept by no mesh") && message.contains("or more"), "{message}");
+    assert!(refused(json!({"accuracy": {"t_90_z_rm": 0.02}})).contains("did you mean t_90_z_rim?"));
+    let given = json!({"accuracy": {"t_90_z_rim": 0.1}, "design": {"subdivisions": 4}});
+    assert!(refused(given).contains("is given beside accuracy"));
+    let soft = json!({"accuracy": {"t_90_z_rim": 0.1}, "film": {"youngs_modulus": "1 GPa"}});
+    assert!(refused(soft).contains("film.youngs_modulus"));
+}
+
+#[test]
+fn the_choice_of_an_accuracy_stands_in_the_stored_study() {
+    let mut study = film(&json!({"accuracy": {"peak_kinetic_energy": 0.3}}));
+    study["solver"]["end_time"] = json!("10 ms");
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let text = fs::read_to_string(folder.results().join("study.json")).unwrap();
+    let stored: Value = serde_json::from_str(&text).unwrap();
+    let meshes = stored["accuracy"]["meshes"].as_array().unwrap();
+    assert_eq!(meshes.len(), 1, "{meshes:?}");
+    assert_eq!(stored["design"]["subdivisions"], meshes[0]);
+    let again = folder.run(&["run", "grid.json"]);
+    assert!(stderr(&again).contains("1 of 1 jobs finished"), "{}", stderr(&again));
+}
+
+#[test]
+fn advice_names_the_cheapest_method_or_refuses_with_a_reason() {
+    let folder = TestFolder::new(&film(&json!({"design": {"subdivisions": 16}})));
+    let rows = json_of(&folder, &["advise", "grid.json", "--tolerance", "0.05"]);
+    let rows = rows.as_array().unwrap();
+    let costs: Vec<f64> = rows.iter().map(|row| row["cost"].as_f64().unwrap()).collect();
+    assert!(costs.is_sorted(), "{costs:?}");
+    let keeps = rows.iter().find(|row| row["keeps_tolerance"] == true).unwrap();
+    assert!(keeps["t_90_z_rim_error"].as_f64().unwrap() <= 0.05);
+    let output = folder.run(&["advise", "grid.json", "--tolerance", "5 %"]);
+    let text = stderr(&output);
+    assert!(text.contains("advice: ") && text.contains("cheaper than now"), "{text}");
+    let none = stderr(&folder.run(&["advise", "grid.json", "--tolerance", "1e-6"]));
+    assert!(none.contains("advice: none"), "{none}");
+    let outside = TestFolder::new(&film(&json!({"film": {"compression": 0.03}})));
+    let output = outside.run(&["advise", "grid.json", "--tolerance", "0.05"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("film.compression 0.03"), "{}", stderr(&output));
+    let output =
+        folder.run(&["advise", "grid.json", "--tolerance", "0.05", "--measures", "peak_v"]);
+    assert!(stderr(&output).contains("did you mean peak_vz?"), "{}", stderr(&output));
+}
+
+#[test]
+fn convergence_needs_four_meshes_and_names_what_tends_to_a_limit() {
+    let mut study = film(&json!({"grid": {"subdivisions": [2, 3, 4, 5]}}));
+    study["solver"]["end_time"] = json!("20 ms");
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let rows = json_of(&folder, &["converge", "results/grid"]);
+    let rows = rows.as_array().unwrap();
+    let energy = rows.iter().find(|row| row["measure"] == "peak_kinetic_energy").unwrap();
+    assert_eq!(energy["meshes"], "2 to 5");
+    for name in ["finest", "limit", "change", "uncertainty", "order"] {
+        assert!(energy[name].is_f64(), "{energy}");
+    }
+    assert!(["limit", "no limit known"].contains(&energy["trend"].as_str().unwrap()));
+    let output =
+        folder.run(&["converge", "results/grid", "--table", "table.json", "--reference", "6"]);
+    assert!(stderr(&output).contains("no scene has this mesh"), "{}", stderr(&output));
+    assert!(!folder.path().join("table.json").exists());
+    folder.stdout(&["converge", "results/grid", "--table", "table.json", "--reference", "5"]);
+    let table: Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("table.json")).unwrap())
+            .unwrap();
+    assert_eq!((&table["format"], &table["reference"]), (&json!("billow-mesh-errors"), &json!(5)));
+    let piston = TestFolder::new(&grid(&json!({
+        "N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]
+    })));
+    piston.stdout(&["run", "grid.json", "-q"]);
+    let output = piston.run(&["converge", "results/grid"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("at least four meshes"), "{}", stderr(&output));
+}
