@@ -5,7 +5,7 @@
 //! b = m/m_ref − 1                              bias of a mesh: median over seeds, m_ref on the finest mesh
 //! b(x) = b_base + Σ_f Δ_f(x_f)                 Δ_f: change of the bias with one feature f, linear between levels
 //! error = |b(x)| + k √(s² + c² Σ_f Δ_f²)       s: scatter of single runs, c: how far features do not add up
-//! with a limit m_∞:  error + |m_∞/m_ref − 1| + uncertainty of m_∞
+//! with a limit m_∞:  |b(x) − (m_∞/m_ref − 1)| + √(k² (…) + U²)     U: uncertainty of m_∞, 95 %
 //! ```
 //! k = 1.64 holds nine of ten normal deviations. Between two meshes of the table the error is linear in ln n.
 
@@ -56,9 +56,9 @@ pub struct MeshErrors {
 pub struct Limit {
     /// Whether a limit is known.
     pub known: bool,
-    /// Limit over the value on the finest mesh, minus 1; of several scenes the largest in magnitude.
+    /// Limit over the value on the finest mesh, minus 1; of several scenes the mean.
     pub change: f64,
-    /// Relative uncertainty of the limit, 95 %; of several scenes the largest.
+    /// Relative uncertainty of the limit, 95 %; it holds the limits of all scenes.
     pub uncertainty: f64,
     /// Observed order of convergence in the edge length; of several scenes the smallest.
     pub order: f64,
@@ -114,11 +114,15 @@ impl Entry {
         (bias, squares.sqrt())
     }
 
-    /// The relative error of nine of ten runs against the finest mesh.
-    pub fn error(&self, values: &[f64; FEATURES]) -> f64 {
+    /// The relative error of nine of ten runs: against the limit if it is known, otherwise against the finest mesh.
+    pub fn error(&self, values: &[f64; FEATURES], limit: Option<&Limit>) -> f64 {
         let (bias, changes) = self.bias(values);
         let interaction = self.interaction * changes;
-        bias.abs() + DEVIATIONS * (self.scatter * self.scatter + interaction * interaction).sqrt()
+        let scatter = self.scatter * self.scatter + interaction * interaction;
+        let (distance, uncertainty) =
+            limit.map_or((0.0, 0.0), |limit| (limit.change, limit.uncertainty));
+        let width = DEVIATIONS * DEVIATIONS * scatter + uncertainty * uncertainty;
+        (bias - distance).abs() + width.sqrt()
     }
 }
 
@@ -199,7 +203,7 @@ impl MeshErrors {
         self.coverage.gap(scene, features)
     }
 
-    /// Relative error of a measure of a scene that is covered.
+    /// Relative error of a measure of a scene that is covered; between two meshes of the table linear in ln n.
     ///
     /// # Errors
     /// Why it is not known.
@@ -210,57 +214,39 @@ impl MeshErrors {
         promised: &Promised,
     ) -> Result<f64, String> {
         let measure = promised.measure.name();
-        let error = self.to_reference(method, features, measure)?;
-        match self.limits.get(measure) {
-            Some(limit) if limit.known && promised.has_limit => {
-                Ok(error + limit.change.abs() + limit.uncertainty)
-            }
-            _ => Ok(error),
+        let limit = self.limits.get(measure).filter(|limit| limit.known && promised.has_limit);
+        let of_entry = |entry: &Entry| entry.error(&features.values, limit);
+        if let Some(entry) = self.entry(method, measure) {
+            return Ok(of_entry(entry));
         }
+        let name = method.name();
+        let [n] = method.meshes[..] else {
+            return Err(format!("{name}: the table has no errors of it"));
+        };
+        let known = self.errors.iter().filter(|entry| {
+            entry.measure == measure && entry.model == method.model && entry.meshes.len() == 1
+        });
+        let meshes: BTreeMap<u32, f64> =
+            known.map(|entry| (entry.meshes[0], of_entry(entry))).collect();
+        let below = meshes.range(..n).next_back();
+        let above = meshes.range(n..).next();
+        if let (Some((coarse, coarse_error)), Some((fine, fine_error))) = (below, above) {
+            let log = |mesh: u32| libm::log(f64::from(mesh));
+            let part = (log(n) - log(*coarse)) / (log(*fine) - log(*coarse));
+            return Ok(coarse_error + part * (fine_error - coarse_error));
+        }
+        Err(match (meshes.keys().next(), meshes.keys().next_back()) {
+            (Some(first), Some(last)) => {
+                format!("design.subdivisions {n}: the table has {first} to {last}")
+            }
+            _ => format!("{name}: the table has no errors of it"),
+        })
     }
 
     /// The entry of a method, as it stands in the table.
     pub fn entry(&self, method: &Method, measure: &str) -> Option<&Entry> {
         self.errors.iter().find(|entry| {
             entry.measure == measure && entry.model == method.model && entry.meshes == method.meshes
-        })
-    }
-
-    /// Relative error against the finest mesh.
-    fn to_reference(
-        &self,
-        method: &Method,
-        features: &Features,
-        measure: &str,
-    ) -> Result<f64, String> {
-        if let Some(entry) = self.entry(method, measure) {
-            return Ok(entry.error(&features.values));
-        }
-        let known: Vec<&Entry> = self
-            .errors
-            .iter()
-            .filter(|entry| entry.measure == measure && entry.model == method.model)
-            .filter(|entry| entry.meshes.len() == method.meshes.len())
-            .collect();
-        let name = method.name();
-        let [n] = method.meshes[..] else {
-            return Err(format!("{name}: the table has no errors of it"));
-        };
-        let meshes = || known.iter().map(|entry| (entry.meshes[0], entry.error(&features.values)));
-        let below = meshes().filter(|(mesh, _)| *mesh < n).max_by_key(|(mesh, _)| *mesh);
-        let above = meshes().filter(|(mesh, _)| *mesh > n).min_by_key(|(mesh, _)| *mesh);
-        if let (Some((coarse, coarse_error)), Some((fine, fine_error))) = (below, above) {
-            let log = |mesh: u32| libm::log(f64::from(mesh));
-            let part = (log(n) - log(coarse)) / (log(fine) - log(coarse));
-            return Ok(coarse_error + part * (fine_error - coarse_error));
-        }
-        let mut meshes: Vec<u32> = meshes().map(|(mesh, _)| mesh).collect();
-        meshes.sort_unstable();
-        Err(match meshes.as_slice() {
-            [first, .., last] => {
-                format!("design.subdivisions {n}: the table has {first} to {last}")
-            }
-            _ => format!("{name}: the table has no errors of it"),
         })
     }
 }

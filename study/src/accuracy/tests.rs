@@ -147,7 +147,8 @@ fn the_distance_of_a_known_limit_is_part_of_the_error() {
     assert!(promised.has_limit);
     let method = Method { model: ModelKind::Film, meshes: vec![4] };
     let error = table(true).error(&method, &features(&scene()), promised).unwrap();
-    assert!((error - (0.08 + 0.01 + 0.002)).abs() < 1e-15);
+    // The bias of -0.08 is against the finest mesh, the limit lies 0.01 below that.
+    assert!((error - (0.07 + 0.002)).abs() < 1e-15);
 }
 
 #[test]

@@ -99,3 +99,24 @@ fn points_of_several_runs_are_equal_where_their_ranges_overlap_and_no_others() {
         assert!(over.is_tie(9.3, 29.5) && !measure.tolerance.is_tie(9.3, 29.5));
     }
 }
+
+#[test]
+fn a_difference_below_the_mesh_error_of_either_value_is_a_tie() {
+    let mut table = table(&[
+        (1, 1.0, "done", Some(10.0)),
+        (2, 1.0, "done", Some(10.4)),
+        (3, 1.0, "done", Some(10.4)),
+        (4, 1.0, "done", Some(10.4)),
+    ]);
+    let errors = [0.1, 0.3, 0.5].map(Value::Number).into_iter().chain([Value::Null]).collect();
+    table.columns.push(column("peak_vz_change_to_n24", CellType::Number, errors));
+    let measure = table.column("peak_vz").unwrap();
+    let tolerance = Tolerance::of(&table, &all(&table), measure, &[]);
+    assert_eq!(tolerance.source, ToleranceSource::MeshError);
+    assert!((tolerance.limit - 0.3 / 10.4).abs() < 1e-12, "the median");
+    let measure = Measure::of_runs(measure, tolerance).with_errors(&table);
+    let better = |other| compared(&table, Pair { base: 0, other }, &measure).better;
+    assert_eq!(better(1), Better::Base, "0.4 is above 0.1 and 0.3");
+    assert_eq!(better(2), Better::Tie, "the larger error of the pair counts");
+    assert_eq!(better(3), Better::Base, "without an error of one value the median counts");
+}

@@ -267,31 +267,35 @@ fn weight(scenes: &[Scene], (model, meshes): &Method) -> f64 {
     if square > 0.0 { (product / square).clamp(0.0, MAX_WEIGHT) } else { 0.0 }
 }
 
-/// To what a measure tends, from the scenes with several runs on several meshes.
+/// To what a measure tends, from the scenes with several runs on several meshes: the mean of their limits, with an
+/// uncertainty that holds them all.
 fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
-    let mut worst: Option<Limit> = None;
-    for scene in scenes {
+    let of_scene = |scene: &&SceneRuns| {
         let levels = levels(scene, measure);
         if levels.iter().filter(|level| level.runs >= LIMIT_RUNS).count() < LIMIT_MESHES {
-            continue;
+            return None;
         }
-        let Some(finest) = levels.iter().find(|level| level.subdivisions == reference) else {
-            continue;
-        };
-        let finest = finest.value;
-        let (Some(fit), true) = (fit::fit(&levels), finest != 0.0) else { continue };
-        let change = fit.limit / finest - 1.0;
-        let uncertainty = (fit.uncertainty / finest).abs();
-        let known = super::trend(&levels, &fit) == super::Trend::Limit;
-        let so_far = worst.get_or_insert(Limit { known, change, uncertainty, order: fit.order });
-        so_far.known &= known;
-        if change.abs() > so_far.change.abs() {
-            so_far.change = change;
-        }
-        so_far.uncertainty = so_far.uncertainty.max(uncertainty);
-        so_far.order = so_far.order.min(fit.order);
+        let finest = levels.iter().find(|level| level.subdivisions == reference)?.value;
+        let fit = fit::fit(&levels).filter(|_| finest != 0.0)?;
+        Some(Limit {
+            known: super::trend(&levels, &fit) == super::Trend::Limit,
+            change: fit.limit / finest - 1.0,
+            uncertainty: (fit.uncertainty / finest).abs(),
+            order: fit.order,
+        })
+    };
+    let limits: Vec<Limit> = scenes.iter().filter_map(of_scene).collect();
+    let count = limits.len().max(1) as f64;
+    let mean = |of: fn(&Limit) -> f64| limits.iter().map(of).sum::<f64>() / count;
+    let change = mean(|limit| limit.change);
+    let away = limits.iter().map(|limit| (limit.change - change).abs()).fold(0.0, f64::max);
+    let squares = mean(|limit| limit.uncertainty * limit.uncertainty);
+    Limit {
+        known: !limits.is_empty() && limits.iter().all(|limit| limit.known),
+        change,
+        uncertainty: (squares + away * away).sqrt(),
+        order: limits.iter().map(|limit| limit.order).reduce(f64::min).unwrap_or(0.0),
     }
-    worst.unwrap_or(Limit { known: false, change: 0.0, uncertainty: 0.0, order: 0.0 })
 }
 
 /// The medians of a measure by mesh, coarsest first.

@@ -3,7 +3,8 @@
 //! ```text
 //! f(h) = f₀ + a hᵖ,  h = 1/n      weighted least squares, weights 1/h; p in [0.5, 2]
 //! σ = √(Σ w r² / Σ w · m/(m − 3))  scatter of m meshes about the fit
-//! U = 95 % quantile of |f₀* − f₀| over fits of f + √(σ² + s²) ξ, ξ normal, s the standard error of a mesh
+//! U = 95 % quantile of |f₀* − f₀| over fits of f + √(σ² + s²) ξ, ξ normal, s the standard error of a mesh;
+//!     their orders within 0.5 of p
 //! ```
 //! L. Eça and M. Hoekstra, "A procedure for the estimation of the numerical uncertainty of CFD calculations
 //! based on grid refinement studies", J. Comput. Phys. 262 (2014): fit, weights, range of the order. Their
@@ -14,6 +15,9 @@
 const ORDERS: [f64; 2] = [0.5, 2.0];
 /// Steps of the order between them.
 const ORDER_STEPS: u32 = 60;
+/// How far the order of a fit of perturbed values may be from that of the values. Chosen: a wider range lets noise
+/// pass for slow convergence, and the uncertainty of a measure that no longer changes grows without reason.
+const ORDER_RANGE: f64 = 0.5;
 /// Number of fits of perturbed values. Chosen: their 95 % quantile is then known to 10 %.
 const FITS: usize = 400;
 /// Index of the 95 % quantile of the deviations in ascending order.
@@ -50,8 +54,9 @@ pub fn fit(levels: &[Level]) -> Option<Fit> {
         return None;
     }
     let values: Vec<f64> = levels.iter().map(|level| level.value).collect();
-    let best = best(levels, &values);
+    let best = best(levels, &values, ORDERS);
     let sigma = best.scatter(levels.len());
+    let near = [ORDERS[0].max(best.order - ORDER_RANGE), ORDERS[1].min(best.order + ORDER_RANGE)];
     let mut normal = Normal::new();
     let mut deviations: Vec<f64> = (0..FITS)
         .map(|_| {
@@ -62,7 +67,7 @@ pub fn fit(levels: &[Level]) -> Option<Fit> {
                     level.value + width * normal.next()
                 })
                 .collect();
-            (self::best(levels, &perturbed).limit - best.limit).abs()
+            (self::best(levels, &perturbed, near).limit - best.limit).abs()
         })
         .collect();
     deviations.sort_by(f64::total_cmp);
@@ -87,12 +92,12 @@ impl Candidate {
     }
 }
 
-/// The fit with the order of the smallest residual.
-fn best(levels: &[Level], values: &[f64]) -> Candidate {
+/// The fit with the order of the smallest residual, of orders in a range.
+fn best(levels: &[Level], values: &[f64], [lowest, highest]: [f64; 2]) -> Candidate {
     let orders = (0..=ORDER_STEPS)
-        .map(|step| ORDERS[0] + (ORDERS[1] - ORDERS[0]) * f64::from(step) / f64::from(ORDER_STEPS));
+        .map(|step| lowest + (highest - lowest) * f64::from(step) / f64::from(ORDER_STEPS));
     let fits = orders.map(|order| with_order(levels, values, order));
-    let first = with_order(levels, values, ORDERS[0]);
+    let first = with_order(levels, values, lowest);
     fits.fold(first, |best, fit| if fit.residual < best.residual { fit } else { best })
 }
 
