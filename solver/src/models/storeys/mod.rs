@@ -40,7 +40,7 @@ pub const STRIPS: usize = WIDTH;
 /// Loss factor of a strip over that of the film. Calibrated: median `t_90_z_rim` of film at 8 subdivisions on
 /// 15 designs (docs/theory/storeys.md). The film loses energy in vibrations of its facets, which a strip does
 /// not have.
-pub const UNRESOLVED_LOSS: f64 = 2.5;
+pub const UNRESOLVED_LOSS: f64 = 2.9;
 
 /// The entry in the table of models. Static shapes are the model's own, found after each run.
 pub(super) const ENTRY: ModelEntry = ModelEntry {
