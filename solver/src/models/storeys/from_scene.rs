@@ -63,9 +63,8 @@ pub(super) fn build(
 ) -> StoreysRun {
     let film = scene.film;
     let mut positions = rest::start(instruction_set, pattern, &film);
-    let amplitude = scene
-        .imperfection_amplitude
-        .unwrap_or(AMPLITUDE_FRACTION * scene.design.stowed_height);
+    let amplitude =
+        scene.imperfection_amplitude.unwrap_or(AMPLITUDE_FRACTION * scene.design.stowed_height);
     perturb(&mut positions, amplitude / scene.design.stowed_height, scene.seed);
     let gas = Gas::new(&scene.gas, film.temperature, pattern.film_area());
     let state = gas.at_temperature(scene.gas.initial_mass, film.temperature);

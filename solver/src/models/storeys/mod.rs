@@ -71,10 +71,7 @@ impl StoreysRun {
     ///
     /// # Errors
     /// As [`solve`].
-    pub fn from_scene(
-        instruction_set: InstructionSet,
-        scene: &Scene,
-    ) -> Result<Self, SceneError> {
+    pub fn from_scene(instruction_set: InstructionSet, scene: &Scene) -> Result<Self, SceneError> {
         from_scene::check(scene)?;
         let pattern = FoldPattern::new(&scene.design)?;
         Ok(from_scene::build(instruction_set, scene, &pattern))

@@ -96,11 +96,7 @@ impl<'a> Rest<'a> {
 }
 
 /// Positions of the stowed strips at rest, m.
-pub(super) fn start(
-    instruction_set: InstructionSet,
-    pattern: &FoldPattern,
-    film: &Film,
-) -> Nodes {
+pub(super) fn start(instruction_set: InstructionSet, pattern: &FoldPattern, film: &Film) -> Nodes {
     let strip = Strip::new(pattern, &film.elastic(), 0.0);
     let mut rest = Rest::new(&strip, instruction_set, &stowed(pattern));
     rest.level = true;

@@ -126,8 +126,7 @@ impl Piece {
 impl Strip {
     /// The strip of a pattern in this film; `loss` multiplies the loss factor of the film.
     pub fn new(pattern: &FoldPattern, film: &Film, loss: f64) -> Self {
-        let film =
-            Film { compression: 0.0, loss_factor: loss * film.loss_factor, ..*film };
+        let film = Film { compression: 0.0, loss_factor: loss * film.loss_factor, ..*film };
         let material = Material::new(&film);
         let creep = Creep::new(&film, &material);
         let pieces = pieces(pattern);
@@ -302,7 +301,8 @@ fn line(pattern: &FoldPattern, radii: [f64; 2], twist: f64, fraction: f64) -> (f
 /// Places of the nodes of the erected capsule, its bottom ring as in [`stowed`].
 pub fn erected(pattern: &FoldPattern) -> Vec<Place> {
     let panels = pattern.design.panels;
-    let bottom = Place { radius: mean_radius(panels, pattern.polygon_radius(0)), turn: 0.0, z: 0.0 };
+    let bottom =
+        Place { radius: mean_radius(panels, pattern.polygon_radius(0)), turn: 0.0, z: 0.0 };
     let mut places = disc(bottom);
     places.push(bottom);
     let at = |ring: u32| Place {
