@@ -5,7 +5,7 @@
 //! ```
 //!
 //! a is the scene's amplitude of the imperfection, or [`AMPLITUDE_FRACTION`] of the stowed height h. Strips
-//! that start alike would move alike for ever. Seed 0 draws numbers too: film of seed 0 has no imperfection,
+//! that start alike would move alike. Seed 0 draws numbers too: film of seed 0 has no imperfection,
 //! but its panels part from each other all the same.
 
 use super::kernel::Nodes;

@@ -58,8 +58,6 @@ pub struct StoreysRun {
     velocities: Nodes,
     /// At the positions, N; without gravity.
     forces: Nodes,
-    /// Whether pressure changed since the forces were computed.
-    stale: bool,
     states: Vec<ElementState>,
     volume: f64,
     gas: GasState,
@@ -87,7 +85,6 @@ impl StoreysRun {
             velocities: still.clone(),
             forces: still,
             positions,
-            stale: true,
             states,
             volume,
             gas,
@@ -125,7 +122,6 @@ impl StoreysRun {
         self.ledger.material_loss += loss;
         self.ledger.numerical_dissipation += numerical;
         self.film_stress = self.film_stress.max(stress);
-        self.stale = false;
     }
 
     /// Longest stable step times the CFL number, s.
@@ -192,9 +188,7 @@ impl StoreysRun {
         self.balance.heat += gas.heat;
         self.balance.gas_work += gas.work;
         self.ledger.ambient_work -= constants.gas.ambient_pressure * (self.volume - before);
-        if phase.packed {
-            self.stale = true;
-        } else {
+        if !phase.packed {
             self.last_step = length;
             self.compute_forces(length);
         }
@@ -269,11 +263,6 @@ impl Model for StoreysRun {
         phase: &Phase,
         steps: &mut u64,
     ) -> Result<bool, Failure> {
-        if self.stale && !phase.packed {
-            // The gas changed while the strips stood still.
-            self.last_step = 0.0;
-            self.compute_forces(0.0);
-        }
         while self.time < target {
             if *steps == 0 {
                 return Ok(false);
@@ -293,6 +282,11 @@ impl Model for StoreysRun {
             self.time = if count > 1.0 { self.time + remaining / count } else { target };
             self.steps += 1;
             *steps -= 1;
+        }
+        if phase.packed {
+            // The gas changed while the strips stood still.
+            self.last_step = 0.0;
+            self.compute_forces(0.0);
         }
         Ok(true)
     }
