@@ -42,7 +42,7 @@ pub const STRIPS: usize = WIDTH;
 /// not have.
 pub const UNRESOLVED_LOSS: f64 = 2.9;
 
-/// The entry in the table of models. Static shapes are the model's own, found after each run.
+/// The entry in the table of models. Static shapes are those of the strips, found after each run.
 pub(super) const ENTRY: ModelEntry = ModelEntry {
     name: "storeys",
     check: from_scene::check,
