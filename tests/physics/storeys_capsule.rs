@@ -123,16 +123,19 @@ fn seeds_change_a_run_and_equal_seeds_do_not() {
     assert_ne!(rim(3), rim(4));
 }
 
+/// A change of a scene.
+type Change<'a> = &'a dyn Fn(&mut Scene);
+
 #[test]
 fn invalid_scenes_name_their_key() {
-    let refused = |change: &dyn Fn(&mut Scene)| {
+    let refused = |change: Change<'_>| {
         let mut scene = scene(0.1);
         change(&mut scene);
         let error = models::solve(InstructionSet::detect(), &scene, &mut Unobserved).unwrap_err();
         assert_eq!(models::check(&scene).unwrap_err(), error);
         error.to_string()
     };
-    let cases: [(&dyn Fn(&mut Scene), &str); 4] = [
+    let cases: [(Change<'_>, &str); 4] = [
         (&|scene| scene.supports.clear(), "supports"),
         (&|scene| scene.supports[0].fix = "z".to_owned(), "supports[0]"),
         (&|scene| scene.supports[0].on = SupportLocation::TopRing, "supports[0]"),

@@ -159,7 +159,7 @@ impl StoreysRun {
         let before = self.volume;
         if !phase.packed {
             let kick = Kick {
-                kick: 0.5 * (self.last_step + length),
+                velocity_step: 0.5 * (self.last_step + length),
                 drift: length,
                 gravity: constants.gravity,
                 keep: 1.0,

@@ -80,8 +80,13 @@ impl<'a> Rest<'a> {
 
     fn steps(&mut self, count: u32) {
         let step = STEP_FRACTION * self.strip.stable_step;
-        let kick =
-            Kick { kick: step, drift: step, gravity: 0.0, keep: KEPT_VELOCITY, level: self.level };
+        let kick = Kick {
+            velocity_step: step,
+            drift: step,
+            gravity: 0.0,
+            keep: KEPT_VELOCITY,
+            level: self.level,
+        };
         let load = ForceStep { length: 0.0, overpressure: self.overpressure, creep_share: 0.0 };
         for _ in 0..count {
             let (strip, set) = (self.strip, self.instruction_set);
