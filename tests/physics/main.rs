@@ -32,3 +32,4 @@ mod rig;
 mod rigid_planes;
 mod shells;
 mod statics;
+mod storeys_capsule;

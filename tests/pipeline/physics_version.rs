@@ -17,7 +17,7 @@ use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::motion::{Motion, Profile, Rotation};
 use billow_solver::scene::paper::{self, free_film, nitrogen_supply, window};
 use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, GasSupply, HeatTransfer, Scene};
+use billow_solver::scene::{Film, GasSupply, HeatTransfer, ModelKind, Scene, Stepping};
 use billow_study::cases::Rig;
 use billow_study::cases::contact_capsule::stowed;
 use billow_study::cases::rig::held;
@@ -32,7 +32,7 @@ fn hash(numbers: impl IntoIterator<Item = f64>) -> String {
     sha.finalize().iter().fold(String::new(), |text, byte| format!("{text}{byte:02x}"))
 }
 
-/// The hash of a piston's whole history.
+/// The hash of the whole history of a piston, or of storeys.
 fn piston(scene: &Scene) -> String {
     let deployment = models::solve(InstructionSet::detect(), scene, &mut Unobserved)
         .expect("a scene that can be run");
@@ -69,6 +69,15 @@ fn rapid() -> String {
     let mut scene = paper::capsule(5, 0.1);
     scene.gas.windows = vec![window(0.0, 1.5, 5e-3)];
     scene.gas.leak_area = 1e-5;
+    piston(&scene)
+}
+
+/// [`rapid`] as storeys.
+fn storeys() -> String {
+    let mut scene = paper::capsule(5, 0.1);
+    scene.gas.leak_area = 1e-5;
+    scene.solver.model = ModelKind::Storeys;
+    scene.solver.stepping = Stepping::Stable(0.45);
     piston(&scene)
 }
 
@@ -163,6 +172,7 @@ fn the_physics_changes_only_with_its_version() {
     let hashes = json!({
         "piston, rapid inflation with heat and leak": rapid(),
         "piston, preinflated and packed": preinflated(),
+        "storeys, rapid inflation with heat and leak": storeys(),
         "film, capsule of two subdivisions with contact for 300 ms": capsule(),
         "film, sphere with gas, heat and leak in air": sphere(),
         "film, damped sheet under gravity, compression 0.3": falling_sheet(),

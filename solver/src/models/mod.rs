@@ -18,6 +18,7 @@ use crate::scene::{ModelKind, Scene};
 pub mod film;
 pub mod piston;
 pub mod run;
+pub mod storeys;
 
 /// Everything in which models differ. To add a model: a variant of [`ModelKind`], a folder with its
 /// entry, and an arm of [`entry`].
@@ -75,6 +76,7 @@ struct ReferenceEntry {
 fn entry(model: ModelKind) -> ModelEntry {
     match model {
         ModelKind::Piston => piston::ENTRY,
+        ModelKind::Storeys => storeys::ENTRY,
         ModelKind::Film => film::ENTRY,
     }
 }

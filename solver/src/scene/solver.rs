@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub enum ModelKind {
     /// One moving mass on one gas volume: [`crate::models::piston`].
     Piston,
+    /// Rings of film that rise, turn and widen on one gas volume: [`crate::models::storeys`].
+    Storeys,
     /// The film with contact: [`crate::models::film`].
     Film,
 }

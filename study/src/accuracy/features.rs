@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::input::value::short_number;
 
-/// Fraction of the stable step of the runs of the table. The piston has none; its steps have no part in its error.
+/// Fraction of the stable step of the runs of the table. Models without a mesh have none; their steps have no
+/// part in their errors.
 const STEP: f64 = 0.45;
 
 /// Number of features of a scene.
@@ -183,7 +184,7 @@ fn without_features(scene: &Scene) -> Scene {
     scene.seed = 1;
     scene.solver.end_time = 1.0;
     scene.solver.step_limit = 1;
-    if scene.solver.model == ModelKind::Piston {
+    if scene.solver.model != ModelKind::Film {
         scene.solver.stepping = Stepping::Stable(STEP);
     }
     scene.outputs = Outputs { sample_interval: 1.0, frames: 0, thresholds: Thresholds::default() };

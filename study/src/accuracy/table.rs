@@ -153,7 +153,7 @@ impl Method {
     pub fn of(scene: &Scene) -> Self {
         let meshes = match scene.solver.model {
             ModelKind::Film => vec![scene.design.subdivisions],
-            ModelKind::Piston => Vec::new(),
+            ModelKind::Piston | ModelKind::Storeys => Vec::new(),
         };
         Self { model: scene.solver.model, meshes }
     }
@@ -163,6 +163,7 @@ impl Method {
         let model = match self.model {
             ModelKind::Film => "film",
             ModelKind::Piston => "piston",
+            ModelKind::Storeys => "storeys",
         };
         match self.meshes.as_slice() {
             [] => model.to_owned(),

@@ -53,6 +53,7 @@ mod static_polygon;
 mod static_shells;
 mod static_wrinkling;
 mod step_limit;
+mod storeys_model;
 
 pub use rig::Rig;
 pub use row::Row;

@@ -5,6 +5,7 @@ use super::{
     contact_tube, damping, drum, energy_balance, forces, friction_adhesion, gas_piston, gas_vessel,
     invariants, moving_fold, piston_model, sphere_motion, static_airbag, static_compliant,
     static_discs, static_end_state, static_polygon, static_shells, static_wrinkling, step_limit,
+    storeys_model,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -64,6 +65,16 @@ pub const CASES: &[Case] = &[
         "piston_model_dead_volume",
         "injected_piston_dead_volume by the piston model, with the classical Runge-Kutta rule",
         piston_model::injected_piston_dead_volume,
+    ),
+    quick(
+        "storeys_model_capsule",
+        "the paper's capsule by the model storeys, with recorded film at n 8",
+        storeys_model::capsule,
+    ),
+    quick(
+        "storeys_model_similarity",
+        "times of the model storeys at two flow rates, with the cube root of the rates",
+        storeys_model::similarity,
     ),
     quick(
         "stretched_disc",

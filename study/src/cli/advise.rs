@@ -165,7 +165,9 @@ fn print_advice(
 /// How a study file asks for a method.
 fn setting(method: &Method) -> String {
     match (method.model, method.meshes.as_slice()) {
-        (ModelKind::Piston, _) => "\"solver\": {\"model\": \"piston\"}".to_owned(),
+        (ModelKind::Piston | ModelKind::Storeys, _) => {
+            format!("\"solver\": {{\"model\": \"{}\"}}", method.name())
+        }
         (ModelKind::Film, [n]) => format!("\"design\": {{\"subdivisions\": {n}}}"),
         (ModelKind::Film, meshes) => {
             let meshes: Vec<String> = meshes.iter().map(ToString::to_string).collect();

@@ -47,6 +47,13 @@ fn lines(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
+    if has(ModelKind::Storeys) {
+        lines.push(
+            "model storeys: it gives times and speeds, not whether a capsule deploys (it cannot lock); \
+             README, Models"
+                .to_owned(),
+        );
+    }
     if has(ModelKind::Film) {
         let stiff = |point: &crate::study::StudyPoint| {
             point.scene.solver.model == ModelKind::Film && point.scene.film.compression > 0.0

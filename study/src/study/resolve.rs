@@ -96,7 +96,7 @@ fn burst_mass(draft: &Draft) -> f64 {
 fn has_shape(model: ModelKind) -> bool {
     match model {
         ModelKind::Film => true,
-        ModelKind::Piston => false,
+        ModelKind::Piston | ModelKind::Storeys => false,
     }
 }
 
@@ -110,13 +110,13 @@ fn stepping(
     const FIXED: &Key = named(KEYS, "solver.stepping.fixed");
     const ADAPTIVE: &Key = named(KEYS, "solver.stepping.adaptive");
     match (model, draft.fixed) {
-        (ModelKind::Film, Some(step)) => Err(source.error(
+        (ModelKind::Film | ModelKind::Storeys, Some(step)) => Err(source.error(
             FIXED.path,
             &shown(step),
-            "the model film takes a fraction of its stable step",
+            "the models storeys and film take a fraction of their stable step",
             "solver.cfl in its place; only the model piston takes a fixed step",
         )),
-        (ModelKind::Film, None) => Ok(Stepping::Stable(draft.cfl)),
+        (ModelKind::Film | ModelKind::Storeys, None) => Ok(Stepping::Stable(draft.cfl)),
         (ModelKind::Piston, Some(step)) => Ok(Stepping::Fixed(step)),
         (ModelKind::Piston, None) => match draft.adaptive {
             Some(tolerance) => Ok(Stepping::Adaptive(tolerance)),

@@ -44,7 +44,7 @@ impl MeshRun {
     pub fn mesh(&self) -> (ModelKind, u32) {
         match self.scene.solver.model {
             ModelKind::Film => (ModelKind::Film, self.scene.design.subdivisions),
-            ModelKind::Piston => (ModelKind::Piston, 0),
+            meshless => (meshless, 0),
         }
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn forecast(
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
     for point in points {
         let scene = &point.job.scene;
-        if scene.solver.model == ModelKind::Piston {
+        if scene.solver.model != ModelKind::Film {
             continue;
         }
         // The cost depends on these parts of the scene only.

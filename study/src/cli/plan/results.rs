@@ -3,6 +3,7 @@
 use billow_solver::scene::ModelKind;
 
 use crate::cli::print::count;
+use crate::input::keys::MODELS;
 use crate::job::row::ColumnId;
 use crate::study::Study;
 use crate::study::plan::{PlanCounts, borders};
@@ -53,19 +54,28 @@ fn limits(study: &Study) -> Vec<String> {
                 .to_owned(),
         );
     }
-    let pistons =
-        study.points().iter().filter(|point| point.scene.solver.model == ModelKind::Piston);
-    let pistons = pistons.count();
+    let without_film = study.points().iter().map(|point| point.scene.solver.model);
+    let without_film: Vec<ModelKind> =
+        without_film.filter(|model| *model != ModelKind::Film).collect();
+    let names: Vec<&str> = MODELS
+        .iter()
+        .filter(|model| without_film.contains(&model.kind))
+        .map(|model| model.name)
+        .collect();
+    let models = match names.len() {
+        1 => format!("the model {} does", names[0]),
+        _ => format!("the models {} do", names.join(" and ")),
+    };
     let missing: Vec<&str> = limits
         .iter()
-        .filter(|limit| pistons > 0 && FILM_ONLY.contains(&limit.measure))
+        .filter(|limit| !names.is_empty() && FILM_ONLY.contains(&limit.measure))
         .map(|limit| limit.measure.name())
         .collect();
     if !missing.is_empty() {
         notes.push(format!(
-            "note: the model piston does not compute {}: {} cannot be judged",
+            "note: {models} not compute {}: {} cannot be judged",
             missing.join(", "),
-            count(pistons, "point")
+            count(without_film.len(), "point")
         ));
     }
     notes

@@ -105,6 +105,21 @@ pub const fn model(kind: ModelKind) -> Model {
                 "imperfection_amplitude",
             ],
         },
+        ModelKind::Storeys => Model {
+            kind,
+            name: "storeys",
+            meaning: "rings of film that rise, turn and widen, on one gas volume",
+            ignores: &[
+                "design.subdivisions",
+                "film.compression",
+                "contact.distance",
+                "contact.friction",
+                "contact.adhesion",
+                "solver.stepping.adaptive",
+                "solver.stepping.fixed",
+                "outputs.frames",
+            ],
+        },
         ModelKind::Film => Model {
             kind,
             name: "film",
@@ -115,7 +130,8 @@ pub const fn model(kind: ModelKind) -> Model {
 }
 
 /// Every model, in the order of the documentation.
-pub const MODELS: [Model; 2] = [model(ModelKind::Piston), model(ModelKind::Film)];
+pub const MODELS: [Model; 3] =
+    [model(ModelKind::Piston), model(ModelKind::Storeys), model(ModelKind::Film)];
 
 /// Values of `solver.model`.
 pub(super) const MODEL_KINDS: [Named<ModelKind>; MODELS.len()] = {

@@ -89,7 +89,7 @@ pub struct FilmSize {
 pub fn estimate(scene: &Scene) -> Estimate {
     let samples = samples(scene.solver.end_time, scene.outputs.sample_interval);
     match scene.solver.model {
-        ModelKind::Piston => {
+        ModelKind::Piston | ModelKind::Storeys => {
             let history = bytes(samples * COLUMNS * NUMBER[0].max(NUMBER[1]));
             Estimate { history, total: bytes(JOB).saturating_add(history), ..Estimate::default() }
         }
