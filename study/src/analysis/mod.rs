@@ -6,3 +6,4 @@ pub mod ranking;
 pub mod replicates;
 pub mod statistics;
 mod values;
+pub mod work_precision;

@@ -54,6 +54,8 @@ mod static_shells;
 mod static_wrinkling;
 mod step_limit;
 
+pub mod work_precision;
+
 pub use rig::Rig;
 pub use row::Row;
 pub use table::CASES;
