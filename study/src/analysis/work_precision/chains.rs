@@ -119,9 +119,9 @@ pub(super) fn between(chain: &Chain, points: &[Option<Point>], floor: f64) -> Ve
     found.windows(2).filter_map(order).collect()
 }
 
-/// Name of a parameter in a label: the last part of its path, in words.
-fn words(name: &str) -> String {
-    name.rsplit('.').next().unwrap_or(name).replace('_', " ")
+/// Name of a parameter in a label, in words: its path without its section, as in "stepping adaptive".
+pub fn words(name: &str) -> String {
+    name.split_once('.').map_or(name, |(_, rest)| rest).replace(['_', '.'], " ")
 }
 
 /// The text of a configuration: "film, subdivisions 8". Parameters with these values are left out, as are ignored
@@ -140,10 +140,16 @@ pub fn label(configuration: &Configuration, without: &[(String, Value)]) -> Stri
 }
 
 impl super::Diagram {
-    /// The value of each parameter that most configurations have, where most have one; models are always named.
+    /// The value of each parameter that most configurations have, where most have one. Models and meshes are always
+    /// named.
     pub fn usual(&self) -> Configuration {
         let Some(first) = self.members.first() else { return Vec::new() };
+        let is_mesh =
+            |name: &str| self.chains.iter().any(|chain| chain.of_meshes && chain.parameter == name);
         let usual = |index: usize| {
+            if is_mesh(&first.configuration[index].0) {
+                return None;
+            }
             let values: Vec<&(String, Value)> =
                 self.members.iter().map(|member| &member.configuration[index]).collect();
             let set: Vec<_> = values.iter().filter(|pair| pair.1 != Value::Null).collect();

@@ -31,7 +31,7 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 
-pub use chains::{Chain, label};
+pub use chains::{Chain, label, words};
 pub use course::Course;
 pub use stored::from_stored;
 

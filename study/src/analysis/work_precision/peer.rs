@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use super::{Cost, Diagram};
+use crate::input::keys::numerical::{self, MESH, MODEL};
 use crate::input::value::Value;
 
 /// What is known of a peer: `studies/pareto_peer.json`.
@@ -95,12 +96,11 @@ impl Peer {
         }
         let usual = diagram.usual();
         let seconds = |time: &PeerTime| {
-            let is = |value: &Value| match value {
-                Value::Text(text) => *text == time.model,
-                Value::Integer(number) => *number == time.subdivisions,
-                _ => false,
+            let fits = |pair: &(String, Value)| match numerical::path(&pair.0) {
+                Some(MODEL) => pair.1 == Value::Text(time.model.clone()),
+                Some(MESH) => pair.1 == Value::Integer(time.subdivisions),
+                _ => usual.contains(pair),
             };
-            let fits = |pair: &(String, Value)| usual.contains(pair) || is(&pair.1);
             let member =
                 diagram.members.iter().find(|member| member.configuration.iter().all(fits))?;
             member.cost(Cost::Seconds)

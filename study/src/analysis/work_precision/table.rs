@@ -202,3 +202,64 @@ fn texts(physical: &[&Column], naming: Option<usize>, row: usize) -> (String, St
         None => (all(None), String::new()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::units::DisplayUnit;
+    use crate::job::row::CellType;
+
+    fn column(name: &str, cells: Vec<Value>) -> Column {
+        Column {
+            name: name.to_owned(),
+            cell_type: CellType::Text,
+            unit: String::new(),
+            shown: DisplayUnit::si(""),
+            meaning: String::new(),
+            cells,
+        }
+    }
+
+    fn texts(values: &[&str]) -> Vec<Value> {
+        values.iter().map(|text| Value::Text((*text).to_owned())).collect()
+    }
+
+    fn numbers(values: &[i64]) -> Vec<Value> {
+        values.iter().map(|number| Value::Integer(*number)).collect()
+    }
+
+    #[test]
+    fn every_numerical_parameter_of_a_table_gives_configurations() {
+        let table = Table {
+            columns: vec![
+                column("job", texts(&["1", "2", "3", "4", "5", "6"])),
+                column("strategy", texts(&["a", "a", "a", "a", "b", "b"])),
+                column("model", texts(&["film", "film", "piston", "piston", "film", "film"])),
+                column("subdivisions", numbers(&[4, 4, 4, 8, 4, 4])),
+                column("contact.distance", numbers(&[1, 1, 1, 2, 1, 2])),
+                column("seed", numbers(&[1, 2, 1, 2, 1, 1])),
+                column("status", texts(&["done", "done", "done", "done", "done", "unstable"])),
+                column("peak_vz", [20.0, 21.0, 30.0, 30.0, 18.0, 0.0].map(Value::Number).to_vec()),
+                column("elements", numbers(&[768, 768, 0, 0, 768, 768])),
+                column("steps", numbers(&[1000; 6])),
+                column("wall_seconds", [1.0; 6].map(Value::Number).to_vec()),
+            ],
+        };
+        let history = |_: &str| Some(Histories { courses: [None, None], simulated: 0.5 });
+        let scenes = scenes(&table, &["seed".to_owned()], &history);
+        let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+        assert_eq!(names, ["a", "b"]);
+        let [a, b] = scenes.as_slice() else { panic!() };
+        assert_eq!(a.runs.len(), 3, "the piston ignores mesh, contact and seed: one run");
+        let of_piston = &a.runs[2].configuration;
+        assert_eq!(of_piston[0], ("model".to_owned(), Value::Text("piston".to_owned())));
+        assert_eq!(of_piston[1..].iter().filter(|(_, value)| *value == Value::Null).count(), 2);
+        assert_eq!(a.runs[0].configuration, a.runs[1].configuration, "seeds are runs");
+        assert_eq!(a.runs[0].configuration[2], ("contact.distance".to_owned(), Value::Integer(1)));
+        assert_eq!(a.runs[0].seconds, Some(2.0), "for a simulated second");
+        assert_eq!((b.runs.len(), b.without_result), (1, 1));
+        let peak = PROMISED.iter().position(|id| *id == ColumnId::PeakVz).unwrap();
+        assert_eq!(a.runs[1].results[peak], Some(Outcome::Number(21.0)));
+        assert_eq!(a.runs[1].results.len(), PROMISED.len() + COURSES.len());
+    }
+}

@@ -2,8 +2,10 @@
 
 use crate::analysis::work_precision::peer::Peer;
 use crate::analysis::work_precision::{Cost, Diagram, Errors};
+use crate::input::value::short_number;
 use crate::render::figure::plot::Axis;
 use crate::render::figure::scale::Spread;
+use crate::render::figure::ticks::{Tick, minus};
 
 /// Label of the y axis.
 pub(super) const ERROR: &str = "Relative error";
@@ -61,15 +63,36 @@ impl Axes {
             label: label.to_owned(),
             spread: Spread::Logarithmic,
             range: self.cost,
-            ticks: Vec::new(),
+            ticks: decades(self.cost),
             names: false,
         }
+    }
+
+    /// The same axis of cost, with the errors of another one.
+    pub(super) fn with_errors_of(self, other: &Self) -> Self {
+        Self { error: other.error, ..self }
     }
 
     /// An error within the axis.
     pub(super) fn inside(&self, error: f64) -> f64 {
         error.clamp(self.error[0], self.error[1])
     }
+}
+
+/// A tick at every decade, or at every few: at most four.
+fn decades([low, high]: [f64; 2]) -> Vec<Tick> {
+    let (first, last) = (libm::ceil(libm::log10(low)), libm::floor(libm::log10(high)));
+    let stride = libm::ceil((last - first + 1.0) / 4.0).max(1.0);
+    let mut ticks = Vec::new();
+    let mut exponent = first;
+    while exponent <= last {
+        let value = libm::pow(10.0, exponent);
+        let plain = (-2.0..=3.0).contains(&exponent);
+        let text = if plain { short_number(value) } else { minus(&format!("1e{exponent}")) };
+        ticks.push((value, text));
+        exponent += stride;
+    }
+    ticks
 }
 
 /// The range of the positive values above a least one, with padding; a decade if there are none.

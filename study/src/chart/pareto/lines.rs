@@ -3,7 +3,7 @@
 use super::axes::{self, Axes};
 use super::{empty, series, uncertain};
 use crate::analysis::work_precision::peer::Peer;
-use crate::analysis::work_precision::{Cost, Diagram, Errors, label};
+use crate::analysis::work_precision::{Cost, Diagram, Errors, label, words};
 use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::{Line, Panel};
@@ -151,8 +151,7 @@ impl<'a> Drawing<'a> {
                 .cloned()
                 .collect();
             let text = label(first, &[usual.clone(), varied].concat());
-            let over =
-                parameter.map(|name| name.rsplit('.').next().unwrap_or(&name).replace('_', " "));
+            let over = parameter.map(|name| words(&name));
             let text = match (text.as_str(), over) {
                 (_, None) => text,
                 ("", Some(over)) => format!("over {over}"),

@@ -8,7 +8,7 @@ use self::axes::{Axes, nothing};
 use self::lines::Drawing;
 use super::names::{self, Name};
 use crate::analysis::work_precision::peer::Peer;
-use crate::analysis::work_precision::{Cost, Diagram, Errors, label};
+use crate::analysis::work_precision::{Cost, Diagram, Errors, label, words};
 use crate::input::value::brief_number;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::line::Direction;
@@ -22,6 +22,9 @@ mod axes;
 mod lines;
 #[cfg(test)]
 mod tests;
+
+/// Panels side by side in the overview. Chosen: scenes with and without an exact answer stand in different rows.
+const OVERVIEW_COLUMNS: usize = 2;
 
 /// Draws the diagram of a scene. A peer stands on the chart of seconds.
 pub fn scene(diagram: &Diagram, cost: Cost, peer: Option<&Peer>) -> String {
@@ -48,7 +51,7 @@ pub fn scene(diagram: &Diagram, cost: Cost, peer: Option<&Peer>) -> String {
         notes.extend(peer_notes(peer));
     }
     let usual = label(&diagram.usual(), &[]);
-    let mut subtitle = vec![names::capital(&diagram.meaning)];
+    let mut subtitle = vec![names::capital(&diagram.meaning.replace('_', " "))];
     if !usual.is_empty() {
         subtitle.push(format!("Unless stated: {usual}"));
     }
@@ -68,14 +71,17 @@ pub fn overview(diagrams: &[Diagram], cost: Cost) -> String {
     let pairs: Vec<(&Diagram, Vec<&Errors>)> =
         diagrams.iter().zip(&errors).map(|(diagram, errors)| (diagram, vec![errors])).collect();
     let axes = Axes::of(&pairs, cost, None);
+    // Panels of a row share the axis of errors.
     let panels: Vec<Panel> = pairs
-        .iter()
-        .map(|(diagram, errors)| {
-            let mut panel = Drawing::of(diagram, cost, axes).panel(errors[0]);
-            panel.title = names::capital(&diagram.name.replace('_', " "));
-            let order = order(diagram, errors[0]);
-            panel.title.push_str(&order);
-            panel
+        .chunks(OVERVIEW_COLUMNS)
+        .flat_map(|row| {
+            let axes = axes.with_errors_of(&Axes::of(row, cost, None));
+            row.iter().map(move |(diagram, errors)| {
+                let mut panel = Drawing::of(diagram, cost, axes).panel(errors[0]);
+                panel.title = names::capital(&diagram.name.replace('_', " "));
+                panel.title.push_str(&order(diagram, errors[0]));
+                panel
+            })
         })
         .collect();
     let all: Vec<&Errors> = errors.iter().collect();
@@ -86,7 +92,8 @@ pub fn overview(diagrams: &[Diagram], cost: Cost) -> String {
     if cost == Cost::Seconds && mixed {
         notes.push("Of a scene at rest: seconds of its search, on one thread.".to_owned());
     }
-    notes.push(cost_note(cost).to_owned());
+    notes.extend(numbers(diagrams));
+    notes.push(cost_note(cost, diagrams).to_owned());
     Plots {
         sheet: Sheet {
             title: "Work and precision: every scene".to_owned(),
@@ -95,7 +102,7 @@ pub fn overview(diagrams: &[Diagram], cost: Cost) -> String {
             notes,
         },
         x: axes.x(&axes::label_of(true, cost)),
-        across: columns(panels.len()),
+        across: OVERVIEW_COLUMNS.min(panels.len().max(1)),
         panels,
     }
     .svg()
@@ -160,7 +167,8 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
     } else {
         notes.push("Reference: the exact value.".to_owned());
     }
-    notes.push(cost_note(cost).to_owned());
+    notes.extend(numbers(std::slice::from_ref(diagram)));
+    notes.push(cost_note(cost, std::slice::from_ref(diagram)).to_owned());
     let untrusted = diagram.members.iter().filter(|member| !member.trusted).count();
     if untrusted > 0 {
         notes
@@ -175,11 +183,24 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
     notes
 }
 
-fn cost_note(cost: Cost) -> &'static str {
+/// What the numbers beside points are: the values along the first line of each scene.
+fn numbers(diagrams: &[Diagram]) -> Option<String> {
+    let mut found: Vec<String> = Vec::new();
+    for diagram in diagrams {
+        let first = diagram.lines().first().and_then(|(chain, _)| *chain);
+        let text = first.map(|chain| words(&diagram.chains[chain].parameter));
+        found.extend(text.filter(|text| !found.contains(text)));
+    }
+    (!found.is_empty()).then(|| format!("Numbers beside points: {}.", found.join(", ")))
+}
+
+fn cost_note(cost: Cost, diagrams: &[Diagram]) -> &'static str {
+    let mut members = diagrams.iter().flat_map(|diagram| &diagram.members);
     match cost {
-        Cost::Work => {
+        Cost::Work if members.any(|member| member.elements <= 0.0) => {
             "Element-steps: elements times steps; of the model piston, which has no elements, steps."
         }
+        Cost::Work => "Element-steps: elements times steps.",
         Cost::Seconds => {
             "Seconds: wall time of a job, which runs on one thread, median over the runs. Other jobs on the machine \
              lengthen it."

@@ -10,7 +10,7 @@ use super::table::find;
 pub const NUMERICAL: [&str; 9] = [
     SEED,
     "imperfection_amplitude",
-    "design.subdivisions",
+    MESH,
     "solver.cfl",
     "solver.stepping.adaptive",
     "solver.stepping.fixed",
@@ -21,6 +21,8 @@ pub const NUMERICAL: [&str; 9] = [
 
 /// The key that repeats a run with another imperfection.
 pub const SEED: &str = "seed";
+/// The key of the mesh of a capsule.
+pub const MESH: &str = "design.subdivisions";
 /// The key of the model. Models compute the same physics with different simplifications.
 pub const MODEL: &str = "solver.model";
 
