@@ -31,11 +31,12 @@ study: build
 paper: build
 	studies/publish_paper.sh $(BILLOW)
 
-# The pictures over seconds have the points of a peer.
+# The end state is judged by its shape alone; the pictures over seconds have the points of a peer.
+PARETO := pareto studies/pareto.json --measures end_state:final_z_rim,end_state:final_volume
 pareto: build
 	$(BILLOW) run studies/pareto.json
-	$(BILLOW) pareto studies/pareto.json --cost seconds --peer studies/pareto_peer.json
-	$(BILLOW) pareto studies/pareto.json
+	$(BILLOW) $(PARETO) --cost seconds --peer studies/pareto_peer.json
+	$(BILLOW) $(PARETO)
 
 test: deps
 	$(CARGO) test $(FLAGS)

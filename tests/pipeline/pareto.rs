@@ -69,6 +69,12 @@ fn the_front_is_printed_drawn_and_read_again() {
     let again = folder.run(&["pareto", "grid.json", "--scenes", "early,injected_piston"]);
     assert!(!stderr(&again).contains("runs the scene"), "{}", stderr(&again));
     assert_eq!(folder.stdout(&arguments), printed, "seconds too are those of the first call");
+    let one = ["pareto", "grid.json", "--scenes", "early,late", "--all", "--json", "-q"];
+    let one = folder.stdout(&[&one[..], &["--measures", "late:volume"]].concat());
+    let one: serde_json::Value = serde_json::from_str(&one).unwrap();
+    let of_late = one.as_array().unwrap().iter().filter(|row| row["scene"] == "late");
+    assert!(of_late.clone().count() > 0 && of_late.clone().all(|row| row["quantity"] == "volume"));
+    assert!(one.as_array().unwrap().iter().any(|row| row["quantity"] == "final_volume"));
     let doctor = folder.run(&["doctor"]);
     assert_eq!(doctor.status.code(), Some(0), "{}", stderr(&doctor));
 }

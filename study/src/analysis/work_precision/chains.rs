@@ -82,10 +82,16 @@ fn number(value: &Value) -> Option<f64> {
     }
 }
 
-/// Logarithms of resolution and error of the members whose error the reference can resolve.
-fn resolved(chain: &Chain, points: &[Option<Point>], floor: f64) -> Vec<(usize, [f64; 2])> {
-    let members = chain.members.iter().zip(&chain.resolution);
-    members
+/// Logarithms of resolution and error of the trusted members whose error the reference can resolve.
+fn resolved(
+    chain: &Chain,
+    points: &[Option<Point>],
+    members: &[Member],
+    floor: f64,
+) -> Vec<(usize, [f64; 2])> {
+    let trusted = chain.members.iter().zip(&chain.resolution);
+    trusted
+        .filter(|(index, _)| members[**index].trusted)
         .filter_map(|(index, resolution)| {
             let point = points[*index].as_ref()?;
             let error = point.error.median;
@@ -96,8 +102,13 @@ fn resolved(chain: &Chain, points: &[Option<Point>], floor: f64) -> Vec<(usize, 
 }
 
 /// The order of a chain: minus the slope of its errors, least squares of the logarithms.
-pub(super) fn fitted(chain: &Chain, points: &[Option<Point>], floor: f64) -> Option<f64> {
-    let found = resolved(chain, points, floor);
+pub(super) fn fitted(
+    chain: &Chain,
+    points: &[Option<Point>],
+    members: &[Member],
+    floor: f64,
+) -> Option<f64> {
+    let found = resolved(chain, points, members, floor);
     if found.len() < 2 {
         return None;
     }
@@ -110,8 +121,13 @@ pub(super) fn fitted(chain: &Chain, points: &[Option<Point>], floor: f64) -> Opt
 }
 
 /// The order between neighbours of a chain, by the finer of them.
-pub(super) fn between(chain: &Chain, points: &[Option<Point>], floor: f64) -> Vec<(usize, f64)> {
-    let found = resolved(chain, points, floor);
+pub(super) fn between(
+    chain: &Chain,
+    points: &[Option<Point>],
+    members: &[Member],
+    floor: f64,
+) -> Vec<(usize, f64)> {
+    let found = resolved(chain, points, members, floor);
     let order = |pair: &[(usize, [f64; 2])]| {
         let [(_, coarse), (index, fine)] = pair else { return None };
         Some((*index, -(fine[1] - coarse[1]) / (fine[0] - coarse[0])))

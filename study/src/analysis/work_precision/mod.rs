@@ -12,7 +12,7 @@
 //! ```
 //! A scene is given by all parameters but the numerical ones (`crate::input::keys::numerical`), a configuration by
 //! one combination of these; its runs are the replicates. Any numerical parameter that a table varies joins without
-//! a change here. Source of the name: SciMLBenchmarks; of the form: Hairer, Norsett, Wanner, Solving Ordinary
+//! a change here. Source of the name: the benchmarks of `SciML`; of the form: Hairer, Norsett, Wanner, Solving Ordinary
 //! Differential Equations I, II.10.
 
 use std::sync::Arc;
@@ -258,10 +258,12 @@ impl Errors {
     /// Fills in orders and fronts.
     fn finish(&mut self, members: &[Member], chains: &[Chain]) {
         let floor = self.uncertainty();
-        self.orders =
-            chains.iter().map(|chain| chains::fitted(chain, &self.points, floor)).collect();
+        self.orders = chains
+            .iter()
+            .map(|chain| chains::fitted(chain, &self.points, members, floor))
+            .collect();
         for chain in chains.iter().rev() {
-            for (index, order) in chains::between(chain, &self.points, floor) {
+            for (index, order) in chains::between(chain, &self.points, members, floor) {
                 if let Some(point) = &mut self.points[index] {
                     point.order = Some(order);
                 }

@@ -48,7 +48,7 @@ fn uncertainty(
         .into_iter()
         .flat_map(|chain| chain.members.iter().copied())
         .filter(|index| members[*index].elements < members[finest].elements)
-        .filter(|index| !outcomes[*index].is_empty())
+        .filter(|index| members[*index].trusted && !outcomes[*index].is_empty())
         .collect();
     let with_runs = |index: &&usize| outcomes[**index].len() > 1;
     let spread = std::iter::once(&finest).chain(coarser.iter().rev()).find(with_runs);

@@ -87,7 +87,7 @@ fn a_known_order_and_a_known_front_are_found() {
     for member in [3, 2, 0] {
         assert!(close(errors.points[member].unwrap().order.unwrap(), 2.0));
     }
-    assert_eq!(errors.points[1].unwrap().order.is_some(), false, "the coarsest mesh has none");
+    assert!(errors.points[1].unwrap().order.is_none(), "the coarsest mesh has none");
     assert!(close(errors.points[6].unwrap().error.median, 0.2));
     assert_eq!(diagram.members[6].work().to_bits(), 500.0_f64.to_bits());
     // The steps of n 8 are a chain of CFL numbers.

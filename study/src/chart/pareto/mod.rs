@@ -28,7 +28,7 @@ const OVERVIEW_COLUMNS: usize = 2;
 
 /// Draws the diagram of a scene. A peer stands on the chart of seconds.
 pub fn scene(diagram: &Diagram, cost: Cost, peer: Option<&Peer>) -> String {
-    let peer = peer.filter(|peer| cost == Cost::Seconds && peer.scene == diagram.name);
+    let peer = peer.filter(|peer| cost == Cost::Seconds && !peer.points(diagram).is_empty());
     let errors: Vec<&Errors> = diagram.quantities.iter().collect();
     let axes = Axes::of(&[(diagram, errors.clone())], cost, peer);
     let drawing = Drawing::of(diagram, cost, axes);
@@ -43,7 +43,7 @@ pub fn scene(diagram: &Diagram, cost: Cost, peer: Option<&Peer>) -> String {
             panel
         })
         .collect();
-    let mut legends = vec![drawing.legend(), marks(&errors)];
+    let mut legends = vec![drawing.legend(), marks(&errors, std::slice::from_ref(diagram))];
     let mut notes = notes(diagram, cost);
     if let Some(peer) = peer {
         let entry = (Sample::Point(lines::PEER), format!("{}, difference", peer.name));
@@ -98,7 +98,7 @@ pub fn overview(diagrams: &[Diagram], cost: Cost) -> String {
         sheet: Sheet {
             title: "Work and precision: every scene".to_owned(),
             subtitle: vec![subtitle.to_owned()],
-            legends: vec![marks(&all)],
+            legends: vec![marks(&all, diagrams)],
             notes,
         },
         x: axes.x(&axes::label_of(true, cost)),
@@ -129,7 +129,7 @@ fn order(diagram: &Diagram, errors: &Errors) -> String {
 }
 
 /// The legend of the marks.
-fn marks(errors: &[&Errors]) -> Legend {
+fn marks(errors: &[&Errors], diagrams: &[Diagram]) -> Legend {
     let points = || errors.iter().flat_map(|errors| errors.points.iter().flatten());
     let mut entries = vec![
         (Sample::Marker(Fill::Filled), "on the front (dotted line)".to_owned()),
@@ -141,6 +141,9 @@ fn marks(errors: &[&Errors]) -> Legend {
     }
     if points().any(|point| point.error.count > 1) {
         entries.push((Sample::Bar, "range over the runs (seeds)".to_owned()));
+    }
+    if diagrams.iter().flat_map(|diagram| &diagram.members).any(|member| !member.trusted) {
+        entries.push((Sample::Cross, "no run passes its audit".to_owned()));
     }
     if errors.iter().any(|errors| errors.uncertainty() > 0.0) {
         entries.push((Sample::Closed, "within the reference's uncertainty".to_owned()));
@@ -169,11 +172,6 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
     }
     notes.extend(numbers(std::slice::from_ref(diagram)));
     notes.push(cost_note(cost, std::slice::from_ref(diagram)).to_owned());
-    let untrusted = diagram.members.iter().filter(|member| !member.trusted).count();
-    if untrusted > 0 {
-        notes
-            .push(format!("Crosses: {untrusted} configurations of which no run passes its audit."));
-    }
     if diagram.without_result > 0 {
         notes.push(format!(
             "{} runs failed or have not ended; they are not drawn.",

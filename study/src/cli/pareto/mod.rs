@@ -33,7 +33,8 @@ pub struct Args {
     /// `square_airbag`, `stretched_disc`, which run once if their results are not stored yet.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     scenes: Vec<String>,
-    /// Only these quantities, comma-separated, for example `t_90_z_rim,volume`.
+    /// Only these quantities, comma-separated, for example `t_90_z_rim,volume`; of one scene
+    /// `end_state:final_volume`.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     measures: Vec<String>,
     /// The cost of pictures and front: element-steps, or seconds of this machine.
@@ -130,23 +131,46 @@ fn check(option: &str, problem: &str, names: &[String], known: &[String]) -> Res
     Ok(())
 }
 
-/// Keeps the quantities with these names; every one without names. Scenes without any of them are left out.
+/// Keeps the quantities with these names; every one without names. A name with its scene before it, as
+/// `end_state:final_volume`, chooses in that scene alone. Scenes without any of them are left out.
 ///
 /// # Errors
 /// A name that no scene has.
 fn keep_measures(diagrams: &mut Vec<Diagram>, names: &[String]) -> Result<()> {
-    if names.is_empty() {
-        return Ok(());
-    }
+    let of_scene = |diagram: &Diagram, quantity: &str| format!("{}:{quantity}", diagram.name);
     let mut known: Vec<String> = Vec::new();
-    for errors in diagrams.iter().flat_map(|diagram| &diagram.quantities) {
-        if !known.contains(&errors.quantity.name) {
-            known.push(errors.quantity.name.clone());
+    for diagram in diagrams.iter() {
+        for errors in &diagram.quantities {
+            let name = &errors.quantity.name;
+            for text in [name.clone(), of_scene(diagram, name)] {
+                if !known.contains(&text) {
+                    known.push(text);
+                }
+            }
         }
     }
-    check("--measures", "not a quantity of these scenes", names, &known)?;
+    let (single, of_all): (Vec<&String>, Vec<&String>) =
+        names.iter().partition(|name| name.contains(':'));
+    // The scene may be one that --scenes leaves out.
+    let scene = |name: &str| name.split(':').next().unwrap_or_default().to_owned();
+    let drawn = |name: &String| diagrams.iter().any(|diagram| diagram.name == scene(name));
+    let checked: Vec<String> = of_all
+        .iter()
+        .map(|name| (*name).clone())
+        .chain(single.iter().filter(|name| drawn(name)).map(|name| (*name).clone()))
+        .collect();
+    known.sort_by_key(|name| name.contains(':'));
+    check("--measures", "not a quantity of these scenes", &checked, &known)?;
     for diagram in diagrams.iter_mut() {
-        diagram.quantities.retain(|errors| names.contains(&errors.quantity.name));
+        let prefix = of_scene(diagram, "");
+        let here: Vec<&str> = single.iter().filter_map(|name| name.strip_prefix(&prefix)).collect();
+        if here.is_empty() && of_all.is_empty() {
+            continue;
+        }
+        diagram.quantities.retain(|errors| {
+            let name = errors.quantity.name.as_str();
+            here.contains(&name) || of_all.iter().any(|known| *known == name)
+        });
     }
     diagrams.retain(|diagram| !diagram.quantities.is_empty());
     Ok(())
