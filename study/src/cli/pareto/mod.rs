@@ -201,7 +201,7 @@ fn of_history(history: &StoredHistory) -> Histories {
 /// Reads the file of a peer.
 ///
 /// # Errors
-/// A file that cannot be read, or is none of a peer.
+/// A file that cannot be read, or does not describe a peer.
 fn read_peer(path: &Path) -> Result<Peer> {
     let refuse = |problem: String| {
         let allowed = "a file as studies/pareto_peer.json; docs/guide/pareto.md lists its members";
