@@ -202,7 +202,7 @@ fn stretched_disc(rig: &Rig) -> Result<ExactScene, String> {
     let modes = drum::drum_modes();
     let name = |mode: &drum::DrumMode| {
         let name = format!("frequency_{}_{}", mode.diameters, mode.circles);
-        let meaning = format!("frequency of mode ({},{})", mode.diameters, mode.circles);
+        let meaning = format!("frequency with {} nodal diameters", mode.diameters);
         quantity(&name, "Hz", &meaning, Some(mode.frequency))
     };
     let mut found = scene(

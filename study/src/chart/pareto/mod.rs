@@ -16,6 +16,7 @@ use crate::render::figure::plot::rule::Rule;
 use crate::render::figure::plot::{Panel, Plots};
 use crate::render::figure::scale::Spread;
 use crate::render::figure::style::{Fill, Series};
+use crate::render::figure::ticks::minus;
 use crate::render::figure::{Sheet, columns};
 
 mod axes;
@@ -124,7 +125,7 @@ fn order(diagram: &Diagram, errors: &Errors) -> String {
     let lines = diagram.lines();
     let order = lines.iter().find_map(|(chain, _)| errors.orders[(*chain)?]);
     order.map_or_else(String::new, |order| {
-        format!(", order {}", brief_number(libm::round(10.0 * order) / 10.0))
+        format!(", order {}", minus(&brief_number(libm::round(10.0 * order) / 10.0)))
     })
 }
 
