@@ -4,6 +4,7 @@
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
+# make pareto   work-precision diagrams: studies/pareto.json (half an hour on two cores), its tables and pictures
 # make bench    what billow costs on this machine, a few minutes
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
@@ -20,7 +21,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study paper test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: study paper pareto test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -29,6 +30,13 @@ study: build
 
 paper: build
 	studies/publish_paper.sh $(BILLOW)
+
+# The end state is judged by its shape alone; the pictures over seconds have the points of a peer.
+PARETO := pareto studies/pareto.json --measures end_state:final_z_rim,end_state:final_volume
+pareto: build
+	$(BILLOW) run studies/pareto.json
+	$(BILLOW) $(PARETO) --cost seconds --peer studies/pareto_peer.json
+	$(BILLOW) $(PARETO)
 
 test: deps
 	$(CARGO) test $(FLAGS)

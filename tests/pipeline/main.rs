@@ -24,6 +24,7 @@ mod memory;
 mod mistakes;
 mod monitor_detects_faults;
 mod old_results;
+mod pareto;
 mod physics_version;
 mod plan;
 mod rank_and_borders;

@@ -7,3 +7,4 @@ pub mod ranking;
 pub mod replicates;
 pub mod statistics;
 mod values;
+pub mod work_precision;

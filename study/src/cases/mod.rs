@@ -55,6 +55,8 @@ mod static_wrinkling;
 mod step_limit;
 mod storeys_model;
 
+pub mod work_precision;
+
 pub use rig::Rig;
 pub use row::Row;
 pub use table::CASES;

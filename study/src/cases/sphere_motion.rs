@@ -51,8 +51,16 @@ fn filled(pressure: f64, volume: f64) -> Filling {
     }
 }
 
-/// Frequency of the radial mode, Hz.
-fn radial_frequency(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
+/// A sphere that starts to breathe about its equilibrium at this pressure (Pa), and its volume at rest (m³).
+///
+/// # Errors
+/// A failure of the relaxation.
+pub fn breathing_start(
+    rig: &Rig,
+    level: u32,
+    pressure: f64,
+    cfl: Option<f64>,
+) -> Result<(Explicit, f64), String> {
     let rest = equilibrium(rig, level, pressure)?;
     let mut shell = sphere(level);
     shell.positions = rest.state.positions.iter().collect();
@@ -60,10 +68,24 @@ fn radial_frequency(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String>
     let rate = number("breathing_sphere/amplitude") * 5300.0;
     let velocities = shell.positions.iter().map(|x| x * rate).collect();
     let filling = filled(pressure, rest.state.volume);
-    let mut film =
-        rig.start(&FilmScene { velocities, filling, ..free_film(shell, Film::PAPER_ELASTIC) })?;
-    let (interval, volume) = (film.stable_step(), rest.state.volume);
-    frequency(&mut film, interval, 13, |film| film.state.volume - volume)
+    let mut scene = FilmScene { velocities, filling, ..free_film(shell, Film::PAPER_ELASTIC) };
+    scene.solver.cfl = cfl.unwrap_or(scene.solver.cfl);
+    Ok((rig.start(&scene)?, rest.state.volume))
+}
+
+/// Frequency of the radial mode of a breathing sphere with this volume at rest (m³), Hz.
+///
+/// # Errors
+/// A failure of the run.
+pub fn breathing_frequency(film: &mut Explicit, volume: f64) -> Result<f64, String> {
+    let interval = film.stable_step();
+    frequency(film, interval, 13, |film| film.state.volume - volume)
+}
+
+/// Frequency of the radial mode, Hz.
+fn radial_frequency(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
+    let (mut film, volume) = breathing_start(rig, level, pressure, None)?;
+    breathing_frequency(&mut film, volume)
 }
 
 /// The radial mode about equilibrium, at two pressures.

@@ -9,35 +9,52 @@ use billow_solver::mechanics::resultants::resultants;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::free_film;
+use billow_solver::statics::StaticSolution;
 
 use super::reference::{number, rows};
 use super::rig::held;
 use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
 
+/// The static equilibrium of a quarter of the upper sheet with this number of cells along its side, and a note on its
+/// cost.
+///
+/// # Errors
+/// Why no equilibrium was found.
+pub fn inflated(rig: &Rig, cells: u32) -> Result<(StaticSolution, String), String> {
+    let [youngs_modulus, poisson_ratio, thickness, pressure] =
+        ["youngs_modulus", "poisson_ratio", "thickness", "overpressure"]
+            .map(|key| number(&format!("square_airbag/{key}")));
+    let side = side();
+    let film = Film { youngs_modulus, poisson_ratio, thickness, ..Film::PAPER_ELASTIC };
+    let shell = grid(cells, cells, side, side);
+    let seam = nodes_where(&shell, |x| x.x >= side || x.y >= side);
+    let supports = vec![
+        held(nodes_where(&shell, |x| x.x <= 0.0), "x"),
+        held(nodes_where(&shell, |x| x.y <= 0.0), "y"),
+        held(seam, "z"),
+    ];
+    let filling = Filling::Pressure(pressure);
+    equilibrium(rig, &FilmScene { filling, supports, ..free_film(shell, film) })
+}
+
+/// Side of the quarter, m.
+fn side() -> f64 {
+    0.5 * number("square_airbag/diagonal") / 2.0_f64.sqrt()
+}
+
 /// Energy, height and volume on three meshes.
 pub fn square_airbag(rig: &Rig) -> Outcome {
-    let [diagonal, youngs_modulus, poisson_ratio, thickness, pressure, volume] =
-        ["diagonal", "youngs_modulus", "poisson_ratio", "thickness", "overpressure", "volume"]
-            .map(|key| number(&format!("square_airbag/{key}")));
+    let [thickness, volume] =
+        ["thickness", "volume"].map(|key| number(&format!("square_airbag/{key}")));
     let [energy_band, height_band, volume_band] = ["energy_band", "height_band", "volume_band"]
         .map(|key| number(&format!("square_airbag/{key}")));
-    let side = 0.5 * diagonal / 2.0_f64.sqrt();
-    let film = Film { youngs_modulus, poisson_ratio, thickness, ..Film::PAPER_ELASTIC };
+    let side = side();
     let (mut judged, mut whole_volume) = (Vec::new(), f64::NAN);
     for row in rows("square_airbag") {
         // The first column is the number of cells.
         let cells = (1_u32..=1 << 12).find(|cells| f64::from(*cells) >= row[0]).unwrap_or(1);
-        let shell = grid(cells, cells, side, side);
-        let seam = nodes_where(&shell, |x| x.x >= side || x.y >= side);
-        let supports = vec![
-            held(nodes_where(&shell, |x| x.x <= 0.0), "x"),
-            held(nodes_where(&shell, |x| x.y <= 0.0), "y"),
-            held(seam, "z"),
-        ];
-        let filling = Filling::Pressure(pressure);
-        let (state, note) =
-            equilibrium(rig, &FilmScene { filling, supports, ..free_film(shell, film) })?;
+        let (state, note) = inflated(rig, cells)?;
         let name = |what: &str| format!("{what}, {cells} cells");
         let corner = state.positions.get(state.positions.len() - 1);
         let inward = 2.0_f64.sqrt() * side - corner.xy().norm();

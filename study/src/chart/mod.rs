@@ -27,6 +27,7 @@ mod names;
 mod outcome;
 pub mod over;
 pub mod parameters;
+pub mod pareto;
 mod positions;
 pub mod runs;
 mod searched;

@@ -31,6 +31,7 @@ mod memory;
 mod notes;
 mod opened;
 pub mod options;
+mod pareto;
 mod picture;
 mod plan;
 mod points;
@@ -106,6 +107,8 @@ pub enum Command {
     Borders(borders::Args),
     /// Draw charts of a study's results, as SVG and PNG.
     Chart(chart::Args),
+    /// Draw work-precision diagrams: what each model, mesh and step costs, and how large its error is.
+    Pareto(pareto::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
     Keys(keys::Args),
     /// Print the JSON Schema of the study file or the scene file.
@@ -159,6 +162,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Rank(args) => rank::run(args, out),
         Command::Borders(args) => borders::run(args, out),
         Command::Chart(args) => chart::run(args, out),
+        Command::Pareto(args) => pareto::run(args, out),
         Command::Keys(args) => keys::run(args, out),
         Command::Schema(args) => schema::run(args, out),
         Command::Validate(args) => validate::run(args, out),

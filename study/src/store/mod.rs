@@ -5,6 +5,7 @@ pub mod attempts;
 pub mod checkpoint_file;
 pub mod damaged;
 pub mod doctor;
+pub mod exact_scenes;
 pub mod history_file;
 pub mod journal;
 pub mod reference_file;

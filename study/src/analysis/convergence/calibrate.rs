@@ -157,7 +157,8 @@ fn entries(
     // Single runs of the finest mesh scatter as those of the finest mesh with several.
     let of_mesh = |n: &u32| scatter(scenes, &(ModelKind::Film, vec![*n]), 0.0);
     let finest = meshes.iter().rev().find_map(of_mesh).unwrap_or(0.0);
-    let mut methods: Vec<Method> = vec![(ModelKind::Piston, Vec::new()), (ModelKind::Storeys, Vec::new())];
+    let mut methods: Vec<Method> =
+        vec![(ModelKind::Piston, Vec::new()), (ModelKind::Storeys, Vec::new())];
     methods.extend(meshes.iter().map(|n| (ModelKind::Film, vec![*n])));
     for (index, coarse) in meshes.iter().enumerate() {
         let pairs = meshes[index + 1..].iter().map(|fine| (ModelKind::Film, vec![*coarse, *fine]));

@@ -5,6 +5,7 @@
 pub mod draft;
 mod key;
 pub mod listing;
+pub mod numerical;
 mod objects;
 mod quantity;
 mod scene;

@@ -8,6 +8,7 @@
 //!                 checkpoints/*.json states of jobs that have not ended (crate::store::checkpoint_file)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
+//!                 exact_scenes.json runs of scenes with an exact answer (crate::store::exact_scenes)
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
 //!                 damaged/          files that were damaged, as they were found (crate::store::damaged)
 //!                 lock              held while a command changes the folder
@@ -33,8 +34,10 @@ mod study_json;
 
 /// Name of the file of a run's attempts.
 const ATTEMPTS: &str = "attempts.jsonl";
+/// Name of the file of the runs of exact scenes.
+const EXACT_SCENES: &str = "exact_scenes.json";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 10] = [
+pub const RESULT_NAMES: [&str; 11] = [
     "study.json",
     "journal",
     "jobs",
@@ -42,6 +45,7 @@ pub const RESULT_NAMES: [&str; 10] = [
     "checkpoints",
     "summary.parquet",
     "charts",
+    EXACT_SCENES,
     ATTEMPTS,
     "damaged",
     "lock",
@@ -102,6 +106,11 @@ impl<'a> Results<'a> {
     /// Path of the summary table.
     pub fn table_path(&self) -> PathBuf {
         self.root.join("summary.parquet")
+    }
+
+    /// Path of the runs of exact scenes.
+    pub fn exact_scenes_path(&self) -> PathBuf {
+        self.root.join(EXACT_SCENES)
     }
 
     /// Path of the attempts of a running process.

@@ -4,23 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Column, Table};
-use crate::input::keys::{self, KEYS};
+use crate::input::keys::numerical::is_numerical;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::result_limit::{ResultLimit, Safety};
 use crate::job::row::{CellType, DerivedColumn, SAME_JOB_AS};
-
-/// Keys that change numbers and no physics: a verdict that depends on one is not certain.
-const NUMERICAL: [&str; 7] = [
-    "seed",
-    "imperfection_amplitude",
-    "design.subdivisions",
-    "solver.cfl",
-    "film.numerical_damping",
-    "contact.distance",
-    "outputs.sample_interval",
-];
 
 impl Table {
     /// The table with the columns of these limits, and with `verdict_depends_on` where the study varies a
@@ -84,8 +73,6 @@ impl Table {
 
     /// The parameters that are numerical choices.
     fn numerical_parameters(&self) -> Vec<usize> {
-        let is_numerical =
-            |name: &str| keys::find(name).is_some_and(|key| NUMERICAL.contains(&KEYS[key].path));
         let parameters = self.parameters().enumerate();
         parameters
             .filter(|(_, column)| is_numerical(&column.name))

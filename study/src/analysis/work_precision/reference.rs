@@ -1,0 +1,115 @@
+//! What errors refer to: an exact value, or the finest trusted configuration with its uncertainty.
+
+use std::sync::Arc;
+
+use super::{Chain, Course, Member, Outcome, Quantity, Reference};
+use crate::analysis::statistics::Spread;
+
+/// Part of the difference from the next coarser mesh that counts as uncertainty. Chosen: it is the error of a method
+/// for which r^p = 3 (meshes that halve: order 1.6; from n 16 to 24: 2.7); an order below has a larger one.
+const MESH_PART: f64 = 0.5;
+
+/// The reference of a quantity, and the value or course that results are compared with.
+pub(super) fn of(
+    quantity: &Quantity,
+    outcomes: &[Vec<Outcome>],
+    members: &[Member],
+    chains: &[Chain],
+) -> Option<(Reference, Outcome)> {
+    if let Some(exact) = quantity.exact {
+        let reference = Reference { value: Some(exact), member: None, uncertainty: Some(0.0) };
+        return Some((reference, Outcome::Number(exact)));
+    }
+    let work = |index: &usize| (members[*index].elements > 0.0, members[*index].work());
+    let usable = |index: &usize| members[*index].trusted && !outcomes[*index].is_empty();
+    let finest = (0..members.len()).filter(usable).max_by(|a, b| {
+        let (a, b) = (work(a), work(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    })?;
+    let target = centre(&outcomes[finest])?;
+    let uncertainty = uncertainty(finest, &target, outcomes, members, chains);
+    let value = median(&outcomes[finest]);
+    Some((Reference { value, member: Some(finest), uncertainty }, target))
+}
+
+/// The relative uncertainty of the reference; `None` with neither several runs nor a coarser mesh.
+fn uncertainty(
+    finest: usize,
+    target: &Outcome,
+    outcomes: &[Vec<Outcome>],
+    members: &[Member],
+    chains: &[Chain],
+) -> Option<f64> {
+    let of_mesh = |chain: &&Chain| chain.of_meshes && chain.members.contains(&finest);
+    // Coarse to fine, without the reference.
+    let coarser: Vec<usize> = chains
+        .iter()
+        .find(of_mesh)
+        .into_iter()
+        .flat_map(|chain| chain.members.iter().copied())
+        .filter(|index| members[*index].elements < members[finest].elements)
+        .filter(|index| members[*index].trusted && !outcomes[*index].is_empty())
+        .collect();
+    let with_runs = |index: &&usize| outcomes[**index].len() > 1;
+    let spread = std::iter::once(&finest).chain(coarser.iter().rev()).find(with_runs);
+    let spread = spread.and_then(|index| half_range(&outcomes[*index], target));
+    let mesh = coarser.last().and_then(|index| error(&centre(&outcomes[*index])?, target));
+    let mesh = mesh.map(|difference| MESH_PART * difference);
+    if spread.is_none() && mesh.is_none() {
+        return None;
+    }
+    let (spread, mesh) = (spread.unwrap_or(0.0), mesh.unwrap_or(0.0));
+    Some((spread * spread + mesh * mesh).sqrt())
+}
+
+/// Half the range over runs, over the reference. For courses: the largest distance of a run from their mean.
+fn half_range(runs: &[Outcome], target: &Outcome) -> Option<f64> {
+    match target {
+        Outcome::Number(reference) => {
+            let spread = Spread::of(numbers(runs))?;
+            Some((0.5 * (spread.largest - spread.least) / reference).abs())
+        }
+        Outcome::Course(_) => {
+            let mean = centre(runs)?;
+            runs.iter().filter_map(|run| error(run, &mean)).reduce(f64::max)
+        }
+    }
+}
+
+/// Relative error of an outcome; `None` where the reference is zero or of another kind.
+pub(super) fn error(outcome: &Outcome, target: &Outcome) -> Option<f64> {
+    match (outcome, target) {
+        (Outcome::Number(value), Outcome::Number(reference)) if *reference != 0.0 => {
+            Some((value / reference - 1.0).abs())
+        }
+        (Outcome::Course(course), Outcome::Course(reference)) => course.distance(reference),
+        _ => None,
+    }
+}
+
+/// Median of the numbers of some runs; `None` for courses.
+pub(super) fn median(runs: &[Outcome]) -> Option<f64> {
+    Spread::of(numbers(runs)).map(|spread| spread.median)
+}
+
+fn numbers(runs: &[Outcome]) -> impl Iterator<Item = f64> {
+    runs.iter().filter_map(|run| match run {
+        Outcome::Number(number) => Some(*number),
+        Outcome::Course(_) => None,
+    })
+}
+
+/// Median of numbers, mean of courses.
+fn centre(runs: &[Outcome]) -> Option<Outcome> {
+    let courses: Vec<&Course> = runs
+        .iter()
+        .filter_map(|run| match run {
+            Outcome::Course(course) => Some(course.as_ref()),
+            Outcome::Number(_) => None,
+        })
+        .collect();
+    match Course::mean(&courses) {
+        Some(mean) => Some(Outcome::Course(Arc::new(mean))),
+        None => median(runs).map(Outcome::Number),
+    }
+}

@@ -1,0 +1,49 @@
+//! Stored runs of scenes with an exact answer, as runs of a scene.
+
+use super::{Outcome, Quantity, Run, SceneRuns};
+use crate::input::value::Value;
+use crate::store::exact_scenes::ExactScene;
+
+/// The runs of a stored scene.
+pub fn from_stored(scene: &ExactScene) -> SceneRuns {
+    let quantity = |known: &crate::store::exact_scenes::ExactQuantity| Quantity {
+        name: known.name.clone(),
+        unit: known.unit.clone(),
+        meaning: known.meaning.clone(),
+        exact: known.exact,
+        is_course: false,
+    };
+    let runs = scene.runs.iter().map(|run| Run {
+        configuration: scene
+            .parameters
+            .iter()
+            .cloned()
+            .zip(run.configuration.iter().map(value))
+            .collect(),
+        trusted: true,
+        elements: run.elements,
+        steps: run.steps,
+        seconds: Some(run.seconds),
+        results: run.values.iter().map(|number| Some(Outcome::Number(*number))).collect(),
+    });
+    SceneRuns {
+        name: scene.name.clone(),
+        meaning: scene.meaning.clone(),
+        quantities: scene.quantities.iter().map(quantity).collect(),
+        per_simulated_second: scene.per_simulated_second,
+        runs: runs.collect(),
+        without_result: 0,
+    }
+}
+
+fn value(json: &serde_json::Value) -> Value {
+    match json {
+        serde_json::Value::String(text) => Value::Text(text.clone()),
+        serde_json::Value::Bool(flag) => Value::Bool(*flag),
+        serde_json::Value::Number(number) => match number.as_i64() {
+            Some(whole) => Value::Integer(whole),
+            None => number.as_f64().map_or(Value::Null, Value::Number),
+        },
+        _ => Value::Null,
+    }
+}

@@ -1,0 +1,265 @@
+//! The scenes of a study's table.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::{Configuration, Course, Outcome, Quantity, Run, SceneRuns};
+use crate::analysis::values::canonical;
+use crate::input::keys::MODELS;
+use crate::input::keys::numerical::{self, MODEL, SEED};
+use crate::input::value::Value;
+use crate::job::Status;
+use crate::job::row::ColumnId;
+use crate::store::table::{Column, Table};
+
+/// The measures whose error billow promises.
+pub const PROMISED: [ColumnId; 6] = [
+    ColumnId::T50ZRim,
+    ColumnId::T90ZRim,
+    ColumnId::PeakVz,
+    ColumnId::PeakKineticEnergy,
+    ColumnId::FinalZRim,
+    ColumnId::FinalVolume,
+];
+/// The columns of the history that are compared over time, and their units.
+pub const COURSES: [(&str, &str, &str); 2] =
+    [("z_rim", "m", "height of the top ring over time"), ("volume", "m3", "volume over time")];
+
+/// What the history of a job says.
+#[derive(Debug, Clone)]
+pub struct Histories {
+    /// The courses of [`COURSES`].
+    pub courses: [Option<Arc<Course>>; 2],
+    /// Simulated time, s.
+    pub simulated: f64,
+}
+
+/// The columns of a table by their part.
+struct Parts<'a> {
+    /// Parameters of the physics, which give the scene.
+    physical: Vec<&'a Column>,
+    /// Numerical parameters, which give the configuration.
+    numerical: Vec<&'a Column>,
+    /// Parameters that repeat a run.
+    repeating: Vec<&'a Column>,
+}
+
+impl<'a> Parts<'a> {
+    fn of(table: &'a Table, replicates: &[String]) -> Self {
+        let mut parts = Self { physical: Vec::new(), numerical: Vec::new(), repeating: Vec::new() };
+        for column in table.parameters() {
+            let path = numerical::path(&column.name);
+            if replicates.contains(&column.name) || path == Some(SEED) {
+                parts.repeating.push(column);
+            } else if path == Some(MODEL) || numerical::is_numerical(&column.name) {
+                parts.numerical.push(column);
+            } else {
+                parts.physical.push(column);
+            }
+        }
+        parts
+    }
+
+    /// Keys that change no result of the model of a row.
+    fn ignored(&self, row: usize) -> &'static [&'static str] {
+        let is_model = |column: &&&Column| numerical::path(&column.name) == Some(MODEL);
+        let name = self.numerical.iter().find(is_model).map(|column| &column.cells[row]);
+        let model = MODELS.iter().find(|model| name == Some(&Value::Text(model.name.to_owned())));
+        model.map_or(&[], |model| model.ignores)
+    }
+
+    /// Names and values of some parameters; null for those that the model ignores.
+    fn values(&self, columns: &[&Column], row: usize) -> Configuration {
+        let ignored = self.ignored(row);
+        let value = |column: &&Column| {
+            let path = numerical::path(&column.name).unwrap_or("");
+            let value = if ignored.contains(&path) { &Value::Null } else { &column.cells[row] };
+            (column.name.clone(), value.clone())
+        };
+        columns.iter().map(value).collect()
+    }
+}
+
+/// The scenes of a table, in the order of their first rows. `histories` reads what the history of a job says.
+pub fn scenes(
+    table: &Table,
+    replicates: &[String],
+    histories: &dyn Fn(&str) -> Option<Histories>,
+) -> Vec<SceneRuns> {
+    let parts = Parts::of(table, replicates);
+    let mut groups: Vec<(Vec<String>, Vec<usize>)> = Vec::new();
+    for row in 0..table.rows() {
+        let key: Vec<String> =
+            parts.physical.iter().map(|column| canonical(&column.cells[row])).collect();
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, rows)) => rows.push(row),
+            None => groups.push((key, vec![row])),
+        }
+    }
+    let firsts: Vec<usize> = groups.iter().map(|(_, rows)| rows[0]).collect();
+    let naming = naming(&parts.physical, &firsts);
+    let scene = |rows: &[usize]| {
+        let (runs, without_result) = runs(table, &parts, rows, histories);
+        let (name, meaning) = texts(&parts.physical, naming, rows[0]);
+        let quantities = quantities();
+        SceneRuns { name, meaning, quantities, per_simulated_second: true, runs, without_result }
+    };
+    groups.iter().map(|(_, rows)| scene(rows)).collect()
+}
+
+/// The quantities of every scene of a study.
+fn quantities() -> Vec<Quantity> {
+    let measures = PROMISED.iter().map(|id| {
+        let column = id.column();
+        (column.name, column.unit, column.meaning, false)
+    });
+    let courses = COURSES.iter().map(|(name, unit, meaning)| (*name, *unit, *meaning, true));
+    let quantity = |(name, unit, meaning, is_course): (&str, &str, &str, bool)| Quantity {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        meaning: meaning.to_owned(),
+        exact: None,
+        is_course,
+    };
+    measures.chain(courses).map(quantity).collect()
+}
+
+/// The runs of a scene, each once, and the number of rows without a result.
+fn runs(
+    table: &Table,
+    parts: &Parts<'_>,
+    rows: &[usize],
+    histories: &dyn Fn(&str) -> Option<Histories>,
+) -> (Vec<Run>, usize) {
+    let (mut found, mut without) = (Vec::new(), 0);
+    let mut known: BTreeSet<Vec<String>> = BTreeSet::new();
+    for row in rows.iter().copied() {
+        let configuration = parts.values(&parts.numerical, row);
+        let repeated = parts.values(&parts.repeating, row);
+        // A model that ignores the seed has one run.
+        let key = configuration.iter().chain(&repeated).map(|(_, value)| canonical(value));
+        if !known.insert(key.collect()) {
+            continue;
+        }
+        if table.status(row) != Some(Status::Done) {
+            without += 1;
+            continue;
+        }
+        let number = |id: ColumnId| match table.value(id, row)? {
+            Value::Number(number) => Some(*number),
+            Value::Integer(number) => Some(*number as f64),
+            _ => None,
+        };
+        let job = match table.column("job").map(|column| &column.cells[row]) {
+            Some(Value::Text(id)) => id.as_str(),
+            _ => "",
+        };
+        let history = histories(job);
+        let simulated = history.as_ref().map(|history| history.simulated);
+        let seconds = number(ColumnId::WallSeconds)
+            .zip(simulated.filter(|time| *time > 0.0))
+            .map(|(wall, simulated)| wall / simulated);
+        let measures = PROMISED.iter().map(|id| number(*id).map(Outcome::Number));
+        let courses = history.map_or([None, None], |history| history.courses);
+        let courses = courses.into_iter().map(|course| course.map(Outcome::Course));
+        found.push(Run {
+            configuration,
+            trusted: table.is_trusted(row),
+            elements: number(ColumnId::Elements).unwrap_or(0.0),
+            steps: number(ColumnId::Steps).unwrap_or(0.0),
+            seconds,
+            results: measures.chain(courses).collect(),
+        });
+    }
+    (found, without)
+}
+
+/// The parameter of words that alone names each scene.
+fn naming(physical: &[&Column], firsts: &[usize]) -> Option<usize> {
+    let names = |column: &&&Column| {
+        let texts: BTreeMap<String, usize> = firsts
+            .iter()
+            .filter(|row| matches!(column.cells[**row], Value::Text(_)))
+            .map(|row| (canonical(&column.cells[*row]), *row))
+            .collect();
+        texts.len() == firsts.len()
+    };
+    physical.iter().position(|column| names(&column))
+}
+
+/// Name and meaning of the scene of a row.
+fn texts(physical: &[&Column], naming: Option<usize>, row: usize) -> (String, String) {
+    let text = |column: &Column| {
+        format!("{} {}", column.name, column.shown.quantity(&column.cells[row]).trim())
+    };
+    let all = |without: Option<usize>| {
+        let kept = physical.iter().enumerate().filter(|(index, _)| Some(*index) != without);
+        kept.map(|(_, column)| text(column)).collect::<Vec<_>>().join(", ")
+    };
+    match naming {
+        Some(index) => (physical[index].cells[row].to_string(), all(naming)),
+        None if physical.is_empty() => ("study".to_owned(), String::new()),
+        None => (all(None), String::new()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::units::DisplayUnit;
+    use crate::job::row::CellType;
+
+    fn column(name: &str, cells: Vec<Value>) -> Column {
+        Column {
+            name: name.to_owned(),
+            cell_type: CellType::Text,
+            unit: String::new(),
+            shown: DisplayUnit::si(""),
+            meaning: String::new(),
+            cells,
+        }
+    }
+
+    fn texts(values: &[&str]) -> Vec<Value> {
+        values.iter().map(|text| Value::Text((*text).to_owned())).collect()
+    }
+
+    fn numbers(values: &[i64]) -> Vec<Value> {
+        values.iter().map(|number| Value::Integer(*number)).collect()
+    }
+
+    #[test]
+    fn every_numerical_parameter_of_a_table_gives_configurations() {
+        let table = Table {
+            columns: vec![
+                column("job", texts(&["1", "2", "3", "4", "5", "6"])),
+                column("strategy", texts(&["a", "a", "a", "a", "b", "b"])),
+                column("model", texts(&["film", "film", "piston", "piston", "film", "film"])),
+                column("subdivisions", numbers(&[4, 4, 4, 8, 4, 4])),
+                column("contact.distance", numbers(&[1, 1, 1, 2, 1, 2])),
+                column("seed", numbers(&[1, 2, 1, 2, 1, 1])),
+                column("status", texts(&["done", "done", "done", "done", "done", "unstable"])),
+                column("peak_vz", [20.0, 21.0, 30.0, 30.0, 18.0, 0.0].map(Value::Number).to_vec()),
+                column("elements", numbers(&[768, 768, 0, 0, 768, 768])),
+                column("steps", numbers(&[1000; 6])),
+                column("wall_seconds", [1.0; 6].map(Value::Number).to_vec()),
+            ],
+        };
+        let history = |_: &str| Some(Histories { courses: [None, None], simulated: 0.5 });
+        let scenes = scenes(&table, &["seed".to_owned()], &history);
+        let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+        assert_eq!(names, ["a", "b"]);
+        let [a, b] = scenes.as_slice() else { panic!() };
+        assert_eq!(a.runs.len(), 3, "the piston ignores mesh, contact and seed: one run");
+        let of_piston = &a.runs[2].configuration;
+        assert_eq!(of_piston[0], ("model".to_owned(), Value::Text("piston".to_owned())));
+        assert_eq!(of_piston[1..].iter().filter(|(_, value)| *value == Value::Null).count(), 2);
+        assert_eq!(a.runs[0].configuration, a.runs[1].configuration, "seeds are runs");
+        assert_eq!(a.runs[0].configuration[2], ("contact.distance".to_owned(), Value::Integer(1)));
+        assert_eq!(a.runs[0].seconds, Some(2.0), "for a simulated second");
+        assert_eq!((b.runs.len(), b.without_result), (1, 1));
+        let peak = PROMISED.iter().position(|id| *id == ColumnId::PeakVz).unwrap();
+        assert_eq!(a.runs[1].results[peak], Some(Outcome::Number(21.0)));
+        assert_eq!(a.runs[1].results.len(), PROMISED.len() + COURSES.len());
+    }
+}

@@ -1,0 +1,157 @@
+//! Runs of the scenes with an exact answer, on disk: what `billow pareto` ran once.
+//!
+//! ```text
+//! results/<study>/exact_scenes.json     {"checksum", "format", "version", "physics_version", "scenes": […]}
+//! ```
+//!
+//! `checksum` is that of [`billow_solver::platform::seal`]. The file only saves time: if it is missing, damaged or of
+//! another version, its runs are made again.
+
+use std::io;
+
+use billow_solver::PHYSICS_VERSION;
+use billow_solver::platform::seal;
+use serde::{Deserialize, Serialize};
+
+use crate::platform::error::Result;
+use crate::platform::files::{self, disk_error};
+use crate::store::results::Results;
+
+/// Name of the format.
+const FORMAT: &str = "billow-exact-scenes";
+/// Version of the format and of the list of runs. Another one is not read.
+const VERSION: u32 = 1;
+
+/// A scene and its runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExactScene {
+    /// Name.
+    pub name: String,
+    /// What it is, and how its cost counts; one line.
+    pub meaning: String,
+    /// What is measured.
+    pub quantities: Vec<ExactQuantity>,
+    /// Whether the seconds are those of a simulated second; otherwise those of a whole run.
+    pub per_simulated_second: bool,
+    /// Names of the numerical parameters.
+    pub parameters: Vec<String>,
+    /// Its runs.
+    pub runs: Vec<ExactRun>,
+}
+
+/// What is measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExactQuantity {
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Meaning, one line.
+    pub meaning: String,
+    /// The exact value; null where none is known.
+    pub exact: Option<f64>,
+}
+
+/// A run of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExactRun {
+    /// The value of each parameter: a number, a text, or null for one that the model ignores.
+    pub configuration: Vec<serde_json::Value>,
+    /// Elements of the mesh; 0 without one.
+    pub elements: f64,
+    /// Steps, or Newton steps.
+    pub steps: f64,
+    /// Wall time on one thread, s.
+    pub seconds: f64,
+    /// The value of each quantity, SI.
+    pub values: Vec<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    format: String,
+    version: u32,
+    physics_version: u32,
+    scenes: Vec<ExactScene>,
+}
+
+/// The scenes of a text; `None` for a text that this program did not write.
+fn decode(bytes: &[u8]) -> Option<Vec<ExactScene>> {
+    let object = seal::open(std::str::from_utf8(bytes).ok()?).ok()?;
+    let stored: Stored = serde_json::from_str(&object).ok()?;
+    let current = (FORMAT, VERSION, PHYSICS_VERSION);
+    let fits = |scene: &ExactScene| {
+        scene.runs.iter().all(|run| {
+            run.configuration.len() == scene.parameters.len()
+                && run.values.len() == scene.quantities.len()
+        })
+    };
+    ((stored.format.as_str(), stored.version, stored.physics_version) == current)
+        .then_some(stored.scenes)
+        .filter(|scenes| scenes.iter().all(fits))
+}
+
+impl Results<'_> {
+    /// The stored runs of exact scenes; none where the file is missing, damaged or of another version.
+    pub fn exact_scenes(&self) -> Vec<ExactScene> {
+        let bytes = self.files().read(&self.exact_scenes_path());
+        bytes.ok().and_then(|bytes| decode(&bytes)).unwrap_or_default()
+    }
+
+    /// Stores the runs of exact scenes.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn write_exact_scenes(&self, scenes: &[ExactScene]) -> Result<()> {
+        let path = self.exact_scenes_path();
+        let stored = Stored {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            physics_version: PHYSICS_VERSION,
+            scenes: scenes.to_vec(),
+        };
+        let write = || -> io::Result<()> {
+            let object = serde_json::to_string(&stored).map_err(io::Error::other)?;
+            files::write_atomic(self.files(), &path, seal::seal(&(object + "\n")).as_bytes())
+        };
+        write().map_err(|error| disk_error(&path, &error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::files::scratch::Scratch;
+    use crate::platform::files::{Disk, Files};
+
+    #[test]
+    fn stored_runs_are_read_again_and_damaged_ones_are_not() {
+        let folder = Scratch::new("exact_scenes").unwrap();
+        let results = Results::new(&Disk, folder.path());
+        assert!(results.exact_scenes().is_empty());
+        let scene = ExactScene {
+            name: "disc".to_owned(),
+            meaning: String::new(),
+            quantities: Vec::new(),
+            per_simulated_second: true,
+            parameters: vec!["rings".to_owned()],
+            runs: vec![ExactRun {
+                configuration: vec![8.into()],
+                elements: 384.0,
+                steps: 0.1 + 0.2,
+                seconds: 1e-3,
+                values: Vec::new(),
+            }],
+        };
+        results.write_exact_scenes(std::slice::from_ref(&scene)).unwrap();
+        assert_eq!(results.exact_scenes(), [scene]);
+        let path = results.exact_scenes_path();
+        let text = String::from_utf8(Disk.read(&path).unwrap()).unwrap();
+        let text = text.replace("384", "385");
+        assert_eq!(decode(text.as_bytes()), None);
+    }
+}
