@@ -49,14 +49,13 @@ pub struct Args {
 /// # Errors
 /// Results that cannot be read, or that have no scene on four meshes; a table that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let mut scenes: Vec<SceneRuns> = Vec::new();
-    let mut names = Vec::new();
+    let mut all = Vec::new();
     for study in &args.studies {
         let given = StudyArgs { study: Some(study.clone()), results: ResultsOption::default() };
-        let stored = stored::read(&folder(&given, &[])?)?;
-        names.push(stored.study.name.clone());
-        scenes.extend(convergence::by_scene(&stored));
+        all.push(stored::read(&folder(&given, &[])?)?);
     }
+    let names: Vec<String> = all.iter().map(|stored| stored.study.name.clone()).collect();
+    let scenes = convergence::by_scene(&all);
     let rows: Vec<Vec<Value>> = scenes.iter().flat_map(rows).collect();
     if rows.is_empty() {
         let allowed =

@@ -176,7 +176,7 @@ fn entries(
         let bias = Spread::of(of_base)?.median;
         let effects = effects(&biases, base, bias);
         // Pairs with one run each scatter as their finer mesh.
-        let own = scatter(scenes, method, weight)
+        let of_method = scatter(scenes, method, weight)
             .or_else(|| {
                 method
                     .1
@@ -191,7 +191,7 @@ fn entries(
             weight,
             bias,
             effects,
-            scatter: (own * own + finest * finest).sqrt(),
+            scatter: (of_method * of_method + finest * finest).sqrt(),
             interaction: ASSUMED_INTERACTION,
             checked_scenes: 0,
             runs: scenes.iter().map(|scene| scene.of_method(method, weight).len()).sum(),

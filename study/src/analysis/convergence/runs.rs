@@ -50,9 +50,11 @@ impl MeshRun {
 }
 
 /// The trusted runs of stored results, by scene.
-pub fn by_scene(stored: &Stored<'_>) -> Vec<SceneRuns> {
+pub fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
     let mut scenes: BTreeMap<String, SceneRuns> = BTreeMap::new();
-    for point in &stored.points {
+    for (stored, point) in
+        all.iter().flat_map(|stored| stored.points.iter().map(move |point| (stored, point)))
+    {
         let cells = stored.cells(point);
         let (Some(solved), true) = (point.solved, cells.is_trusted()) else { continue };
         let scene = &point.job.scene;
