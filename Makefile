@@ -35,7 +35,7 @@ paper: build
 PARETO := pareto studies/pareto.json --measures end_state:final_z_rim,end_state:final_volume
 pareto: build
 	$(BILLOW) run studies/pareto.json
-	$(BILLOW) $(PARETO) --cost seconds --peer studies/pareto_peer.json
+	$(BILLOW) $(PARETO) --cost seconds --peer results/pareto/peer.json
 	$(BILLOW) $(PARETO)
 
 test: deps

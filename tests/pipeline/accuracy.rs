@@ -1,10 +1,16 @@
 //! Mesh errors of rows, several meshes, the choice of a mesh, convergence.
 
 use std::fs;
+use std::process::Output;
 
 use serde_json::{Value, json};
 
 use crate::support::{TestFolder, grid, json_of, stderr};
+
+/// All that a command printed.
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &stderr(output)
+}
 
 /// The paper's capsule on coarse film for some milliseconds.
 fn film(more: &Value) -> Value {
@@ -39,19 +45,21 @@ fn two_meshes_give_one_row_with_extrapolated_values_and_the_runs_are_kept() {
     for name in ["t_50_z_rim", "peak_kinetic_energy"] {
         let [coarse, fine] = [4, 6].map(|n| number(of_mesh(n), name));
         let value = number(&points[0], name);
-        assert_eq!(value, number(of_mesh(6), &format!("{name}_extrapolated")));
+        let stored = number(of_mesh(6), &format!("{name}_extrapolated"));
+        assert_eq!(value.to_bits(), stored.to_bits());
         let beyond = (value - fine) * (fine - coarse) >= 0.0;
         assert!(beyond && (value - fine).abs() <= 3.0 * (fine - coarse).abs(), "{name}: {value}");
     }
     let error = |row: &Value| number(row, "t_50_z_rim_change_to_n24");
     assert!(error(of_mesh(4)) > error(of_mesh(6)), "a finer mesh has a smaller error");
     assert!(error(&points[0]) < error(of_mesh(6)), "so has an extrapolated value");
-    assert_eq!(of_mesh(4)["no_error_reason"], Value::Null);
+    // 0.21 s is too short for the state at the end.
+    assert!(of_mesh(4)["no_error_reason"].as_str().unwrap().starts_with("not deployed"));
     let table = folder.stdout(&["table", "-q"]);
     assert!(table.contains(" ± "), "{table}");
     // The stored study plans the same jobs.
     let again = folder.run(&["run", "results/grid/study.json", "--results", "results/grid"]);
-    assert!(stderr(&again).contains("2 of 2 jobs finished"), "{}", stderr(&again));
+    assert!(said(&again).contains("all 2 jobs are finished"), "{}", said(&again));
 }
 
 #[test]
@@ -125,7 +133,7 @@ fn the_choice_of_an_accuracy_stands_in_the_stored_study() {
     assert_eq!(meshes.len(), 1, "{meshes:?}");
     assert_eq!(stored["design"]["subdivisions"], meshes[0]);
     let again = folder.run(&["run", "grid.json"]);
-    assert!(stderr(&again).contains("1 of 1 jobs finished"), "{}", stderr(&again));
+    assert!(said(&again).contains("all 1 jobs are finished"), "{}", said(&again));
 }
 
 #[test]

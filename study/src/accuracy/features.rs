@@ -70,6 +70,8 @@ impl Features {
         let delay = first.map_or(0.0, |[from, _]| (from - release).max(0.0));
         let windows = scene.gas.windows.iter();
         let stop = windows.clone().map(|window| window.to).fold(release, f64::max);
+        // Windows are cut at the end of the run.
+        let stop = if stop >= scene.solver.end_time { f64::INFINITY } else { stop };
         let temperature =
             windows.map(|window| window.temperature).next_back().unwrap_or(scene.film.temperature);
         let design = &scene.design;

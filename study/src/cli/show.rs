@@ -8,6 +8,7 @@ use super::options::{OutputOptions, QuietOption, UnitsOption};
 use super::print::{Heading, print_quantities, print_rows};
 use super::target::{StudyArgs, current_name, folder_of_job};
 use super::{Format, output_error};
+use crate::accuracy::{NO_ERROR_REASON, is_error_column};
 use crate::input::keys::{self, KEYS};
 use crate::input::renamed;
 use crate::input::units::DisplayUnits;
@@ -156,6 +157,7 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
             vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
+    rows.extend(mesh_errors(stored, id));
     // The row is shown even if its file cannot be read: the error is then one of the rows.
     match scene(stored, id) {
         Ok(scene) => rows.extend(summary::rows(&scene).into_iter().map(|mut pair| {
@@ -168,6 +170,25 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         Err(error) => rows.push(vec![text("scene"), text("error"), text(&error.to_string())]),
     }
     rows
+}
+
+/// The mesh errors of a job's row, or why it has none.
+fn mesh_errors(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
+    let table = stored.table();
+    let job = Value::Text(id.as_str().to_owned());
+    let row = table.column("job").and_then(|jobs| jobs.cells.iter().position(|cell| *cell == job));
+    let Some(row) = row else { return Vec::new() };
+    let is_shown = |name: &str| is_error_column(name) || name == NO_ERROR_REASON;
+    let columns = table.columns.iter().filter(|column| is_shown(&column.name));
+    columns
+        .filter(|column| column.cells[row] != Value::Null)
+        .map(|column| {
+            let [name, unit, meaning] =
+                [&column.name, &column.unit, &column.meaning].map(|text| Value::Text(text.clone()));
+            let group = Value::Text(ColumnGroup::Measures.name().to_owned());
+            vec![group, name, column.cells[row].clone(), unit, meaning]
+        })
+        .collect()
 }
 
 /// The path of a value in a stored scene as a file has it: with the current name of its key, and the

@@ -232,7 +232,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     mistake(
         "an option of another command",
         "status grid --set N=6",
-        &["status: unexpected argument --set", "next: --set is an option of: plan, run"],
+        &["status: unexpected argument --set", "next: --set is an option of: plan, advise, run"],
     ),
     mistake(
         "no study",
