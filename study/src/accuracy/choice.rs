@@ -71,6 +71,8 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
             Choice { cost: cost(table, &method), errors: PROMISED.map(largest), method }
         })
         .collect();
+    // Methods without runs of such scenes promise nothing.
+    choices.retain(|choice| choice.errors.iter().any(|error| error.is_finite()));
     choices.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     Ok(choices)
 }

@@ -26,6 +26,9 @@ pub const VERSION: u64 = 1;
 /// Normal deviations of which nine of ten are smaller, over the standard deviation.
 const DEVIATIONS: f64 = 1.64;
 
+/// Largest relative difference of equal features.
+const ROUNDING: f64 = 1e-9;
+
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -100,6 +103,21 @@ fn is_zero(number: &f64) -> bool {
 }
 
 impl Entry {
+    /// Whether the scenes of this entry have the features of a scene, from which the base scene differs.
+    fn covers(&self, values: &[f64; FEATURES], base: &[f64; FEATURES]) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
+        FEATURE_NAMES.iter().zip(values.iter().zip(base)).all(|((name, _), (value, base))| {
+            let within = |levels: &Vec<[f64; 2]>| {
+                let ends = levels.first().zip(levels.last());
+                ends.is_some_and(|(first, last)| {
+                    let inside = first[0] <= *value && *value <= last[0];
+                    inside || near(*value, first[0]) || near(*value, last[0])
+                })
+            };
+            near(*value, *base) || self.effects.get(*name).is_some_and(within)
+        })
+    }
+
     /// Bias of a scene, and the root of the sum of the squares of the changes.
     pub fn bias(&self, values: &[f64; FEATURES]) -> (f64, f64) {
         let mut bias = self.bias;
@@ -217,14 +235,15 @@ impl MeshErrors {
         let measure = promised.measure.name();
         let limit = self.limits.get(measure).filter(|limit| limit.known && promised.has_limit);
         let of_entry = |entry: &Entry| entry.error(&features.values, limit);
-        if let Some(entry) = self.entry(method, measure) {
+        let covers = |entry: &&Entry| entry.covers(&features.values, &self.base);
+        if let Some(entry) = self.entry(method, measure).filter(covers) {
             return Ok(of_entry(entry));
         }
         let name = method.name();
         let [n] = method.meshes[..] else {
-            return Err(format!("{name}: the table has no errors of it"));
+            return Err(format!("{name}: the table has no such runs of such scenes"));
         };
-        let known = self.errors.iter().filter(|entry| {
+        let known = self.errors.iter().filter(covers).filter(|entry| {
             entry.measure == measure && entry.model == method.model && entry.meshes.len() == 1
         });
         let meshes: BTreeMap<u32, f64> =
@@ -238,9 +257,9 @@ impl MeshErrors {
         }
         Err(match (meshes.keys().next(), meshes.keys().next_back()) {
             (Some(first), Some(last)) => {
-                format!("design.subdivisions {n}: the table has {first} to {last}")
+                format!("design.subdivisions {n}: for such scenes the table has {first} to {last}")
             }
-            _ => format!("{name}: the table has no errors of it"),
+            _ => format!("{name}: the table has no such runs of such scenes"),
         })
     }
 
