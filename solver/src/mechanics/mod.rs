@@ -8,3 +8,4 @@ pub mod material;
 pub mod material_loss;
 pub mod resultants;
 pub mod supports;
+pub(crate) mod tensor;

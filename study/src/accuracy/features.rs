@@ -17,7 +17,7 @@ use crate::input::value::short_number;
 
 /// Fraction of the stable step of the runs of the table. Models without a mesh have none; their steps have no
 /// part in their errors.
-const STEP: f64 = 0.45;
+pub const STEP: f64 = 0.45;
 
 /// Number of features of a scene.
 pub const FEATURES: usize = 11;
@@ -41,8 +41,13 @@ pub const FEATURE_NAMES: [(&str, &str); FEATURES] = [
 /// nine tenths deployed by then, or gas flows until they are.
 const LONG_INFLOW: f64 = 0.2;
 
-/// Largest relative distance outside a range that counts as inside: rounding.
+/// Largest relative difference of equal features: rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// Whether two features are equal up to rounding.
+pub fn are_equal(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a.abs().max(b.abs())
+}
 
 /// What the mesh error of a run may depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -220,7 +225,7 @@ fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<
 
 fn same(a: &serde_json::Value, b: &serde_json::Value) -> bool {
     match (a.as_f64(), b.as_f64()) {
-        (Some(a), Some(b)) => (a - b).abs() <= ROUNDING * a.abs().max(b.abs()),
+        (Some(a), Some(b)) => are_equal(a, b),
         _ => a == b,
     }
 }

@@ -38,6 +38,11 @@ pub const NO_ERROR_REASON: &str = "no_error_reason";
 pub const NO_ERROR_REASON_MEANING: &str = "why the mesh errors of a row are not known: what its scene has that the runs of the table of mesh errors have not";
 
 impl Promised {
+    /// Whether it is the state at the end of a run: it has a mesh error only where the capsule is deployed.
+    pub fn is_at_end(&self) -> bool {
+        matches!(self.measure, ColumnId::FinalZRim | ColumnId::FinalVolume)
+    }
+
     /// Its meaning, one line.
     pub fn meaning(&self) -> String {
         let measure = self.measure.name();

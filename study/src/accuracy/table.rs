@@ -15,8 +15,9 @@ use std::sync::OnceLock;
 use billow_solver::scene::{ModelKind, Scene};
 use serde::{Deserialize, Serialize};
 
-use super::features::{Coverage, FEATURE_NAMES, FEATURES, Features};
+use super::features::{Coverage, FEATURE_NAMES, FEATURES, Features, are_equal};
 use super::promised::Promised;
+use crate::input::keys;
 
 /// Name of the format.
 pub const FORMAT: &str = "billow-mesh-errors";
@@ -25,9 +26,6 @@ pub const VERSION: u64 = 1;
 
 /// Normal deviations of which nine of ten are smaller, over the standard deviation.
 const DEVIATIONS: f64 = 1.64;
-
-/// Largest relative difference of equal features.
-const ROUNDING: f64 = 1e-9;
 
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -105,16 +103,15 @@ fn is_zero(number: &f64) -> bool {
 impl Entry {
     /// Whether the scenes of this entry have the features of a scene, from which the base scene differs.
     fn covers(&self, values: &[f64; FEATURES], base: &[f64; FEATURES]) -> bool {
-        let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
         FEATURE_NAMES.iter().zip(values.iter().zip(base)).all(|((name, _), (value, base))| {
             let within = |levels: &Vec<[f64; 2]>| {
                 let ends = levels.first().zip(levels.last());
                 ends.is_some_and(|(first, last)| {
                     let inside = first[0] <= *value && *value <= last[0];
-                    inside || near(*value, first[0]) || near(*value, last[0])
+                    inside || are_equal(*value, first[0]) || are_equal(*value, last[0])
                 })
             };
-            near(*value, *base) || self.effects.get(*name).is_some_and(within)
+            are_equal(*value, *base) || self.effects.get(*name).is_some_and(within)
         })
     }
 
@@ -178,11 +175,7 @@ impl Method {
 
     /// Name for messages: "film, n 4".
     pub fn name(&self) -> String {
-        let model = match self.model {
-            ModelKind::Film => "film",
-            ModelKind::Piston => "piston",
-            ModelKind::Storeys => "storeys",
-        };
+        let model = keys::model(self.model).name;
         match self.meshes.as_slice() {
             [] => model.to_owned(),
             [n] => format!("{model}, n {n}"),

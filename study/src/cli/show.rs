@@ -174,19 +174,16 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
 
 /// The mesh errors of a job's row, or why it has none.
 fn mesh_errors(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
-    let table = stored.table();
-    let job = Value::Text(id.as_str().to_owned());
-    let row = table.column("job").and_then(|jobs| jobs.cells.iter().position(|cell| *cell == job));
-    let Some(row) = row else { return Vec::new() };
+    let Some(table) = stored.table_of(id) else { return Vec::new() };
     let is_shown = |name: &str| is_error_column(name) || name == NO_ERROR_REASON;
     let columns = table.columns.iter().filter(|column| is_shown(&column.name));
     columns
-        .filter(|column| column.cells[row] != Value::Null)
+        .filter(|column| column.cells[0] != Value::Null)
         .map(|column| {
             let [name, unit, meaning] =
                 [&column.name, &column.unit, &column.meaning].map(|text| Value::Text(text.clone()));
             let group = Value::Text(ColumnGroup::Measures.name().to_owned());
-            vec![group, name, column.cells[row].clone(), unit, meaning]
+            vec![group, name, column.cells[0].clone(), unit, meaning]
         })
         .collect()
 }

@@ -81,6 +81,11 @@ impl<'a> Stored<'a> {
         self.built(&self.points)
     }
 
+    /// The table of one job: a row for each of its points.
+    pub fn table_of(&self, id: &JobId) -> Option<Table> {
+        Some(self.built(std::slice::from_ref(self.point(id)?)))
+    }
+
     /// The table of these points, shown in the study's units.
     fn built(&self, points: &[Point]) -> Table {
         let unit = |name: &str| self.study.unit(name).to_owned();

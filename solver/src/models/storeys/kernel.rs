@@ -19,6 +19,7 @@ use core::f64::consts::PI;
 use super::STRIPS;
 use super::strip::{Strip, StripElement};
 use crate::mechanics::material::{MohrCircle, StressResponse};
+use crate::mechanics::tensor::{add, contract, isotropic, scale, subtract};
 use crate::platform::simd::{InstructionSet, Lanes, Wide, dispatch_wide};
 
 /// Vectors of the nodes: x, y, z of each, one lane a strip.
@@ -58,32 +59,6 @@ pub(super) struct StepSums {
     pub numerical: f64,
     /// Largest principal stress, Pa.
     pub stress: f64,
-}
-
-/// S:E.
-#[inline(always)]
-fn contract<L: Wide>(s: [L; 3], e: [L; 3]) -> L {
-    s[0] * e[0] + s[1] * e[1] + s[2] * e[2]
-}
-
-#[inline(always)]
-fn subtract<L: Wide>(a: [L; 3], b: [L; 3]) -> [L; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn add<L: Wide>(a: [L; 3], b: [L; 3]) -> [L; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-fn scale<L: Wide>(a: [L; 3], factor: L) -> [L; 3] {
-    [a[0] * factor, a[1] * factor, a[2] * factor]
-}
-
-#[inline(always)]
-fn isotropic<L: Wide>(a: [L; 3], [mean, deviator]: [f64; 2]) -> [L; 3] {
-    [a[0] * mean, a[1] * deviator, a[2] * deviator]
 }
 
 #[inline(always)]

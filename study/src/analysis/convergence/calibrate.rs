@@ -15,7 +15,7 @@ use billow_solver::scene::ModelKind;
 
 use super::fit::{self, Level};
 use super::runs::{MeshRun, SceneRuns};
-use crate::accuracy::features::{FEATURE_NAMES, FEATURES};
+use crate::accuracy::features::{FEATURE_NAMES, FEATURES, are_equal};
 use crate::accuracy::table::{FORMAT, VERSION};
 use crate::accuracy::{Coverage, Entry, Limit, MeshErrors, PROMISED};
 use crate::analysis::statistics::Spread;
@@ -80,9 +80,7 @@ fn base(scenes: &[&SceneRuns]) -> Option<[f64; FEATURES]> {
 
 /// Positions of the features in which two scenes differ.
 fn different(a: &[f64; FEATURES], b: &[f64; FEATURES]) -> Vec<usize> {
-    (0..FEATURES)
-        .filter(|index| (a[*index] - b[*index]).abs() > 1e-9 * a[*index].abs().max(b[*index].abs()))
-        .collect()
+    (0..FEATURES).filter(|index| !are_equal(a[*index], b[*index])).collect()
 }
 
 /// The scenes with a run on the finest mesh; of scenes that differ in their end alone the longest one.

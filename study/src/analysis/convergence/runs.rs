@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use billow_solver::output::measures::Verdict;
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
-use crate::accuracy::Features;
+use crate::accuracy::features::STEP;
+use crate::accuracy::promised::promise;
+use crate::accuracy::{Features, Promised};
+use crate::input::keys::numerical::{self, MESH, MODEL, SEED};
 use crate::job::canonical_json;
 use crate::job::row::{Cells, ColumnId};
 use crate::store::stored::Stored;
@@ -33,7 +36,7 @@ pub struct SceneRuns {
 impl MeshRun {
     /// A measure. The state at the end counts only where the capsule is deployed: it is at rest then.
     pub fn measure(&self, measure: ColumnId) -> Option<f64> {
-        let at_end = matches!(measure, ColumnId::FinalZRim | ColumnId::FinalVolume);
+        let at_end = promise(measure.name()).is_some_and(Promised::is_at_end);
         if at_end && self.cells.verdict() != Some(Verdict::Deployed) {
             return None;
         }
@@ -63,7 +66,7 @@ pub fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
             .job
             .parameters
             .iter()
-            .filter(|(name, _)| !NUMERICAL.contains(&name.as_str()))
+            .filter(|(name, _)| numerical::path(name).is_none_or(|path| !NO_SCENE.contains(&path)))
             .map(|(name, value)| format!("{name}={}", value.short()));
         let label = label.collect::<Vec<_>>().join(" ");
         let entry = scenes.entry(key(scene));
@@ -74,15 +77,17 @@ pub fn by_scene(all: &[Stored<'_>]) -> Vec<SceneRuns> {
 }
 
 /// Parameters that name no scene.
-const NUMERICAL: [&str; 3] = ["subdivisions", "model", "seed"];
+const NO_SCENE: [&str; 3] = [MESH, MODEL, SEED];
 
 /// Text that is equal for runs of one scene.
 fn key(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.design.subdivisions = 0;
     scene.seed = 0;
-    scene.solver.model = ModelKind::Film;
-    scene.solver.stepping = Stepping::Stable(0.0);
+    if scene.solver.model != ModelKind::Film {
+        scene.solver.model = ModelKind::Film;
+        scene.solver.stepping = Stepping::Stable(STEP);
+    }
     scene.outputs.frames = 0;
     canonical_json(&scene)
 }

@@ -10,6 +10,7 @@
 use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
+use billow_solver::scene::Scene;
 
 use super::same_job::point_rows;
 use super::{Column, Table};
@@ -113,17 +114,18 @@ impl Table {
 
     /// A measure of a trusted run; the state at the end only where the capsule is deployed.
     fn extrapolable(&self, row: usize, promised: &Promised) -> Option<f64> {
-        let at_end = matches!(promised.measure, ColumnId::FinalZRim | ColumnId::FinalVolume);
         let deployed = self.verdict(row).is_none_or(|verdict| verdict == Verdict::Deployed);
         match self.value(promised.measure, row) {
-            Some(Value::Number(value)) if self.is_trusted(row) && (deployed || !at_end) => {
+            Some(Value::Number(value))
+                if self.is_trusted(row) && (deployed || !promised.is_at_end()) =>
+            {
                 Some(*value)
             }
             _ => None,
         }
     }
 
-    fn features(&self, row: usize, scene: &billow_solver::scene::Scene) -> Option<Features> {
+    fn features(&self, row: usize, scene: &Scene) -> Option<Features> {
         let number = |column| match self.value(column, row) {
             Some(Value::Number(number)) => Some(*number),
             _ => None,
@@ -135,7 +137,7 @@ impl Table {
 /// The extrapolated value of a measure on two or three meshes, and its error if it is known.
 fn extrapolated(
     promised: &Promised,
-    scene: &billow_solver::scene::Scene,
+    scene: &Scene,
     features: &Features,
     meshes: &[u32],
     values: &[f64],

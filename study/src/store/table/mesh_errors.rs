@@ -42,8 +42,7 @@ impl RowErrors {
         let deployed = cells.verdict() == Some(Verdict::Deployed) || cells.verdict().is_none();
         let errors = PROMISED.map(|promised| {
             let value = cells.number(promised.measure)?;
-            let at_end = matches!(promised.measure, ColumnId::FinalZRim | ColumnId::FinalVolume);
-            if at_end && !deployed {
+            if promised.is_at_end() && !deployed {
                 reason = Some(NOT_DEPLOYED.to_owned());
                 return None;
             }

@@ -31,6 +31,7 @@ use crate::geometry::field::Field;
 use crate::mechanics::film_model::{ElementBlock, FilmModel};
 use crate::mechanics::material::{Material, MohrCircle, StressResponse};
 use crate::mechanics::material_loss::Creep;
+use crate::mechanics::tensor::{add, contract, isotropic, scale, subtract};
 use crate::platform::simd::{Columns, Lanes, NodeSum, Vectors, Wide, dispatch_wide};
 
 /// Sums over all elements, lane by lane.
@@ -82,37 +83,10 @@ fn load_all<L: Wide, const N: usize>(lanes: &[Lanes; N]) -> [L; N] {
     all
 }
 
-/// S:E of a stress (mean, half difference, shear) and a strain (sum, difference, shear).
-#[inline(always)]
-fn contract<L: Wide>([mean, half_difference, s_xy]: [L; 3], [sum, difference, shear]: [L; 3]) -> L {
-    mean * sum + half_difference * difference + s_xy * shear
-}
-
 /// Edges of kites from s to a, t and b.
 #[inline(always)]
 fn edges<L: Wide>([s, a, t, b]: [Vectors<L>; 4]) -> [Vectors<L>; 3] {
     [a - s, t - s, b - s]
-}
-
-#[inline(always)]
-fn subtract<L: Wide>(a: [L; 3], b: [L; 3]) -> [L; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn add<L: Wide>(a: [L; 3], b: [L; 3]) -> [L; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-fn scale<L: Wide>(a: [L; 3], factor: L) -> [L; 3] {
-    [a[0] * factor, a[1] * factor, a[2] * factor]
-}
-
-/// Multiplies the components of a strain by the two factors of an isotropic tensor: C or C⁻¹.
-#[inline(always)]
-fn isotropic<L: Wide>(a: [L; 3], [mean, deviator]: [f64; 2]) -> [L; 3] {
-    [a[0] * mean, a[1] * deviator, a[2] * deviator]
 }
 
 /// Writes three components to a stored tensor.
