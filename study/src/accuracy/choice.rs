@@ -6,9 +6,13 @@
 //! ```
 //! The cost of a run on the finest mesh of the table is 1. No clock has a part in it.
 
-use billow_solver::scene::{ModelKind, Scene};
+use std::collections::BTreeMap;
 
-use super::features::Features;
+use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
+use billow_solver::models;
+use billow_solver::scene::{ModelKind, Scene, Stepping};
+
+use super::features::{FEATURES, Features, STEP};
 use super::promised::PROMISED;
 use super::table::{Entry, MeshErrors, Method};
 
@@ -26,13 +30,16 @@ pub struct Choice {
     pub cost: f64,
     /// Relative error of each promised measure: the largest over some scenes.
     pub errors: [f64; PROMISED.len()],
+    /// Why its model cannot compute one of these scenes; `None` if it can.
+    pub refusal: Option<String>,
 }
 
 impl Choice {
-    /// Whether every measure with a tolerance keeps it.
+    /// Whether its model can compute the scenes, and every measure with a tolerance keeps it.
     pub fn keeps(&self, tolerances: &[Option<f64>; PROMISED.len()]) -> bool {
-        let pairs = self.errors.iter().zip(tolerances);
-        pairs.into_iter().all(|(error, tolerance)| tolerance.is_none_or(|most| *error <= most))
+        let mut pairs = self.errors.iter().zip(tolerances);
+        self.refusal.is_none()
+            && pairs.all(|(error, tolerance)| tolerance.is_none_or(|most| *error <= most))
     }
 }
 
@@ -57,6 +64,12 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
     if let Some(gap) = scenes.iter().find_map(|(scene, features)| table.gap(scene, features)) {
         return Err(gap);
     }
+    // Seeds and replicates have equal features.
+    let bits = |features: &Features| features.values.map(f64::to_bits);
+    let distinct: BTreeMap<[u64; FEATURES], &Features> =
+        scenes.iter().map(|(_, features)| (bits(features), features)).collect();
+    let refusals = [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]
+        .map(|model| (model, scenes.iter().find_map(|(scene, _)| refusal(model, scene))));
     let of_measure = |entry: &&Entry| entry.measure == PROMISED[0].measure.name();
     let methods = table.errors.iter().filter(of_measure);
     let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
@@ -64,15 +77,31 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
         .map(|method| {
             let largest = |promised| {
                 let errors =
-                    scenes.iter().map(|(_, features)| table.error(&method, features, &promised));
+                    distinct.values().map(|features| table.error(&method, features, &promised));
                 // A method without an error of a measure promises nothing for it.
                 errors.map(|error| error.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
             };
-            Choice { cost: cost(table, &method), errors: PROMISED.map(largest), method }
+            let of_model = refusals.iter().find(|(model, _)| *model == method.model);
+            let refusal = of_model.and_then(|(_, refusal)| refusal.clone());
+            Choice { cost: cost(table, &method), errors: PROMISED.map(largest), method, refusal }
         })
         .collect();
     // Methods without runs of such scenes promise nothing.
     choices.retain(|choice| choice.errors.iter().any(|error| error.is_finite()));
     choices.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     Ok(choices)
+}
+
+/// Why a model cannot compute a scene at its default step; `None` if it can.
+fn refusal(model: ModelKind, scene: &Scene) -> Option<String> {
+    if scene.solver.model == model {
+        return None;
+    }
+    let mut scene = scene.clone();
+    scene.solver.model = model;
+    scene.solver.stepping = match model {
+        ModelKind::Piston => Stepping::Adaptive(DEFAULT_TOLERANCE),
+        ModelKind::Storeys | ModelKind::Film => Stepping::Stable(STEP),
+    };
+    models::check(&scene).err().map(|error| error.to_string())
 }

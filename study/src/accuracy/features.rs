@@ -9,15 +9,24 @@
 //! it is as in these runs.
 
 use billow_solver::geometry::fold::Fit;
+use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
 use billow_solver::scene::inflow::Schedule;
 use billow_solver::scene::{ModelKind, Outputs, Scene, Stepping, Thresholds};
 use serde::{Deserialize, Serialize};
 
 use crate::input::value::short_number;
 
-/// Fraction of the stable step of the runs of the table. Models without a mesh have none; their steps have no
-/// part in their errors.
+/// Fraction of the stable step of the runs of the table: the default.
 pub const STEP: f64 = 0.45;
+
+/// The step of a scene as a fraction of the stable one. The runs of the piston have its default error tolerance
+/// in its place; it, and a smaller one, counts as [`STEP`].
+pub fn step(scene: &Scene) -> Stepping {
+    match scene.solver.stepping {
+        Stepping::Adaptive(tolerance) if tolerance <= DEFAULT_TOLERANCE => Stepping::Stable(STEP),
+        stepping => stepping,
+    }
+}
 
 /// Number of features of a scene.
 pub const FEATURES: usize = 11;
@@ -188,9 +197,7 @@ fn without_features(scene: &Scene) -> Scene {
     scene.seed = 1;
     scene.solver.end_time = 1.0;
     scene.solver.step_limit = 1;
-    if scene.solver.model != ModelKind::Film {
-        scene.solver.stepping = Stepping::Stable(STEP);
-    }
+    scene.solver.stepping = step(&scene);
     scene.outputs = Outputs { sample_interval: 1.0, frames: 0, thresholds: Thresholds::default() };
     scene.solver.model = ModelKind::Film;
     scene
@@ -219,7 +226,10 @@ fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<
             })
         }
         _ if same(scene, runs) => None,
-        _ => Some(format!(" {scene}: the runs of the table have {runs}")),
+        _ => {
+            let runs = if runs.is_null() { "none".to_owned() } else { runs.to_string() };
+            Some(format!(" {scene}: the runs of the table have {runs}"))
+        }
     }
 }
 

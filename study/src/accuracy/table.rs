@@ -15,6 +15,7 @@ use std::sync::OnceLock;
 use billow_solver::scene::{ModelKind, Scene};
 use serde::{Deserialize, Serialize};
 
+use super::entries::Entries;
 use super::features::{Coverage, FEATURE_NAMES, FEATURES, Features, are_equal};
 use super::promised::Promised;
 use crate::input::keys;
@@ -48,7 +49,7 @@ pub struct MeshErrors {
     /// The limit of each measure.
     pub limits: BTreeMap<String, Limit>,
     /// The errors.
-    pub errors: Vec<Entry>,
+    pub errors: Entries,
 }
 
 /// To what a measure tends as the mesh is refined.
@@ -232,34 +233,29 @@ impl MeshErrors {
         if let Some(entry) = self.entry(method, measure).filter(covers) {
             return Ok(of_entry(entry));
         }
-        let name = method.name();
-        let [n] = method.meshes[..] else {
-            return Err(format!("{name}: the table has no such runs of such scenes"));
-        };
-        let known = self.errors.iter().filter(covers).filter(|entry| {
-            entry.measure == measure && entry.model == method.model && entry.meshes.len() == 1
-        });
-        let meshes: BTreeMap<u32, f64> =
-            known.map(|entry| (entry.meshes[0], of_entry(entry))).collect();
-        let below = meshes.range(..n).next_back();
-        let above = meshes.range(n..).next();
-        if let (Some((coarse, coarse_error)), Some((fine, fine_error))) = (below, above) {
+        let no_runs = || format!("{}: the table has no such runs of such scenes", method.name());
+        let [n] = method.meshes[..] else { return Err(no_runs()) };
+        let known = self.errors.single_meshes(measure, method.model).filter(covers);
+        let known: Vec<(u32, &Entry)> = known.map(|entry| (entry.meshes[0], entry)).collect();
+        let below = known.iter().rfind(|(mesh, _)| *mesh < n);
+        let above = known.iter().find(|(mesh, _)| *mesh >= n);
+        if let (Some((coarse, coarse_entry)), Some((fine, fine_entry))) = (below, above) {
             let log = |mesh: u32| libm::log(f64::from(mesh));
             let part = (log(n) - log(*coarse)) / (log(*fine) - log(*coarse));
+            let [coarse_error, fine_error] =
+                [coarse_entry, fine_entry].map(|entry| of_entry(entry));
             return Ok(coarse_error + part * (fine_error - coarse_error));
         }
-        Err(match (meshes.keys().next(), meshes.keys().next_back()) {
-            (Some(first), Some(last)) => {
+        Err(match (known.first(), known.last()) {
+            (Some((first, _)), Some((last, _))) => {
                 format!("design.subdivisions {n}: for such scenes the table has {first} to {last}")
             }
-            _ => format!("{name}: the table has no such runs of such scenes"),
+            _ => no_runs(),
         })
     }
 
     /// The entry of a method, as it stands in the table.
     pub fn entry(&self, method: &Method, measure: &str) -> Option<&Entry> {
-        self.errors.iter().find(|entry| {
-            entry.measure == measure && entry.model == method.model && entry.meshes == method.meshes
-        })
+        self.errors.find(measure, method)
     }
 }

@@ -1,4 +1,5 @@
-//! `billow advise`: the cheapest method that keeps a mesh error, from the table of mesh errors. It runs nothing.
+//! `billow advise`: the cheapest of all models and meshes that keeps an error, from the table of mesh errors. It runs
+//! nothing.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -7,12 +8,14 @@ use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::{Heading, count, print_quantities};
 use crate::accuracy::choice::cost;
+use crate::accuracy::features::STEP;
 use crate::accuracy::{Choice, Features, MeshErrors, Method, PROMISED, choices};
-use crate::input::units::{self, Dimension};
+use crate::input::fraction::{RELATIVE_ERROR, relative_error};
+use crate::input::keys;
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
-use crate::study::Study;
+use crate::study::{Study, StudyPoint};
 use billow_solver::scene::{ModelKind, Scene};
 
 /// Arguments of `billow advise`.
@@ -21,7 +24,7 @@ pub struct Args {
     /// The study file.
     study: PathBuf,
     /// Relative error that each measure must keep, as in 0.02 or "2 %".
-    #[arg(long, value_name = "FRACTION")]
+    #[arg(long, value_name = "FRACTION", default_value = "5 %")]
     tolerance: String,
     /// The measures that must keep it, comma-separated [default: `t_90_z_rim`, `peak_kinetic_energy`, `final_z_rim`,
     /// `final_volume`: those with a limit of fine meshes].
@@ -53,8 +56,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let table = MeshErrors::shipped();
     let choices = choices(table, &scenes).map_err(|gap| {
         let allowed = "scenes that the table of mesh errors covers: docs/guide/accuracy.md";
-        let hint = "run one point on two meshes and compare them: solver.meshes with three meshes estimates the error \
-                    without the table";
+        let hint = hint(&study);
         Error::invalid_option("study", &study.name, format!("no advice: {gap}"), allowed, hint)
     })?;
     let headings: Vec<Heading> = ["method", "cost"]
@@ -72,13 +74,28 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
+/// What to do where the table does not cover a study.
+fn hint(study: &Study) -> String {
+    let meshless = |point: &&StudyPoint| point.scene.solver.model != ModelKind::Film;
+    match study.points().iter().find(meshless) {
+        None => "run one point with \"solver\": {\"meshes\": [4, 6, 8]}: the errors in its row follow from its \
+                 three runs, without the table"
+            .to_owned(),
+        Some(point) => {
+            let model = keys::model(point.scene.solver.model).name;
+            format!(
+                "run one point with \"grid\": {{\"model\": [\"film\", \"{model}\"]}} and compare the two: \
+                 billow compare STUDY --by model --base film"
+            )
+        }
+    }
+}
+
 /// The tolerance of each promised measure.
 fn tolerances(args: &Args) -> Result<[Option<f64>; PROMISED.len()]> {
-    let text = args.tolerance.trim();
-    let number = text.parse().ok().or_else(|| units::parse(text, Dimension::Number).ok());
-    let tolerance = number.filter(|number| *number > 0.0 && *number < 1.0).ok_or_else(|| {
-        let allowed = "above 0 and below 1, as 0.02 or \"2 %\"";
-        Error::invalid_option("--tolerance", text, "not a relative error", allowed, "")
+    let text = args.tolerance.as_str();
+    let tolerance = relative_error(text).ok_or_else(|| {
+        Error::invalid_option("--tolerance", text, "not a relative error", RELATIVE_ERROR, "")
     })?;
     if args.measures.is_empty() {
         return Ok(PROMISED.map(|promised| promised.has_limit.then_some(tolerance)));
@@ -129,7 +146,8 @@ fn print_advice(
     let names = |list: &[(&crate::accuracy::Promised, &Option<f64>)]| {
         list.iter().map(|(promised, _)| promised.measure.name()).collect::<Vec<_>>().join(", ")
     };
-    if let Some(choice) = choices.iter().find(|choice| choice.keeps(tolerances)) {
+    let recommended = choices.iter().find(|choice| choice.keeps(tolerances));
+    if let Some(choice) = recommended {
         let now = study.points().iter().map(|point| cost(table, &Method::of(&point.scene)));
         let now = now.fold(0.0, f64::max);
         let saving = if choice.cost < now {
@@ -137,11 +155,15 @@ fn print_advice(
         } else {
             format!("{:.1} times the cost of now", choice.cost / now)
         };
-        eprintln!("advice: {} ({saving}); {}", choice.method.name(), setting(&choice.method));
+        let method = &choice.method;
+        eprintln!("advice: {} ({saving}); {}", method.name(), setting(method, study));
+    } else if choices.is_empty() {
+        eprintln!("advice: none: the table has no runs of such scenes; {}", hint(study));
     } else {
         let keys = PROMISED.iter().enumerate().filter(|(index, _)| tolerances[*index].is_some());
         let best = keys.map(|(index, promised)| {
-            let errors = choices.iter().map(|choice| choice.errors[index]);
+            let possible = choices.iter().filter(|choice| choice.refusal.is_none());
+            let errors = possible.map(|choice| choice.errors[index]);
             let least = errors.fold(f64::INFINITY, f64::min);
             format!("{} {:.1} %", promised.measure.name(), 100.0 * least)
         });
@@ -150,6 +172,26 @@ fn print_advice(
             "advice: none: no method of the table keeps this; the smallest errors are {best}"
         );
     }
+    let mut refused: Vec<(&'static str, &str)> = choices
+        .iter()
+        .filter_map(|choice| {
+            Some((keys::model(choice.method.model).name, choice.refusal.as_deref()?))
+        })
+        .collect();
+    refused.dedup();
+    for (model, refusal) in refused {
+        eprintln!("{model} cannot compute these scenes: {refusal}");
+    }
+    if let Some(choice) = recommended.filter(|choice| choice.method.meshes.is_empty()) {
+        let model = choice.method.name();
+        eprintln!(
+            "limits: {model} has no contact of film and cannot lock: it answers how fast, not whether"
+        );
+    }
+    eprintln!(
+        "step: every error is that of the default step (solver.cfl {STEP}); for another step the table has no runs and \
+         billow gives no advice"
+    );
     if !limits.is_empty() {
         eprintln!("promised against the limit of fine meshes: {}", names(&limits));
     }
@@ -162,16 +204,22 @@ fn print_advice(
     }
 }
 
-/// How a study file asks for a method.
-fn setting(method: &Method) -> String {
-    match (method.model, method.meshes.as_slice()) {
-        (ModelKind::Piston | ModelKind::Storeys, _) => {
-            format!("\"solver\": {{\"model\": \"{}\"}}", method.name())
-        }
-        (ModelKind::Film, [n]) => format!("\"design\": {{\"subdivisions\": {n}}}"),
-        (ModelKind::Film, meshes) => {
-            let meshes: Vec<String> = meshes.iter().map(ToString::to_string).collect();
-            format!("\"solver\": {{\"meshes\": [{}]}}", meshes.join(", "))
-        }
+/// What a study file must have for a method; the model only where a point has another.
+fn setting(method: &Method, study: &Study) -> String {
+    let mut solver = Vec::new();
+    if study.points().iter().any(|point| point.scene.solver.model != method.model) {
+        solver.push(format!("\"model\": \"{}\"", keys::model(method.model).name));
     }
+    if method.meshes.len() > 1 {
+        let meshes: Vec<String> = method.meshes.iter().map(ToString::to_string).collect();
+        solver.push(format!("\"meshes\": [{}]", meshes.join(", ")));
+    }
+    let mut sections = Vec::new();
+    if !solver.is_empty() {
+        sections.push(format!("\"solver\": {{{}}}", solver.join(", ")));
+    }
+    if let [n] = method.meshes[..] {
+        sections.push(format!("\"design\": {{\"subdivisions\": {n}}}"));
+    }
+    if sections.is_empty() { "as it is".to_owned() } else { sections.join(", ") }
 }

@@ -54,7 +54,13 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let given = StudyArgs { study: Some(study.clone()), results: ResultsOption::default() };
         all.push(stored::read(&folder(&given, &[])?)?);
     }
-    let names: Vec<String> = all.iter().map(|stored| stored.study.name.clone()).collect();
+    let mut names: Vec<String> = Vec::new();
+    for stored in &all {
+        // Runs of one study may lie in several folders.
+        if !names.contains(&stored.study.name) {
+            names.push(stored.study.name.clone());
+        }
+    }
     let scenes = convergence::by_scene(&all);
     let rows: Vec<Vec<Value>> = scenes.iter().flat_map(rows).collect();
     if rows.is_empty() {
@@ -140,7 +146,7 @@ fn write_table(
     text.push('\n');
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
     let scenes = table.errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
-    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.len());
+    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.count());
     Ok(())
 }
 

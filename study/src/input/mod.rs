@@ -2,6 +2,7 @@
 //! Schema of both file kinds.
 
 pub mod expression;
+pub mod fraction;
 pub mod keys;
 pub(crate) mod overrides;
 pub(crate) mod plausible;

@@ -10,11 +10,11 @@ use billow_solver::scene::ModelKind;
 
 use super::StudyPoint;
 use crate::accuracy::{Choice, Features, MeshErrors, PROMISED, choices};
+use crate::input::fraction::{RELATIVE_ERROR, relative_error_in};
 use crate::input::keys::STUDY;
 use crate::input::settings::object;
 use crate::input::source::Source;
 use crate::input::study_file::Json;
-use crate::input::units::{self, Dimension};
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
 
@@ -22,8 +22,6 @@ use crate::platform::nearest::nearest;
 pub(super) const ACCURACY: &str = "accuracy";
 /// Its member with the meshes that were chosen.
 const MESHES: &str = "meshes";
-/// What a tolerance may be, for errors.
-const TOLERANCE: &str = "a relative error above 0 and below 1, as 0.02 or \"2 %\"";
 
 /// The errors that results must keep.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,14 +54,8 @@ impl Accuracy {
                 let allowed = names().collect::<Vec<_>>().join(", ");
                 return Err(source.error(&path, &value.brief(), problem, allowed));
             };
-            let number = match value {
-                Json::Text(text) => units::parse(text, Dimension::Number).ok(),
-                Json::Number(number) => Some(*number),
-                _ => None,
-            };
-            let tolerance = number.filter(|number| *number > 0.0 && *number < 1.0);
-            let tolerance = tolerance.ok_or_else(|| {
-                source.error(&path, &value.brief(), "is not a relative error", TOLERANCE)
+            let tolerance = relative_error_in(value).ok_or_else(|| {
+                source.error(&path, &value.brief(), "is not a relative error", RELATIVE_ERROR)
             })?;
             accuracy.tolerances[index] = Some(tolerance);
         }

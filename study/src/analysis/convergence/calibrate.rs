@@ -65,7 +65,7 @@ pub fn calibrate(scenes: &[SceneRuns], studies: Vec<String>, reference: u32) -> 
         coverage,
         base,
         limits,
-        errors,
+        errors: errors.into(),
     })
 }
 

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
-use billow_solver::scene::{ModelKind, Scene, Stepping};
+use billow_solver::scene::{ModelKind, Scene};
 
-use crate::accuracy::features::STEP;
+use crate::accuracy::features::step;
 use crate::accuracy::promised::promise;
 use crate::accuracy::{Features, Promised};
 use crate::input::keys::numerical::{self, MESH, MODEL, SEED};
@@ -84,10 +84,8 @@ fn key(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.design.subdivisions = 0;
     scene.seed = 0;
-    if scene.solver.model != ModelKind::Film {
-        scene.solver.model = ModelKind::Film;
-        scene.solver.stepping = Stepping::Stable(STEP);
-    }
+    scene.solver.model = ModelKind::Film;
+    scene.solver.stepping = step(&scene);
     scene.outputs.frames = 0;
     canonical_json(&scene)
 }

@@ -8,7 +8,7 @@ use super::points::{Points, chosen_runs};
 use super::target::{StudyArgs, find};
 use super::{Format, output_error};
 use crate::analysis::compare::{self, Measure, Pair, Sets, Tolerance, measures_with};
-use crate::input::units::{self, Dimension};
+use crate::input::fraction::fraction;
 use crate::input::value::Value;
 use crate::job::row::{BetterSide, DerivedColumn};
 use crate::platform::error::{Error, Result};
@@ -95,7 +95,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let replicates = if single { Vec::new() } else { varied.clone() };
     let rows = chosen_runs(&table, args.condition.as_deref(), &replicates)?;
     let points = (!replicates.is_empty()).then(|| Points::of(&table, &rows, &replicates));
-    let given = args.tie.as_deref().map(fraction).transpose()?.map(Tolerance::given);
+    let given = args.tie.as_deref().map(tie).transpose()?.map(Tolerance::given);
     // A compared replicate is no repetition.
     let repeated: Vec<String> = varied.iter().filter(|name| **name != by.name).cloned().collect();
     let paired = points.as_ref().map_or(&table, |points| &points.condensed.table);
@@ -206,11 +206,9 @@ fn measure<'a>(table: &'a Table, name: &str) -> Result<&'a Column> {
     Err(Error::invalid_option("--measures", name, problem, numbers.join(", "), ""))
 }
 
-/// A fraction, as 0.01 or "1%".
-fn fraction(text: &str) -> Result<f64> {
-    let number = text.trim().parse().ok();
-    let number = number.or_else(|| units::parse(text, Dimension::Number).ok());
-    number.filter(|number| (0.0..1.0).contains(number)).ok_or_else(|| {
+/// The relative difference of a tie, as 0.01 or "1%".
+fn tie(text: &str) -> Result<f64> {
+    fraction(text).filter(|number| (0.0..1.0).contains(number)).ok_or_else(|| {
         let allowed = "at least 0 and less than 1, as 0.01 or 1%";
         Error::invalid_option("--tie", text, "not a relative difference", allowed, "")
     })

@@ -1,6 +1,10 @@
 //! Columns of the mesh error: how far each promised measure of a row is from its value on fine meshes.
+//!
+//! Rows of the model film have them. The error of a model without mesh is of another kind: it would make most
+//! comparisons of its rows ties, though its errors are alike from design to design. `billow advise` names it.
 
 use billow_solver::output::measures::Verdict;
+use billow_solver::scene::ModelKind;
 
 use super::Column;
 use super::same_job::PointRow;
@@ -38,6 +42,14 @@ impl RowErrors {
             return Self { reason: Some(gap), ..Self::NONE };
         }
         let method = Method::of(scene);
+        if method.model != ModelKind::Film {
+            let known = PROMISED.map(|promised| table.error(&method, &features, &promised));
+            let reason = match known.iter().find_map(|error| error.as_ref().ok()) {
+                Some(_) => of_another_model(&method),
+                None => known.into_iter().find_map(Result::err).unwrap_or_default(),
+            };
+            return Self { reason: Some(reason), ..Self::NONE };
+        }
         let mut reason = None;
         let deployed = cells.verdict() == Some(Verdict::Deployed) || cells.verdict().is_none();
         let errors = PROMISED.map(|promised| {
@@ -56,6 +68,14 @@ impl RowErrors {
         });
         Self { errors, reason }
     }
+}
+
+/// Why rows of a model without mesh have no error, though the table knows it.
+fn of_another_model(method: &Method) -> String {
+    format!(
+        "the error columns are those of film; billow advise STUDY gives the errors of {}",
+        method.name()
+    )
 }
 
 /// Why the state at the end of some runs has no error.
