@@ -73,9 +73,33 @@ fn a_scene_unlike_the_runs_is_not_covered_and_the_reason_names_its_key() {
     assert!(
         reason(|scene| scene.film.numerical_damping = 0.01).starts_with("film.numerical_damping ")
     );
+    assert_eq!(
+        reason(|scene| scene.solver.stepping = Stepping::Stable(0.3)),
+        "solver.cfl 0.3: the runs of the table have 0.45"
+    );
     assert!(reason(|scene| scene.contact.friction = 0.3).starts_with("contact.friction 0.3"));
     assert!(reason(|scene| scene.gravity = -9.8).starts_with("gravity -9.8"));
     assert!(reason(|scene| scene.design.panels = 9).starts_with("N 9: "));
+}
+
+#[test]
+fn a_model_without_mesh_is_covered_at_its_default_step() {
+    let base = scene();
+    let coverage = Coverage::of([(&base, features(&base))]).unwrap();
+    let gap = |model: ModelKind, stepping: Stepping| {
+        let mut scene = scene();
+        scene.solver.model = model;
+        scene.solver.stepping = stepping;
+        coverage.gap(&scene, &features(&scene))
+    };
+    assert_eq!(gap(ModelKind::Piston, Stepping::Adaptive(1e-9)), None);
+    assert_eq!(gap(ModelKind::Piston, Stepping::Adaptive(1e-11)), None);
+    assert_eq!(gap(ModelKind::Storeys, Stepping::Stable(0.45)), None);
+    let step = gap(ModelKind::Storeys, Stepping::Stable(0.9)).unwrap();
+    assert_eq!(step, "solver.cfl 0.9: the runs of the table have 0.45");
+    let step = gap(ModelKind::Piston, Stepping::Fixed(0.001)).unwrap();
+    assert_eq!(step, "solver.stepping.fixed 0.001: the runs of the table have none");
+    assert!(gap(ModelKind::Piston, Stepping::Adaptive(1e-3)).is_some());
 }
 
 /// A table of one measure with two meshes.
@@ -178,5 +202,83 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
             let error = table.error(&method, &features(&scene()), promised).unwrap();
             assert!((1e-4..0.5).contains(&error), "{name} n {n}: {error}");
         }
+    }
+}
+
+#[test]
+fn every_entry_of_the_shipped_table_is_found_and_single_meshes_are_in_order() {
+    let table = MeshErrors::shipped();
+    for entry in table.errors.iter() {
+        let method = Method { model: entry.model, meshes: entry.meshes.clone() };
+        assert_eq!(table.entry(&method, &entry.measure), Some(entry));
+    }
+    let none = Method { model: ModelKind::Film, meshes: vec![4, 7] };
+    assert_eq!(table.entry(&none, "t_90_z_rim"), None);
+    assert_eq!(
+        table.entry(&Method { model: ModelKind::Film, meshes: vec![4] }, "t_91_z_rim"),
+        None
+    );
+    for promised in &PROMISED {
+        let measure = promised.measure.name();
+        let single = |entry: &&Entry| entry.measure == measure && entry.meshes.len() == 1;
+        let mut expected: Vec<u32> =
+            table.errors.iter().filter(single).map(|entry| entry.meshes[0]).collect();
+        expected.sort_unstable();
+        let found = table.errors.single_meshes(measure, ModelKind::Film);
+        assert_eq!(found.map(|entry| entry.meshes[0]).collect::<Vec<_>>(), expected);
+        assert_eq!(table.errors.single_meshes(measure, ModelKind::Piston).count(), 0);
+    }
+    // The file has the entries alone.
+    let text = serde_json::to_string(table).unwrap();
+    assert_eq!(serde_json::from_str::<MeshErrors>(&text).unwrap(), *table);
+}
+
+/// The shipped table has all three models for each measure, and the piston is the least exact in how soon.
+#[test]
+fn the_models_without_mesh_stand_beside_the_meshes_the_cheapest_first() {
+    let table = MeshErrors::shipped();
+    let mut film = table.coverage.scene.clone();
+    film.design.panels = 6;
+    let mut piston = film.clone();
+    piston.solver.model = ModelKind::Piston;
+    piston.solver.stepping = Stepping::Adaptive(1e-9);
+    for scene in [film, piston] {
+        let choices = choices(table, &[(&scene, features(&scene))]).unwrap();
+        let models: Vec<ModelKind> = choices.iter().map(|choice| choice.method.model).collect();
+        assert_eq!(models[..3], [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]);
+        assert!(choices.iter().all(|choice| choice.refusal.is_none()));
+        assert!(choices[..2].iter().all(|choice| choice.errors.iter().all(|e| e.is_finite())));
+        let t_90 = |index: usize| choices[index].errors[1];
+        assert!(t_90(0) > t_90(1) && t_90(1) > t_90(2), "{choices:?}");
+    }
+}
+
+#[test]
+fn a_model_that_cannot_compute_a_scene_keeps_nothing() {
+    // A table of scenes whose top is held, which no model but film moves.
+    let mut held = scene();
+    held.supports.push(held.supports[0].clone());
+    held.supports[1].on = billow_solver::scene::SupportLocation::TopRing;
+    let mut table = table(true);
+    table.coverage = Coverage::of([(&held, features(&held))]).unwrap();
+    let mut entries: Vec<Entry> = table.errors.into();
+    let meshless = |model| Entry { model, meshes: Vec::new(), ..entries[0].clone() };
+    let more = [ModelKind::Piston, ModelKind::Storeys].map(meshless);
+    entries.extend(more);
+    for entry in &mut entries {
+        PROMISED[0].measure.name().clone_into(&mut entry.measure);
+    }
+    table.errors = entries.into();
+    let choices = choices(&table, &[(&held, features(&held))]).unwrap();
+    let mut tolerances = [None; PROMISED.len()];
+    tolerances[0] = Some(0.5);
+    let keeps = |model: ModelKind| {
+        let choice = choices.iter().find(|choice| choice.method.model == model).unwrap();
+        (choice.keeps(&tolerances), choice.refusal.clone().unwrap_or_default())
+    };
+    assert_eq!(keeps(ModelKind::Film), (true, String::new()));
+    for model in [ModelKind::Piston, ModelKind::Storeys] {
+        let (kept, reason) = keeps(model);
+        assert!(!kept && reason.contains("supports[1]"), "{reason}");
     }
 }

@@ -111,3 +111,53 @@ pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cells]) -> Vec<Column> {
     });
     columns
 }
+
+#[cfg(test)]
+mod tests {
+    use billow_solver::scene::{Scene, Stepping};
+
+    use super::*;
+    use crate::run::fixture;
+
+    /// The errors of a row of the paper's capsule, computed by a model.
+    fn of_row(model: ModelKind, stepping: Stepping) -> RowErrors {
+        let mut point = fixture::generation(1).points.remove(0);
+        let scene: &mut Scene = &mut point.job.scene;
+        *scene = MeshErrors::shipped().coverage.scene.clone();
+        scene.design.panels = 6;
+        scene.design.subdivisions = 4;
+        scene.solver.model = model;
+        scene.solver.stepping = stepping;
+        let mut cells = Cells::new(Status::Done);
+        cells.set(ColumnId::TopRadius, 0.365);
+        cells.set(ColumnId::Height, 1.0);
+        cells.set(ColumnId::T90ZRim, 0.2);
+        cells.set(ColumnId::Verdict, "deployed");
+        let parameters = point.job.parameters.clone();
+        RowErrors::of(&PointRow { point: &point, parameters: &parameters }, &cells)
+    }
+
+    #[test]
+    fn rows_of_film_have_errors_and_rows_of_another_model_say_where_theirs_are() {
+        let film = of_row(ModelKind::Film, Stepping::Stable(0.45));
+        assert!(film.errors[1].is_some_and(|error| error > 0.0 && error < 0.2));
+        assert_eq!(film.reason, None);
+        let said = |model: &str| {
+            format!(
+                "the error columns are those of film; billow advise STUDY gives the errors of {model}"
+            )
+        };
+        let piston = of_row(ModelKind::Piston, Stepping::Adaptive(1e-9));
+        assert_eq!((piston.errors, piston.reason), (RowErrors::NONE.errors, Some(said("piston"))));
+        let storeys = of_row(ModelKind::Storeys, Stepping::Stable(0.45));
+        assert_eq!(storeys.errors, RowErrors::NONE.errors);
+        assert_eq!(storeys.reason, Some(said("storeys")));
+        // Where the table has no error of the model either, the reason is that.
+        let outside = of_row(ModelKind::Storeys, Stepping::Stable(0.2));
+        assert_eq!(outside.errors, RowErrors::NONE.errors);
+        assert_eq!(
+            outside.reason.as_deref(),
+            Some("solver.cfl 0.2: the runs of the table have 0.45")
+        );
+    }
+}
