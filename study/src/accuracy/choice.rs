@@ -12,9 +12,10 @@ use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
 use billow_solver::models;
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
+use super::entry::{Entry, Method};
 use super::features::{FEATURES, Features, STEP};
 use super::promised::PROMISED;
-use super::table::{Entry, MeshErrors, Method};
+use super::table::MeshErrors;
 
 /// Cost of a run of the piston. Measured: 1 ms against 150 s of film on 24 subdivisions.
 const PISTON_COST: f64 = 7e-6;
@@ -71,7 +72,7 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
     let refusals = [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]
         .map(|model| (model, scenes.iter().find_map(|(scene, _)| refusal(model, scene))));
     let of_measure = |entry: &&Entry| entry.measure == PROMISED[0].measure.name();
-    let methods = table.errors.iter().filter(of_measure);
+    let methods = table.errors.all().iter().filter(of_measure);
     let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
     let mut choices: Vec<Choice> = methods
         .map(|method| {

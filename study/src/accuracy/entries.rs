@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use billow_solver::scene::ModelKind;
 use serde::{Deserialize, Serialize};
 
-use super::table::{Entry, Method};
+use super::entry::{Entry, Method};
 
 /// The entries, as they stand in the file, and their order. Only the entries are written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,13 +35,8 @@ impl From<Entries> for Vec<Entry> {
 
 impl Entries {
     /// The entries, as they stand in the file.
-    pub fn iter(&self) -> std::slice::Iter<'_, Entry> {
-        self.entries.iter()
-    }
-
-    /// Number of entries.
-    pub fn count(&self) -> usize {
-        self.entries.len()
+    pub fn all(&self) -> &[Entry] {
+        &self.entries
     }
 
     /// The entry of a measure by a method.

@@ -5,6 +5,7 @@
 
 pub mod choice;
 pub mod entries;
+pub mod entry;
 pub mod features;
 pub mod promised;
 pub mod table;
@@ -13,8 +14,9 @@ mod tests;
 
 pub use choice::{Choice, choices};
 pub use entries::Entries;
+pub use entry::{Entry, Limit, Method};
 pub use features::{Coverage, Features};
 pub use promised::{
     NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_column, is_error_column,
 };
-pub use table::{Entry, Limit, MeshErrors, Method};
+pub use table::MeshErrors;

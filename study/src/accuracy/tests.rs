@@ -208,7 +208,7 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
 #[test]
 fn every_entry_of_the_shipped_table_is_found_and_single_meshes_are_in_order() {
     let table = MeshErrors::shipped();
-    for entry in table.errors.iter() {
+    for entry in table.errors.all() {
         let method = Method { model: entry.model, meshes: entry.meshes.clone() };
         assert_eq!(table.entry(&method, &entry.measure), Some(entry));
     }
@@ -222,7 +222,7 @@ fn every_entry_of_the_shipped_table_is_found_and_single_meshes_are_in_order() {
         let measure = promised.measure.name();
         let single = |entry: &&Entry| entry.measure == measure && entry.meshes.len() == 1;
         let mut expected: Vec<u32> =
-            table.errors.iter().filter(single).map(|entry| entry.meshes[0]).collect();
+            table.errors.all().iter().filter(single).map(|entry| entry.meshes[0]).collect();
         expected.sort_unstable();
         let found = table.errors.single_meshes(measure, ModelKind::Film);
         assert_eq!(found.map(|entry| entry.meshes[0]).collect::<Vec<_>>(), expected);

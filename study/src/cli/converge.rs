@@ -145,8 +145,8 @@ fn write_table(
     let mut text = serde_json::to_string_pretty(&table).unwrap_or_default();
     text.push('\n');
     write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
-    let scenes = table.errors.iter().map(|entry| entry.scenes).max().unwrap_or(0);
-    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.count());
+    let scenes = table.errors.all().iter().map(|entry| entry.scenes).max().unwrap_or(0);
+    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.all().len());
     Ok(())
 }
 

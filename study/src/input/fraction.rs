@@ -17,7 +17,7 @@ pub fn fraction(text: &str) -> Option<f64> {
 
 /// A relative error as an option of a command gives it.
 pub fn relative_error(text: &str) -> Option<f64> {
-    fraction(text).filter(is_relative_error)
+    fraction(text).and_then(in_range)
 }
 
 /// A relative error as a file gives it: a number, or a text with its unit.
@@ -27,15 +27,15 @@ pub fn relative_error_in(json: &Json) -> Option<f64> {
         Json::Number(number) => Some(*number),
         _ => None,
     };
-    number.filter(is_relative_error)
+    number.and_then(in_range)
 }
 
 fn percentage(text: &str) -> Option<f64> {
     units::parse(text, Dimension::Number).ok()
 }
 
-fn is_relative_error(number: &f64) -> bool {
-    *number > 0.0 && *number < 1.0
+fn in_range(number: f64) -> Option<f64> {
+    (number > 0.0 && number < 1.0).then_some(number)
 }
 
 #[cfg(test)]
