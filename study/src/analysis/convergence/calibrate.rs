@@ -30,6 +30,8 @@ const MAX_WEIGHT: f64 = 3.0;
 /// Runs on a mesh from which a limit may follow, at least; and number of such meshes.
 const LIMIT_RUNS: usize = 4;
 const LIMIT_MESHES: usize = 4;
+/// Coarser meshes have no part in a limit where enough others are there. Chosen: on n 2 and 3 a panel is not yet round.
+const COARSEST_OF_LIMIT: u32 = 4;
 
 /// One scene for one measure: v by model, subdivisions and seed.
 struct Scene {
@@ -297,8 +299,17 @@ fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
     }
 }
 
-/// The medians of a measure by mesh, coarsest first.
+/// The medians of a measure by mesh, coarsest first: those of which a limit can follow.
 pub fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
+    let mut levels = all_levels(scene, measure);
+    let fine = levels.iter().filter(|level| level.subdivisions >= COARSEST_OF_LIMIT).count();
+    if fine >= LIMIT_MESHES {
+        levels.retain(|level| level.subdivisions >= COARSEST_OF_LIMIT);
+    }
+    levels
+}
+
+fn all_levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
     let mut values: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for run in &scene.runs {
         if let ((ModelKind::Film, n), Some(value)) = (run.mesh(), run.measure(measure)) {
