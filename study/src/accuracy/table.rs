@@ -9,6 +9,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use billow_solver::scene::ModelKind;
 use billow_solver::scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -110,6 +111,17 @@ impl MeshErrors {
             }
             _ => no_runs(),
         })
+    }
+
+    /// Bias of film on a mesh against the finest mesh, for a scene that is covered; `None` where the table has no such
+    /// runs.
+    pub fn bias(&self, n: u32, measure: &str, features: &Features) -> Option<f64> {
+        if n == self.reference {
+            return Some(0.0);
+        }
+        let entry = self.entry(&Method { model: ModelKind::Film, meshes: vec![n] }, measure)?;
+        let covered = entry.covers(&features.values, &self.base);
+        covered.then(|| entry.bias(&features.values).0)
     }
 
     /// The entry of a method, as it stands in the table.

@@ -19,6 +19,7 @@ use crate::platform::stop::Stop;
 use crate::run::event::Silent;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run};
 use crate::store::results::Results;
+use crate::store::table::Table;
 use crate::study::plan;
 use crate::study::{PlanSize, Study};
 
@@ -90,7 +91,7 @@ pub fn measure(
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(&study, finished),
             result_limits: study.result_limits(),
-            unit: &|name| study.unit(name).to_owned(),
+            table: &|points, records| Table::of_study(&study, points, records),
             executor: &Solver { instruction_set, references: References::default() },
             results: Results::new(&Disk, &folder.path().join("results")),
             threads: NonZero::new(threads as usize),

@@ -149,7 +149,7 @@ fn list(
     out: &mut dyn Write,
 ) -> Result<()> {
     let format = options.output.format();
-    let parameters = stored.study.parameter_names();
+    let parameters = stored.study.run_parameter_names();
     let points = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
     let rows: Vec<Vec<Value>> = points
         .map(|point| {

@@ -29,6 +29,7 @@ use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
+use crate::store::table::Table;
 use crate::study::Study;
 use crate::study::job_limits::with_options;
 use crate::study::plan;
@@ -143,7 +144,7 @@ pub(super) fn run_study(
             study: &study.resolved(),
             planner: &|finished| plan::next_jobs(study, finished),
             result_limits: study.result_limits(),
-            unit: &|name| study.unit(name).to_owned(),
+            table: &|points, records| Table::of_study(study, points, records),
             executor: &Solver {
                 instruction_set,
                 references: References::known(known_references(&results)),
@@ -164,7 +165,11 @@ pub(super) fn run_study(
     let mut stored = Stored::read(results)?;
     stored.units = units;
     let answer = Answer::of(&stored);
-    let ended = Ended { study, root, summary: &summary, points: stored.point_count() };
+    let points = match study.auto() {
+        Some(_) => study.points().len(),
+        None => stored.point_count(),
+    };
+    let ended = Ended { study, root, summary: &summary, points };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
     result(&summary, &limits, root)
 }

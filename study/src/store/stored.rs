@@ -15,6 +15,7 @@ use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
+use crate::study::auto::Outcome;
 use crate::study::finished::FinishedRow;
 use crate::study::plan;
 use crate::study::{Border, Study};
@@ -78,6 +79,11 @@ impl<'a> Stored<'a> {
 
     /// The table, built from plan and journal: one row per point, also for points that share a job.
     pub fn table(&self) -> Table {
+        Table::of_study(&self.study, &self.points, &self.journal.records).shown_in(&self.units)
+    }
+
+    /// The table of all runs. It differs from [`Self::table`] in a study with pilots.
+    pub fn runs_table(&self) -> Table {
         self.built(&self.points)
     }
 
@@ -88,10 +94,14 @@ impl<'a> Stored<'a> {
 
     /// The table of these points, shown in the study's units.
     fn built(&self, points: &[Point]) -> Table {
-        let unit = |name: &str| self.study.unit(name).to_owned();
-        let table = Table::build(points, &self.journal.records, &unit);
-        let table = table.with_extrapolated(points, &self.study.meshes());
-        table.judged(self.study.result_limits()).shown_in(&self.units)
+        Table::of_runs(&self.study, points, &self.journal.records).shown_in(&self.units)
+    }
+
+    /// What the pilots and the checks of the study say; `None` for a study without.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.study.auto()?;
+        let finished = finished(&self.study, &self.points, &self.journal.records);
+        plan::shown(&self.study, &finished).map(|(_, outcome)| outcome)
     }
 
     /// Number of points planned so far, also of those that share a job.
@@ -101,12 +111,7 @@ impl<'a> Stored<'a> {
 
     /// What the searches of the study have found so far.
     pub fn borders(&self) -> Vec<Border> {
-        let limits = self.study.result_limits();
-        let row = |point: &Point| {
-            let cells = journal::cells_of(point, &self.journal.records)?;
-            Some(FinishedRow::of(&point.job.id, &cells, limits))
-        };
-        let finished: Vec<FinishedRow> = self.points.iter().filter_map(row).collect();
+        let finished = finished(&self.study, &self.points, &self.journal.records);
         plan::borders(&self.study, &finished)
     }
 
@@ -229,13 +234,22 @@ pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
     {
         last = Some(generation.number);
         plan::add_generation(&mut points, generation);
-        let row = |point: &Point| {
-            let cells = journal::cells_of(point, records)?;
-            Some(FinishedRow::of(&point.job.id, &cells, study.result_limits()))
-        };
-        finished = points.iter().filter_map(row).collect();
+        finished = self::finished(study, &points, records);
     }
     points
+}
+
+/// The finished rows of some points.
+pub fn finished(
+    study: &Study,
+    points: &[Point],
+    records: &BTreeMap<JobId, Record>,
+) -> Vec<FinishedRow> {
+    let row = |point: &Point| {
+        let cells = journal::cells_of(point, records)?;
+        Some(FinishedRow::of(&point.job.id, &cells, study.result_limits()))
+    };
+    points.iter().filter_map(row).collect()
 }
 
 #[cfg(test)]

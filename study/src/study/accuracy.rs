@@ -4,6 +4,7 @@
 //! ```text
 //! {"t_90_z_rim": 0.02}  →  the cheapest of one or two meshes whose errors of every point are within these
 //! ```
+//! A number is the tolerance of every promised measure but `peak_vz`, which scatters by more from seed to seed.
 //! The choice stands in study.json beside the errors, so that another version of the table changes no stored study.
 
 use billow_solver::scene::ModelKind;
@@ -15,6 +16,7 @@ use crate::input::keys::STUDY;
 use crate::input::settings::object;
 use crate::input::source::Source;
 use crate::input::study_file::Json;
+use crate::job::row::ColumnId;
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
 
@@ -27,7 +29,7 @@ const MESHES: &str = "meshes";
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Accuracy {
     /// Largest relative error of each promised measure.
-    tolerances: [Option<f64>; PROMISED.len()],
+    pub tolerances: [Option<f64>; PROMISED.len()],
     /// The meshes that keep them, coarsest first; empty until they are chosen.
     pub meshes: Vec<u32>,
 }
@@ -40,6 +42,12 @@ impl Accuracy {
     pub fn read(json: Option<&Json>, source: &Source) -> Result<Option<Self>, InputError> {
         let Some(json) = json else { return Ok(None) };
         let mut accuracy = Self { tolerances: [None; PROMISED.len()], meshes: Vec::new() };
+        if let Json::Text(_) | Json::Number(_) = json {
+            let tolerance = tolerance(json, ACCURACY, source)?;
+            accuracy.tolerances = PROMISED
+                .map(|promised| (promised.measure != ColumnId::PeakVz).then_some(tolerance));
+            return Ok(Some(accuracy));
+        }
         for (name, value) in object(json, &STUDY, ACCURACY, source)? {
             let path = format!("{ACCURACY}.{name}");
             if name == MESHES {
@@ -54,10 +62,7 @@ impl Accuracy {
                 let allowed = names().collect::<Vec<_>>().join(", ");
                 return Err(source.error(&path, &value.brief(), problem, allowed));
             };
-            let tolerance = relative_error_in(value).ok_or_else(|| {
-                source.error(&path, &value.brief(), "is not a relative error", RELATIVE_ERROR)
-            })?;
-            accuracy.tolerances[index] = Some(tolerance);
+            accuracy.tolerances[index] = Some(tolerance(value, &path, source)?);
         }
         if accuracy.tolerances.iter().all(Option::is_none) {
             let allowed = "measures and their relative errors, as in {\"t_90_z_rim\": 0.02}";
@@ -117,7 +122,9 @@ impl Accuracy {
     pub fn to_json(&self) -> Json {
         let mut members = self.members();
         let meshes = self.meshes.iter().map(|n| Json::Integer(i64::from(*n)));
-        members.push((MESHES.to_owned(), Json::List(meshes.collect())));
+        if !self.meshes.is_empty() {
+            members.push((MESHES.to_owned(), Json::List(meshes.collect())));
+        }
         Json::Object(members)
     }
 
@@ -133,6 +140,12 @@ impl Accuracy {
     fn shown(&self) -> String {
         Json::Object(self.members()).brief()
     }
+}
+
+/// A relative error of a study file.
+fn tolerance(json: &Json, path: &str, source: &Source) -> Result<f64, InputError> {
+    relative_error_in(json)
+        .ok_or_else(|| source.error(path, &json.brief(), "is not a relative error", RELATIVE_ERROR))
 }
 
 /// The meshes of a study.json.

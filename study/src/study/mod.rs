@@ -7,6 +7,7 @@
 //! Every error of a study is found here, before anything runs.
 
 mod accuracy;
+pub mod auto;
 mod base;
 mod expand;
 pub mod finished;
@@ -42,6 +43,7 @@ use crate::job::limits::JobLimits;
 use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
 use accuracy::{ACCURACY, Accuracy};
+use auto::Auto;
 use base::Base;
 use expand::Points;
 use grid::{Context, Grid};
@@ -82,6 +84,8 @@ pub struct Study {
     result_limits: Vec<ResultLimit>,
     /// The errors that its results must keep.
     accuracy: Option<Accuracy>,
+    /// The plan of pilots and coarse runs, if it asks for one.
+    auto: Option<Auto>,
     points: Points,
 }
 
@@ -142,6 +146,10 @@ impl Study {
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
         let renamed = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
+        let is_auto = auto::is_auto(&tree);
+        if is_auto {
+            auto::replace_model(&mut tree);
+        }
         let base = Base::read(&tree, &source)?;
         let result_limits = result_limits::read(tree.get(LIMITS), &source)?;
         let context = Context { base: &base, limits: &result_limits, source: &source, size };
@@ -151,7 +159,8 @@ impl Study {
         let mut points = expand::points(&base, &grid, &source, size)?;
         let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
         let mut base = base;
-        if let Some(accuracy) = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty()) {
+        let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty() && !is_auto);
+        if let Some(accuracy) = chooses {
             accuracy::refuse_given_mesh(&tree, &source)?;
             accuracy.choose(&points.points, &source)?;
             accuracy::set_meshes(&mut tree, &accuracy.meshes);
@@ -160,6 +169,12 @@ impl Study {
             grid = Grid::read(&tree, context)?;
             points = expand::points(&base, &grid, &source, size)?;
         }
+        let auto = if is_auto {
+            let repeats = grid.repeated();
+            Some(Auto::of(accuracy.as_ref(), &grid, &points.points, &repeats, &source)?)
+        } else {
+            None
+        };
         let name = study_name(&base, stem, &source)?;
         let question = base.settings.text(const { position(KEYS, "question") });
         let question = question.unwrap_or_default().to_owned();
@@ -174,6 +189,7 @@ impl Study {
             grid,
             result_limits,
             accuracy,
+            auto,
             points,
         })
     }
@@ -185,8 +201,12 @@ impl Study {
 
     /// Names of the parameters whose values repeat a point.
     pub fn replicates(&self) -> Vec<String> {
-        let columns = self.grid.replicates().flat_map(|axis| &axis.columns);
-        columns.map(|column| self.grid.columns[*column].name.clone()).collect()
+        self.grid.repeated()
+    }
+
+    /// The plan of pilots and coarse runs; `None` for a study that names its model.
+    pub fn auto(&self) -> Option<&Auto> {
+        self.auto.as_ref()
     }
 
     /// The meshes from which the values of each point are extrapolated, coarsest first; empty without any.
@@ -246,6 +266,9 @@ impl Study {
             && let Some(solver) = json.get_mut("solver")
         {
             solver.set("meshes", Json::List(meshes));
+        }
+        if self.auto.is_some() {
+            auto::write_model(&mut json);
         }
         let grid = self.grid.resolved();
         if grid != Json::Object(Vec::new()) {

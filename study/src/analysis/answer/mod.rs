@@ -4,7 +4,7 @@
 
 use billow_solver::output::measures::Verdict;
 
-use crate::analysis::compare;
+use crate::analysis::{compare, replicates};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -13,6 +13,7 @@ use crate::job::row::{ColumnId, Counts, HEADLINE};
 use crate::store::stored::Stored;
 use crate::store::table::Table;
 
+mod auto;
 mod effects;
 mod medians;
 mod pairwise;
@@ -21,6 +22,7 @@ mod safety;
 mod searches;
 mod trust;
 
+pub use auto::{AutoAnswer, Kept};
 pub use effects::{Effect, Effects, MeasureEffect};
 pub use medians::Extremes;
 pub(super) use medians::{Set, block};
@@ -61,6 +63,8 @@ pub struct Answer {
     pub choice: Option<String>,
     /// Each pair of its values.
     pub pairwise: Vec<Versus>,
+    /// Which mesh the points of a study with `"model": "auto"` have, and whether that keeps its promise.
+    pub auto: Option<AutoAnswer>,
     /// What the searches of borders found.
     pub searches: Option<Searches>,
 }
@@ -102,6 +106,7 @@ impl Answer {
             answer.choice = Some(choice.name.clone());
             answer.pairwise = pairwise::pairwise(&points, &choice.name, &zipped);
         }
+        answer.auto = AutoAnswer::of(stored);
         answer.searches = Searches::of(stored, &table);
         answer
     }
@@ -139,7 +144,8 @@ fn extreme(
     measure: ColumnId,
     better: fn(f64, f64) -> bool,
 ) -> Option<Extreme> {
-    let column = table.column(measure.name())?;
+    let raw = table.column(measure.name())?;
+    let column = replicates::source(table, raw);
     let mut best: Option<(usize, f64)> = None;
     for row in rows.iter().copied() {
         let Some(value) = compare::measured(table, column, row) else { continue };

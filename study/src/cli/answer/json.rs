@@ -30,6 +30,7 @@ pub fn json(answer: &Answer) -> serde_json::Value {
             "parameter": answer.choice,
             "pairs": answer.pairwise.iter().map(judged::versus).collect::<Vec<_>>(),
         },
+        "auto": answer.auto.as_ref().map(judged::auto),
         "borders": answer.searches.as_ref().map(judged::searches),
     })
 }

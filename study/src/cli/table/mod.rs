@@ -10,6 +10,7 @@ use super::{Format, best};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
+use crate::store::stored::Stored;
 use crate::store::table::Table;
 use columns::{chosen, heading, shown};
 use sort::{by_search, sorted};
@@ -78,6 +79,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let sorts = args.sort.iter().map(|key| key.split(':').next().unwrap_or_default());
     let asked = args.columns.iter().map(String::as_str).chain(sorts);
     let asked: Vec<String> = asked.map(|name| name.trim().to_owned()).collect();
+    if args.runs && target.study.as_ref().is_some_and(|study| study.auto().is_some()) {
+        target.table = Stored::read(target.results.clone())?.runs_table();
+    }
     target.add_keys(&asked, args.condition.as_deref())?;
     let Target { study, table, .. } = target;
     let study = study.as_ref();

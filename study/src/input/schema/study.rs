@@ -36,6 +36,10 @@ pub fn study_schema() -> Json {
         let mut schema = definitions.section(&STUDY, section, &property);
         if *section == "solver" {
             schema["properties"]["meshes"] = meshes();
+            let models = schema["properties"]["model"].take();
+            let title = models["title"].clone();
+            schema["properties"]["model"] =
+                json!({"title": title, "anyOf": [models, {"const": "auto"}]});
         }
         properties.insert((*section).to_owned(), schema);
     }
@@ -80,19 +84,20 @@ fn value(definitions: &mut Definitions, key: &Key) -> Json {
 }
 
 fn accuracy() -> Json {
+    let number = json!({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1});
+    let text = json!({"type": "string", "pattern": r"^\s*[0-9.]+(e-?[0-9]+)?\s*%?\s*$"});
     json!({
         "title": "accuracy",
         "description": STUDY.meaning("accuracy"),
-        "type": "object",
-        "properties": {"meshes": {
-            "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 1, "maxItems": 3,
-        }},
-        // Any other member is a measure.
-        "additionalProperties": {"oneOf": [
-            {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-            {"type": "string", "pattern": r"^\s*[0-9.]+(e-?[0-9]+)?\s*%?\s*$"},
-        ]},
-        "minProperties": 1,
+        "oneOf": [number, text, {
+            "type": "object",
+            "properties": {"meshes": {
+                "type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 1, "maxItems": 3,
+            }},
+            // Any other member is a measure.
+            "additionalProperties": {"oneOf": [number, text]},
+            "minProperties": 1,
+        }],
     })
 }
 

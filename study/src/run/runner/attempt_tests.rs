@@ -13,6 +13,7 @@ use crate::platform::files::Disk;
 use crate::run::fixture::{self, ran};
 use crate::store::attempts::Attempts;
 use crate::store::stored::other_physics;
+use crate::store::table::Table;
 
 const JOBS: u32 = 5;
 
@@ -81,7 +82,7 @@ fn run_with(
         study: &serde_json::json!({}).into(),
         planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
         result_limits: &[],
-        unit: &|_| String::new(),
+        table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor,
         results: Results::new(&Disk, root),
         threads: NonZero::new(2),

@@ -9,7 +9,7 @@
 //! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
 //! compared with the hash of the old one.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::time::Duration;
 
@@ -17,12 +17,15 @@ use crate::input::study_file::Json;
 use crate::job::JobId;
 use crate::job::executor::Executor;
 use crate::job::limits::JobLimits;
+use crate::job::point::Point;
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::Counts;
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
 use crate::run::event::{Event, Reporter};
+use crate::store::journal::Record;
 use crate::store::results::Results;
+use crate::store::table::Table;
 use crate::study::finished::FinishedRow;
 use crate::study::plan::Generation;
 
@@ -37,6 +40,9 @@ use state::State;
 /// Time between two checkpoints of a job, at least. Chosen: a crash loses little, and a short job has none.
 pub const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(30);
 
+/// Builds the table of planned points from the records of their jobs.
+pub type TableOf<'a> = dyn Fn(&[Point], &BTreeMap<JobId, Record>) -> Table + 'a;
+
 /// What to run, and with what.
 pub struct Run<'a> {
     /// Name of the study.
@@ -47,8 +53,8 @@ pub struct Run<'a> {
     pub planner: &'a dyn Fn(&[FinishedRow]) -> Option<Generation>,
     /// What the results must meet to be safe.
     pub result_limits: &'a [ResultLimit],
-    /// SI unit of a parameter.
-    pub unit: &'a dyn Fn(&str) -> String,
+    /// The table of the points planned so far, from the records of their jobs.
+    pub table: &'a TableOf<'a>,
     /// Computes the jobs.
     pub executor: &'a dyn Executor,
     /// Folder of the results.

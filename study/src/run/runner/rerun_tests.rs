@@ -16,6 +16,7 @@ use crate::run::event::Silent;
 use crate::run::fixture::{self, Scripted, ran};
 use crate::store::history_file;
 use crate::store::journal::{Record, Writer};
+use crate::store::table::Table;
 
 const JOBS: u32 = 5;
 
@@ -39,7 +40,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         study: &serde_json::json!({}).into(),
         planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
         result_limits: &[],
-        unit: &|_| String::new(),
+        table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor: &executor,
         results: Results::new(files, root),
         threads: NonZero::new(1),

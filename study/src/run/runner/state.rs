@@ -16,7 +16,6 @@ use crate::platform::error::{Error, Result};
 use crate::run::event::{Event, Reporter};
 use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record};
-use crate::store::table::Table;
 use crate::study::finished::FinishedRow;
 use crate::study::plan::{self, Generation};
 
@@ -255,8 +254,7 @@ impl<'a, 'w> State<'a, 'w> {
         let start = Instant::now();
         if self.table_outdated {
             self.log.check_folder()?;
-            let table = Table::build(&self.points, &self.records, self.run.unit)
-                .judged(self.run.result_limits);
+            let table = (self.run.table)(&self.points, &self.records);
             self.run.results.write_table(&table)?;
             self.table_outdated = false;
         }

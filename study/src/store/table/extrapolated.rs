@@ -14,6 +14,7 @@ use billow_solver::scene::Scene;
 
 use super::same_job::point_rows;
 use super::{Column, Table};
+use crate::accuracy::promised::promise;
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED, Promised};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
@@ -34,8 +35,17 @@ pub fn names(measure: &str) -> [String; 2] {
 /// Whether a column holds extrapolated values or their errors.
 pub fn is_extrapolated(name: &str) -> bool {
     let measure = name.strip_suffix(EXTRAPOLATED).or(name.strip_suffix(ERROR));
-    measure.is_some_and(|measure| PROMISED.iter().any(|known| known.measure.name() == measure))
+    measure.is_some_and(|measure| promise(measure).is_some())
 }
+
+/// An extrapolated value of a row, and its error if it is known.
+pub(super) type Extrapolated = Option<(f64, Option<f64>)>;
+
+/// Times since the release, each with the position of its time among the promised measures.
+pub(super) const SINCE_RELEASE: [(ColumnId, ColumnId); 2] = [
+    (ColumnId::T50ZRimSinceRelease, ColumnId::T50ZRim),
+    (ColumnId::T90ZRimSinceRelease, ColumnId::T90ZRim),
+];
 
 impl Table {
     /// The table with the values extrapolated from these meshes, coarsest first, and their errors. `points` are
@@ -45,8 +55,7 @@ impl Table {
         let Some(finest) = meshes.last().filter(|_| meshes.len() > 1) else { return self };
         let points = point_rows(points);
         let on_mesh = self.rows_by_mesh();
-        let mut new = Vec::new();
-        for promised in &PROMISED {
+        let of_measure = |promised: &Promised| {
             let value = |row: usize| {
                 let scene = &points[row].point.job.scene;
                 if scene.design.subdivisions != *finest {
@@ -58,33 +67,65 @@ impl Table {
                 let features = self.features(row, scene)?;
                 Some(extrapolated(promised, scene, &features, meshes, &values))
             };
-            let cells: Vec<Option<(f64, Option<f64>)>> = (0..self.rows()).map(value).collect();
-            let unit = promised.measure.column().unit;
-            let column = |name: String, meaning: String, cells: Vec<Option<f64>>| Column {
-                name,
-                cell_type: CellType::Number,
-                unit: unit.to_owned(),
-                shown: DisplayUnit::si(unit),
-                meaning,
-                cells: cells
-                    .into_iter()
-                    .map(|cell| cell.map_or(Value::Null, Value::Number))
-                    .collect(),
+            (0..self.rows()).map(value).collect()
+        };
+        let values = PROMISED.each_ref().map(of_measure);
+        let releases: Vec<f64> =
+            points.iter().map(|row| row.point.job.scene.release_time).collect();
+        self.add_extrapolated(&values, &releases);
+        self
+    }
+
+    /// Adds the columns of extrapolated values and their errors, and of the times since the release that follow.
+    /// `values` has one list per promised measure, `releases` the release time of each row, s.
+    fn add_extrapolated(&mut self, values: &[Vec<Extrapolated>; PROMISED.len()], releases: &[f64]) {
+        let mut new = Vec::new();
+        let mut add = |measure: ColumnId, cells: &[Extrapolated]| {
+            let unit = measure.column().unit;
+            let column = |name: String, meaning: String, of: fn(Extrapolated) -> Option<f64>| {
+                let cells = cells.iter().map(|cell| of(*cell).map_or(Value::Null, Value::Number));
+                Column {
+                    name,
+                    cell_type: CellType::Number,
+                    unit: unit.to_owned(),
+                    shown: DisplayUnit::si(unit),
+                    meaning,
+                    cells: cells.collect(),
+                }
             };
-            let [value, error] = names(promised.measure.name());
-            let measure = promised.measure.name();
-            let values = cells.iter().map(|cell| cell.map(|(value, _)| value)).collect();
-            let meaning = format!("{measure}, extrapolated from the meshes of the study");
-            new.push(column(value, meaning, values));
-            let errors = cells.iter().map(|cell| cell.and_then(|(_, error)| error)).collect();
+            let measure = measure.name();
+            let [value, error] = names(measure);
+            let value_of = |cell: Extrapolated| cell.map(|(value, _)| value);
+            new.push(column(
+                value,
+                format!("{measure}, extrapolated from the meshes of the study"),
+                value_of,
+            ));
             let meaning =
                 format!("mesh error of the extrapolated {measure}: 9 of 10 runs are nearer");
-            new.push(column(error, meaning, errors));
+            new.push(column(error, meaning, |cell| cell.and_then(|(_, error)| error)));
+        };
+        for (promised, cells) in PROMISED.iter().zip(values) {
+            add(promised.measure, cells);
+        }
+        for (since, measure) in SINCE_RELEASE {
+            let index = PROMISED.iter().position(|promised| promised.measure == measure);
+            let Some(index) = index else { continue };
+            let cells = values[index].iter().zip(releases);
+            let cells: Vec<Extrapolated> = cells
+                .map(|(cell, release)| cell.map(|(value, error)| (value - release, error)))
+                .collect();
+            add(since, &cells);
         }
         let last = self.columns.iter().position(|column| column.name == SAME_JOB_AS);
         let last = last.unwrap_or(self.columns.len());
         self.columns.splice(last..last, new);
-        self
+    }
+
+    /// The value of a measure that a row stands for: the extrapolated one, if it has it.
+    pub fn estimate(&self, measure: ColumnId, row: usize) -> Option<&Value> {
+        let extrapolated = self.column(&names(measure.name())[0]).map(|column| &column.cells[row]);
+        extrapolated.filter(|value| **value != Value::Null).or_else(|| self.value(measure, row))
     }
 
     /// Whether it has extrapolated values.

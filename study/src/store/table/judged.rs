@@ -12,7 +12,7 @@ use crate::job::result_limit::{ResultLimit, Safety};
 use crate::job::row::{CellType, DerivedColumn, SAME_JOB_AS};
 
 impl Table {
-    /// The table with the columns of these limits, and with `verdict_depends_on` where the study varies a
+    /// The table with the columns of these limits (extrapolated values count, where there are any), and with `verdict_depends_on` where the study varies a
     /// numerical choice.
     #[must_use]
     pub fn judged(mut self, limits: &[ResultLimit]) -> Self {
@@ -46,14 +46,14 @@ impl Table {
 
     /// The safety of a row.
     fn safety(&self, limits: &[ResultLimit], row: usize) -> Option<Safety> {
-        let value = |column| self.value(column, row).unwrap_or(&Value::Null);
+        let value = |column| self.estimate(column, row).unwrap_or(&Value::Null);
         Safety::of(limits, self.status(row)?, value)
     }
 
     /// The margins of one limit.
     fn margins(&self, limit: &ResultLimit) -> Column {
         let margin = |row| {
-            let value = self.value(limit.measure, row)?;
+            let value = self.estimate(limit.measure, row)?;
             let judged = limit.judge(self.status(row)?, value)?;
             Some(Value::Number(judged.margin))
         };

@@ -134,6 +134,12 @@ impl Grid {
         given + (self.points.len() - given) * search.scan().len()
     }
 
+    /// Names of the columns whose values repeat a point.
+    pub fn repeated(&self) -> Vec<String> {
+        let columns = self.replicates().flat_map(|axis| &axis.columns);
+        columns.map(|column| self.columns[*column].name.clone()).collect()
+    }
+
     /// The replicates as JSON; empty without any.
     pub fn resolved_replicates(&self) -> Vec<(String, Json)> {
         let member = |axis: &Axis| {

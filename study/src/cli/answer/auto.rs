@@ -1,0 +1,84 @@
+//! Lines of the answer on the mesh that a study with `"model": "auto"` chose.
+
+use crate::accuracy::PROMISED;
+use crate::analysis::answer::{AutoAnswer, Kept};
+use crate::cli::print::count;
+use crate::input::value::brief_number;
+use crate::job::point::label;
+use crate::study::auto::Check;
+
+/// Most broken checks that the answer names.
+const MAX_BROKEN: usize = 5;
+
+/// What ran on which mesh, what it promises, what the checks found, what it cost.
+pub(super) fn lines(auto: &AutoAnswer) -> Vec<String> {
+    let reference = auto.reference;
+    let pilots = count(auto.pilots, "pilot");
+    let Some(chosen) = auto.chosen else {
+        return vec![format!("{pilots} on n {reference} and coarser meshes: not all have ended")];
+    };
+    let asked: Vec<String> = auto.kept.iter().map(promise).collect();
+    let others = count(auto.others, "point");
+    let mut lines = Vec::new();
+    if chosen == reference {
+        lines.push(format!(
+            "no coarser mesh keeps the accuracy: {others} beside {pilots} run on n {reference} too"
+        ));
+        lines.push(format!("n {} would have {}", auto.finest_rung, asked.join(", ")));
+    } else {
+        lines.push(format!(
+            "n {chosen} instead of n {reference} for {others}, after {pilots} on both"
+        ));
+        lines.push(format!("corrected; errors against n {reference}: {}", asked.join(", ")));
+        lines.extend(checks(auto));
+    }
+    if let Some(cost) = auto.cost {
+        let cost = 100.0 * cost;
+        lines.push(format!("cost {cost:.1} % of all points on n {reference} (element-steps)"));
+    }
+    lines
+}
+
+/// A measure with its error after the correction, and its tolerance.
+fn promise(kept: &Kept) -> String {
+    let asked = brief_number(100.0 * kept.tolerance);
+    let error = kept
+        .error
+        .map_or_else(|| "not known".to_owned(), |error| format!("{:.1} %", 100.0 * error));
+    format!("{} {error} (asked {asked} %)", kept.measure)
+}
+
+fn checks(auto: &AutoAnswer) -> Vec<String> {
+    let (ended, planned, mesh) = (auto.checks.len(), auto.planned_checks, auto.check_mesh);
+    let checks = count(planned, "check");
+    let open =
+        if ended < planned { format!(", {} not run", planned - ended) } else { String::new() };
+    let broken: Vec<&Check> = auto.broken().collect();
+    if broken.is_empty() {
+        return vec![format!("{checks} on n {mesh}{open}: the promise is kept")];
+    }
+    let mut lines =
+        vec![format!("PROMISE BROKEN in {} of {checks} on n {mesh}{open}", broken.len())];
+    lines.extend(broken.iter().take(MAX_BROKEN).map(|check| broken_text(check)));
+    let more = broken.len().saturating_sub(MAX_BROKEN);
+    if more > 0 {
+        lines.push(format!("and {more} more"));
+    }
+    lines.push(
+        "next: a smaller accuracy chooses a finer mesh; billow table --runs shows the runs"
+            .to_owned(),
+    );
+    lines
+}
+
+fn broken_text(check: &Check) -> String {
+    let measures = check.broken.iter().filter_map(|index| {
+        let difference = 100.0 * check.differences[*index]?;
+        Some(format!("{} differs by {difference:.1} %", PROMISED[*index].measure.name()))
+    });
+    let mut parts: Vec<String> = measures.collect();
+    if check.other_verdict {
+        parts.push("another verdict".to_owned());
+    }
+    format!("{}: {}", label(&check.parameters), parts.join(", "))
+}
