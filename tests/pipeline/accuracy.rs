@@ -322,6 +322,7 @@ fn a_study_with_pilots_has_one_row_per_point_and_says_what_it_promises() {
         "{factors:?}"
     );
     assert!(factors.iter().any(|(n, factor)| *n == 3 && (factor - 1.0).abs() > 1e-3));
+    assert_eq!(json_of(&folder, &["status", "grid.json"])["points"], 60);
     let said = folder.stdout(&["run", "grid.json"]);
     assert!(said.contains("nothing to run") && said.contains("n 3 instead of n 6"), "{said}");
     let table = fs::read(folder.path().join("results/grid/summary.parquet")).unwrap();

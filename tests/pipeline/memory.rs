@@ -58,8 +58,11 @@ fn an_out_of_memory_job_runs_again_with_more_memory() {
     study["grid"]["subdivisions"] = json!([16]);
     study["solver"]["end_time"] = json!("2e-6 s");
     let folder = TestFolder::new(&study);
-    let output = limited(&folder, 300_000, &["run", "grid.json", "-q", "--threads", "1"]);
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    for limit in [292_000, 296_000, 300_000, 304_000, 308_000] {
+        let _ = fs::remove_dir_all(folder.path().join("results"));
+        let output = limited(&folder, limit, &["run", "grid.json", "-q", "--threads", "1"]);
+        assert_eq!(output.status.code(), Some(1), "{limit} kB: {}", stderr(&output));
+    }
     assert_eq!(folder.rows("results/grid")[0]["status"], "out_of_memory");
     let output = folder.run(&["rerun", "--status", "out_of_memory", "-q"]);
     assert_eq!(folder.rows("results/grid")[0]["status"], "done", "{}", stderr(&output));

@@ -104,8 +104,12 @@ impl<'a> Stored<'a> {
         plan::shown(&self.study, &finished).map(|(_, outcome)| outcome)
     }
 
-    /// Number of points planned so far, also of those that share a job.
+    /// Number of points planned so far, also of those that share a job. With pilots it is that of the study: several
+    /// runs of a point are one.
     pub fn point_count(&self) -> usize {
+        if self.study.auto().is_some() {
+            return self.study.points().len();
+        }
         self.points.iter().map(|point| 1 + point.merged.len()).sum()
     }
 
