@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand};
 
 use crate::platform::error::{Error, Result};
 use crate::platform::exit_code::{EXIT_CODES, Exit};
+use crate::platform::memory as process_memory;
 use crate::platform::output::Output;
 
 mod advise;
@@ -127,6 +128,7 @@ const STACK: usize = 2 << 20;
 /// Runs the program.
 pub fn main() -> ExitCode {
     grow_stack();
+    process_memory::share_if_limited();
     let mut out = io::BufWriter::new(Output::new(io::stdout().lock()));
     let result = command(&mut out).and_then(|()| out.flush().map_err(output_error));
     let Err(error) = result else { return Exit::Success.into() };

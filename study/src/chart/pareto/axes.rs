@@ -112,10 +112,10 @@ fn padded(values: &[f64], least: f64) -> [f64; 2] {
 }
 
 /// Why a panel has no points.
-pub(super) fn nothing(errors: &Errors) -> String {
+pub(super) fn nothing(errors: &Errors) -> &'static str {
     if errors.reference.is_none() {
-        format!("no trusted configuration has a value of {}", errors.quantity.name)
+        "no trusted configuration has run"
     } else {
-        "nothing to compare with the reference".to_owned()
+        "nothing to compare with the reference"
     }
 }

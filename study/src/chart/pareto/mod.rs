@@ -125,7 +125,7 @@ fn order(diagram: &Diagram, errors: &Errors) -> String {
     let lines = diagram.lines();
     let order = lines.iter().find_map(|(chain, _)| errors.orders[(*chain)?]);
     order.map_or_else(String::new, |order| {
-        format!(", order {}", minus(&brief_number(libm::round(10.0 * order) / 10.0)))
+        format!(" (order {})", minus(&brief_number(libm::round(10.0 * order) / 10.0)))
     })
 }
 
@@ -197,7 +197,7 @@ fn cost_note(cost: Cost, diagrams: &[Diagram]) -> &'static str {
     let mut members = diagrams.iter().flat_map(|diagram| &diagram.members);
     match cost {
         Cost::Work if members.any(|member| member.elements <= 0.0) => {
-            "Element-steps: elements times steps; of the model piston, which has no elements, steps."
+            "Element-steps: elements times steps; of the models without elements (piston, storeys), steps."
         }
         Cost::Work => "Element-steps: elements times steps.",
         Cost::Seconds => {
@@ -236,7 +236,7 @@ fn uncertain(errors: &Errors) -> Option<Rule> {
 /// A panel without points.
 fn empty(errors: &Errors) -> Panel {
     Panel {
-        message: nothing(errors),
+        message: nothing(errors).to_owned(),
         label: axes::ERROR.to_owned(),
         spread: Spread::Logarithmic,
         ..Panel::default()

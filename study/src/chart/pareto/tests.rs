@@ -83,7 +83,7 @@ fn the_overview_has_a_panel_for_each_scene() {
         diagram
     });
     let texts = check::figure(&overview(&diagrams, Cost::Work));
-    for wanted in ["A scene", "B, order 2", "C, order 2"] {
+    for wanted in ["A scene", "B (order 2)", "C (order 2)"] {
         assert!(texts.iter().any(|text| text.contains(wanted)), "{wanted}: {texts:?}");
     }
     let nothing = overview(&[], Cost::Seconds);

@@ -8,6 +8,7 @@
 //! In use: other processes for the machine, the group for a control group, this process for the address space.
 //! Margin: what the program needs beside its jobs (`Limit::margin`).
 
+mod arenas;
 mod parse;
 mod system;
 
@@ -15,6 +16,7 @@ use std::fmt;
 
 use parse::ControlGroups;
 
+pub use arenas::share_if_limited;
 pub use system::{limits, peak_resident};
 
 /// What limits the memory of this process.
