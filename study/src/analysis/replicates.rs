@@ -15,6 +15,7 @@ use billow_solver::output::measures::Verdict;
 use super::statistics::Spread;
 use super::values::{canonical, measured};
 use crate::accuracy::PROMISED;
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
@@ -142,7 +143,7 @@ impl Runs {
 
 /// Of the runs of a point, those on the finest mesh, where values are extrapolated from several.
 fn finest(table: &Table, rows: &[usize]) -> Vec<usize> {
-    let mesh = table.parameters().find(|column| column.name == extrapolated::MESH);
+    let mesh = table.parameters().find(|column| column.name == MESH_PARAMETER);
     let Some(mesh) = mesh.filter(|_| table.has_extrapolated()) else { return rows.to_vec() };
     let n = |row: usize| match mesh.cells[row] {
         Value::Integer(n) => n,

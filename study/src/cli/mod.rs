@@ -122,12 +122,8 @@ pub enum Command {
     Completions(completions::Args),
 }
 
-/// Stack that every command has, bytes. Chosen: several times what the deepest one uses, that writes a Parquet file.
-const STACK: usize = 2 << 20;
-
 /// Runs the program.
 pub fn main() -> ExitCode {
-    grow_stack();
     process_memory::share_if_limited();
     let mut out = io::BufWriter::new(Output::new(io::stdout().lock()));
     let result = command(&mut out).and_then(|()| out.flush().map_err(output_error));
@@ -136,14 +132,6 @@ pub fn main() -> ExitCode {
     let _ = out.flush();
     eprintln!("billow: {error}");
     error.exit().into()
-}
-
-/// Uses [`STACK`] once. The stack of the first thread grows as it is used and keeps its size; where the address space is
-/// used up (`ulimit -v`), the process would die when it cannot grow.
-#[inline(never)]
-#[expect(clippy::large_stack_arrays, reason = "it must lie on the stack")]
-fn grow_stack() {
-    std::hint::black_box([0_u8; STACK]);
 }
 
 /// Runs the command of the command line.

@@ -6,6 +6,7 @@ pub mod checkpoint_file;
 pub mod damaged;
 pub mod doctor;
 pub mod exact_scenes;
+pub mod finished;
 pub mod history_file;
 pub mod journal;
 pub mod reference_file;

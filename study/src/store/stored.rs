@@ -12,6 +12,7 @@ use crate::job::row::{Cells, ColumnId};
 use crate::job::{self, JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
+use crate::store::finished;
 use crate::store::journal::{self, Journal, Record};
 use crate::store::results::Results;
 use crate::store::table::Table;
@@ -97,10 +98,14 @@ impl<'a> Stored<'a> {
         Table::of_runs(&self.study, points, &self.journal.records).shown_in(&self.units)
     }
 
+    fn finished(&self) -> Vec<FinishedRow> {
+        finished::rows(&self.points, &self.journal.records, self.study.result_limits())
+    }
+
     /// What the pilots and the checks of the study say; `None` for a study without.
     pub fn outcome(&self) -> Option<Outcome> {
         self.study.auto()?;
-        let finished = finished(&self.study, &self.points, &self.journal.records);
+        let finished = self.finished();
         plan::shown(&self.study, &finished).map(|(_, outcome)| outcome)
     }
 
@@ -115,7 +120,7 @@ impl<'a> Stored<'a> {
 
     /// What the searches of the study have found so far.
     pub fn borders(&self) -> Vec<Border> {
-        let finished = finished(&self.study, &self.points, &self.journal.records);
+        let finished = self.finished();
         plan::borders(&self.study, &finished)
     }
 
@@ -238,22 +243,9 @@ pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
     {
         last = Some(generation.number);
         plan::add_generation(&mut points, generation);
-        finished = self::finished(study, &points, records);
+        finished = finished::rows(&points, records, study.result_limits());
     }
     points
-}
-
-/// The finished rows of some points.
-pub fn finished(
-    study: &Study,
-    points: &[Point],
-    records: &BTreeMap<JobId, Record>,
-) -> Vec<FinishedRow> {
-    let row = |point: &Point| {
-        let cells = journal::cells_of(point, records)?;
-        Some(FinishedRow::of(&point.job.id, &cells, study.result_limits()))
-    };
-    points.iter().filter_map(row).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The parameters of a study: their names, values and units.
 
 use super::Study;
-use super::auto::MESH_PARAMETER;
 use super::target::{self, Section};
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::keys::{self, KEYS, Key};
 use crate::input::source::Source;
 use crate::input::study_file::Json;

@@ -23,6 +23,8 @@ pub const NUMERICAL: [&str; 9] = [
 pub const SEED: &str = "seed";
 /// The key of the mesh of a capsule.
 pub const MESH: &str = "design.subdivisions";
+/// The parameter that holds its value in a table: the short name of the key.
+pub const MESH_PARAMETER: &str = "subdivisions";
 /// The key of the model. Models compute the same physics with different simplifications.
 pub const MODEL: &str = "solver.model";
 
@@ -45,6 +47,7 @@ mod tests {
         for known in NUMERICAL.iter().chain([&MODEL]) {
             assert_eq!(path(known), Some(*known));
         }
+        assert_eq!(path(MESH_PARAMETER), Some(MESH));
         assert!(is_numerical("cfl") && !is_numerical("model") && !is_numerical("N"));
         assert_eq!(path("strategies.rapid.release_time"), None);
     }

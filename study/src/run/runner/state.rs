@@ -14,6 +14,7 @@ use crate::job::row::{Cells, ColumnId};
 use crate::job::{Job, JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::run::event::{Event, Reporter};
+use crate::store::finished;
 use crate::store::history_file;
 use crate::store::journal::{self, Journal, Record};
 use crate::study::finished::FinishedRow;
@@ -269,9 +270,7 @@ impl<'a, 'w> State<'a, 'w> {
 
     /// Finished rows for the planner, in plan order.
     pub(super) fn finished(&self) -> Vec<FinishedRow> {
-        let limits = self.run.result_limits;
-        let row = |point: &Point| Some(FinishedRow::of(&point.job.id, &self.cells(point)?, limits));
-        self.points.iter().filter_map(row).collect()
+        finished::rows(&self.points, &self.records, self.run.result_limits)
     }
 
     /// The result of the run so far.

@@ -17,8 +17,8 @@ use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::Point;
 use crate::job::row::{CellType, SAME_JOB_AS};
+use crate::store::finished;
 use crate::store::journal::Record;
-use crate::store::stored;
 use crate::study::auto::{Auto, Decision, Outcome};
 use crate::study::finished::FinishedRow;
 use crate::study::{Study, plan};
@@ -30,7 +30,7 @@ pub const RUN_MESH: &str = "run_subdivisions";
 impl Table {
     /// The table of a study with these points planned so far, one row per point.
     pub fn of_study(study: &Study, points: &[Point], records: &BTreeMap<JobId, Record>) -> Self {
-        let finished = || stored::finished(study, points, records);
+        let finished = || finished::rows(points, records, study.result_limits());
         match study.auto().zip(study.auto().and_then(|_| plan::shown(study, &finished()))) {
             Some((auto, (shown, outcome))) => {
                 let unit = |name: &str| study.unit(name).to_owned();
@@ -61,7 +61,7 @@ impl Table {
         let rows = point_rows(shown);
         let finished: Vec<Option<FinishedRow>> = rows
             .iter()
-            .map(|row| stored::finished(study, std::slice::from_ref(row.point), records).pop())
+            .map(|row| finished::row(row.point, records, study.result_limits()))
             .collect();
         for (index, promised) in PROMISED.iter().enumerate() {
             let cells = rows.iter().zip(&finished).map(|(row, finished)| {

@@ -16,13 +16,12 @@ use super::same_job::point_rows;
 use super::{Column, Table};
 use crate::accuracy::promised::promise;
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED, Promised};
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::row::{CellType, ColumnId, SAME_JOB_AS};
 
-/// The parameter whose values are the meshes.
-pub const MESH: &str = "subdivisions";
 /// End of the name of an extrapolated value, and of its error.
 pub const EXTRAPOLATED: &str = "_extrapolated";
 const ERROR: &str = "_extrapolated_error";
@@ -136,7 +135,9 @@ impl Table {
     /// The rows by their parameters without the mesh, and by the subdivisions of their mesh.
     fn rows_by_mesh(&self) -> BTreeMap<Vec<String>, BTreeMap<u32, usize>> {
         let mut rows: BTreeMap<Vec<String>, BTreeMap<u32, usize>> = BTreeMap::new();
-        let Some(mesh) = self.parameters().find(|column| column.name == MESH) else { return rows };
+        let Some(mesh) = self.parameters().find(|column| column.name == MESH_PARAMETER) else {
+            return rows;
+        };
         for row in 0..self.rows() {
             if let Value::Integer(n) = mesh.cells[row]
                 && let Ok(n) = u32::try_from(n)
@@ -149,7 +150,7 @@ impl Table {
 
     /// The parameters of a row without the mesh.
     fn other_parameters(&self, row: usize) -> Vec<String> {
-        let others = self.parameters().filter(|column| column.name != MESH);
+        let others = self.parameters().filter(|column| column.name != MESH_PARAMETER);
         others.map(|column| column.cells[row].to_string()).collect()
     }
 

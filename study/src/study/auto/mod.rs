@@ -25,6 +25,7 @@ use std::collections::HashMap;
 
 use super::point::StudyPoint;
 use crate::accuracy::PROMISED;
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::study::finished::FinishedRow;
@@ -33,8 +34,6 @@ use crate::study::finished::FinishedRow;
 const LADDER: [u32; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
 /// A rung has at most this part of the subdivisions of the reference: an eighth of its cost.
 const COARSER: u32 = 2;
-/// The parameter of a run that holds its mesh: the short name of `design.subdivisions`.
-pub const MESH_PARAMETER: &str = "subdivisions";
 /// Largest cost of the pilots over that of all points on the reference mesh.
 pub const PILOT_SHARE: f64 = 0.08;
 /// Fewest pilots from which an error can be judged; and most. Chosen: of three values the standard deviation is rough

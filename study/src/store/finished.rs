@@ -1,0 +1,28 @@
+//! What planning knows of the jobs that have ended, from their records.
+
+use std::collections::BTreeMap;
+
+use crate::job::JobId;
+use crate::job::point::Point;
+use crate::job::result_limit::ResultLimit;
+use crate::store::journal::{self, Record};
+use crate::study::finished::FinishedRow;
+
+/// The finished rows of some points, in their order.
+pub fn rows(
+    points: &[Point],
+    records: &BTreeMap<JobId, Record>,
+    limits: &[ResultLimit],
+) -> Vec<FinishedRow> {
+    points.iter().filter_map(|point| row(point, records, limits)).collect()
+}
+
+/// The row of a point; `None` while its job has not ended.
+pub fn row(
+    point: &Point,
+    records: &BTreeMap<JobId, Record>,
+    limits: &[ResultLimit],
+) -> Option<FinishedRow> {
+    let cells = journal::cells_of(point, records)?;
+    Some(FinishedRow::of(&point.job.id, &cells, limits))
+}
