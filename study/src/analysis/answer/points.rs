@@ -54,7 +54,7 @@ fn all_of(runs: &Runs, of: fn(&Runs) -> Proportion) -> Option<bool> {
     if judged.met < judged.of {
         Some(false)
     } else {
-        (judged.of > 0 && judged.of == runs.rows.len()).then_some(true)
+        (judged.of > 0 && judged.of == runs.finest.len()).then_some(true)
     }
 }
 
@@ -62,7 +62,7 @@ fn all_of(runs: &Runs, of: fn(&Runs) -> Proportion) -> Option<bool> {
 pub fn worst_margin(table: &Table, runs: &Runs) -> Option<(f64, String, usize)> {
     let column = table.column(DerivedColumn::SmallestMargin.name())?;
     let names = table.column(DerivedColumn::SmallestMarginOf.name())?;
-    let margins = runs.rows.iter().filter_map(|row| match column.cells[*row] {
+    let margins = runs.finest.iter().filter_map(|row| match column.cells[*row] {
         Value::Number(margin) => Some((margin, *row)),
         _ => None,
     });

@@ -86,7 +86,7 @@ impl Safety {
                 let judged = table.status(*row).and_then(|status| limit.judge(status, value));
                 judged.is_some_and(|judged| !judged.met)
             };
-            points.condensed.runs.iter().filter(|runs| runs.rows.iter().any(is_missed)).count()
+            points.condensed.runs.iter().filter(|runs| runs.finest.iter().any(is_missed)).count()
         };
         let missed = limits.iter().map(|limit| (limit.measure.name().to_owned(), missed(limit)));
         let mut missed: Vec<(String, usize)> = missed.filter(|(_, points)| *points > 0).collect();

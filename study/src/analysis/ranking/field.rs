@@ -105,9 +105,9 @@ impl Field<'_> {
             let met = match self.basis {
                 Basis::Limits => runs.safe.met,
                 Basis::Verdicts => runs.deployed.met,
-                Basis::Measures => runs.rows.len(),
+                Basis::Measures => runs.finest.len(),
             };
-            Proportion { met: runs.rows.len() - met, of: runs.rows.len() }
+            Proportion { met: runs.finest.len() - met, of: runs.finest.len() }
         })
     }
 
