@@ -69,8 +69,35 @@ fn a_row_outside_the_table_says_why_it_has_no_error() {
     let folder = TestFolder::new(&study);
     folder.stdout(&["run", "grid.json", "-q"]);
     let row = &folder.rows("results/grid")[0];
-    assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0.0");
+    assert_eq!(row["no_error_reason"], "contact.friction 0.2: the runs of the table have 0");
     assert_eq!(row["peak_vz_change_to_n24"], Value::Null);
+}
+
+/// Outside the table of mesh errors three meshes have an error, three times the observed difference at least, and two
+/// have none. What is printed says which values are extrapolated.
+#[test]
+fn outside_the_table_three_meshes_tell_their_error_and_two_do_not() {
+    let row = |meshes: &[u32]| {
+        let mut study = film(&json!({"contact": {"friction": 0.2}}));
+        study["solver"] = json!({"model": "film", "end_time": "60 ms", "meshes": meshes});
+        let folder = TestFolder::new(&study);
+        let answer = folder.stdout(&["run", "grid.json"]);
+        let printed = stderr(&folder.run(&["table"]));
+        let points = folder.points("results/grid").remove(0);
+        let finest = folder.rows("results/grid").pop().unwrap();
+        (answer, printed, points, finest)
+    };
+    let (answer, printed, point, finest) = row(&[2, 3, 4]);
+    let [value, error] =
+        ["t_50_z_rim", "t_50_z_rim_change_to_n24"].map(|name| point[name].as_f64().unwrap());
+    assert!(error > 0.01 * value && error < value, "{value} ± {error}");
+    assert_eq!(point["t_50_z_rim_change_to_n24"], finest["t_50_z_rim_extrapolated_error"]);
+    assert!(printed.contains("1 point, 3 runs; t_50_z_rim, "), "{printed}");
+    assert!(printed.contains("are extrapolated from n 2, 3 and 4, all else is that of n 4"));
+    assert!(answer.contains("extrapolated"), "{answer}");
+    let (_, printed, point, _) = row(&[2, 4]);
+    assert_eq!(point["t_50_z_rim_change_to_n24"], Value::Null);
+    assert!(printed.contains("extrapolated from n 2 and 4"), "{printed}");
 }
 
 #[test]
@@ -144,7 +171,7 @@ fn advice_names_the_cheapest_method_or_refuses_with_a_reason() {
     let costs: Vec<f64> = rows.iter().map(|row| row["cost"].as_f64().unwrap()).collect();
     assert!(costs.is_sorted(), "{costs:?}");
     let keeps = rows.iter().find(|row| row["keeps_tolerance"] == true).unwrap();
-    assert!(keeps["t_90_z_rim_error"].as_f64().unwrap() <= 0.05);
+    assert!(keeps["t_90_z_rim_relative_error"].as_f64().unwrap() <= 0.05);
     let output = folder.run(&["advise", "grid.json", "--tolerance", "5 %"]);
     let text = stderr(&output);
     assert!(text.contains("advice: ") && text.contains("cheaper than now"), "{text}");
@@ -348,9 +375,8 @@ fn pilots_that_cannot_be_paid_or_judged_are_refused() {
     assert!(refused(&|study| study["grid"]["N"] = json!([6])).contains("has too few points"));
     let varied = refused(&|study| study["grid"]["subdivisions"] = json!([4, 6]));
     assert!(varied.contains("which the grid varies"), "{varied}");
-    assert!(
-        refused(&|study| study["design"]["subdivisions"] = json!(4)).contains("no mesh below half")
-    );
+    let coarse = refused(&|study| study["design"]["subdivisions"] = json!(4));
+    assert!(coarse.contains("no mesh from n 3 to half of design.subdivisions, 4"), "{coarse}");
     let search = refused(&|study| {
         study["grid"]["mass_flow_rate"] = json!({"bisect": ["1 g/s", "5 g/s"], "on": "verdict"});
     });

@@ -26,6 +26,8 @@ use billow_solver::scene::ModelKind;
 
 /// Column with the mesh of the run of a row.
 pub const RUN_MESH: &str = "run_subdivisions";
+/// Its meaning, one line.
+pub const RUN_MESH_MEANING: &str = "subdivisions of the mesh of the run that the row shows; its promised measures are corrected to the reference mesh, all else is as that run gave it";
 
 impl Table {
     /// The table of a study with these points planned so far, one row per point.
@@ -91,7 +93,7 @@ impl Table {
             cell_type: CellType::Integer,
             unit: "1".to_owned(),
             shown: DisplayUnit::si("1"),
-            meaning: "subdivisions of the mesh of the run that the row shows".to_owned(),
+            meaning: RUN_MESH_MEANING.to_owned(),
             cells: meshes.map(|n| Value::Integer(i64::from(n))).collect(),
         };
         let last = self.columns.iter().position(|column| column.name == SAME_JOB_AS);
