@@ -14,7 +14,7 @@ use billow_solver::scene::inflow::Schedule;
 use billow_solver::scene::{ModelKind, Outputs, Scene, Stepping, Thresholds};
 use serde::{Deserialize, Serialize};
 
-use crate::input::value::short_number;
+use crate::input::value::{brief_number, short_number};
 
 /// Fraction of the stable step of the runs of the table: the default.
 pub const STEP: f64 = 0.45;
@@ -160,7 +160,8 @@ impl Coverage {
             let width = ROUNDING * range.largest.abs();
             if value < range.least - width || value > range.largest + width {
                 let [value, least, largest] = [value, range.least, range.largest].map(short_number);
-                let name = &range.name;
+                // The end of a name, "up to 0.2", says how a feature is counted.
+                let name = range.name.split(',').next().unwrap_or_default();
                 let runs = if least == largest { least } else { format!("{least} to {largest}") };
                 return Some(format!(
                     "{name} {value}{unit}: the runs of the table have {runs}{unit}"
@@ -224,6 +225,7 @@ fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<
                 let key = match key.as_str() {
                     "viscosity" => "numerical_damping",
                     "stable" => "cfl",
+                    "stowed_height" => "stowed_height over bottom_radius",
                     key => key,
                 };
                 Some(format!("{key}{joint}{difference}"))
@@ -231,8 +233,12 @@ fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<
         }
         _ if same(scene, runs) => None,
         _ => {
-            let runs = if runs.is_null() { "none".to_owned() } else { runs.to_string() };
-            Some(format!(" {scene}: the runs of the table have {runs}"))
+            let text = |value: &serde_json::Value| match value.as_f64() {
+                Some(number) => brief_number(number),
+                _ if value.is_null() => "none".to_owned(),
+                _ => value.to_string(),
+            };
+            Some(format!(" {}: the runs of the table have {}", text(scene), text(runs)))
         }
     }
 }

@@ -69,7 +69,7 @@ fn a_scene_unlike_the_runs_is_not_covered_and_the_reason_names_its_key() {
         gap(&scene).unwrap()
     };
     let thickness = reason(|scene| scene.film.thickness = 50e-6);
-    assert_eq!(thickness, "film.thickness 0.00005: the runs of the table have 0.0000254");
+    assert_eq!(thickness, "film.thickness 5e-5: the runs of the table have 2.54e-5");
     assert!(
         reason(|scene| scene.film.numerical_damping = 0.01).starts_with("film.numerical_damping ")
     );

@@ -59,14 +59,19 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let hint = hint(&study);
         Error::invalid_option("study", &study.name, format!("no advice: {gap}"), allowed, hint)
     })?;
+    let format = args.output.format();
+    let errors = PROMISED.map(|promised| match format {
+        Format::Table => promised.measure.name().to_owned(),
+        Format::Csv | Format::Json => format!("{}_relative_error", promised.measure.name()),
+    });
     let headings: Vec<Heading> = ["method", "cost"]
         .into_iter()
-        .chain(PROMISED.iter().map(|promised| promised.error_column))
+        .chain(errors.iter().map(String::as_str))
         .chain(["keeps_tolerance"])
         .map(Heading::plain)
         .collect();
-    let cells: Vec<Vec<Value>> = choices.iter().map(|choice| row(choice, &tolerances)).collect();
-    let format = args.output.format();
+    let cells: Vec<Vec<Value>> =
+        choices.iter().map(|choice| row(choice, &tolerances, format)).collect();
     print_quantities(&headings, &cells, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
         print_advice(&study, table, &choices, &tolerances);
@@ -119,9 +124,11 @@ fn tolerances(args: &Args) -> Result<[Option<f64>; PROMISED.len()]> {
     Ok(tolerances)
 }
 
-fn row(choice: &Choice, tolerances: &[Option<f64>; PROMISED.len()]) -> Vec<Value> {
-    let number = |number: f64| {
-        if number.is_finite() { Value::Number(number) } else { Value::Null }
+fn row(choice: &Choice, tolerances: &[Option<f64>; PROMISED.len()], format: Format) -> Vec<Value> {
+    let number = |number: f64| match format {
+        _ if !number.is_finite() => Value::Null,
+        Format::Table => Value::Text(format!("{:.1} %", 100.0 * number)),
+        Format::Csv | Format::Json => Value::Number(number),
     };
     let mut row = vec![Value::Text(choice.method.name()), Value::Number(choice.cost)];
     row.extend(choice.errors.map(number));
@@ -137,7 +144,8 @@ fn print_advice(
     tolerances: &[Option<f64>; PROMISED.len()],
 ) {
     eprintln!(
-        "{}; errors: of 9 of 10 runs, the largest over the points; cost: over a run on n {}",
+        "{}; relative errors that 9 of 10 runs keep, the largest over the points, - where the table has no such runs; cost: \
+         over a run on n {}",
         count(study.points().len(), "point"),
         table.reference
     );

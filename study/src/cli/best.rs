@@ -70,7 +70,7 @@ fn part(effect: &Effect, measure: &MeasureEffect) -> String {
         Extremes::Equal if !is_within(measure) => {
             format!("{name} equal within the ranges of the runs")
         }
-        Extremes::Equal => format!("{name} equal within {}", limit(&measure.tolerance)),
+        Extremes::Equal => format!("{name} equal within {}", within(&measure.tolerance)),
         Extremes::Range { lowest, highest } => {
             format!("{name} {}, {}", shown(lowest, "lowest"), shown(highest, "highest"))
         }
@@ -146,6 +146,15 @@ fn is_within(measure: &MeasureEffect) -> bool {
     let medians = || measure.medians.iter().flatten().copied();
     let ends = medians().reduce(f64::min).zip(medians().reduce(f64::max));
     ends.is_none_or(|(least, largest)| measure.tolerance.is_tie(least, largest))
+}
+
+/// Within what values are equal. Mesh errors differ from pair to pair.
+pub fn within(tolerance: &Tolerance) -> String {
+    let limit = limit(tolerance);
+    match tolerance.source {
+        ToleranceSource::MeshError => format!("their mesh errors (median {limit})"),
+        _ => limit,
+    }
 }
 
 /// The limit of a tolerance: "5 %", or an absolute difference.

@@ -28,6 +28,7 @@ mod fold;
 mod frames;
 mod instruction_set;
 mod keys;
+mod legend;
 mod memory;
 mod notes;
 mod opened;

@@ -3,6 +3,7 @@
 
 use billow_solver::scene::ModelKind;
 
+use crate::accuracy::Method;
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::brief_number;
 use crate::study::Study;
@@ -25,6 +26,11 @@ pub fn print(study: &Study) {
 fn lines(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.scene.solver.model == model);
     let mut lines: Vec<String> = study.notes().iter().map(|note| format!("note: {note}")).collect();
+    if let Some(meshes) = study.chosen_meshes() {
+        let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
+        let how = "the cheapest that keeps the errors of accuracy at every point";
+        lines.push(format!("note: {}: {how}", method.name()));
+    }
     let empty = |point: &&crate::study::StudyPoint| {
         let gas = &point.scene.gas;
         gas.windows.is_empty() && gas.initial_mass <= 0.0

@@ -1,5 +1,6 @@
 //! The values of several runs in one cell: "12.3 [11.9 to 13.1]".
 
+use super::legend::PLUS_MINUS;
 use crate::analysis::statistics::Spread;
 use crate::input::units::DisplayUnit;
 use crate::input::value::short_number;
@@ -48,9 +49,12 @@ pub fn with_error(value: f64, error: f64, unit: &DisplayUnit) -> String {
         Some(exponent) if error > 0.0 && error.is_finite() => {
             let decimals = usize::try_from(1 - exponent).unwrap_or(0);
             if decimals > MAX_DECIMALS {
-                return format!("{} ± {scientific}", short_number(rounded(shown, MAX_DIGITS)));
+                return format!(
+                    "{}{PLUS_MINUS}{scientific}",
+                    short_number(rounded(shown, MAX_DIGITS))
+                );
             }
-            format!("{shown:.decimals$} ± {error:.decimals$}")
+            format!("{shown:.decimals$}{PLUS_MINUS}{error:.decimals$}")
         }
         _ => short_number(rounded(shown, DIGITS_ALONE)),
     }

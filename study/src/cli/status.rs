@@ -6,11 +6,13 @@ use std::num::NonZero;
 
 use serde_json::json;
 
+use super::answer::auto;
 use super::options::{OutputOptions, ThreadsOption};
-use super::print::{count, duration, print_rows};
+use super::print::{count, duration, points_of_runs, print_rows};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
 use super::{Format, changes, output_error};
+use crate::analysis::answer::AutoAnswer;
 use crate::input::value::brief_number;
 use crate::job::row::{ColumnId, Counts};
 use crate::job::{JobId, Status as JobStatus};
@@ -171,13 +173,20 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
-        let points = self.stored.point_count();
-        let duplicates = match points.saturating_sub(counts.rows()) {
+        let rows = self.stored.point_count();
+        let points = points_of_runs(rows, self.stored.study.replicate_count());
+        let duplicates = match rows.saturating_sub(counts.rows()) {
             0 => String::new(),
             number => format!(", {}", count(number, "duplicate")),
         };
         let mut lines =
             vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
+        let chosen = AutoAnswer::of(self.stored);
+        let mut topic = "auto";
+        for text in chosen.iter().flat_map(auto::lines) {
+            lines.push((topic, text));
+            topic = "";
+        }
         let invalidated = match self.stored.journal.invalidated.len() {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),

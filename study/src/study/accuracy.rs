@@ -42,10 +42,9 @@ impl Accuracy {
     pub fn read(json: Option<&Json>, source: &Source) -> Result<Option<Self>, InputError> {
         let Some(json) = json else { return Ok(None) };
         let mut accuracy = Self { tolerances: [None; PROMISED.len()], meshes: Vec::new() };
-        if let Json::Text(_) | Json::Number(_) = json {
+        if let Json::Text(_) | Json::Number(_) | Json::Integer(_) = json {
             let tolerance = tolerance(json, ACCURACY, source)?;
-            accuracy.tolerances = PROMISED
-                .map(|promised| (promised.measure != ColumnId::PeakVz).then_some(tolerance));
+            accuracy.tolerances = all_but_peak_vz(Some(tolerance));
             return Ok(Some(accuracy));
         }
         for (name, value) in object(json, &STUDY, ACCURACY, source)? {
@@ -138,8 +137,17 @@ impl Accuracy {
     }
 
     fn shown(&self) -> String {
-        Json::Object(self.members()).brief()
+        let of_number = |tolerance: Option<f64>| all_but_peak_vz(tolerance) == self.tolerances;
+        match self.tolerances.into_iter().find(|tolerance| of_number(*tolerance)) {
+            Some(Some(tolerance)) => Json::Number(tolerance).brief(),
+            _ => Json::Object(self.members()).brief(),
+        }
     }
+}
+
+/// What one number asks for: it is the tolerance of every promised measure but `peak_vz`.
+fn all_but_peak_vz(tolerance: Option<f64>) -> [Option<f64>; PROMISED.len()] {
+    PROMISED.map(|promised| tolerance.filter(|_| promised.measure != ColumnId::PeakVz))
 }
 
 /// A relative error of a study file.

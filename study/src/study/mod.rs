@@ -214,6 +214,12 @@ impl Study {
         self.grid.meshes()
     }
 
+    /// The meshes that `accuracy` chose, coarsest first; `None` without it, and with the model auto.
+    pub(crate) fn chosen_meshes(&self) -> Option<&[u32]> {
+        let meshes = self.accuracy.as_ref().map(|accuracy| accuracy.meshes.as_slice());
+        meshes.filter(|meshes| !meshes.is_empty())
+    }
+
     /// Number of runs of each point: 1 without replicates.
     pub fn replicate_count(&self) -> usize {
         self.grid.replicate_count()

@@ -53,7 +53,8 @@ pub struct Kept {
 }
 
 impl AutoAnswer {
-    pub(super) fn of(stored: &Stored<'_>) -> Option<Self> {
+    /// That of a results folder; `None` for a study that names its model.
+    pub fn of(stored: &Stored<'_>) -> Option<Self> {
         let auto = stored.study.auto()?;
         let outcome = stored.outcome()?;
         let points = stored.study.points();

@@ -4,6 +4,7 @@
 
 use billow_solver::output::measures::Verdict;
 
+use crate::accuracy::error_column;
 use crate::analysis::{compare, replicates};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
@@ -82,6 +83,10 @@ pub struct Extreme {
     pub shown: DisplayUnit,
     /// Number of other jobs with the same value, up to rounding.
     pub others: usize,
+    /// Number of other jobs whose values differ by more than rounding, and by less than the larger mesh error.
+    pub within_error: usize,
+    /// Whether the value is extrapolated from several meshes.
+    pub extrapolated: bool,
 }
 
 impl Answer {
@@ -157,6 +162,13 @@ fn extreme(
     let same = |other: f64| (other - value).abs() <= compare::ROUNDING * value.abs();
     let measured = rows.iter().filter_map(|row| compare::measured(table, column, *row));
     let others = measured.filter(|other| same(*other)).count().saturating_sub(1);
+    let errors = error_column(measure.name()).and_then(|name| table.column(name));
+    let errors = errors.map(|errors| replicates::source(table, errors));
+    let error = |row: usize| compare::measured(table, errors?, row);
+    let within = |other: &usize| {
+        let known = compare::measured(table, column, *other).zip(error(*other)).zip(error(row));
+        known.is_some_and(|((other, a), b)| !same(other) && (other - value).abs() <= a.max(b))
+    };
     let parameters = table.parameters();
     Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),
@@ -166,6 +178,8 @@ fn extreme(
         value,
         shown: column.shown.clone(),
         others,
+        within_error: rows.iter().copied().filter(within).count(),
+        extrapolated: column.name != raw.name,
     })
 }
 

@@ -166,6 +166,8 @@ fn margin(table: &Table, points: &Points, point: usize) -> Option<PointMargin> {
         value,
         shown: DisplayUnit::si("1"),
         others: 0,
+        within_error: 0,
+        extrapolated: false,
     };
     Some(PointMargin { point, measure })
 }

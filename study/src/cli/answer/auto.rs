@@ -1,5 +1,7 @@
 //! Lines of the answer on the mesh that a study with `"model": "auto"` chose.
 
+use std::fmt::Write as _;
+
 use crate::accuracy::PROMISED;
 use crate::analysis::answer::{AutoAnswer, Kept};
 use crate::cli::print::count;
@@ -11,7 +13,7 @@ use crate::study::auto::Check;
 const MAX_BROKEN: usize = 5;
 
 /// What ran on which mesh, what it promises, what the checks found, what it cost.
-pub(super) fn lines(auto: &AutoAnswer) -> Vec<String> {
+pub fn lines(auto: &AutoAnswer) -> Vec<String> {
     let reference = auto.reference;
     let pilots = count(auto.pilots, "pilot");
     let Some(chosen) = auto.chosen else {
@@ -55,7 +57,19 @@ fn checks(auto: &AutoAnswer) -> Vec<String> {
         if ended < planned { format!(", {} not run", planned - ended) } else { String::new() };
     let broken: Vec<&Check> = auto.broken().collect();
     if broken.is_empty() {
-        return vec![format!("{checks} on n {mesh}{open}: the promise is kept")];
+        let mut text = format!("{checks} on n {mesh}{open}: the promise is kept");
+        let largest = PROMISED.iter().enumerate().filter_map(|(index, promised)| {
+            let differences = auto.checks.iter().filter_map(|check| check.differences[index]);
+            let largest = 100.0 * differences.reduce(f64::max)?;
+            Some(format!("{} {largest:.1} %", promised.measure.name()))
+        });
+        let largest: Vec<String> = largest.collect();
+        if !largest.is_empty() {
+            let list = largest.join(", ");
+            let reference = auto.reference;
+            let _ = write!(text, "; largest differences, both corrected to n {reference}: {list}");
+        }
+        return vec![text];
     }
     let mut lines =
         vec![format!("PROMISE BROKEN in {} of {checks} on n {mesh}{open}", broken.len())];

@@ -65,6 +65,8 @@ fn extreme_json(
     keys.insert("parameters".to_owned(), parameters.into());
     keys.insert(measure.to_owned(), extreme.value.into());
     keys.insert("others".to_owned(), extreme.others.into());
+    keys.insert("within_mesh_error".to_owned(), extreme.within_error.into());
+    keys.insert("extrapolated".to_owned(), extreme.extrapolated.into());
     Some(keys)
 }
 

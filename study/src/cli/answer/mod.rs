@@ -15,7 +15,7 @@ use crate::input::value::{Value, brief_number};
 use crate::job::Status;
 use crate::job::row::HEADLINE;
 
-mod auto;
+pub mod auto;
 mod border;
 mod effects;
 mod json;
@@ -210,10 +210,17 @@ fn job_text(extreme: &Extreme) -> String {
         .iter()
         .map(|(name, value, unit)| format!("{name}={}", unit.quantity(value)))
         .collect();
-    let others = match extreme.others {
-        0 => String::new(),
-        others => format!(" (and {} with the same value)", count(others, "job")),
-    };
+    let mut notes = Vec::new();
+    if extreme.others > 0 {
+        notes.push(format!("and {} with the same value", count(extreme.others, "job")));
+    }
+    if extreme.within_error > 0 {
+        notes.push(format!("{} within the mesh error of it", count(extreme.within_error, "job")));
+    }
+    if extreme.extrapolated {
+        notes.push("extrapolated".to_owned());
+    }
+    let others = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join("; ")) };
     format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(", "))
 }
 

@@ -49,7 +49,7 @@ fn part(measure: &MeasureVersus, versus: &Versus, first: bool) -> Option<String>
     let all = if first { count(measure.pairs, "pair") } else { measure.pairs.to_string() };
     let mut texts = Vec::new();
     if measure.pairs > 0 && measure.ties == measure.pairs {
-        texts.push(format!("{name} equal within {} in {all}", best::limit(&measure.tolerance)));
+        texts.push(format!("{name} equal within {} in {all}", best::within(&measure.tolerance)));
     } else if measure.pairs > 0 {
         let lower = measure.lower >= measure.higher;
         let (main, most, other, least) = if lower {

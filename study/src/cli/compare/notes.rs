@@ -4,10 +4,13 @@ use std::fmt::Write as _;
 
 use super::Comparison;
 use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
-use crate::cli::best;
 use crate::cli::print::count;
+use crate::cli::{best, legend};
 use crate::input::value::Value;
 use crate::job::row::BetterSide;
+
+/// What a cell of a point holds.
+const MEDIANS: &str = "median [least to largest]";
 
 impl Comparison<'_> {
     /// Prints, on stderr, which value is the base, which ratios are better, and what is not compared.
@@ -28,23 +31,20 @@ impl Comparison<'_> {
                 ToleranceSource::Given => "--tie",
                 ToleranceSource::Ranges => "no spread of the method is known",
                 ToleranceSource::Seeds => "spread over the seeds",
-                ToleranceSource::MeshError => "median mesh error; of each pair the larger one",
+                ToleranceSource::MeshError => "of each pair the larger one",
                 ToleranceSource::Method => "spread of the method",
                 ToleranceSource::Unknown => "spread not known: lower or higher, not better",
             };
-            let limit = best::limit(&measure.tolerance);
+            let limit = best::within(&measure.tolerance);
             format!("{} within {limit} ({source})", measure.column.name)
         });
         let ranges = self.measures.iter().any(|measure| measure.ranges.is_some());
         let overlap = if ranges { "; or the ranges over the runs overlap" } else { "" };
         eprintln!("tie: {}{overlap}", ties.collect::<Vec<_>>().join(", "));
         if let Some(points) = self.points {
-            eprintln!(
-                "{}, {}; values are medians over {} [least to largest]; --runs pairs single runs",
-                count(self.table.rows(), "point"),
-                count(points.run_count(), "run"),
-                self.replicates.join(", ")
-            );
+            let (rows, runs) = (self.table.rows(), points.run_count());
+            let text = legend::points(points.runs(), rows, runs, &self.replicates, MEDIANS);
+            eprintln!("{text}; --runs pairs single runs");
         }
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");

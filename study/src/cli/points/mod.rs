@@ -1,5 +1,6 @@
 //! The points of a study with replicates: which runs a command reads, and one row per point.
 
+use super::legend::PLUS_MINUS;
 use super::range;
 use super::study_keys;
 use super::target::filtered;
@@ -122,8 +123,8 @@ impl<'a> Points<'a> {
         Some(Value::Text(match error {
             Some(error) => {
                 let alone = range::with_error(spread.median, error.median, &column.shown);
-                match (alone.split_once(" ± "), spread.least < spread.largest) {
-                    (Some((_, error)), true) => format!("{text} ± {error}"),
+                match (alone.split_once(PLUS_MINUS), spread.least < spread.largest) {
+                    (Some((_, error)), true) => format!("{text}{PLUS_MINUS}{error}"),
                     _ => alone,
                 }
             }
@@ -138,6 +139,11 @@ impl<'a> Points<'a> {
         Spread::of(runs.filter_map(|row| measured(self.runs_table, column, *row)))
     }
 
+    /// The table of the single runs.
+    pub fn runs(&self) -> &Table {
+        self.runs_table
+    }
+
     /// Number of all runs.
     pub fn run_count(&self) -> usize {
         self.condensed.runs.iter().map(|runs| runs.rows.len()).sum()
@@ -146,8 +152,9 @@ impl<'a> Points<'a> {
 
 /// How the runs of a point ended: "5", or "4 done, 1 failed".
 fn runs_text(runs: &Runs) -> String {
-    if runs.done == runs.rows.len() && runs.not_trusted == 0 {
-        return runs.done.to_string();
+    let [failed, open] = [runs.failed, runs.pending + runs.infeasible];
+    if failed + open + runs.not_trusted == 0 {
+        return runs.rows.len().to_string();
     }
     if runs.infeasible == runs.rows.len() {
         return "infeasible".to_owned();

@@ -8,6 +8,7 @@ use crate::cli::{Format, range};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, DerivedColumn, current_column_name};
 use crate::platform::error::Result;
+use crate::store::table::corrected::RUN_MESH;
 use crate::store::table::{Column, Table};
 
 /// The parameter whose values are compared for how gentle they are.
@@ -18,6 +19,7 @@ const STRATEGY: &str = "strategy";
 pub fn main_names(table: &Table) -> Vec<&str> {
     let mut names: Vec<&str> = vec![
         ColumnId::Status.name(),
+        RUN_MESH,
         ColumnId::Verdict.name(),
         DerivedColumn::Safe.name(),
         DerivedColumn::SmallestMargin.name(),

@@ -4,9 +4,9 @@ use std::io::Write;
 
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
-use super::print::{Heading, count, print_quantities};
+use super::print::{Heading, print_quantities};
 use super::target::{self, StudyArgs, Target};
-use super::{Format, best};
+use super::{Format, best, legend};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
@@ -24,6 +24,9 @@ const MAX_LINE_WIDTH: usize = 120;
 /// Most characters in such a line of points or with limits. Chosen: a range or a proportion takes twice the room
 /// of a number.
 const MAX_WIDE_LINE_WIDTH: usize = 160;
+
+/// What a cell of a point holds.
+const OF_POINTS: &str = "median [least to largest], smallest margin, k of n (95 % interval)";
 
 /// The replicate that shows how much a noisy measure varies.
 const SEED: &str = "seed";
@@ -83,6 +86,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         target.table = Stored::read(target.results.clone())?.runs_table();
     }
     target.add_keys(&asked, args.condition.as_deref())?;
+    let corrected = legend::corrected(&target).filter(|_| !args.runs);
     let Target { study, table, .. } = target;
     let study = study.as_ref();
     let replicates = match study {
@@ -110,6 +114,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
         eprintln!("{} of {} columns (--columns all)", listing.headings.len(), listing.all_columns);
         for note in &listing.notes {
+            eprintln!("{note}");
+        }
+        let cells = listing.cells.iter().flatten();
+        for note in legend::mesh_errors(cells).into_iter().chain(corrected) {
             eprintln!("{note}");
         }
         best::print(study, &table, &rows);
@@ -153,13 +161,8 @@ fn points(args: &Args, table: &Table, rows: &[usize], replicates: &[String]) -> 
     let order = sorted(&points.table, (0..points.table.rows()).collect(), &args.sort)?;
     let columns = point_columns::chosen(&points, table, &args.columns, &args.sort, format)?;
     let row = |row: &usize| columns.iter().map(|column| column.cells[*row].clone()).collect();
-    let mut notes = vec![format!(
-        "{}, {} that differ in {}: median [least to largest], smallest margin, k of n (95 % interval); --runs \
-         shows the runs",
-        count(order.len(), "point"),
-        count(points.run_count(), "run"),
-        replicates.join(", ")
-    )];
+    let text = legend::points(table, order.len(), points.run_count(), replicates, OF_POINTS);
+    let mut notes = vec![format!("{text}; --runs shows the runs")];
     if points.run_count() < rows.len() {
         let same = rows.len() - points.run_count();
         notes.push(format!("note: {same} of {} runs are the same job as another run", rows.len()));

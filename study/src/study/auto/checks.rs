@@ -4,7 +4,8 @@
 //! broken:  |m/m' − 1| > tolerance, or another verdict     m, m': corrected values of the chosen and of the finer mesh
 //! correction of a mesh n that is no rung:  ln F_n = ln F ln(n_ref/n)/ln(n_ref/n_chosen)
 //! ```
-//! Checked are those with the smallest job ids on the reference mesh. Ids are hashes, so this is a draw, and the same one
+//! Both values are corrected to the reference mesh, so their difference shows how far the correction fails at a
+//! point that is no pilot. Checked are those with the smallest job ids on the reference mesh. Ids are hashes, so this is a draw, and the same one
 //! each time.
 
 use super::{Auto, CHECKED, Decision, Finished, job_on};

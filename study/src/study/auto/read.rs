@@ -84,17 +84,16 @@ impl Auto {
         let reference = points.first().map_or(0, |point| point.scene.design.subdivisions);
         let rungs = pilots::rungs(reference);
         if rungs.is_empty() {
-            let problem = format!("has no mesh below half of design.subdivisions {reference}");
-            return Err(refuse(
-                &problem,
-                "design.subdivisions 6 or more, the mesh to replace".to_owned(),
-            ));
+            let problem =
+                format!("has no mesh from n 3 to half of design.subdivisions, {reference}");
+            return Err(refuse(&problem, "design.subdivisions 6 or more".to_owned()));
         }
         let pilots = pilots::choose(points, &rungs, reference, repeats);
         if pilots.len() < MIN_PILOTS {
             let share = 100.0 * PILOT_SHARE;
             let problem = format!(
-                "has too few points: {share} % of the cost of {} pays {} of at least {MIN_PILOTS} pilots",
+                "has too few points: pilots may cost {share} % of all {} points on the reference mesh, which pays for \
+                 {}, and the correction needs {MIN_PILOTS}",
                 points.len(),
                 pilots.len()
             );
@@ -102,7 +101,7 @@ impl Auto {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "about 45")]
             let enough = libm::ceil(1.2 / most) as u32;
             let mut error = refuse(&problem, format!("about {enough} points or more"));
-            "a smaller study runs film whole: \"model\": \"film\", with accuracy to choose its mesh"
+            "a smaller study runs whole: \"model\": \"film\"; without design.subdivisions accuracy chooses its mesh"
                 .clone_into(&mut error.hint);
             return Err(error);
         }

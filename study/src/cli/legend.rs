@@ -1,0 +1,95 @@
+//! What the cells of a printed table say: medians over replicates, values extrapolated from several meshes or
+//! corrected to a finer one, and mesh errors.
+
+use std::fmt::Write as _;
+
+use super::print::count;
+use super::target::Target;
+use crate::accuracy::PROMISED;
+use crate::input::keys::numerical::MESH_PARAMETER;
+use crate::input::value::Value;
+use crate::store::table::Table;
+use crate::store::table::corrected::RUN_MESH;
+
+/// What is between a value and its mesh error.
+pub const PLUS_MINUS: &str = " ± ";
+
+/// What a row of points holds: `runs` runs of `table`, which differ in `replicates`. `of_each` says what a cell has
+/// beside the median.
+pub fn points(
+    table: &Table,
+    points: usize,
+    runs: usize,
+    replicates: &[String],
+    of_each: &str,
+) -> String {
+    let meshes = meshes(table, replicates);
+    let others: Vec<&str> = replicates
+        .iter()
+        .map(String::as_str)
+        .filter(|name| meshes.is_empty() || *name != MESH_PARAMETER)
+        .collect();
+    let mut text = format!("{}, {}", count(points, "point"), count(runs, "run"));
+    if !others.is_empty() {
+        let _ = write!(text, " that differ in {}: {of_each}", others.join(", "));
+    }
+    if let Some((finest, coarser)) = meshes.split_last() {
+        let coarser: Vec<String> = coarser.iter().map(ToString::to_string).collect();
+        let coarser = coarser.join(", ");
+        let _ = write!(
+            text,
+            "; {} are extrapolated from n {coarser} and {finest}, all else is that of n {finest}",
+            names(|_| true)
+        );
+    }
+    text
+}
+
+/// The meshes from which values are extrapolated, coarsest first; empty without any.
+fn meshes(table: &Table, replicates: &[String]) -> Vec<i64> {
+    let is_replicate = replicates.iter().any(|name| name == MESH_PARAMETER);
+    let column = table.parameters().find(|column| column.name == MESH_PARAMETER);
+    let Some(column) = column.filter(|_| is_replicate && table.has_extrapolated()) else {
+        return Vec::new();
+    };
+    let mut meshes: Vec<i64> = column
+        .cells
+        .iter()
+        .filter_map(|cell| match cell {
+            Value::Integer(n) => Some(*n),
+            _ => None,
+        })
+        .collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    meshes
+}
+
+/// What the mesh errors in these cells are; `None` if no cell has one.
+pub fn mesh_errors<'a>(cells: impl IntoIterator<Item = &'a Value>) -> Option<String> {
+    let has_error = |cell: &Value| matches!(cell, Value::Text(text) if text.contains(PLUS_MINUS));
+    cells.into_iter().any(has_error).then(|| {
+        format!(
+            "±: mesh error, which 9 of 10 runs keep: to the limit of fine meshes; of {} to n 24 only",
+            names(|has_limit| !has_limit)
+        )
+    })
+}
+
+/// What the rows of a study with `"model": "auto"` are; `None` for another study.
+pub fn corrected(target: &Target) -> Option<String> {
+    let auto = target.study.as_ref()?.auto()?;
+    target.table.column(RUN_MESH)?;
+    Some(format!(
+        "auto: {} and the times since the release are corrected to n {}; all else is as the run on {RUN_MESH} gave it \
+         (--runs: the runs)",
+        names(|_| true),
+        auto.reference
+    ))
+}
+
+/// The promised measures with and without a limit of fine meshes, by their names.
+fn names(of: fn(bool) -> bool) -> String {
+    let chosen = PROMISED.iter().filter(|promised| of(promised.has_limit));
+    chosen.map(|promised| promised.measure.name()).collect::<Vec<_>>().join(", ")
+}
