@@ -31,12 +31,8 @@ study: build
 paper: build
 	studies/publish_paper.sh $(BILLOW)
 
-# The end state is judged by its shape alone; the pictures over seconds have the points of a peer.
-PARETO := pareto studies/pareto.json --measures end_state:final_z_rim,end_state:final_volume
 pareto: build
-	$(BILLOW) run studies/pareto.json
-	$(BILLOW) $(PARETO) --cost seconds --peer results/pareto/peer.json
-	$(BILLOW) $(PARETO)
+	studies/publish_pareto.sh $(BILLOW)
 
 test: deps
 	$(CARGO) test $(FLAGS)

@@ -159,8 +159,9 @@ fn a_folder_with_other_files_is_refused() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("not a folder of results"), "{}", stderr(&output));
     assert_eq!(std::fs::read_dir(&papers).unwrap().count(), 1);
-    // An empty folder is accepted.
-    std::fs::remove_file(papers.join("thesis.txt")).unwrap();
+    // A page and what is published beside results that are not there yet are accepted, as in results/paper.
+    std::fs::rename(papers.join("thesis.txt"), papers.join("README.md")).unwrap();
+    std::fs::create_dir(papers.join("published")).unwrap();
     assert_eq!(
         folder.run(&["run", "grid.json", "--results", "papers", "-q"]).status.code(),
         Some(0)

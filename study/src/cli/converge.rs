@@ -8,7 +8,7 @@ use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, folder};
 use super::{Format, stored};
 use crate::accuracy::PROMISED;
-use crate::analysis::convergence::{self, SceneRuns, calibrate, fit, levels};
+use crate::analysis::convergence::{self, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
@@ -74,9 +74,11 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     print_quantities(&headings, &rows, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
         eprintln!(
-            "{} scenes; limit: of the fit f0 + a h^order, h = 1/n; change: limit over the finest value, minus 1; \
-             uncertainty: 95 %, of the limit",
-            scenes.len()
+            "{} scenes; limit: of the fit f0 + a h^order, h = 1/n, order from {} to {}; change: limit over the finest \
+             value, minus 1; uncertainty: 95 %, of the limit",
+            scenes.len(),
+            ORDERS[0],
+            ORDERS[1]
         );
     }
     match &args.table {
@@ -108,6 +110,9 @@ fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
         let relative = |value: f64| {
             if last.value == 0.0 { Value::Null } else { Value::Number(value / last.value) }
         };
+        // A fitted number that is no limit must not be read as one.
+        let trend = convergence::trend(&levels, &fit);
+        let known = |value: Value| if trend == Trend::Limit { value } else { Value::Null };
         let text = |text: &str| Value::Text(text.to_owned());
         Some(vec![
             text(&scene.label),
@@ -115,11 +120,11 @@ fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
             text(measure.column().unit),
             Value::Text(format!("{} to {}", first.subdivisions, last.subdivisions)),
             Value::Number(last.value),
-            Value::Number(fit.limit),
-            relative(fit.limit - last.value),
-            relative(fit.uncertainty),
+            known(Value::Number(fit.limit)),
+            known(relative(fit.limit - last.value)),
+            known(relative(fit.uncertainty)),
             Value::Number(fit.order),
-            text(convergence::trend(&levels, &fit).name()),
+            text(trend.name()),
         ])
     };
     measures.filter_map(row).collect()

@@ -8,7 +8,7 @@ pub mod runs;
 mod tests;
 
 pub use calibrate::{calibrate, levels};
-pub use fit::{Fit, Level, fit};
+pub use fit::{Fit, Level, ORDERS, fit};
 pub use runs::{MeshRun, SceneRuns, by_scene};
 
 /// Whether a measure tends to a limit on the meshes at hand.

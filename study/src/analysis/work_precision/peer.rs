@@ -6,7 +6,7 @@ use super::{Cost, Diagram};
 use crate::input::keys::numerical::{self, MESH, MODEL};
 use crate::input::value::Value;
 
-/// What is known of a peer: `results/pareto/peer.json`.
+/// What is known of a peer: `results/pareto/published/peer.json`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Peer {

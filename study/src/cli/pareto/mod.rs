@@ -204,7 +204,8 @@ fn of_history(history: &StoredHistory) -> Histories {
 /// A file that cannot be read, or does not describe a peer.
 fn read_peer(path: &Path) -> Result<Peer> {
     let refuse = |problem: String| {
-        let allowed = "a file as results/pareto/peer.json; docs/guide/pareto.md lists its members";
+        let allowed =
+            "a file as results/pareto/published/peer.json; docs/guide/pareto.md lists its members";
         Error::invalid_option("--peer", &path.display().to_string(), problem, allowed, "")
     };
     let bytes =

@@ -6,10 +6,8 @@ use super::Health;
 use crate::job::JobId;
 use crate::platform::files::{self, disk_error};
 use crate::store::journal::{self, Journal, Record};
-use crate::store::results::{RESULT_NAMES, Results};
+use crate::store::results::{OTHER_NAMES, RESULT_NAMES, Results};
 
-/// Names that other commands write into a results folder.
-const OTHER_NAMES: [&str; 1] = ["report.html"];
 /// The problem of a file of another program.
 const FOREIGN: &str = "not a file of billow";
 /// The next step for it.

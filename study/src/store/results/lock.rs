@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{RESULT_NAMES, Results};
+use super::{OTHER_NAMES, RESULT_NAMES, Results};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Lock, disk_error};
 
@@ -82,9 +82,8 @@ impl Results<'_> {
             .filter_map(|path| path.file_name().map(|name| name.to_string_lossy().into_owned()))
             .collect();
         // A killed process may have left hidden files.
-        let other = names
-            .iter()
-            .find(|name| !RESULT_NAMES.contains(&name.as_str()) && !name.starts_with('.'));
+        let known = |name: &str| RESULT_NAMES.contains(&name) || OTHER_NAMES.contains(&name);
+        let other = names.iter().find(|name| !known(name) && !name.starts_with('.'));
         match other {
             Some(name) if !names.iter().any(|name| name == "study.json") => Err(Error::Disk {
                 path: self.root.clone(),

@@ -50,6 +50,9 @@ pub const RESULT_NAMES: [&str; 11] = [
     "damaged",
     "lock",
 ];
+/// Names that people and other commands put beside them: a page about the results, what is published of them, a report.
+pub const OTHER_NAMES: [&str; 3] = ["README.md", "published", "report.html"];
+
 /// A results folder on a disk.
 #[derive(Clone)]
 pub struct Results<'a> {

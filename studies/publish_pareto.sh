@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Runs studies/pareto.json (half an hour on two cores; finished jobs are not run again) and writes the tables and
+# pictures of its work-precision diagrams to results/pareto/published.
+#
+# usage: studies/publish_pareto.sh [BILLOW]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+billow=${1:-target/release/billow}
+results=results/pareto
+out=$results/published
+
+"$billow" run studies/pareto.json --results "$results"
+
+# pareto OPTION...: the tables and pictures of one cost. In the overview film at rest counts by its state at the end alone.
+pareto() {
+  "$billow" pareto studies/pareto.json --results "$results" -q \
+    --measures end_state:final_z_rim,end_state:final_volume "$@" | sed "\\|^$results/charts/|d"
+}
+pareto --cost seconds --peer "$out/peer.json" > "$out/front_seconds.txt"
+pareto --all --format csv > "$out/configurations.csv"
+pareto | tee "$out/front.txt"
+cp "$results"/charts/pareto*.svg "$out"
+# Of the pictures over seconds the overview and that with the peer show what the others do not.
+for picture in pareto pareto_capsule_direct; do
+  cp "$results/charts/$picture"{,_seconds}.png "$out"
+done
+for scene in capsule_residual end_state slow_filling injected_piston breathing_sphere square_airbag stretched_disc; do
+  cp "$results/charts/pareto_$scene.png" "$out"
+done
