@@ -8,17 +8,23 @@ cd "$(dirname "$0")/.."
 billow=${1:-target/release/billow}
 results=results/pareto
 out=$results/published
+mkdir -p "$out"
+new=$(mktemp -d)
+trap 'rm -rf "$new"' EXIT
 
 "$billow" run studies/pareto.json --results "$results"
+
+rm -f "$results"/charts/pareto*
 
 # pareto OPTION...: the tables and pictures of one cost. In the overview film at rest counts by its state at the end alone.
 pareto() {
   "$billow" pareto studies/pareto.json --results "$results" -q \
     --measures end_state:final_z_rim,end_state:final_volume "$@" | sed "\\|^$results/charts/|d"
 }
-pareto --cost seconds --peer "$out/peer.json" > "$out/front_seconds.txt"
-pareto --all --format csv > "$out/configurations.csv"
-pareto | tee "$out/front.txt"
+pareto --cost seconds --peer "$out/peer.json" > "$new/front_seconds.txt"
+pareto --all --format csv > "$new/configurations.csv"
+pareto | tee "$new/front.txt"
+mv "$new"/* "$out"
 cp "$results"/charts/pareto*.svg "$out"
 # Of the pictures over seconds the overview and that with the peer show what the others do not.
 for picture in pareto pareto_capsule_direct; do

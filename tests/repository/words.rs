@@ -77,6 +77,7 @@ fn looked_at() -> Vec<PathBuf> {
         "DESIGN.md",
         "CONTRIBUTING.md",
         "results/README.md",
+        "results/pareto/README.md",
         "Cargo.toml",
         "Makefile",
     ];

@@ -14,7 +14,7 @@ use billow_solver::scene::inflow::Schedule;
 use billow_solver::scene::{ModelKind, Outputs, Scene, Stepping, Thresholds};
 use serde::{Deserialize, Serialize};
 
-use crate::input::value::{brief_number, short_number};
+use crate::input::value::short_number;
 
 /// Fraction of the stable step of the runs of the table: the default.
 pub const STEP: f64 = 0.45;
@@ -234,11 +234,18 @@ fn different_key(scene: &serde_json::Value, runs: &serde_json::Value) -> Option<
         _ if same(scene, runs) => None,
         _ => {
             let text = |value: &serde_json::Value| match value.as_f64() {
-                Some(number) => brief_number(number),
+                Some(number) => short_number(number),
                 _ if value.is_null() => "none".to_owned(),
                 _ => value.to_string(),
             };
-            Some(format!(" {}: the runs of the table have {}", text(scene), text(runs)))
+            let [given, known] = [scene, runs].map(text);
+            // Numbers that differ by less than six digits show are shown with all of them.
+            let [given, known] = if given == known {
+                [scene, runs].map(ToString::to_string)
+            } else {
+                [given, known]
+            };
+            Some(format!(" {given}: the runs of the table have {known}"))
         }
     }
 }

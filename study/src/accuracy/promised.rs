@@ -35,7 +35,7 @@ pub const PROMISED: [Promised; 6] = [
 /// Name of the column that says why a row has no mesh errors.
 pub const NO_ERROR_REASON: &str = "no_error_reason";
 /// Meaning of that column, one line.
-pub const NO_ERROR_REASON_MEANING: &str = "why a row has no mesh errors: what its scene has that the runs of the table of mesh errors have not, or a model other than film";
+pub const NO_ERROR_REASON_MEANING: &str = "why the table of mesh errors has none for this row: what its scene has that the runs of the table have not, or a model other than film; values extrapolated from three meshes have an error all the same";
 
 impl Promised {
     /// Whether it is the state at the end of a run: it has a mesh error only where the capsule is deployed.

@@ -4,12 +4,12 @@
 use std::fmt::Write as _;
 
 use super::print::count;
-use super::target::Target;
-use crate::accuracy::PROMISED;
+use crate::accuracy::{PROMISED, Promised};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::store::table::Table;
 use crate::store::table::corrected::RUN_MESH;
+use crate::study::Study;
 
 /// What is between a value and its mesh error.
 pub const PLUS_MINUS: &str = " ± ";
@@ -39,7 +39,7 @@ pub fn points(
         let _ = write!(
             text,
             "; {} are extrapolated from n {coarser} and {finest}, all else is that of n {finest}",
-            names(|_| true)
+            corrected_names()
         );
     }
     text
@@ -70,22 +70,36 @@ pub fn mesh_errors<'a>(cells: impl IntoIterator<Item = &'a Value>) -> Option<Str
     let has_error = |cell: &Value| matches!(cell, Value::Text(text) if text.contains(PLUS_MINUS));
     cells.into_iter().any(has_error).then(|| {
         format!(
-            "±: mesh error, which 9 of 10 runs keep: to the limit of fine meshes; of {} to n 24 only",
+            "±: mesh error, which 9 of 10 runs of the table of mesh errors keep: to the limit of fine meshes; of {} to \
+             n 24 only",
             names(|has_limit| !has_limit)
         )
     })
 }
 
 /// What the rows of a study with `"model": "auto"` are; `None` for another study.
-pub fn corrected(target: &Target) -> Option<String> {
-    let auto = target.study.as_ref()?.auto()?;
-    target.table.column(RUN_MESH)?;
-    Some(format!(
-        "auto: {} and the times since the release are corrected to n {}; all else is as the run on {RUN_MESH} gave it \
-         (--runs: the runs)",
-        names(|_| true),
-        auto.reference
-    ))
+pub fn corrected(study: &Study, table: &Table) -> Option<String> {
+    let reference = study.auto()?.reference;
+    let coarser = |row: usize| {
+        let mesh = table.column(RUN_MESH).map(|column| &column.cells[row]);
+        let is_coarser = matches!(mesh, Some(Value::Integer(n)) if *n < i64::from(reference));
+        let has_value = |promised: &Promised| {
+            table.value(promised.measure, row).is_some_and(|value| *value != Value::Null)
+        };
+        is_coarser && PROMISED.iter().any(has_value)
+    };
+    (0..table.rows()).any(coarser).then(|| {
+        let names = corrected_names();
+        format!(
+            "auto: {names} are corrected to n {reference}; all else is as the run on {RUN_MESH} gave it (table --runs: \
+             the runs)"
+        )
+    })
+}
+
+/// The measures that are extrapolated or corrected.
+fn corrected_names() -> String {
+    format!("{} and the times since the release", names(|_| true))
 }
 
 /// The promised measures with and without a limit of fine meshes, by their names.

@@ -28,8 +28,8 @@ fn lines(study: &Study) -> Vec<String> {
     let mut lines: Vec<String> = study.notes().iter().map(|note| format!("note: {note}")).collect();
     if let Some(meshes) = study.chosen_meshes() {
         let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
-        let how = "the cheapest that keeps the errors of accuracy at every point";
-        lines.push(format!("note: {}: {how}", method.name()));
+        let how = "the cheapest that keeps its errors at every point";
+        lines.push(format!("note: accuracy chooses {}, {how}", method.name()));
     }
     let empty = |point: &&crate::study::StudyPoint| {
         let gas = &point.scene.gas;

@@ -7,13 +7,26 @@ use super::{Format, output_error};
 use crate::input::units::DisplayUnit;
 use crate::input::value::{Value, brief_number, json_value};
 use crate::platform::error::Result;
+use crate::study::Study;
 
-/// A number of points with several runs each: "30 points of 5 runs"; `planned` counts every run.
-pub fn points_of_runs(planned: usize, runs: usize) -> String {
-    if runs > 1 && planned.is_multiple_of(runs) {
-        return format!("{} of {}", count(planned / runs, "point"), count(runs, "run"));
+/// A number of points with several runs each: "30 points of 5 runs", or "57 points, 256 runs" where a filter leaves some
+/// points fewer. `planned` counts every run.
+pub fn points_of_runs(study: &Study, planned: usize) -> String {
+    let runs = study.replicate_count();
+    let points = if planned == study.points().len() {
+        study.point_count()
+    } else if planned.is_multiple_of(runs) {
+        planned / runs
+    } else {
+        planned
+    };
+    if points == planned {
+        count(planned, "point")
+    } else if planned.is_multiple_of(points) {
+        format!("{} of {}", count(points, "point"), count(planned / points, "run"))
+    } else {
+        format!("{}, {}", count(points, "point"), count(planned, "run"))
     }
-    count(planned, "point")
 }
 
 /// A column of a list: its name, and the unit in which a table shows its numbers.

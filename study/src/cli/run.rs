@@ -255,7 +255,7 @@ impl Ended<'_> {
     fn print(&self, answer: &Answer, format: Format, out: &mut dyn Write) -> io::Result<()> {
         let Self { study, root, summary, .. } = self;
         let (name, counts) = (&study.name, &summary.counts);
-        let points = points_of_runs(self.points, study.replicate_count());
+        let points = points_of_runs(study, self.points);
         if format == Format::Json {
             let mut json = serde_json::json!({
                 "study": name,

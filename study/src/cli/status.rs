@@ -7,6 +7,7 @@ use std::num::NonZero;
 use serde_json::json;
 
 use super::answer::auto;
+use super::answer::json::judged;
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, points_of_runs, print_rows};
 use super::run::listed;
@@ -120,6 +121,7 @@ impl<'a> Status<'a> {
             "results": stored.results.root().display().to_string(),
             "running": self.health.running,
             "points": stored.point_count(),
+            "auto": AutoAnswer::of(stored).as_ref().map(judged::auto),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
@@ -174,7 +176,7 @@ impl<'a> Status<'a> {
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
         let rows = self.stored.point_count();
-        let points = points_of_runs(rows, self.stored.study.replicate_count());
+        let points = points_of_runs(&self.stored.study, rows);
         let duplicates = match rows.saturating_sub(counts.rows()) {
             0 => String::new(),
             number => format!(", {}", count(number, "duplicate")),

@@ -31,6 +31,7 @@ mod target;
 mod units;
 mod variables;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::input::keys::{KEYS, STUDY, position};
@@ -305,6 +306,16 @@ impl Study {
         // A value between two valid ones is valid: what a key allows is an interval.
         expand::points_at(&self.base, &self.grid, &Source::new(&self.name), values, searched)
             .unwrap_or_default()
+    }
+
+    /// Number of points that differ in more than replicates.
+    pub(crate) fn point_count(&self) -> usize {
+        let replicates = self.replicates();
+        let key = |point: &StudyPoint| -> Vec<String> {
+            let fixed = point.parameters.iter().filter(|(name, _)| !replicates.contains(name));
+            fixed.map(|(_, value)| value.to_string()).collect()
+        };
+        self.points().iter().map(key).collect::<BTreeSet<_>>().len()
     }
 
     /// Number of points of the product that the filter removed.

@@ -7,6 +7,7 @@
 
 use crate::accuracy::PROMISED;
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::row::ColumnId;
 use crate::store::stored::Stored;
 use crate::study::auto::{Auto, Check, Outcome, estimated_cost};
@@ -33,6 +34,8 @@ pub struct AutoAnswer {
     pub check_mesh: u32,
     /// The checks that have ended.
     pub checks: Vec<Check>,
+    /// Whether every planned run has ended.
+    pub is_complete: bool,
     /// Element-steps of all runs over the estimate for all points on the reference mesh.
     pub cost: Option<f64>,
 }
@@ -69,6 +72,7 @@ impl AutoAnswer {
             planned_checks: outcome.planned_checks,
             check_mesh: outcome.decision.as_ref().map_or(0, |known| auto.finer(known.chosen)),
             checks: outcome.checks,
+            is_complete: is_complete(stored),
             cost: cost(stored, auto),
         })
     }
@@ -95,6 +99,11 @@ fn kept(auto: &Auto, outcome: &Outcome) -> Vec<Kept> {
         })
     });
     measures.collect()
+}
+
+fn is_complete(stored: &Stored<'_>) -> bool {
+    let mut jobs = stored.points.iter().filter(|point| point.infeasible.is_none());
+    jobs.all(|point| stored.cells(point).status() != Status::Pending)
 }
 
 fn cost(stored: &Stored<'_>, auto: &Auto) -> Option<f64> {

@@ -2,10 +2,14 @@
 //! which has the largest impact, how far the results can be trusted, the effect of each parameter with all
 //! others equal, which strategy is gentler, and where the borders of a search are.
 
+use std::collections::BTreeSet;
+
 use billow_solver::output::measures::Verdict;
 
 use crate::accuracy::error_column;
-use crate::analysis::{compare, replicates};
+use crate::analysis::compare;
+use crate::analysis::replicates::source;
+use crate::analysis::values::canonical;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -83,7 +87,7 @@ pub struct Extreme {
     pub shown: DisplayUnit,
     /// Number of other jobs with the same value, up to rounding.
     pub others: usize,
-    /// Number of other jobs whose values differ by more than rounding, and by less than the larger mesh error.
+    /// Number of other points, not counting replicates, with a job whose value is within the larger of both mesh errors.
     pub within_error: usize,
     /// Whether the value is extrapolated from several meshes.
     pub extrapolated: bool,
@@ -93,7 +97,7 @@ impl Answer {
     /// The answer of a results folder.
     pub fn of(stored: &Stored<'_>) -> Self {
         let table = stored.table();
-        let mut answer = Self::of_jobs(&table);
+        let mut answer = Self::of_jobs(&table, &stored.study.replicates());
         answer.question.clone_from(&stored.study.question);
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
@@ -117,7 +121,7 @@ impl Answer {
     }
 
     /// The parts of the answer that need only the table.
-    fn of_jobs(table: &Table) -> Self {
+    fn of_jobs(table: &Table, replicates: &[String]) -> Self {
         let mut answer = Self::default();
         let all: Vec<usize> = (0..table.rows()).collect();
         let rows = table.one_row_per_job(&all);
@@ -133,10 +137,11 @@ impl Answer {
             table.is_trusted(*row) && (deployed || !judged)
         };
         let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
-        answer.fastest = extreme(table, &best, HEADLINE[0], |value, best| value < best);
-        answer.hardest = extreme(table, &rows, ColumnId::PeakVz, |value, best| value > best);
-        answer.most_energy =
-            extreme(table, &rows, ColumnId::PeakKineticEnergy, |value, best| value > best);
+        let least = |measure| extreme(table, &best, replicates, measure, |a, b| a < b);
+        let most = |measure| extreme(table, &rows, replicates, measure, |a, b| a > b);
+        answer.fastest = least(HEADLINE[0]);
+        answer.hardest = most(ColumnId::PeakVz);
+        answer.most_energy = most(ColumnId::PeakKineticEnergy);
         answer.trust = trust::trust(table, &rows);
         answer
     }
@@ -146,11 +151,12 @@ impl Answer {
 fn extreme(
     table: &Table,
     rows: &[usize],
+    replicates: &[String],
     measure: ColumnId,
     better: fn(f64, f64) -> bool,
 ) -> Option<Extreme> {
     let raw = table.column(measure.name())?;
-    let column = replicates::source(table, raw);
+    let column = source(table, raw);
     let mut best: Option<(usize, f64)> = None;
     for row in rows.iter().copied() {
         let Some(value) = compare::measured(table, column, row) else { continue };
@@ -163,12 +169,19 @@ fn extreme(
     let measured = rows.iter().filter_map(|row| compare::measured(table, column, *row));
     let others = measured.filter(|other| same(*other)).count().saturating_sub(1);
     let errors = error_column(measure.name()).and_then(|name| table.column(name));
-    let errors = errors.map(|errors| replicates::source(table, errors));
+    let errors = errors.map(|errors| source(table, errors));
     let error = |row: usize| compare::measured(table, errors?, row);
     let within = |other: &usize| {
         let known = compare::measured(table, column, *other).zip(error(*other)).zip(error(row));
-        known.is_some_and(|((other, a), b)| !same(other) && (other - value).abs() <= a.max(b))
+        known.is_some_and(|((other, a), b)| compare::within_errors([other, value], [a, b]))
     };
+    let point = |row: usize| -> Vec<String> {
+        let fixed = table.parameters().filter(|column| !replicates.contains(&column.name));
+        fixed.map(|column| canonical(&column.cells[row])).collect()
+    };
+    let mut equal: BTreeSet<Vec<String>> =
+        rows.iter().filter(|row| within(row)).map(|row| point(*row)).collect();
+    equal.remove(&point(row));
     let parameters = table.parameters();
     Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),
@@ -178,7 +191,7 @@ fn extreme(
         value,
         shown: column.shown.clone(),
         others,
-        within_error: rows.iter().copied().filter(within).count(),
+        within_error: equal.len(),
         extrapolated: column.name != raw.name,
     })
 }

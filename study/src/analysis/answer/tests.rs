@@ -69,7 +69,7 @@ fn table() -> Table {
 
 #[test]
 fn only_done_jobs_enter_extremes_and_audit() {
-    let answer = Answer::of_jobs(&table());
+    let answer = Answer::of_jobs(&table(), &[]);
     let counts = &answer.counts;
     assert_eq!((counts.jobs(), counts.failed(), counts.of(Status::Infeasible)), (7, 1, 1));
     let verdicts = (counts.verdict["deployed"], counts.verdict["stalled"], counts.near_threshold);
@@ -251,4 +251,31 @@ fn a_set_of_jobs_counts_once_and_a_set_of_one_job_not_at_all() {
     let (parameter, reason) = &effects.not_compared[0];
     assert_eq!(parameter, "mass");
     assert!(reason.starts_with("points that differ in mass alone are one job"), "{reason}");
+}
+
+/// Points within the mesh error of the best one count once, whatever the number of their runs, and it does not count.
+#[test]
+fn points_within_the_mesh_error_of_the_best_one_are_counted_without_replicates() {
+    let numbers = |values: &[f64]| values.iter().copied().map(Value::Number).collect();
+    let text = |texts: [&str; 6]| texts.map(|text| Value::Text(text.to_owned())).to_vec();
+    let integers = |values: [i64; 6]| values.map(Value::Integer).to_vec();
+    let table = Table {
+        columns: vec![
+            column("job", CellType::Text, text(["a", "b", "c", "d", "e", "f"])),
+            column("N", CellType::Integer, integers([5, 5, 6, 6, 8, 8])),
+            column("seed", CellType::Integer, integers([1, 2, 1, 2, 1, 2])),
+            column("status", CellType::Text, text(["done"; 6])),
+            column("verdict", CellType::Text, text(["deployed"; 6])),
+            column(
+                "peak_kinetic_energy",
+                CellType::Number,
+                numbers(&[9.0, 8.9, 8.8, 8.5, 8.0, 8.2]),
+            ),
+            column("peak_kinetic_energy_error", CellType::Number, numbers(&[0.5; 6])),
+        ],
+    };
+    let most = |replicates: &[String]| Answer::of_jobs(&table, replicates).most_energy.unwrap();
+    let energy = most(&["seed".to_owned()]);
+    assert_eq!((energy.job.as_str(), energy.others, energy.within_error), ("a", 0, 1));
+    assert_eq!(most(&[]).within_error, 3, "without replicates every run is a point");
 }

@@ -187,9 +187,8 @@ impl<'a> Measure<'a> {
     /// `None` where an error is not known.
     fn equal_by_errors(&self, table: &Table, pair: Pair, a: Range, b: Range) -> Option<bool> {
         let error = |row: usize| measured(table, self.errors?, row);
-        let larger = error(pair.base)?.max(error(pair.other)?);
         let overlap = a[0] <= b[2] && b[0] <= a[2];
-        Some(overlap || (a[1] - b[1]).abs() <= larger)
+        Some(within_errors([a[1], b[1]], [error(pair.base)?, error(pair.other)?]) || overlap)
     }
 
     /// Which of two values is better; neither while no spread is known.
@@ -201,6 +200,11 @@ impl<'a> Measure<'a> {
     pub fn is_signed(&self) -> bool {
         is_signed(&self.column.name)
     }
+}
+
+/// Whether two values differ by no more than the larger of their mesh errors.
+pub fn within_errors([a, b]: [f64; 2], errors: [f64; 2]) -> bool {
+    (a - b).abs() <= errors[0].max(errors[1])
 }
 
 /// One measure of a pair.

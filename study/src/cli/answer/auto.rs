@@ -36,7 +36,10 @@ pub fn lines(auto: &AutoAnswer) -> Vec<String> {
     }
     if let Some(cost) = auto.cost {
         let cost = 100.0 * cost;
-        lines.push(format!("cost {cost:.1} % of all points on n {reference} (element-steps)"));
+        let so_far = if auto.is_complete { "" } else { " so far" };
+        lines.push(format!(
+            "cost{so_far} {cost:.1} % of all points on n {reference} (element-steps)"
+        ));
     }
     lines
 }
@@ -56,8 +59,13 @@ fn checks(auto: &AutoAnswer) -> Vec<String> {
     let open =
         if ended < planned { format!(", {} not run", planned - ended) } else { String::new() };
     let broken: Vec<&Check> = auto.broken().collect();
+    if ended == 0 {
+        return vec![format!("{checks} on n {mesh}: none has ended")];
+    }
     if broken.is_empty() {
-        let mut text = format!("{checks} on n {mesh}{open}: the promise is kept");
+        let kept =
+            if ended < planned { "none differs by more so far" } else { "the promise is kept" };
+        let mut text = format!("{checks} on n {mesh}{open}: {kept}");
         let largest = PROMISED.iter().enumerate().filter_map(|(index, promised)| {
             let differences = auto.checks.iter().filter_map(|check| check.differences[index]);
             let largest = 100.0 * differences.reduce(f64::max)?;
@@ -95,4 +103,30 @@ fn broken_text(check: &Check) -> String {
         parts.push("another verdict".to_owned());
     }
     format!("{}: {}", label(&check.parameters), parts.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A promise is kept once every check has ended, and no cost is final before.
+    #[test]
+    fn nothing_is_promised_before_the_checks_have_ended() {
+        let answer = AutoAnswer {
+            reference: 12,
+            chosen: Some(6),
+            pilots: 4,
+            others: 56,
+            kept: Vec::new(),
+            finest_rung: 6,
+            planned_checks: 6,
+            check_mesh: 8,
+            checks: Vec::new(),
+            is_complete: false,
+            cost: Some(0.1),
+        };
+        let text = lines(&answer).join("\n");
+        assert!(text.contains("6 checks on n 8: none has ended"), "{text}");
+        assert!(text.contains("cost so far 10.0 %") && !text.contains("kept"), "{text}");
+    }
 }

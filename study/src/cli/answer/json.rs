@@ -7,7 +7,7 @@ use crate::analysis::answer::{Answer, Depends, Effect, Extreme, Extremes, PointC
 use crate::input::value::json_value;
 use crate::job::row::HEADLINE;
 
-mod judged;
+pub mod judged;
 
 /// The answer as JSON keys.
 pub fn json(answer: &Answer) -> serde_json::Value {

@@ -13,12 +13,12 @@ use crate::analysis::answer::{Answer, Effect, Extreme, Trust};
 use crate::input::units::{self, Dimension};
 use crate::input::value::{Value, brief_number};
 use crate::job::Status;
-use crate::job::row::HEADLINE;
+use crate::job::row::{ColumnId, HEADLINE};
 
 pub mod auto;
 mod border;
 mod effects;
-mod json;
+pub mod json;
 mod pairwise;
 mod safe;
 
@@ -117,18 +117,18 @@ fn print_pairs(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
 /// The fastest job, and the jobs with the highest velocity and kinetic energy.
 fn print_extremes(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     if let Some(fastest) = &answer.fastest {
-        let value = format!("{} {}", HEADLINE[0].name(), fastest.shown.brief(fastest.value));
+        let value = value_text(HEADLINE[0], fastest);
         writeln!(out, "  fastest  {value}: {}", job_text(fastest))?;
     }
     let Some(energy) = &answer.most_energy else { return Ok(()) };
-    let mut value = format!("peak_kinetic_energy {}", energy.shown.brief(energy.value));
+    let mut value = value_text(ColumnId::PeakKineticEnergy, energy);
     let speed = answer.hardest.as_ref();
     if let Some(same) = speed.filter(|speed| speed.job == energy.job) {
-        let _ = write!(value, ", peak_vz {}", same.shown.brief(same.value));
+        let _ = write!(value, ", {}", value_text(ColumnId::PeakVz, same));
     }
     writeln!(out, "  hardest  {value}: {}", job_text(energy))?;
     if let Some(other) = speed.filter(|speed| speed.job != energy.job) {
-        let value = format!("peak_vz {} (noisy)", other.shown.brief(other.value));
+        let value = value_text(ColumnId::PeakVz, other);
         writeln!(out, "           {value}: {}", job_text(other))?;
     }
     Ok(())
@@ -204,23 +204,33 @@ fn deployed(answer: &Answer) -> String {
     text
 }
 
+/// A measure with its value, and what is to be known about it.
+fn value_text(measure: ColumnId, extreme: &Extreme) -> String {
+    let mut notes = Vec::new();
+    if measure == ColumnId::PeakVz {
+        notes.push("noisy".to_owned());
+    }
+    if extreme.extrapolated {
+        notes.push("extrapolated".to_owned());
+    }
+    if extreme.within_error > 0 {
+        let points = count(extreme.within_error, "other point");
+        notes.push(format!("{points} within the mesh error"));
+    }
+    let notes = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join(", ")) };
+    format!("{} {}{notes}", measure.name(), extreme.shown.brief(extreme.value))
+}
+
 fn job_text(extreme: &Extreme) -> String {
     let parameters: Vec<String> = extreme
         .parameters
         .iter()
         .map(|(name, value, unit)| format!("{name}={}", unit.quantity(value)))
         .collect();
-    let mut notes = Vec::new();
-    if extreme.others > 0 {
-        notes.push(format!("and {} with the same value", count(extreme.others, "job")));
-    }
-    if extreme.within_error > 0 {
-        notes.push(format!("{} within the mesh error of it", count(extreme.within_error, "job")));
-    }
-    if extreme.extrapolated {
-        notes.push("extrapolated".to_owned());
-    }
-    let others = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join("; ")) };
+    let others = match extreme.others {
+        0 => String::new(),
+        others => format!(" (and {} with the same value)", count(others, "job")),
+    };
     format!("job {} {}{others}", &extreme.job[..8.min(extreme.job.len())], parameters.join(", "))
 }
 

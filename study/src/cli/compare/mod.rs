@@ -6,7 +6,7 @@ use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::target::{StudyArgs, find};
-use super::{Format, output_error};
+use super::{Format, legend, output_error};
 use crate::analysis::compare::{self, Measure, Pair, Sets, Tolerance, measures_with};
 use crate::input::fraction::fraction;
 use crate::input::value::Value;
@@ -139,6 +139,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     if !args.quiet.quiet {
         comparison.print_notes(&base, &alone);
+        if let Some(note) = legend::corrected(&stored.study, &table) {
+            eprintln!("{note}");
+        }
     }
     Ok(())
 }

@@ -214,7 +214,7 @@ fn note(merged: &[Parameters], unit: &dyn Fn(&str) -> DisplayUnit) -> String {
 fn summary(study: &Study, counts: &PlanCounts) -> String {
     format!(
         "{}: {}, {}, {} infeasible; {} filtered out",
-        print::points_of_runs(counts.points, study.replicate_count()),
+        print::points_of_runs(study, counts.points),
         print::count(counts.jobs, "job"),
         print::count(counts.duplicates, "duplicate"),
         counts.infeasible,

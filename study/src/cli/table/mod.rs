@@ -86,9 +86,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         target.table = Stored::read(target.results.clone())?.runs_table();
     }
     target.add_keys(&asked, args.condition.as_deref())?;
-    let corrected = legend::corrected(&target).filter(|_| !args.runs);
     let Target { study, table, .. } = target;
     let study = study.as_ref();
+    let corrected = study.and_then(|study| legend::corrected(study, &table));
+    let corrected = corrected.filter(|_| !args.runs);
     let replicates = match study {
         Some(study) if !args.runs => study.replicates(),
         _ => Vec::new(),

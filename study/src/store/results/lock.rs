@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{OTHER_NAMES, RESULT_NAMES, Results};
+use super::{OTHER_NAMES, PUBLISHED, RESULT_NAMES, Results};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Lock, disk_error};
 
@@ -82,7 +82,11 @@ impl Results<'_> {
             .filter_map(|path| path.file_name().map(|name| name.to_string_lossy().into_owned()))
             .collect();
         // A killed process may have left hidden files.
-        let known = |name: &str| RESULT_NAMES.contains(&name) || OTHER_NAMES.contains(&name);
+        // A page alone may be that of a repository.
+        let is_published = names.iter().any(|name| name == PUBLISHED);
+        let known = |name: &str| {
+            RESULT_NAMES.contains(&name) || (is_published && OTHER_NAMES.contains(&name))
+        };
         let other = names.iter().find(|name| !known(name) && !name.starts_with('.'));
         match other {
             Some(name) if !names.iter().any(|name| name == "study.json") => Err(Error::Disk {

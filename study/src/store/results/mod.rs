@@ -51,7 +51,9 @@ pub const RESULT_NAMES: [&str; 11] = [
     "lock",
 ];
 /// Names that people and other commands put beside them: a page about the results, what is published of them, a report.
-pub const OTHER_NAMES: [&str; 3] = ["README.md", "published", "report.html"];
+pub const OTHER_NAMES: [&str; 3] = ["README.md", PUBLISHED, "report.html"];
+/// The folder with what is published of results; it may be there before them.
+pub const PUBLISHED: &str = "published";
 
 /// A results folder on a disk.
 #[derive(Clone)]

@@ -3,10 +3,10 @@
 //! ```text
 //! m = m₂ + w (m₂ − m₁)      the two finest meshes, w from the table of mesh errors
 //! error = max(e, |m − m'|)    e: that of the table for these meshes;  m': from the two coarsest of three
-//! outside the table, of three meshes only:  error = max(e₀, 3 |m − m'|)    e₀: e of the table's base scene
+//! outside the table, or without runs of such scenes on the two finest, of three meshes only:
+//! error = max(e₀, 3 |m − m'|)   e₀: e of the table's base scene
 //! ```
-//! One difference says little: of the runs of the table 55 % lie within |m − m'|, 83 % within three times it, 95 %
-//! within max(e₀, 3 |m − m'|). A factor of 3 is also that of P. J. Roache, 1994, for an order that is assumed.
+//! [Record 39](../../../../docs/decisions/0039-mesh-errors.md) has the reasons for the factor.
 //!
 //! The row of a run on the finest mesh has them, if the runs on the other meshes that are equal in all else are
 //! done and trusted.
@@ -210,11 +210,12 @@ fn extrapolated(
         error.map(|error| error * value.abs())
     };
     let observed = (last > 0).then(|| (value - of_pair(last - 1)).abs());
-    let error = if table.gap(scene, features).is_some() {
-        let base = of_table(&Features { values: table.base });
-        base.zip(observed).map(|(error, observed)| error.max(OUTSIDE * observed))
-    } else {
-        of_table(features).map(|error| error.max(observed.unwrap_or(0.0)))
+    let covered = table.gap(scene, features).is_none();
+    let error = match covered.then(|| of_table(features)).flatten() {
+        Some(error) => Some(error.max(observed.unwrap_or(0.0))),
+        None => of_table(&Features { values: table.base })
+            .zip(observed)
+            .map(|(error, observed)| error.max(OUTSIDE * observed)),
     };
     (value, error)
 }

@@ -37,7 +37,7 @@ fn table_columns(page: &mut String) {
          called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
          them. `safe`, `smallest_margin`, `smallest_margin_of` and `margin_<measure>` exist in a study with\n\
          `limits`, `verdict_depends_on` in one that varies a numerical choice. With `solver.meshes` the promised\n\
-         measures (those with an error) have `<measure>_extrapolated`, and a row of `billow table` without `--runs`\n\
+         measures (those with an error) and the times since the release have `<measure>_extrapolated`, and a row of `billow table` without `--runs`\n\
          has these values as its measures; `run_subdivisions` exists with `\"model\": \"auto\"`.\n\
          Any cell may be null. The column \"better\" says which side\n\
          `billow compare` calls the better one. Marks: a \"signed\" value can be negative or zero and is\n\
@@ -84,7 +84,8 @@ fn table_columns(page: &mut String) {
         (EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING),
     ];
     for (end, meaning) in of_meshes {
-        let _ = writeln!(page, "| `<measure>{end}` | {number} |  |  |  |  | {meaning} |");
+        let _ =
+            writeln!(page, "| `<measure>{end}` | {number} | of the measure |  |  |  | {meaning} |");
     }
     let integer = CellType::Integer.name();
     let _ = writeln!(page, "| `{RUN_MESH}` | {integer} | 1 |  |  |  | {RUN_MESH_MEANING} |");
