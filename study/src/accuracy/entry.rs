@@ -1,8 +1,8 @@
 //! One entry of the table of mesh errors: the error of one measure by one method, for a kind of scene.
 //!
 //! ```text
-//! b(x) = b_base + Σ_f Δ_f(x_f)                 Δ_f: change of the bias with one feature f, linear between levels
-//! error = |b(x)| + k √(s² + c² Σ_f Δ_f²)       s: scatter of single runs, c: how far features do not add up
+//! b(x) = b_base + Σ_f s_f u_f(x)       u_f: coordinate of the feature f, [`super::coordinates`]
+//! error = |b(x)| + k √(s² + d²)        s: scatter of single runs, d: deviation of scenes that were left out
 //! with a limit m_∞:  |b(x) − (m_∞/m_ref − 1)| + √(k² (…) + U²)     U: uncertainty of m_∞, 95 %
 //! ```
 //! k = 1.64 holds nine of ten normal deviations.
@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use billow_solver::scene::{ModelKind, Scene};
 use serde::{Deserialize, Serialize};
 
+use super::coordinates::Coordinates;
 use super::features::{FEATURE_NAMES, FEATURES, are_equal};
 use crate::input::keys;
 
@@ -45,17 +46,16 @@ pub struct Entry {
     /// Weight w of an extrapolated value, m₂ + w (m₂ − m₁) of a coarse mesh 1 and a fine mesh 2; 0 for one mesh.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub weight: f64,
-    /// Bias of the base scene: median over the seeds of the value over that on the finest mesh, minus 1.
+    /// Bias of the base scene: value over that on the finest mesh, minus 1.
     pub bias: f64,
-    /// Change of the bias with one feature: level and change, in ascending order, the level of the base scene included.
-    pub effects: BTreeMap<String, Vec<[f64; 2]>>,
-    /// Standard deviation of single runs about these medians, relative.
+    /// Change of the bias with the coordinate of each feature that varies over the scenes.
+    pub slopes: BTreeMap<String, f64>,
+    /// Smallest and largest level of these features, SI.
+    pub ranges: BTreeMap<String, [f64; 2]>,
+    /// Standard deviation of single runs about the medians of their scenes, relative.
     pub scatter: f64,
-    /// Deviation of scenes that differ in several features from the sum of the changes, over the root of the sum of
-    /// their squares.
-    pub interaction: f64,
-    /// Number of scenes from which `interaction` follows; 0 where it is assumed.
-    pub checked_scenes: usize,
+    /// Root of the mean squared deviation of a scene from what all other scenes predict, relative.
+    pub deviation: f64,
     /// Number of runs.
     pub runs: usize,
     /// Number of scenes.
@@ -68,56 +68,39 @@ fn is_zero(number: &f64) -> bool {
 }
 
 impl Entry {
-    /// Whether the scenes of this entry have the features of a scene, from which the base scene differs.
-    pub fn covers(&self, values: &[f64; FEATURES], base: &[f64; FEATURES]) -> bool {
+    /// Whether the features of a scene lie within those of the scenes of this entry.
+    pub fn covers(&self, values: &[f64; FEATURES], coordinates: &Coordinates) -> bool {
+        let base = &coordinates.base;
         FEATURE_NAMES.iter().zip(values.iter().zip(base)).all(|((name, _), (value, base))| {
-            let within = |levels: &Vec<[f64; 2]>| {
-                let ends = levels.first().zip(levels.last());
-                ends.is_some_and(|(first, last)| {
-                    let inside = first[0] <= *value && *value <= last[0];
-                    inside || are_equal(*value, first[0]) || are_equal(*value, last[0])
-                })
-            };
-            are_equal(*value, *base) || self.effects.get(*name).is_some_and(within)
+            self.ranges.get(*name).map_or(are_equal(*value, *base), |[least, largest]| {
+                let inside = *least <= *value && *value <= *largest;
+                inside || are_equal(*value, *least) || are_equal(*value, *largest)
+            })
         })
     }
 
-    /// Bias of a scene, and the root of the sum of the squares of the changes.
-    pub fn bias(&self, values: &[f64; FEATURES]) -> (f64, f64) {
-        let mut bias = self.bias;
-        let mut squares = 0.0;
-        for ((name, _), value) in FEATURE_NAMES.iter().zip(values) {
-            if let Some(levels) = self.effects.get(*name) {
-                let change = interpolated(levels, *value);
-                bias += change;
-                squares += change * change;
-            }
-        }
-        (bias, squares.sqrt())
+    /// Bias of a scene.
+    pub fn bias(&self, values: &[f64; FEATURES], coordinates: &Coordinates) -> f64 {
+        let u = coordinates.of(values);
+        let changes = FEATURE_NAMES.iter().zip(u).filter_map(|((name, _), u)| {
+            let slope = self.slopes.get(*name)?;
+            Some(slope * u)
+        });
+        self.bias + changes.sum::<f64>()
     }
 
     /// The relative error of nine of ten runs: against the limit if it is known, otherwise against the finest mesh.
-    pub fn error(&self, values: &[f64; FEATURES], limit: Option<&Limit>) -> f64 {
-        let (bias, changes) = self.bias(values);
-        let interaction = self.interaction * changes;
-        let scatter = self.scatter * self.scatter + interaction * interaction;
+    pub fn error(
+        &self,
+        values: &[f64; FEATURES],
+        coordinates: &Coordinates,
+        limit: Option<&Limit>,
+    ) -> f64 {
         let (distance, uncertainty) =
             limit.map_or((0.0, 0.0), |limit| (limit.change, limit.uncertainty));
+        let scatter = self.scatter * self.scatter + self.deviation * self.deviation;
         let width = DEVIATIONS * DEVIATIONS * scatter + uncertainty * uncertainty;
-        (bias - distance).abs() + width.sqrt()
-    }
-}
-
-/// The change at a level, linear between the levels known; beyond them that of the last one.
-fn interpolated(levels: &[[f64; 2]], at: f64) -> f64 {
-    let above = levels.iter().position(|[level, _]| *level >= at);
-    match above {
-        Some(0) => levels[0][1],
-        None => levels.last().map_or(0.0, |[_, change]| *change),
-        Some(index) => {
-            let [[x0, y0], [x1, y1]] = [levels[index - 1], levels[index]];
-            y0 + (at - x0) / (x1 - x0) * (y1 - y0)
-        }
+        (self.bias(values, coordinates) - distance).abs() + width.sqrt()
     }
 }
 

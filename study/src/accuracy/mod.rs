@@ -4,6 +4,7 @@
 //! program. It has entries of every model; rows carry those of film, `billow advise` names them all. No clock and no machine has a part in it, so a choice that reads it is the same everywhere.
 
 pub mod choice;
+pub mod coordinates;
 pub mod entries;
 pub mod entry;
 pub mod features;
@@ -13,6 +14,7 @@ pub mod table;
 mod tests;
 
 pub use choice::{Choice, choices};
+pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub use entry::{Entry, Limit, Method};
 pub use features::{Coverage, Features};

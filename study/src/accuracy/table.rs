@@ -13,15 +13,16 @@ use billow_solver::scene::ModelKind;
 use billow_solver::scene::Scene;
 use serde::{Deserialize, Serialize};
 
+use super::coordinates::Coordinates;
 use super::entries::Entries;
 use super::entry::{Entry, Limit, Method};
-use super::features::{Coverage, FEATURES, Features};
+use super::features::{Coverage, Features};
 use super::promised::Promised;
 
 /// Name of the format.
 pub const FORMAT: &str = "billow-mesh-errors";
 /// Version of the format that this program writes and reads.
-pub const VERSION: u64 = 1;
+pub const VERSION: u64 = 2;
 
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,8 +40,8 @@ pub struct MeshErrors {
     pub reference: u32,
     /// The scenes that it covers.
     pub coverage: Coverage,
-    /// The features of the scene from which the others differ.
-    pub base: [f64; FEATURES],
+    /// The coordinates of the biases.
+    pub coordinates: Coordinates,
     /// The limit of each measure.
     pub limits: BTreeMap<String, Limit>,
     /// The errors.
@@ -87,8 +88,9 @@ impl MeshErrors {
     ) -> Result<f64, String> {
         let measure = promised.measure.name();
         let limit = self.limits.get(measure).filter(|limit| limit.known && promised.has_limit);
-        let of_entry = |entry: &Entry| entry.error(&features.values, limit);
-        let covers = |entry: &&Entry| entry.covers(&features.values, &self.base);
+        let (values, coordinates) = (&features.values, &self.coordinates);
+        let of_entry = |entry: &Entry| entry.error(values, coordinates, limit);
+        let covers = |entry: &&Entry| entry.covers(values, coordinates);
         if let Some(entry) = self.entry(method, measure).filter(covers) {
             return Ok(of_entry(entry));
         }
@@ -120,8 +122,8 @@ impl MeshErrors {
             return Some(0.0);
         }
         let entry = self.entry(&Method { model: ModelKind::Film, meshes: vec![n] }, measure)?;
-        let covered = entry.covers(&features.values, &self.base);
-        covered.then(|| entry.bias(&features.values).0)
+        let (values, coordinates) = (&features.values, &self.coordinates);
+        entry.covers(values, coordinates).then(|| entry.bias(values, coordinates))
     }
 
     /// The entry of a method, as it stands in the table.

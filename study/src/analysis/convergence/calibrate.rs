@@ -3,8 +3,7 @@
 //! ```text
 //! v = m/m_ref − 1        one run; m_ref: median of the runs of its scene on the finest mesh
 //! bias of a scene = median of v;  s² = Σ (v − bias)²/(runs − scenes) + the same of the finest mesh with several runs
-//! Δ_f(x_f) = bias − bias_base of a scene that differs from the base scene in the feature f alone
-//! c² = Σ (bias − bias_base − Σ_f Δ_f)²/Σ Σ_f Δ_f²   over scenes that differ in several features
+//! bias(x) and its deviation: [`super::regression`] over all scenes
 //! ```
 //! The base scene is the one from which most others differ in one feature. A value extrapolated from two meshes is
 //! m₂ + w (m₂ − m₁), with the weight w for which it is nearest to the value on the finest mesh.
@@ -14,16 +13,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use billow_solver::scene::ModelKind;
 
 use super::fit::{self, Level};
+use super::regression::{Point, regression};
 use super::runs::{MeshRun, SceneRuns};
 use crate::accuracy::features::{FEATURE_NAMES, FEATURES, are_equal};
 use crate::accuracy::table::{FORMAT, VERSION};
-use crate::accuracy::{Coverage, Entry, Limit, MeshErrors, PROMISED};
+use crate::accuracy::{Coordinates, Coverage, Entry, Limit, MeshErrors, PROMISED};
 use crate::analysis::statistics::Spread;
 use crate::job::row::ColumnId;
 use crate::platform::provenance::PHYSICS_VERSION;
 
-/// Deviation from the sum of the changes where no scene differs in several features. Assumed.
-const ASSUMED_INTERACTION: f64 = 0.5;
+/// Largest value of a feature with the base value 0, over its value at half of its effect. Chosen: whether there
+/// is gas at all changes the start more than its mass; of 4 to 50 it predicts the shipped scenes best, by a little.
+const LARGEST_OVER_HALF: f64 = 20.0;
 /// Weights of an extrapolated value are at most this. Chosen: first order of meshes that differ by half gives 1, by
 /// a quarter 3.
 const MAX_WEIGHT: f64 = 3.0;
@@ -48,7 +49,7 @@ pub fn calibrate(scenes: &[SceneRuns], studies: Vec<String>, reference: u32) -> 
     let scenes = longest(scenes, reference);
     let all = || scenes.iter().flat_map(|scene| &scene.runs);
     let coverage = Coverage::of(all().map(|run| (&run.scene, run.features)))?;
-    let base = base(&scenes)?;
+    let coordinates = coordinates(&scenes)?;
     let mut errors = Vec::new();
     let mut limits = BTreeMap::new();
     for promised in &PROMISED {
@@ -56,7 +57,7 @@ pub fn calibrate(scenes: &[SceneRuns], studies: Vec<String>, reference: u32) -> 
         let of_measure: Vec<Scene> =
             scenes.iter().filter_map(|scene| Scene::of(scene, measure, reference)).collect();
         limits.insert(measure.name().to_owned(), limit(&scenes, measure, reference));
-        errors.extend(entries(&of_measure, &base, measure, reference));
+        errors.extend(entries(&of_measure, &coordinates, measure, reference));
     }
     Some(MeshErrors {
         format: FORMAT.to_owned(),
@@ -65,19 +66,24 @@ pub fn calibrate(scenes: &[SceneRuns], studies: Vec<String>, reference: u32) -> 
         studies,
         reference,
         coverage,
-        base,
+        coordinates,
         limits,
         errors: errors.into(),
     })
 }
 
-/// The features of the scene from which most others differ in one.
-fn base(scenes: &[&SceneRuns]) -> Option<[f64; FEATURES]> {
+/// The coordinates about the scene from which most others differ in one feature.
+fn coordinates(scenes: &[&SceneRuns]) -> Option<Coordinates> {
     let all: Vec<[f64; FEATURES]> =
         scenes.iter().filter_map(|scene| Some(scene.runs.first()?.features.values)).collect();
     let neighbours =
         |one: &[f64; FEATURES]| all.iter().filter(|other| different(one, other).len() == 1).count();
-    all.iter().copied().rev().max_by_key(neighbours)
+    let base = all.iter().copied().rev().max_by_key(neighbours)?;
+    let largest = |index: usize| all.iter().map(|values| values[index]).fold(0.0, f64::max);
+    let half = core::array::from_fn(|index| {
+        if base[index] > 0.0 { 0.0 } else { largest(index) / LARGEST_OVER_HALF }
+    });
+    Some(Coordinates { base, half })
 }
 
 /// Positions of the features in which two scenes differ.
@@ -146,7 +152,7 @@ impl Scene {
 /// The entries of a measure: models without a mesh, each mesh, each pair of meshes.
 fn entries(
     scenes: &[Scene],
-    base: &[f64; FEATURES],
+    coordinates: &Coordinates,
     measure: ColumnId,
     reference: u32,
 ) -> Vec<Entry> {
@@ -168,13 +174,12 @@ fn entries(
         let weight = weight(scenes, method);
         let biases: Vec<(&Scene, f64)> =
             scenes.iter().filter_map(|scene| Some((scene, scene.bias(method, weight)?))).collect();
-        let of_base: Vec<f64> = biases
-            .iter()
-            .filter(|(scene, _)| different(&scene.features, base).is_empty())
-            .map(|(_, bias)| *bias)
-            .collect();
-        let bias = Spread::of(of_base)?.median;
-        let effects = effects(&biases, base, bias);
+        let points: Vec<Point> =
+            biases.iter().map(|(scene, bias)| (coordinates.of(&scene.features), *bias)).collect();
+        let fitted = regression(&points)?;
+        let ranges = ranges(&biases, &coordinates.base);
+        let slopes = FEATURE_NAMES.iter().zip(fitted.slopes);
+        let slopes = slopes.filter(|((name, _), _)| ranges.contains_key(*name));
         // Pairs with one run each scatter as their finer mesh.
         let of_method = scatter(scenes, method, weight)
             .or_else(|| {
@@ -184,57 +189,33 @@ fn entries(
                     .and_then(|n| meshes.iter().filter(|m| *m <= n).rev().find_map(of_mesh))
             })
             .unwrap_or(0.0);
-        let mut entry = Entry {
+        Some(Entry {
             measure: measure.name().to_owned(),
             model: method.0,
             meshes: method.1.clone(),
             weight,
-            bias,
-            effects,
+            bias: fitted.intercept,
+            slopes: slopes.map(|((name, _), slope)| ((*name).to_owned(), slope)).collect(),
+            ranges,
             scatter: (of_method * of_method + finest * finest).sqrt(),
-            interaction: ASSUMED_INTERACTION,
-            checked_scenes: 0,
+            deviation: fitted.deviation,
             runs: scenes.iter().map(|scene| scene.of_method(method, weight).len()).sum(),
             scenes: biases.len(),
-        };
-        let several: Vec<(f64, f64)> = biases
-            .iter()
-            .filter(|(scene, _)| different(&scene.features, base).len() > 1)
-            .map(|(scene, bias)| {
-                let (expected, changes) = entry.bias(&scene.features);
-                (bias - expected, changes)
-            })
-            .collect();
-        let squares: f64 = several.iter().map(|(_, changes)| changes * changes).sum();
-        if squares > 0.0 {
-            let deviations: f64 = several.iter().map(|(deviation, _)| deviation * deviation).sum();
-            entry.interaction = (deviations / squares).sqrt();
-            entry.checked_scenes = several.len();
-        }
-        Some(entry)
+        })
     };
     methods.iter().filter_map(entry).collect()
 }
 
-/// The changes of the bias with one feature.
-fn effects(
-    biases: &[(&Scene, f64)],
-    base: &[f64; FEATURES],
-    of_base: f64,
-) -> BTreeMap<String, Vec<[f64; 2]>> {
-    let mut effects: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
-    for (scene, bias) in biases {
-        if let [feature] = different(&scene.features, base)[..] {
-            let levels = effects.entry(FEATURE_NAMES[feature].0.to_owned());
-            let levels = levels.or_insert_with(|| vec![[base[feature], 0.0]]);
-            levels.push([scene.features[feature], bias - of_base]);
-        }
-    }
-    for levels in effects.values_mut() {
-        levels.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        levels.dedup_by(|a, b| a[0].total_cmp(&b[0]).is_eq());
-    }
-    effects
+/// The ranges of the features in which a scene differs from the base scene.
+fn ranges(biases: &[(&Scene, f64)], base: &[f64; FEATURES]) -> BTreeMap<String, [f64; 2]> {
+    let of_feature = |(index, (name, _)): (usize, &(&str, &str))| {
+        let levels = || biases.iter().map(|(scene, _)| scene.features[index]);
+        let varies = levels().any(|level| !are_equal(level, base[index]));
+        let range =
+            [levels().fold(f64::INFINITY, f64::min), levels().fold(f64::NEG_INFINITY, f64::max)];
+        varies.then(|| ((*name).to_owned(), range))
+    };
+    FEATURE_NAMES.iter().enumerate().filter_map(of_feature).collect()
 }
 
 /// Standard deviation of the runs of a method about the medians of their scenes; `None` where no scene has several.

@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod fit;
+pub mod regression;
 pub mod runs;
 
 #[cfg(test)]

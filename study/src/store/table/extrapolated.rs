@@ -213,7 +213,7 @@ fn extrapolated(
     let covered = table.gap(scene, features).is_none();
     let error = match covered.then(|| of_table(features)).flatten() {
         Some(error) => Some(error.max(observed.unwrap_or(0.0))),
-        None => of_table(&Features { values: table.base })
+        None => of_table(&Features { values: table.coordinates.base })
             .zip(observed)
             .map(|(error, observed)| error.max(OUTSIDE * observed)),
     };
