@@ -294,6 +294,9 @@ fn convergence_needs_four_meshes_and_names_what_tends_to_a_limit() {
     for name in ["limit", "change", "uncertainty"] {
         assert_eq!(energy[name].is_f64(), trend == "limit", "{energy}");
     }
+    let output = folder.run(&["converge", "results/grid", "--check"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("results with film on n 24"), "{}", stderr(&output));
     let output =
         folder.run(&["converge", "results/grid", "--table", "table.json", "--reference", "6"]);
     assert!(stderr(&output).contains("no scene has this mesh"), "{}", stderr(&output));

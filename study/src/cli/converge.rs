@@ -7,8 +7,8 @@ use super::options::{OutputOptions, QuietOption, ResultsOption};
 use super::print::{Heading, print_quantities};
 use super::target::{StudyArgs, folder};
 use super::{Format, stored};
-use crate::accuracy::PROMISED;
-use crate::analysis::convergence::{self, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
+use crate::accuracy::{MeshErrors, PROMISED};
+use crate::analysis::convergence::{self, Check, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
@@ -38,6 +38,10 @@ pub struct Args {
     /// Subdivisions of the finest mesh of that table.
     #[arg(long, value_name = "N", default_value_t = 24, requires = "table")]
     reference: u32,
+    /// Check instead whether runs on coarser meshes keep the errors of the table of mesh errors that billow contains.
+    /// The results need film on n 24 too.
+    #[arg(long, conflicts_with = "table")]
+    check: bool,
     #[command(flatten)]
     output: OutputOptions,
     #[command(flatten)]
@@ -62,6 +66,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
     }
     let scenes = convergence::by_scene(&all);
+    if args.check {
+        return print_checks(&scenes, &names, args, out);
+    }
     let rows: Vec<Vec<Value>> = scenes.iter().flat_map(rows).collect();
     if rows.is_empty() {
         let allowed =
@@ -85,6 +92,51 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         Some(path) => write_table(&scenes, names, args.reference, path),
         None => Ok(()),
     }
+}
+
+/// Prints one row per mesh and measure: how many runs keep the error of the table.
+fn print_checks(
+    scenes: &[SceneRuns],
+    names: &[String],
+    args: &Args,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let table = MeshErrors::shipped();
+    let checks = convergence::check(scenes, table);
+    if checks.is_empty() {
+        let allowed = format!(
+            "results with film on n {} and on a coarser mesh, in scenes that the table covers",
+            table.reference
+        );
+        let problem = "has nothing to check the table of mesh errors with";
+        return Err(Error::invalid_option("study", &names.join(", "), problem, allowed, ""));
+    }
+    let format = args.output.format();
+    let percent = |number: f64| match format {
+        Format::Table => Value::Text(format!("{:.1} %", 100.0 * number)),
+        Format::Csv | Format::Json => Value::Number(number),
+    };
+    let whole = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
+    let row = |check: &Check| {
+        let mut row = vec![
+            Value::Integer(i64::from(check.subdivisions)),
+            Value::Text(check.measure.to_owned()),
+        ];
+        row.extend([whole(check.kept.met), whole(check.kept.of)]);
+        row.extend([percent(check.error), percent(check.of_table)]);
+        row
+    };
+    let headings = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];
+    let headings: Vec<Heading> = headings.into_iter().map(Heading::plain).collect();
+    print_quantities(&headings, &checks.iter().map(row).collect::<Vec<_>>(), format, out)?;
+    if format == Format::Table && !args.quiet.quiet {
+        eprintln!(
+            "kept: runs whose difference from n {} is within the error of the table; medians: of these differences, and of \
+             these errors, relative",
+            table.reference
+        );
+    }
+    Ok(())
 }
 
 const COLUMNS: [&str; 10] = [

@@ -1,6 +1,7 @@
 //! Convergence with the mesh: the limit of each measure, and the table of mesh errors.
 
 pub mod calibrate;
+pub mod check;
 pub mod fit;
 pub mod regression;
 pub mod runs;
@@ -9,6 +10,7 @@ pub mod runs;
 mod tests;
 
 pub use calibrate::{calibrate, levels};
+pub use check::{Check, check};
 pub use fit::{Fit, Level, ORDERS, fit};
 pub use runs::{MeshRun, SceneRuns, by_scene};
 

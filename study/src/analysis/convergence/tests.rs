@@ -101,6 +101,29 @@ fn other_designs_keep_the_error() {
     assert!(10 * kept >= 9 * runs, "{kept} of {runs}");
 }
 
+/// A check counts the runs of each mesh; a table that promises too much is found out.
+#[test]
+fn a_check_counts_the_runs_that_keep_the_error_of_the_table() {
+    let mut table = calibrate(&scenes(), Vec::new(), 24).unwrap();
+    let designs = [[7, 3], [9, 3], [6, 3]].map(one);
+    let checks = check(&designs, &table);
+    let meshes: Vec<u32> = checks.iter().map(|check| check.subdivisions).collect();
+    assert_eq!(meshes, [4, 6, 8, 12, 16]);
+    let four = &checks[0];
+    assert_eq!((four.measure, four.kept.of), ("t_90_z_rim", 15));
+    assert!(10 * four.kept.met >= 9 * four.kept.of, "{four:?}");
+    assert!(four.error > 0.03 && four.error < four.of_table, "{four:?}");
+    let mut entries: Vec<crate::accuracy::Entry> = table.errors.into();
+    for entry in &mut entries {
+        (entry.bias, entry.scatter, entry.deviation) = (0.0, 0.0, 0.0);
+        entry.slopes.clear();
+    }
+    table.errors = entries.into();
+    table.limits.clear();
+    assert!(check(&designs, &table).iter().all(|check| check.kept.met == 0));
+    assert!(check(&[], &table).is_empty());
+}
+
 #[test]
 fn without_a_run_on_the_finest_mesh_there_is_no_table() {
     assert!(calibrate(&scenes(), Vec::new(), 32).is_none());
