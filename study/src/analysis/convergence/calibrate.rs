@@ -25,6 +25,8 @@ use crate::platform::provenance::PHYSICS_VERSION;
 /// Largest value of a feature with the base value 0, over its value at half of its effect. Chosen: whether there
 /// is gas at all changes the start more than its mass; of 4 to 50 it predicts the shipped scenes best, by a little.
 const LARGEST_OVER_HALF: f64 = 20.0;
+/// Scenes of an entry, at least, where the results have as many.
+const MIN_SCENES: usize = 5;
 /// Weights of an extrapolated value are at most this. Chosen: first order of meshes that differ by half gives 1, by
 /// a quarter 3.
 const MAX_WEIGHT: f64 = 3.0;
@@ -174,6 +176,10 @@ fn entries(
         let weight = weight(scenes, method);
         let biases: Vec<(&Scene, f64)> =
             scenes.iter().filter_map(|scene| Some((scene, scene.bias(method, weight)?))).collect();
+        // A mesh of few scenes shows no deviation between designs, and would look better than finer ones.
+        if biases.len() < MIN_SCENES.min(scenes.len()) {
+            return None;
+        }
         let points: Vec<Point> =
             biases.iter().map(|(scene, bias)| (coordinates.of(&scene.features), *bias)).collect();
         let fitted = regression(&points)?;

@@ -4,7 +4,7 @@
 //! error of a run = |m/m_ref − 1|      m_ref: median of the runs of its scene on the finest mesh
 //! kept:  error ≤ error of the table
 //! ```
-//! A check with the designs that the table was made from says little; with others it tells how far the table can be
+//! A check with the designs that the table was made from says little; with others it says how far the table can be
 //! trusted.
 
 use std::collections::BTreeMap;
