@@ -163,15 +163,24 @@ pub fn source<'a>(table: &'a Table, column: &'a Column) -> &'a Column {
     table.column(&name).unwrap_or(column)
 }
 
+/// The parameters that are no replicates: they tell points apart.
+pub fn fixed<'a>(table: &'a Table, replicates: &[String]) -> Vec<&'a Column> {
+    table.parameters().filter(|column| !replicates.contains(&column.name)).collect()
+}
+
+/// The values of these parameters in a row, equal for the runs of one point.
+pub fn point_key(fixed: &[&Column], row: usize) -> Vec<String> {
+    fixed.iter().map(|column| canonical(&column.cells[row])).collect()
+}
+
 /// The rows of each point, one row per job, in the order of their first rows.
 fn groups(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<Vec<usize>> {
-    let fixed: Vec<&Column> =
-        table.parameters().filter(|column| !replicates.contains(&column.name)).collect();
+    let fixed = fixed(table, replicates);
     let job = table.column("job");
     let mut positions: BTreeMap<Vec<String>, usize> = BTreeMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for row in rows {
-        let key = fixed.iter().map(|column| canonical(&column.cells[*row])).collect();
+        let key = point_key(&fixed, *row);
         let position = *positions.entry(key).or_insert(groups.len());
         if position == groups.len() {
             groups.push(Vec::new());

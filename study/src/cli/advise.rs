@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::Format;
 use super::options::{OutputOptions, QuietOption, SetOption};
-use super::print::{Heading, count, print_quantities};
+use super::print::{Heading, count, fraction, print_quantities};
 use crate::accuracy::choice::cost;
 use crate::accuracy::features::STEP;
 use crate::accuracy::{Choice, Features, MeshErrors, Method, PROMISED, choices};
@@ -125,10 +125,8 @@ fn tolerances(args: &Args) -> Result<[Option<f64>; PROMISED.len()]> {
 }
 
 fn row(choice: &Choice, tolerances: &[Option<f64>; PROMISED.len()], format: Format) -> Vec<Value> {
-    let number = |number: f64| match format {
-        _ if !number.is_finite() => Value::Null,
-        Format::Table => Value::Text(format!("{:.1} %", 100.0 * number)),
-        Format::Csv | Format::Json => Value::Number(number),
+    let number = |number: f64| {
+        if number.is_finite() { fraction(number, format) } else { Value::Null }
     };
     let mut row = vec![Value::Text(choice.method.name()), Value::Number(choice.cost)];
     row.extend(choice.errors.map(number));

@@ -4,11 +4,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::options::{OutputOptions, QuietOption, ResultsOption};
-use super::print::{Heading, print_quantities};
+use super::print::{Heading, fraction, print_quantities};
 use super::target::{StudyArgs, folder};
 use super::{Format, stored};
 use crate::accuracy::{MeshErrors, PROMISED};
-use crate::analysis::convergence::{self, Check, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
+use crate::analysis::convergence::{
+    self, MeshCheck, ORDERS, SceneRuns, Trend, calibrate, fit, levels,
+};
 use crate::input::value::Value;
 use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
@@ -112,18 +114,14 @@ fn print_checks(
         return Err(Error::invalid_option("study", &names.join(", "), problem, allowed, ""));
     }
     let format = args.output.format();
-    let percent = |number: f64| match format {
-        Format::Table => Value::Text(format!("{:.1} %", 100.0 * number)),
-        Format::Csv | Format::Json => Value::Number(number),
-    };
     let whole = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
-    let row = |check: &Check| {
+    let row = |check: &MeshCheck| {
         let mut row = vec![
             Value::Integer(i64::from(check.subdivisions)),
             Value::Text(check.measure.to_owned()),
         ];
         row.extend([whole(check.kept.met), whole(check.kept.of)]);
-        row.extend([percent(check.error), percent(check.of_table)]);
+        row.extend([fraction(check.error, format), fraction(check.of_table, format)]);
         row
     };
     let headings = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];

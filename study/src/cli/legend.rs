@@ -14,55 +14,32 @@ use crate::study::Study;
 /// What is between a value and its mesh error.
 pub const PLUS_MINUS: &str = " ± ";
 
-/// What a row of points holds: `runs` runs of `table`, which differ in `replicates`. `of_each` says what a cell has
-/// beside the median.
+/// What a row of points holds: runs that differ in `replicates`, on the meshes of the study (coarsest first; none where
+/// values are not extrapolated). `of_each` says what a cell has.
 pub fn points(
-    table: &Table,
     points: usize,
     runs: usize,
     replicates: &[String],
+    meshes: &[u32],
     of_each: &str,
 ) -> String {
-    let meshes = meshes(table, replicates);
-    let others: Vec<&str> = replicates
-        .iter()
-        .map(String::as_str)
-        .filter(|name| meshes.is_empty() || *name != MESH_PARAMETER)
-        .collect();
+    let is_mesh = |name: &str| !meshes.is_empty() && name == MESH_PARAMETER;
+    let names: Vec<&str> =
+        replicates.iter().map(String::as_str).filter(|name| !is_mesh(name)).collect();
     let mut text = format!("{}, {}", count(points, "point"), count(runs, "run"));
-    if !others.is_empty() {
-        let _ = write!(text, " that differ in {}: {of_each}", others.join(", "));
+    if !names.is_empty() {
+        let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));
     }
     if let Some((finest, coarser)) = meshes.split_last() {
         let coarser: Vec<String> = coarser.iter().map(ToString::to_string).collect();
-        let coarser = coarser.join(", ");
         let _ = write!(
             text,
-            "; {} are extrapolated from n {coarser} and {finest}, all else is that of n {finest}",
-            corrected_names()
+            "; {} are extrapolated from n {} and {finest}, all else is that of n {finest}",
+            estimated_names(),
+            coarser.join(", ")
         );
     }
     text
-}
-
-/// The meshes from which values are extrapolated, coarsest first; empty without any.
-fn meshes(table: &Table, replicates: &[String]) -> Vec<i64> {
-    let is_replicate = replicates.iter().any(|name| name == MESH_PARAMETER);
-    let column = table.parameters().find(|column| column.name == MESH_PARAMETER);
-    let Some(column) = column.filter(|_| is_replicate && table.has_extrapolated()) else {
-        return Vec::new();
-    };
-    let mut meshes: Vec<i64> = column
-        .cells
-        .iter()
-        .filter_map(|cell| match cell {
-            Value::Integer(n) => Some(*n),
-            _ => None,
-        })
-        .collect();
-    meshes.sort_unstable();
-    meshes.dedup();
-    meshes
 }
 
 /// What the mesh errors in these cells are; `None` if no cell has one.
@@ -89,7 +66,7 @@ pub fn corrected(study: &Study, table: &Table) -> Option<String> {
         is_coarser && PROMISED.iter().any(has_value)
     };
     (0..table.rows()).any(coarser).then(|| {
-        let names = corrected_names();
+        let names = estimated_names();
         format!(
             "auto: {names} are corrected to n {reference}; all else is as the run on {RUN_MESH} gave it (table --runs: \
              the runs)"
@@ -98,7 +75,7 @@ pub fn corrected(study: &Study, table: &Table) -> Option<String> {
 }
 
 /// The measures that are extrapolated or corrected.
-fn corrected_names() -> String {
+fn estimated_names() -> String {
     format!("{} and the times since the release", names(|_| true))
 }
 

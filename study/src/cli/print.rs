@@ -29,6 +29,14 @@ pub fn points_of_runs(study: &Study, planned: usize) -> String {
     }
 }
 
+/// A fraction as a program reads it, and in a table as a percentage.
+pub fn fraction(value: f64, format: Format) -> Value {
+    match format {
+        Format::Table => Value::Text(format!("{:.1} %", 100.0 * value)),
+        Format::Csv | Format::Json => Value::Number(value),
+    }
+}
+
 /// A column of a list: its name, and the unit in which a table shows its numbers.
 #[derive(Clone)]
 pub struct Heading {

@@ -165,7 +165,7 @@ pub(super) fn run_study(
     let mut stored = Stored::read(results)?;
     stored.units = units;
     let answer = Answer::of(&stored);
-    let ended = Ended { study, root, summary: &summary, points: stored.point_count() };
+    let ended = Ended { study, root, summary: &summary, points: stored.planned_runs() };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
     result(&summary, &limits, root)
 }

@@ -6,8 +6,7 @@ use std::num::NonZero;
 
 use serde_json::json;
 
-use super::answer::auto;
-use super::answer::json::judged;
+use super::answer::{auto, judged};
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, points_of_runs, print_rows};
 use super::run::listed;
@@ -120,7 +119,7 @@ impl<'a> Status<'a> {
             "question": stored.study.question,
             "results": stored.results.root().display().to_string(),
             "running": self.health.running,
-            "points": stored.point_count(),
+            "points": stored.planned_runs(),
             "auto": AutoAnswer::of(stored).as_ref().map(judged::auto),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
@@ -175,7 +174,7 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
-        let rows = self.stored.point_count();
+        let rows = self.stored.planned_runs();
         let points = points_of_runs(&self.stored.study, rows);
         let duplicates = match rows.saturating_sub(counts.rows()) {
             0 => String::new(),

@@ -109,9 +109,9 @@ impl<'a> Stored<'a> {
         plan::shown(&self.study, &finished).map(|(_, outcome)| outcome)
     }
 
-    /// Number of points planned so far, also of those that share a job. With pilots it is that of the study: several
-    /// runs of a point are one.
-    pub fn point_count(&self) -> usize {
+    /// Number of runs planned so far, one for each replicate of a point, also of those that share a job. With pilots it
+    /// is that of the study: the runs of a point on several meshes are one.
+    pub fn planned_runs(&self) -> usize {
         if self.study.auto().is_some() {
             return self.study.points().len();
         }

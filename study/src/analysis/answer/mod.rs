@@ -8,8 +8,7 @@ use billow_solver::output::measures::Verdict;
 
 use crate::accuracy::error_column;
 use crate::analysis::compare;
-use crate::analysis::replicates::source;
-use crate::analysis::values::canonical;
+use crate::analysis::replicates::{fixed, point_key, source};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
@@ -175,13 +174,10 @@ fn extreme(
         let known = compare::measured(table, column, *other).zip(error(*other)).zip(error(row));
         known.is_some_and(|((other, a), b)| compare::within_errors([other, value], [a, b]))
     };
-    let point = |row: usize| -> Vec<String> {
-        let fixed = table.parameters().filter(|column| !replicates.contains(&column.name));
-        fixed.map(|column| canonical(&column.cells[row])).collect()
-    };
-    let mut equal: BTreeSet<Vec<String>> =
-        rows.iter().filter(|row| within(row)).map(|row| point(*row)).collect();
-    equal.remove(&point(row));
+    let fixed = fixed(table, replicates);
+    let equal = rows.iter().filter(|row| within(row)).map(|row| point_key(&fixed, *row));
+    let mut equal: BTreeSet<Vec<String>> = equal.collect();
+    equal.remove(&point_key(&fixed, row));
     let parameters = table.parameters();
     Some(Extreme {
         job: table.column("job")?.cells[row].to_string(),

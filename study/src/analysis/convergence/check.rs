@@ -18,7 +18,7 @@ use crate::job::proportion::Proportion;
 
 /// The runs on one mesh, for one measure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Check {
+pub struct MeshCheck {
     /// Subdivisions of the mesh.
     pub subdivisions: u32,
     /// Name of the measure.
@@ -32,7 +32,7 @@ pub struct Check {
 }
 
 /// The checks of film on each mesh coarser than that of `table`, for each promised measure.
-pub fn check(scenes: &[SceneRuns], table: &MeshErrors) -> Vec<Check> {
+pub fn check(scenes: &[SceneRuns], table: &MeshErrors) -> Vec<MeshCheck> {
     let meshes = scenes.iter().flat_map(|scene| &scene.runs).map(MeshRun::mesh);
     let coarser = meshes.filter(|(model, n)| *model == ModelKind::Film && *n < table.reference);
     let mut pairs: BTreeMap<u32, Vec<Vec<[f64; 2]>>> =
@@ -47,7 +47,7 @@ pub fn check(scenes: &[SceneRuns], table: &MeshErrors) -> Vec<Check> {
     let of_mesh = |(n, measures): (u32, Vec<Vec<[f64; 2]>>)| {
         PROMISED.iter().zip(measures).filter_map(move |(promised, pairs)| {
             let median = |end: usize| Some(Spread::of(pairs.iter().map(|pair| pair[end]))?.median);
-            Some(Check {
+            Some(MeshCheck {
                 subdivisions: n,
                 measure: promised.measure.name(),
                 kept: Proportion::count(pairs.iter().map(|[error, of_table]| error <= of_table)),

@@ -3,15 +3,17 @@
 pub mod calibrate;
 pub mod check;
 pub mod fit;
+pub mod limit;
 pub mod regression;
 pub mod runs;
 
 #[cfg(test)]
 mod tests;
 
-pub use calibrate::{calibrate, levels};
-pub use check::{Check, check};
+pub use calibrate::calibrate;
+pub use check::{MeshCheck, check};
 pub use fit::{Fit, Level, ORDERS, fit};
+pub use limit::levels;
 pub use runs::{MeshRun, SceneRuns, by_scene};
 
 /// Whether a measure tends to a limit on the meshes at hand.

@@ -18,11 +18,11 @@ use crate::job::row::{ColumnId, HEADLINE};
 pub mod auto;
 mod border;
 mod effects;
-pub mod json;
+mod json;
 mod pairwise;
 mod safe;
 
-pub use json::json;
+pub use json::{json, judged};
 
 /// Characters before the text of a line: two spaces, the topic, a space.
 const TOPIC_WIDTH: usize = 11;

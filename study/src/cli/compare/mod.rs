@@ -75,6 +75,8 @@ struct Comparison<'a> {
     measures: Vec<Measure<'a>>,
     /// The parameters over which a point has its runs.
     replicates: Vec<String>,
+    /// The meshes from which the values of a point are extrapolated; empty without any.
+    meshes: Vec<u32>,
     /// Whether the summary has the intervals of its proportions.
     with_intervals: bool,
 }
@@ -126,6 +128,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         pairs,
         measures,
         replicates,
+        meshes: stored.study.meshes(),
         with_intervals: !varied.is_empty() || !stored.study.result_limits().is_empty(),
     };
     if !args.summary {

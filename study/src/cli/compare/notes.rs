@@ -43,7 +43,7 @@ impl Comparison<'_> {
         eprintln!("tie: {}{overlap}", ties.collect::<Vec<_>>().join(", "));
         if let Some(points) = self.points {
             let (rows, runs) = (self.table.rows(), points.run_count());
-            let text = legend::points(points.runs(), rows, runs, &self.replicates, MEDIANS);
+            let text = legend::points(rows, runs, &self.replicates, &self.meshes, MEDIANS);
             eprintln!("{text}; --runs pairs single runs");
         }
         for carried in &self.sets.carried {

@@ -139,11 +139,6 @@ impl<'a> Points<'a> {
         Spread::of(runs.filter_map(|row| measured(self.runs_table, column, *row)))
     }
 
-    /// The table of the single runs.
-    pub fn runs(&self) -> &Table {
-        self.runs_table
-    }
-
     /// Number of all runs.
     pub fn run_count(&self) -> usize {
         self.condensed.runs.iter().map(|runs| runs.rows.len()).sum()
@@ -152,8 +147,7 @@ impl<'a> Points<'a> {
 
 /// How the runs of a point ended: "5", or "4 done, 1 failed".
 fn runs_text(runs: &Runs) -> String {
-    let [failed, open] = [runs.failed, runs.pending + runs.infeasible];
-    if failed + open + runs.not_trusted == 0 {
+    if runs.failed + runs.pending + runs.infeasible + runs.not_trusted == 0 {
         return runs.rows.len().to_string();
     }
     if runs.infeasible == runs.rows.len() {

@@ -12,6 +12,7 @@ use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
 use crate::store::stored::Stored;
 use crate::store::table::Table;
+use crate::study::Study;
 use columns::{chosen, heading, shown};
 use sort::{by_search, sorted};
 
@@ -100,7 +101,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let listing = if replicates.is_empty() {
         runs(args, &table, &rows, all_columns)?
     } else {
-        points(args, &table, &rows, &replicates)?
+        let meshes = study.map(Study::meshes).unwrap_or_default();
+        points(args, &table, &rows, &replicates, &meshes)?
     };
     print_quantities(&listing.headings, &listing.cells, format, out)?;
     if format == Format::Table && !args.quiet.quiet {
@@ -152,7 +154,13 @@ fn runs(args: &Args, table: &Table, rows: &[usize], all_columns: usize) -> Resul
 }
 
 /// One row per point.
-fn points(args: &Args, table: &Table, rows: &[usize], replicates: &[String]) -> Result<Listing> {
+fn points(
+    args: &Args,
+    table: &Table,
+    rows: &[usize],
+    replicates: &[String],
+    meshes: &[u32],
+) -> Result<Listing> {
     let format = args.output.format();
     let points = Points::of(table, rows, replicates);
     for key in &args.sort {
@@ -162,7 +170,7 @@ fn points(args: &Args, table: &Table, rows: &[usize], replicates: &[String]) -> 
     let order = sorted(&points.table, (0..points.table.rows()).collect(), &args.sort)?;
     let columns = point_columns::chosen(&points, table, &args.columns, &args.sort, format)?;
     let row = |row: &usize| columns.iter().map(|column| column.cells[*row].clone()).collect();
-    let text = legend::points(table, order.len(), points.run_count(), replicates, OF_POINTS);
+    let text = legend::points(order.len(), points.run_count(), replicates, meshes, OF_POINTS);
     let mut notes = vec![format!("{text}; --runs shows the runs")];
     if points.run_count() < rows.len() {
         let same = rows.len() - points.run_count();

@@ -44,8 +44,8 @@ pub fn is_extrapolated(name: &str) -> bool {
     measure.is_some_and(|measure| promise(measure).is_some())
 }
 
-/// Differences of two extrapolated values in the error of a scene outside the table.
-const OUTSIDE: f64 = 3.0;
+/// Error outside the table over the difference of the two extrapolated values, at least.
+const ERROR_PER_DIFFERENCE: f64 = 3.0;
 
 /// An extrapolated value of a row, and its error if it is known.
 pub(super) type Extrapolated = Option<(f64, Option<f64>)>;
@@ -215,7 +215,7 @@ fn extrapolated(
         Some(error) => Some(error.max(observed.unwrap_or(0.0))),
         None => of_table(&Features { values: table.coordinates.base })
             .zip(observed)
-            .map(|(error, observed)| error.max(OUTSIDE * observed)),
+            .map(|(error, observed)| error.max(ERROR_PER_DIFFERENCE * observed)),
     };
     (value, error)
 }

@@ -5,8 +5,8 @@
 //! correction of a mesh n that is no rung:  ln F_n = ln F ln(n_ref/n)/ln(n_ref/n_chosen)
 //! ```
 //! Both values are corrected to the reference mesh, so their difference shows how far the correction fails at a
-//! point that is no pilot. Checked are those with the smallest job ids on the reference mesh. Ids are hashes, so this is a draw, and the same one
-//! each time.
+//! point that is no pilot. Checked are those with the smallest job ids on the reference mesh. Ids are hashes, so this is
+//! a draw, and the same one each time.
 
 use super::{Auto, CHECKED, Decision, Finished, job_on};
 use crate::accuracy::PROMISED;

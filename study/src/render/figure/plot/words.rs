@@ -12,8 +12,8 @@ type Bounds = [f64; 4];
 
 /// Half the size of what a marker covers, mm.
 const MARKER: f64 = 1.3;
-/// Space between two texts, mm: a figure has rounded positions.
-const ROUNDING: f64 = 0.02;
+/// Smallest space between two texts, mm: a figure has rounded positions.
+const MIN_SPACE: f64 = 0.02;
 
 /// The places in use in a plot.
 pub(super) struct Words {
@@ -130,7 +130,7 @@ fn along(line: &[Position]) -> Vec<Position> {
 }
 
 fn apart(a: Bounds, b: Bounds) -> bool {
-    let clear = |low: f64, high: f64| low >= high + ROUNDING;
+    let clear = |low: f64, high: f64| low >= high + MIN_SPACE;
     clear(a[0], b[2]) || clear(b[0], a[2]) || clear(a[1], b[3]) || clear(b[1], a[3])
 }
 
