@@ -75,6 +75,11 @@ fn the_front_is_printed_drawn_and_read_again() {
     let of_late = one.as_array().unwrap().iter().filter(|row| row["scene"] == "late");
     assert!(of_late.clone().count() > 0 && of_late.clone().all(|row| row["quantity"] == "volume"));
     assert!(one.as_array().unwrap().iter().any(|row| row["quantity"] == "final_volume"));
+    let alone = folder.run(&["pareto", "grid.json", "--study-only"]);
+    assert!(!String::from_utf8_lossy(&alone.stdout).contains("stretched_disc"));
+    let text = stderr(&alone);
+    assert!(text.contains("early: errors refer to film, subdivisions 3"), "{text}");
+    assert!(!text.contains("runs the scene"), "{text}");
     let doctor = folder.run(&["doctor"]);
     assert_eq!(doctor.status.code(), Some(0), "{}", stderr(&doctor));
 }

@@ -14,7 +14,7 @@ use billow_solver::scene::{ModelKind, Scene, Stepping};
 
 use super::entry::{Entry, Method};
 use super::features::{FEATURES, Features, STEP};
-use super::promised::PROMISED;
+use super::promised::{PROMISED, Promised, Tolerances};
 use super::table::MeshErrors;
 
 /// Cost of a run of the piston. Measured: seconds over those of film on 24 subdivisions, results/pareto.
@@ -37,10 +37,22 @@ pub struct Choice {
 
 impl Choice {
     /// Whether its model can compute the scenes, and every measure with a tolerance keeps it.
-    pub fn keeps(&self, tolerances: &[Option<f64>; PROMISED.len()]) -> bool {
+    pub fn keeps(&self, tolerances: &Tolerances) -> bool {
         let mut pairs = self.errors.iter().zip(tolerances);
         self.refusal.is_none()
             && pairs.all(|(error, tolerance)| tolerance.is_none_or(|most| *error <= most))
+    }
+}
+
+impl Choice {
+    /// Its errors of the measures that have a tolerance, as in `t_90_z_rim 5.5 %`.
+    pub fn errors_text(&self, tolerances: &Tolerances) -> String {
+        let known = PROMISED.iter().zip(self.errors).zip(tolerances);
+        let judged = known.filter(|(_, tolerance)| tolerance.is_some());
+        let text = |((promised, error), _): ((&Promised, f64), _)| {
+            format!("{} {:.1} %", promised.measure.name(), 100.0 * error)
+        };
+        judged.map(text).collect::<Vec<_>>().join(", ")
     }
 }
 

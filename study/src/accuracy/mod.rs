@@ -1,7 +1,8 @@
 //! What is known about the error of a result: the table of mesh errors, and which scenes it covers.
 //!
 //! The table is made by `billow converge --table` from the studies convergence and mesh-error, and is part of the
-//! program. It has entries of every model; rows carry those of film, `billow advise` names them all. No clock and no machine has a part in it, so a choice that reads it is the same everywhere.
+//! program. It has entries of every model; rows carry those of film, `billow advise` names them all. No clock and no
+//! machine has a part in it, so a choice that reads it is the same everywhere.
 
 pub mod choice;
 pub mod coordinates;
@@ -19,6 +20,7 @@ pub use entries::Entries;
 pub use entry::{Entry, Limit, Method};
 pub use features::{Coverage, Features};
 pub use promised::{
-    NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, error_column, is_error_column,
+    NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, Tolerances, all_but_peak_vz,
+    error_column, is_error_column,
 };
 pub use table::MeshErrors;

@@ -49,9 +49,10 @@ pub struct Runs {
     pub safe: Proportion,
     /// Number of done runs.
     pub done: usize,
-    /// Number of done runs that cannot be trusted. They have no part in medians and ranges of a point of
-    /// which another run can be.
+    /// Number of done runs that cannot be trusted.
     pub not_trusted: usize,
+    /// Whether a run can be trusted whose measures count. Then those that cannot have no part in medians and ranges.
+    pub has_trusted: bool,
     /// Rows of the runs whose measures count.
     pub measured: Vec<usize>,
     /// Number of runs that failed.
@@ -110,14 +111,12 @@ impl Runs {
         };
         let rows = finest(table, &all);
         let of_done = |row: &usize| table.status(*row) == Some(Status::Done);
-        let done = rows.iter().filter(|row| of_done(row)).count();
+        let done = status(|status| status == Status::Done);
         let trusted = |row: &usize| table.is_trusted(*row);
-        let measured: Vec<usize> = rows.iter().copied().filter(trusted).collect();
-        let not_trusted = done - measured.len();
-        let measured = match measured.len() {
-            0 => rows.iter().copied().filter(of_done).collect(),
-            _ => measured,
-        };
+        let not_trusted = done - all.iter().copied().filter(trusted).count();
+        let has_trusted = rows.iter().any(trusted);
+        let counts = |row: &usize| if has_trusted { trusted(row) } else { of_done(row) };
+        let measured: Vec<usize> = rows.iter().copied().filter(counts).collect();
         let pending = status(|status| status == Status::Pending);
         let infeasible = status(|status| status == Status::Infeasible);
         let verdicts = rows.iter().filter_map(|row| table.verdict(*row));
@@ -132,7 +131,8 @@ impl Runs {
             done,
             not_trusted,
             measured,
-            failed: all.len() - status(|status| status == Status::Done) - pending - infeasible,
+            has_trusted,
+            failed: all.len() - done - pending - infeasible,
             infeasible,
             pending,
             finest: rows,

@@ -53,7 +53,7 @@ pub fn svg(source: &Source<'_>, measure: &str, axes: [&str; 2]) -> Result<String
         legend.entries.push((Sample::Missed, bound.legend()));
     }
     let name = Name::of_measure(&measure.name, &measure.meaning);
-    if source.runs.is_some() {
+    if source.has_replicates() {
         grid.notes.insert(0, "Numbers are medians of the runs of a point.".to_owned());
     }
     grid.notes.extend(source.runs_notes(Some(measure)));

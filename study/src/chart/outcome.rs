@@ -42,7 +42,8 @@ pub const OUTCOMES: [Outcome; 7] = [
 impl Outcome {
     /// The outcome of a row.
     pub fn of(source: &Source<'_>, row: usize) -> Self {
-        match source.runs_of(row).map(|runs| runs.deployed) {
+        let runs = source.runs_of(row).filter(|_| source.has_replicates());
+        match runs.map(|runs| runs.deployed) {
             None => Self::Verdict(verdict(source, row)),
             Some(Proportion { of: 0, .. }) => Self::Verdict(None),
             Some(deployed) if deployed.is_mixed() => Self::Mixed,
@@ -174,7 +175,7 @@ fn text<'a>(source: &Source<'a>, name: &str, row: usize) -> &'a str {
 /// The measure of a job; `None` also for a job that stopped before its end, because its peak so far is not
 /// the peak of the run. Of several runs the median, once one of them is done.
 pub fn value(source: &Source<'_>, measure: &Column, row: usize) -> Option<f64> {
-    let done = source.runs_of(row).is_some_and(|runs| runs.done > 0);
+    let done = source.runs_of(row).is_some_and(|runs| !runs.measured.is_empty());
     let done = done || source.table.status(row) == Some(Status::Done);
     super::number(&measure.cells[row]).filter(|_| done)
 }

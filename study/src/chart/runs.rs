@@ -4,7 +4,8 @@ use super::{Source, names};
 use crate::accuracy::error_column;
 use crate::accuracy::promised::promise;
 use crate::analysis::compare::measured;
-use crate::analysis::replicates::{Condensed, Runs};
+use crate::analysis::replicates::{self, Condensed, Runs};
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::store::table::{Column, Table};
 
@@ -17,9 +18,30 @@ pub struct Replicated<'a> {
     pub single: &'a Table,
     /// The parameters whose values repeat a point.
     pub names: &'a [String],
+    /// The meshes from which values are extrapolated, coarsest first; empty without any.
+    pub meshes: &'a [u32],
+}
+
+impl Replicated<'_> {
+    /// Whether a parameter is the mesh, and values are extrapolated from several.
+    fn is_mesh(&self, name: &str) -> bool {
+        !self.meshes.is_empty() && name == MESH_PARAMETER
+    }
+}
+
+/// "4 and 6", "4, 6 and 8".
+fn meshes_text(meshes: &[u32]) -> String {
+    let [coarser @ .., finest] = meshes else { return String::new() };
+    let coarser: Vec<String> = coarser.iter().map(ToString::to_string).collect();
+    format!("{} and {finest}", coarser.join(", "))
 }
 
 impl<'a> Source<'a> {
+    /// Whether a point has several runs, on one mesh.
+    pub(super) fn has_replicates(&self) -> bool {
+        self.runs.is_some_and(|runs| runs.names.iter().any(|name| !runs.is_mesh(name)))
+    }
+
     /// The runs of a row; `None` where each row is one job.
     pub(super) fn runs_of(&self, row: usize) -> Option<&'a Runs> {
         Some(&self.runs?.condensed.runs[row])
@@ -53,30 +75,38 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The single runs of the chart.
+    /// The single runs of the chart; of several meshes those on the finest one.
     pub(super) fn single(&self) -> Self {
         let Some(runs) = self.runs else { return self.clone() };
-        let rows = self.rows.iter().flat_map(|row| runs.condensed.runs[*row].rows.clone());
+        let rows = self.rows.iter().flat_map(|row| runs.condensed.runs[*row].finest.clone());
         Self { table: runs.single, rows: rows.collect(), runs: None, ..self.clone() }
     }
 
-    /// The rows of the single runs of a row.
+    /// The rows of the single runs of a row; of several meshes those on the finest one.
     pub(super) fn single_rows(&self, row: usize) -> &[usize] {
-        self.runs_of(row).map_or(&[], |runs| &runs.rows)
+        self.runs_of(row).map_or(&[], |runs| &runs.finest)
     }
 
-    /// " of 5 runs each (seed)", for the subtitle.
+    /// " of 5 runs each (seed)", for the subtitle; of several meshes the runs on each.
     pub(super) fn runs_text(&self) -> String {
         let Some(runs) = self.runs else { return String::new() };
-        let counts = || self.rows.iter().map(|row| runs.condensed.runs[*row].rows.len());
+        let counts = || self.rows.iter().map(|row| self.single_rows(*row).len());
         let (Some(least), Some(most)) = (counts().min(), counts().max()) else {
             return String::new();
         };
-        let name = |name: &String| names::Name::of_parameter(name).plain;
-        let names: Vec<String> = runs.names.iter().map(name).collect();
+        let on_meshes = match runs.meshes {
+            [] => String::new(),
+            meshes => format!(" on n {}", meshes_text(meshes)),
+        };
+        let replicates = runs.names.iter().filter(|name| !runs.is_mesh(name));
+        let names: Vec<String> =
+            replicates.map(|name| names::Name::of_parameter(name).plain).collect();
+        if names.is_empty() {
+            return on_meshes;
+        }
         let number = if least == most { most.to_string() } else { format!("{least} to {most}") };
         let noun = if most == 1 { "run" } else { "runs" };
-        format!(" of {number} {noun} each ({})", names.join(", "))
+        format!(" of {number} {noun} each ({}){on_meshes}", names.join(", "))
     }
 
     /// Notes on the runs that medians and ranges do not contain.
@@ -87,7 +117,7 @@ impl<'a> Source<'a> {
         let (failed, pending) =
             (sum(|runs| runs.failed + runs.infeasible), sum(|runs| runs.pending));
         let mut texts = Vec::new();
-        let not_trusted = all().map(|runs| runs.done - runs.measured.len()).sum::<usize>();
+        let not_trusted = sum(|runs| if runs.has_trusted { runs.not_trusted } else { 0 });
         if not_trusted > 0 {
             texts.push(format!("{not_trusted} cannot be trusted"));
         }
@@ -98,6 +128,7 @@ impl<'a> Source<'a> {
             texts.push(format!("{pending} have not ended"));
         }
         let mut notes = Vec::new();
+        notes.extend(self.meshes_note(measure));
         if !texts.is_empty() {
             notes.push(format!(
                 "Of {} runs {}: medians, ranges and k/n are those of the others.",
@@ -121,9 +152,28 @@ impl<'a> Source<'a> {
         notes
     }
 
-    /// The legend of medians and ranges, with this sample.
+    /// From which meshes the values of a measure come; without one, the histories.
+    fn meshes_note(&self, measure: Option<&Column>) -> Option<String> {
+        let Replicated { single, meshes, .. } = self.runs?;
+        let [.., second, finest] = meshes else { return None };
+        let extrapolated = measure.is_some_and(|measure| {
+            let values = single.column(&measure.name);
+            values.is_some_and(|values| replicates::source(single, values) != values)
+        });
+        Some(if extrapolated {
+            format!(
+                "Values are extrapolated from n {second} and {finest}; outcomes are those on n {finest}."
+            )
+        } else {
+            format!("Only the runs on the finest mesh, n {finest}, are shown.")
+        })
+    }
+
+    /// The legend of medians and ranges, with this sample; `None` where each point has one run, or one on each mesh.
     pub(super) fn runs_legend(&self, sample: Sample) -> Option<Legend> {
-        self.runs?;
+        if !self.has_replicates() {
+            return None;
+        }
         let entries = vec![(sample, "median, and range from least to largest".to_owned())];
         Some(Legend { heading: "Runs of a point".to_owned(), entries })
     }

@@ -9,25 +9,31 @@ use super::options::{OutputOptions, QuietOption, SetOption};
 use super::print::{Heading, count, fraction, print_quantities};
 use crate::accuracy::choice::cost;
 use crate::accuracy::features::STEP;
-use crate::accuracy::{Choice, Features, MeshErrors, Method, PROMISED, choices};
+use crate::accuracy::{
+    Choice, MeshErrors, Method, PROMISED, Promised, Tolerances, all_but_peak_vz, choices,
+};
 use crate::input::fraction::{RELATIVE_ERROR, relative_error};
 use crate::input::keys;
-use crate::input::value::Value;
+use crate::input::value::{Value, brief_number};
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
 use crate::study::{Study, StudyPoint};
-use billow_solver::scene::{ModelKind, Scene};
+use billow_solver::scene::ModelKind;
+
+/// Relative error that measures must keep where neither the command nor the study gives one.
+const DEFAULT_TOLERANCE: &str = "5 %";
 
 /// Arguments of `billow advise`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The study file.
     study: PathBuf,
-    /// Relative error that each measure must keep, as in 0.02 or "2 %".
-    #[arg(long, value_name = "FRACTION", default_value = "5 %")]
-    tolerance: String,
-    /// The measures that must keep it, comma-separated [default: `t_90_z_rim`, `peak_kinetic_energy`, `final_z_rim`,
-    /// `final_volume`: those with a limit of fine meshes].
+    /// Relative error that each measure must keep, as in 0.02 or "2 %" [default: what `accuracy` of the study asks;
+    /// without it 5 %].
+    #[arg(long, value_name = "FRACTION")]
+    tolerance: Option<String>,
+    /// The measures that must keep it, comma-separated [default: those of `accuracy`; without it, or with
+    /// `--tolerance`, all but `peak_vz`].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     measures: Vec<String>,
     #[command(flatten)]
@@ -44,15 +50,8 @@ pub struct Args {
 /// A study that is not valid, or that the table of mesh errors does not cover; an unknown measure.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let study = Study::load(&args.study, &args.set.set)?;
-    let tolerances = tolerances(args)?;
-    let scenes: Vec<(&Scene, Features)> = study
-        .points()
-        .iter()
-        .filter_map(|point| {
-            let solved = point.solved?;
-            Some((&point.scene, Features::of(&point.scene, solved.top_radius, solved.height)))
-        })
-        .collect();
+    let tolerances = tolerances(args, &study)?;
+    let scenes: Vec<_> = study.points().iter().filter_map(StudyPoint::features).collect();
     let table = MeshErrors::shipped();
     let choices = choices(table, &scenes).map_err(|gap| {
         let allowed = "scenes that the table of mesh errors covers: docs/guide/accuracy.md";
@@ -83,9 +82,16 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 fn hint(study: &Study) -> String {
     let meshless = |point: &&StudyPoint| point.scene.solver.model != ModelKind::Film;
     match study.points().iter().find(meshless) {
-        None => "run one point with \"solver\": {\"meshes\": [4, 6, 8]}: the errors in its row follow from its \
-                 three runs, without the table"
-            .to_owned(),
+        None => {
+            let search = study.searched();
+            let values = search.map_or_else(String::new, |(parameter, _)| {
+                format!(", and a list of values of {parameter} instead of bisect")
+            });
+            format!(
+                "run some points with \"solver\": {{\"meshes\": [4, 6, 8]}}{values}: the errors in their rows follow \
+                 from the three runs, without the table"
+            )
+        }
         Some(point) => {
             let model = keys::model(point.scene.solver.model).name;
             format!(
@@ -97,16 +103,21 @@ fn hint(study: &Study) -> String {
 }
 
 /// The tolerance of each promised measure.
-fn tolerances(args: &Args) -> Result<[Option<f64>; PROMISED.len()]> {
-    let text = args.tolerance.as_str();
+fn tolerances(args: &Args, study: &Study) -> Result<Tolerances> {
+    if let (None, [], Some(tolerances)) =
+        (&args.tolerance, args.measures.as_slice(), study.tolerances())
+    {
+        return Ok(tolerances);
+    }
+    let text = args.tolerance.as_deref().unwrap_or(DEFAULT_TOLERANCE);
     let tolerance = relative_error(text).ok_or_else(|| {
         Error::invalid_option("--tolerance", text, "not a relative error", RELATIVE_ERROR, "")
     })?;
     if args.measures.is_empty() {
-        return Ok(PROMISED.map(|promised| promised.has_limit.then_some(tolerance)));
+        return Ok(all_but_peak_vz(Some(tolerance)));
     }
     let names = || PROMISED.iter().map(|promised| promised.measure.name());
-    let mut tolerances = [None; PROMISED.len()];
+    let mut tolerances: Tolerances = [None; PROMISED.len()];
     for name in args.measures.iter().map(|name| name.trim()) {
         let index = names().position(|known| known == name).ok_or_else(|| {
             let near = did_you_mean(name, names()).unwrap_or_default();
@@ -124,7 +135,7 @@ fn tolerances(args: &Args) -> Result<[Option<f64>; PROMISED.len()]> {
     Ok(tolerances)
 }
 
-fn row(choice: &Choice, tolerances: &[Option<f64>; PROMISED.len()], format: Format) -> Vec<Value> {
+fn row(choice: &Choice, tolerances: &Tolerances, format: Format) -> Vec<Value> {
     let number = |number: f64| {
         if number.is_finite() { fraction(number, format) } else { Value::Null }
     };
@@ -135,34 +146,32 @@ fn row(choice: &Choice, tolerances: &[Option<f64>; PROMISED.len()], format: Form
 }
 
 /// The recommendation, on stderr: method, saving, how to set it, what it does not promise.
-fn print_advice(
-    study: &Study,
-    table: &MeshErrors,
-    choices: &[Choice],
-    tolerances: &[Option<f64>; PROMISED.len()],
-) {
+fn print_advice(study: &Study, table: &MeshErrors, choices: &[Choice], tolerances: &Tolerances) {
     eprintln!(
         "{}; relative errors that 9 of 10 runs keep, the largest over the points, - where the table has no such runs; cost: \
          over a run on n {}",
-        count(study.points().len(), "point"),
+        count(study.point_count(), "point"),
         table.reference
     );
     let chosen = PROMISED.iter().zip(tolerances).filter(|(_, tolerance)| tolerance.is_some());
     let (limits, changes): (Vec<_>, Vec<_>) = chosen.partition(|(promised, _)| promised.has_limit);
-    let names = |list: &[(&crate::accuracy::Promised, &Option<f64>)]| {
+    let names = |list: &[(&Promised, &Option<f64>)]| {
         list.iter().map(|(promised, _)| promised.measure.name()).collect::<Vec<_>>().join(", ")
     };
     let recommended = choices.iter().find(|choice| choice.keeps(tolerances));
     if let Some(choice) = recommended {
-        let now = study.points().iter().map(|point| cost(table, &Method::of(&point.scene)));
-        let now = now.fold(0.0, f64::max);
-        let saving = if choice.cost < now {
-            format!("{:.1} times cheaper than now", now / choice.cost)
-        } else {
-            format!("{:.1} times the cost of now", choice.cost / now)
-        };
         let method = &choice.method;
+        let saving = saving(study, table, choice.cost);
         eprintln!("advice: {} ({saving}); {}", method.name(), setting(method, study));
+        let tolerances: Vec<String> = PROMISED
+            .iter()
+            .zip(tolerances)
+            .filter_map(|(promised, tolerance)| {
+                let percent = brief_number(100.0 * (*tolerance)?);
+                Some(format!("{} {percent} %", promised.measure.name()))
+            })
+            .collect();
+        eprintln!("asked: {}", tolerances.join(", "));
     } else if choices.is_empty() {
         eprintln!("advice: none: the table has no runs of such scenes; {}", hint(study));
     } else {
@@ -207,6 +216,24 @@ fn print_advice(
             table.reference,
             names(&changes)
         );
+    }
+}
+
+/// The cost of a method over that of the study as it stands.
+fn saving(study: &Study, table: &MeshErrors, cost_of_method: f64) -> String {
+    let points = study.points();
+    // A point runs on each of its meshes.
+    let runs_of_one = study.meshes().len().max(1) as f64;
+    let all: f64 = points.iter().map(|point| cost(table, &Method::of(&point.scene))).sum();
+    let now = all * runs_of_one / points.len().max(1) as f64;
+    let now_is = match study.auto() {
+        Some(auto) => format!("all points on n {}; auto runs fewer there", auto.reference),
+        None => "now".to_owned(),
+    };
+    if cost_of_method < now {
+        format!("{:.1} times cheaper than {now_is}", now / cost_of_method)
+    } else {
+        format!("{:.1} times the cost of {now_is}", cost_of_method / now)
     }
 }
 

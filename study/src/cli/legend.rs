@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::print::count;
-use crate::accuracy::{PROMISED, Promised};
+use crate::accuracy::{NO_ERROR_REASON, PROMISED, Promised};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::store::table::Table;
@@ -42,16 +42,38 @@ pub fn points(
     text
 }
 
-/// What the mesh errors in these cells are; `None` if no cell has one.
-pub fn mesh_errors<'a>(cells: impl IntoIterator<Item = &'a Value>) -> Option<String> {
-    let has_error = |cell: &Value| matches!(cell, Value::Text(text) if text.contains(PLUS_MINUS));
-    cells.into_iter().any(has_error).then(|| {
-        format!(
+/// Whether a cell has a mesh error.
+pub fn has_mesh_error(cell: &Value) -> bool {
+    matches!(cell, Value::Text(text) if text.contains(PLUS_MINUS))
+}
+
+/// What the mesh errors that are `shown` are, and where they come from outside the table of mesh errors: of values that
+/// are extrapolated from several meshes.
+pub fn mesh_errors(shown: bool, table: &Table, meshes: &[u32]) -> Vec<String> {
+    let mut notes = Vec::new();
+    if shown {
+        notes.push(format!(
             "±: mesh error, which 9 of 10 runs of the table of mesh errors keep: to the limit of fine meshes; of {} to \
              n 24 only",
             names(|has_limit| !has_limit)
-        )
-    })
+        ));
+    }
+    let outside = || {
+        let reasons = table.column(NO_ERROR_REASON);
+        reasons.is_some_and(|reasons| reasons.cells.iter().any(|cell| *cell != Value::Null))
+    };
+    if !meshes.is_empty() && outside() {
+        notes.push(
+            if meshes.len() > 2 {
+                "rows that the table does not cover (no_error_reason): ± is 3 times the change of the extrapolated value \
+                 from the two coarsest meshes to the two finest, or the error of the paper's capsule where that is larger"
+            } else {
+                "rows that the table does not cover (no_error_reason) have no ±: solver.meshes with three meshes gives one"
+            }
+            .to_owned(),
+        );
+    }
+    notes
 }
 
 /// What the rows of a study with `"model": "auto"` are; `None` for another study.

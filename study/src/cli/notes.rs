@@ -3,11 +3,12 @@
 
 use billow_solver::scene::ModelKind;
 
-use crate::accuracy::Method;
+use crate::accuracy::{Choice, MeshErrors, Method, Tolerances, choices};
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::brief_number;
-use crate::study::Study;
 use crate::study::ground::pressure_below_ambient;
+use crate::study::{Study, StudyPoint};
 
 /// Prints the warnings about values of the study: before anything runs.
 pub fn print_warnings(study: &Study) {
@@ -29,7 +30,15 @@ fn lines(study: &Study) -> Vec<String> {
     if let Some(meshes) = study.chosen_meshes() {
         let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
         let how = "the cheapest that keeps its errors at every point";
-        lines.push(format!("note: accuracy chooses {}, {how}", method.name()));
+        lines.push(format!(
+            "note: accuracy chooses {}, {how}{}",
+            method.name(),
+            errors(study, &method)
+        ));
+    }
+    let subdivisions = study.key(MESH_PARAMETER).filter(|_| !study.meshes().is_empty());
+    if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
+        lines.push(format!("note: solver.meshes replaces design.subdivisions {}", given.value));
     }
     let empty = |point: &&crate::study::StudyPoint| {
         let gas = &point.scene.gas;
@@ -73,6 +82,19 @@ fn lines(study: &Study) -> Vec<String> {
         }
     }
     lines
+}
+
+/// The errors and the cost of the method that `accuracy` chose, as the table of mesh errors has them; empty where a newer
+/// table does not cover the study.
+fn errors(study: &Study, method: &Method) -> String {
+    let scenes: Vec<_> = study.points().iter().filter_map(StudyPoint::features).collect();
+    let choices = choices(MeshErrors::shipped(), &scenes).unwrap_or_default();
+    let choice = choices.iter().find(|choice| choice.method == *method);
+    let text = |(choice, tolerances): (&Choice, Tolerances)| {
+        let errors = choice.errors_text(&tolerances);
+        format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost)
+    };
+    choice.zip(study.tolerances()).map(text).unwrap_or_default()
 }
 
 /// A note on capsules whose gas has less than ambient pressure at the start.

@@ -10,13 +10,12 @@
 use billow_solver::scene::ModelKind;
 
 use super::StudyPoint;
-use crate::accuracy::{Choice, Features, MeshErrors, PROMISED, choices};
+use crate::accuracy::{Choice, MeshErrors, PROMISED, Tolerances, all_but_peak_vz, choices};
 use crate::input::fraction::{RELATIVE_ERROR, relative_error_in};
 use crate::input::keys::STUDY;
 use crate::input::settings::object;
 use crate::input::source::Source;
 use crate::input::study_file::Json;
-use crate::job::row::ColumnId;
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
 
@@ -29,7 +28,7 @@ const MESHES: &str = "meshes";
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Accuracy {
     /// Largest relative error of each promised measure.
-    pub tolerances: [Option<f64>; PROMISED.len()],
+    pub tolerances: Tolerances,
     /// The meshes that keep them, coarsest first; empty until they are chosen.
     pub meshes: Vec<u32>,
 }
@@ -84,13 +83,7 @@ impl Accuracy {
                 "solver.model film".to_owned(),
             );
         }
-        let scenes: Vec<_> = points
-            .iter()
-            .filter_map(|point| {
-                let solved = point.solved?;
-                Some((&point.scene, Features::of(&point.scene, solved.top_radius, solved.height)))
-            })
-            .collect();
+        let scenes: Vec<_> = points.iter().filter_map(StudyPoint::features).collect();
         let table = MeshErrors::shipped();
         let film = match choices(table, &scenes) {
             Ok(choices) => {
@@ -143,11 +136,6 @@ impl Accuracy {
             _ => Json::Object(self.members()).brief(),
         }
     }
-}
-
-/// What one number asks for: it is the tolerance of every promised measure but `peak_vz`.
-fn all_but_peak_vz(tolerance: Option<f64>) -> [Option<f64>; PROMISED.len()] {
-    PROMISED.map(|promised| tolerance.filter(|_| promised.measure != ColumnId::PeakVz))
 }
 
 /// A relative error of a study file.

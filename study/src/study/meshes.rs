@@ -3,10 +3,14 @@
 //! The meshes are an axis that varies fastest, as replicates do. They must be meshes of the table of mesh errors,
 //! which has the weights of the extrapolation.
 
+use billow_solver::scene::ModelKind;
+
+use super::StudyPoint;
 use super::grid::{Axis, AxisKind, Context, Grid};
 use super::target::{Column, Target};
 use crate::accuracy::MeshErrors;
-use crate::input::keys::{KEYS, position, short_name};
+use crate::input::keys::{self, KEYS, position, short_name};
+use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::InputError;
@@ -78,4 +82,27 @@ impl Grid {
             })
             .collect()
     }
+}
+
+/// Refuses models without a mesh: their runs on each would be equal.
+///
+/// # Errors
+/// A point with a model other than film, in a study with several meshes.
+pub(super) fn refuse_other_models(
+    grid: &Grid,
+    points: &[StudyPoint],
+    source: &Source,
+) -> Result<(), InputError> {
+    let meshes = grid.meshes();
+    let other =
+        points.iter().map(|point| point.scene.solver.model).find(|kind| *kind != ModelKind::Film);
+    let Some(other) = other.filter(|_| !meshes.is_empty()) else { return Ok(()) };
+    let problem = format!("has meshes, and the model {} has none", keys::model(other).name);
+    let found = Json::List(meshes.iter().map(|n| Json::Integer(i64::from(*n))).collect());
+    Err(source.error(
+        MESHES,
+        &found.brief(),
+        problem,
+        "a study in which every point has the model film",
+    ))
 }

@@ -34,6 +34,7 @@ mod variables;
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use crate::accuracy::Tolerances;
 use crate::input::keys::{KEYS, STUDY, position};
 use crate::input::overrides;
 use crate::input::source::Source;
@@ -170,6 +171,7 @@ impl Study {
             grid = Grid::read(&tree, context)?;
             points = expand::points(&base, &grid, &source, size)?;
         }
+        meshes::refuse_other_models(&grid, &points.points, &source)?;
         let auto = if is_auto {
             let repeats = grid.repeated();
             Some(Auto::of(accuracy.as_ref(), &grid, &points.points, &repeats, &source)?)
@@ -219,6 +221,11 @@ impl Study {
     pub(crate) fn chosen_meshes(&self) -> Option<&[u32]> {
         let meshes = self.accuracy.as_ref().map(|accuracy| accuracy.meshes.as_slice());
         meshes.filter(|meshes| !meshes.is_empty())
+    }
+
+    /// Largest relative errors that its results must keep; `None` without `accuracy`.
+    pub(crate) fn tolerances(&self) -> Option<Tolerances> {
+        Some(self.accuracy.as_ref()?.tolerances)
     }
 
     /// Number of runs of each point: 1 without replicates.

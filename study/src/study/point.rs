@@ -2,6 +2,7 @@
 
 use billow_solver::scene::Scene;
 
+use crate::accuracy::Features;
 use crate::job::Parameters;
 use crate::job::point::{Infeasible, Solved};
 
@@ -29,4 +30,12 @@ pub(crate) struct StudyPoint {
     pub solved: Option<Solved>,
     /// Whether a search runs along it.
     pub searched: Searched,
+}
+
+impl StudyPoint {
+    /// Its scene with the features on which mesh errors depend; `None` for an infeasible point.
+    pub fn features(&self) -> Option<(&Scene, Features)> {
+        let solved = self.solved?;
+        Some((&self.scene, Features::of(&self.scene, solved.top_radius, solved.height)))
+    }
 }

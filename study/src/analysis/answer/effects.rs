@@ -15,10 +15,11 @@ use billow_solver::output::measures::Verdict;
 use super::medians::{Extremes, Set, block, extremes};
 use super::points::Points;
 use crate::analysis::compare::{self, Measure, Range, Sets, Tolerance, canonical, median_range};
+use crate::input::keys::numerical;
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::Status;
-use crate::job::row::ColumnId;
+use crate::job::row::{BetterSide, ColumnId};
 use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
@@ -206,11 +207,14 @@ impl Comparable<'_> {
                 median_range(&ranges).filter(|_| chosen.contains(&index))
             });
             let ranges: Vec<Option<Range>> = ranges.collect();
+            // Of a mesh, or a model, no value is better: it computes another number for the same capsule.
+            let of_method = numerical::is_of_method(&self.parameter.name);
+            let side = if of_method { BetterSide::Neither } else { measure.side() };
             effect.measures.push(MeasureEffect {
                 measure: *id,
                 shown: measure.column.shown.clone(),
                 sets: block.len(),
-                extremes: extremes(&ranges, measure, &always),
+                extremes: extremes(&ranges, measure, &always, side),
                 medians: ranges.iter().map(|range| range.map(|range| range[1])).collect(),
                 tolerance: measure.tolerance,
             });

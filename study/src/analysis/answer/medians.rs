@@ -62,6 +62,7 @@ pub(super) fn extremes(
     ranges: &[Option<Range>],
     measure: &Measure<'_>,
     always: &[bool],
+    side: BetterSide,
 ) -> Extremes {
     let mut order: Vec<(usize, Range)> =
         ranges.iter().enumerate().filter_map(|(index, range)| Some((index, (*range)?))).collect();
@@ -80,7 +81,7 @@ pub(super) fn extremes(
     };
     let deploys = |entry: &&(usize, Range)| always[entry.0];
     let (lowest, highest) = (tied(&mut order.iter()), tied(&mut order.iter().rev()));
-    match measure.side() {
+    match side {
         BetterSide::Smaller => {
             let best = tied(&mut order.iter().filter(deploys));
             Extremes::Judged { best, worst: highest }

@@ -27,7 +27,7 @@ impl Points {
     /// The points in some rows.
     pub fn of(table: &Table, rows: &[usize], replicates: &[String]) -> Self {
         let condensed = Condensed::of(table, rows, replicates);
-        let trusted = condensed.runs.iter().map(|runs| runs.done > runs.not_trusted).collect();
+        let trusted = condensed.runs.iter().map(|runs| runs.has_trusted).collect();
         Self { condensed, trusted }
     }
 

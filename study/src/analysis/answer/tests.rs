@@ -229,6 +229,13 @@ fn a_best_value_deploys_and_is_trusted_in_every_job() {
     assert_eq!(never.measures.len(), 1);
     assert_eq!((&never.left_out[0].0, never.left_out[0].1), (&None, HEADLINE[0]));
 
+    // No model and no mesh is the best one: it is the same capsule.
+    let mut models = study(&[("film", 1.0, 5.0, 10.0), ("piston", 1.0, 3.0, 20.0)]);
+    let strategy = models.columns.iter().position(|column| column.name == "strategy").unwrap();
+    models.columns[strategy].name = "model".to_owned();
+    let range = Extremes::Range { lowest: vec![1], highest: vec![0] };
+    assert_eq!(effect(&effects(&models), "model").measures[0].extremes, range);
+
     // Within the spread of the measure there is no best.
     let equal = study(&[("delayed", 1.0, 5.0, 10.0), ("rapid", 1.0, 5.1, 10.1)]);
     let equal = strategy_of(&equal);

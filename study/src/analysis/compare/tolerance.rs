@@ -101,7 +101,7 @@ impl Tolerance {
         zipped: &[Zipped],
     ) -> Self {
         let tolerance = Self::of(&points.table, rows, measure, zipped);
-        let repeated = rows.iter().any(|row| points.runs[*row].done > 1);
+        let repeated = rows.iter().any(|row| points.runs[*row].measured.len() > 1);
         match tolerance.source {
             ToleranceSource::Unknown if repeated => {
                 Self { source: ToleranceSource::Ranges, ..tolerance }

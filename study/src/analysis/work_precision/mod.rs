@@ -6,7 +6,7 @@
 //! reference        the exact value; else the median (course: mean) over the runs of the trusted configuration
 //!                  with the most element-steps, with the relative uncertainty u = √(s² + m²):
 //!                  s half the range over its runs (of one run: over those of the next coarser mesh with several)
-//!                  m half its difference from the next coarser mesh, all else equal
+//!                  m half its difference from the next coarser mesh, all else equal; at least its mesh error, if known
 //! front            no other configuration has less or equal work and less or equal max(e, u), one of them less
 //! order            p = ln(e₁/e₂)/ln r,  r = √(elements₂/elements₁); of equal meshes r = steps₂/steps₁
 //! ```
@@ -85,6 +85,8 @@ pub struct Run {
     pub seconds: Option<f64>,
     /// Its result for each quantity.
     pub results: Vec<Option<Outcome>>,
+    /// The mesh error of each result over its value, where it is known.
+    pub mesh_errors: Vec<Option<f64>>,
 }
 
 /// The result of a run for one quantity.
@@ -212,7 +214,13 @@ impl Diagram {
             let results = |run: &usize| scene.runs[*run].results[index].clone();
             let outcomes: Vec<Vec<Outcome>> =
                 groups.iter().map(|runs| runs.iter().filter_map(results).collect()).collect();
-            Errors::of(quantity, &outcomes, &members, &chains)
+            let mesh_error =
+                |run: &usize| scene.runs[*run].mesh_errors.get(index).copied().flatten();
+            let mesh_errors = groups
+                .iter()
+                .map(|runs| Some(Spread::of(runs.iter().filter_map(mesh_error))?.median));
+            let mesh_errors: Vec<Option<f64>> = mesh_errors.collect();
+            Errors::of(quantity, &outcomes, &mesh_errors, &members, &chains)
         });
         let quantities = quantities.collect();
         Self {
@@ -231,10 +239,12 @@ impl Errors {
     fn of(
         quantity: &Quantity,
         outcomes: &[Vec<Outcome>],
+        mesh_errors: &[Option<f64>],
         members: &[Member],
         chains: &[Chain],
     ) -> Self {
-        let (reference, target) = reference::of(quantity, outcomes, members, chains).unzip();
+        let (reference, target) =
+            reference::of(quantity, outcomes, mesh_errors, members, chains).unzip();
         let point = |index: usize| -> Option<Point> {
             let reference = reference.as_ref()?;
             let is_reference = reference.member == Some(index);

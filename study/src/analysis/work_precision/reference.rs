@@ -13,6 +13,7 @@ const MESH_PART: f64 = 0.5;
 pub(super) fn of(
     quantity: &Quantity,
     outcomes: &[Vec<Outcome>],
+    mesh_errors: &[Option<f64>],
     members: &[Member],
     chains: &[Chain],
 ) -> Option<(Reference, Outcome)> {
@@ -27,19 +28,31 @@ pub(super) fn of(
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     })?;
     let target = centre(&outcomes[finest])?;
-    let uncertainty = uncertainty(finest, &target, outcomes, members, chains);
+    let estimated = uncertainty(finest, &target, outcomes, members, chains);
+    let uncertainty = of_parts(estimated, mesh_errors[finest]);
     let value = median(&outcomes[finest]);
     Some((Reference { value, member: Some(finest), uncertainty }, target))
 }
 
-/// The relative uncertainty of the reference; `None` with neither several runs nor a coarser mesh.
+/// The relative uncertainty from its parts: spread over the runs, and mesh, which is no less than the known mesh error;
+/// `None` without any.
+fn of_parts([spread, mesh]: [Option<f64>; 2], mesh_error: Option<f64>) -> Option<f64> {
+    let mesh = mesh.into_iter().chain(mesh_error).reduce(f64::max);
+    if spread.is_none() && mesh.is_none() {
+        return None;
+    }
+    let (spread, mesh) = (spread.unwrap_or(0.0), mesh.unwrap_or(0.0));
+    Some((spread * spread + mesh * mesh).sqrt())
+}
+
+/// The parts of the relative uncertainty of the reference that follow from the runs of the scene: spread, mesh.
 fn uncertainty(
     finest: usize,
     target: &Outcome,
     outcomes: &[Vec<Outcome>],
     members: &[Member],
     chains: &[Chain],
-) -> Option<f64> {
+) -> [Option<f64>; 2] {
     let of_mesh = |chain: &&Chain| chain.of_meshes && chain.members.contains(&finest);
     // Coarse to fine, without the reference.
     let coarser: Vec<usize> = chains
@@ -54,12 +67,7 @@ fn uncertainty(
     let spread = std::iter::once(&finest).chain(coarser.iter().rev()).find(with_runs);
     let spread = spread.and_then(|index| half_range(&outcomes[*index], target));
     let mesh = coarser.last().and_then(|index| error(&centre(&outcomes[*index])?, target));
-    let mesh = mesh.map(|difference| MESH_PART * difference);
-    if spread.is_none() && mesh.is_none() {
-        return None;
-    }
-    let (spread, mesh) = (spread.unwrap_or(0.0), mesh.unwrap_or(0.0));
-    Some((spread * spread + mesh * mesh).sqrt())
+    [spread, mesh.map(|difference| MESH_PART * difference)]
 }
 
 /// Half the range over runs, over the reference. For courses: the largest distance of a run from their mean.

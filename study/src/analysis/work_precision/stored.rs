@@ -25,6 +25,7 @@ pub fn from_stored(scene: &ExactScene) -> SceneRuns {
         steps: run.steps,
         seconds: Some(run.seconds),
         results: run.values.iter().map(|number| Some(Outcome::Number(*number))).collect(),
+        mesh_errors: Vec::new(),
     });
     SceneRuns {
         name: scene.name.clone(),

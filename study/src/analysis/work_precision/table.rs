@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::{Configuration, Course, Outcome, Quantity, Run, SceneRuns};
+use crate::accuracy::{PROMISED, Promised};
 use crate::analysis::values::canonical;
 use crate::input::keys::MODELS;
 use crate::input::keys::numerical::{self, MODEL, SEED};
@@ -12,15 +13,6 @@ use crate::job::Status;
 use crate::job::row::ColumnId;
 use crate::store::table::{Column, Table};
 
-/// The measures whose error billow promises.
-pub const PROMISED: [ColumnId; 6] = [
-    ColumnId::T50ZRim,
-    ColumnId::T90ZRim,
-    ColumnId::PeakVz,
-    ColumnId::PeakKineticEnergy,
-    ColumnId::FinalZRim,
-    ColumnId::FinalVolume,
-];
 /// The columns of the history that are compared over time, and their units.
 pub const COURSES: [(&str, &str, &str); 2] =
     [("z_rim", "m", "height of the top ring over time"), ("volume", "m3", "volume over time")];
@@ -51,7 +43,7 @@ impl<'a> Parts<'a> {
             let path = numerical::path(&column.name);
             if replicates.contains(&column.name) || path == Some(SEED) {
                 parts.repeating.push(column);
-            } else if path == Some(MODEL) || numerical::is_numerical(&column.name) {
+            } else if numerical::is_of_method(&column.name) {
                 parts.numerical.push(column);
             } else {
                 parts.physical.push(column);
@@ -80,8 +72,10 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// The scenes of a table, in the order of their first rows. `histories` reads what the history of a job says.
+/// The scenes of a table, in the order of their first rows; a single one has the name of the study. `histories` reads
+/// what the history of a job says.
 pub fn scenes(
+    study: &str,
     table: &Table,
     replicates: &[String],
     histories: &dyn Fn(&str) -> Option<Histories>,
@@ -100,7 +94,7 @@ pub fn scenes(
     let naming = naming(&parts.physical, &firsts);
     let scene = |rows: &[usize]| {
         let (runs, without_result) = runs(table, &parts, rows, histories);
-        let (name, meaning) = texts(&parts.physical, naming, rows[0]);
+        let (name, meaning) = texts(study, &parts.physical, naming, rows[0]);
         let quantities = quantities();
         SceneRuns { name, meaning, quantities, per_simulated_second: true, runs, without_result }
     };
@@ -109,8 +103,8 @@ pub fn scenes(
 
 /// The quantities of every scene of a study.
 fn quantities() -> Vec<Quantity> {
-    let measures = PROMISED.iter().map(|id| {
-        let column = id.column();
+    let measures = PROMISED.iter().map(|promised| {
+        let column = promised.measure.column();
         (column.name, column.unit, column.meaning, false)
     });
     let courses = COURSES.iter().map(|(name, unit, meaning)| (*name, *unit, *meaning, true));
@@ -145,11 +139,7 @@ fn runs(
             without += 1;
             continue;
         }
-        let number = |id: ColumnId| match table.value(id, row)? {
-            Value::Number(number) => Some(*number),
-            Value::Integer(number) => Some(*number as f64),
-            _ => None,
-        };
+        let number = |id: ColumnId| table.value(id, row).and_then(number);
         let job = match table.column("job").map(|column| &column.cells[row]) {
             Some(Value::Text(id)) => id.as_str(),
             _ => "",
@@ -159,7 +149,16 @@ fn runs(
         let seconds = number(ColumnId::WallSeconds)
             .zip(simulated.filter(|time| *time > 0.0))
             .map(|(wall, simulated)| wall / simulated);
-        let measures = PROMISED.iter().map(|id| number(*id).map(Outcome::Number));
+        let measures =
+            PROMISED.iter().map(|promised| number(promised.measure).map(Outcome::Number));
+        // Of courses no mesh error is known.
+        let mesh_error = |promised: &Promised| {
+            let error = number_in(table, promised.error_column, row)?;
+            number(promised.measure)
+                .filter(|value| *value != 0.0)
+                .map(|value| (error / value).abs())
+        };
+        let mesh_errors = PROMISED.iter().map(mesh_error).collect();
         let courses = history.map_or([None, None], |history| history.courses);
         let courses = courses.into_iter().map(|course| course.map(Outcome::Course));
         found.push(Run {
@@ -169,9 +168,24 @@ fn runs(
             steps: number(ColumnId::Steps).unwrap_or(0.0),
             seconds,
             results: measures.chain(courses).collect(),
+            mesh_errors,
         });
     }
     (found, without)
+}
+
+/// A number of a table, by its column.
+fn number_in(table: &Table, column: &str, row: usize) -> Option<f64> {
+    number(&table.column(column)?.cells[row])
+}
+
+/// A value as a number.
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(number) => Some(*number),
+        Value::Integer(number) => Some(*number as f64),
+        _ => None,
+    }
 }
 
 /// The parameter of words that alone names each scene.
@@ -188,7 +202,7 @@ fn naming(physical: &[&Column], firsts: &[usize]) -> Option<usize> {
 }
 
 /// Name and meaning of the scene of a row.
-fn texts(physical: &[&Column], naming: Option<usize>, row: usize) -> (String, String) {
+fn texts(study: &str, physical: &[&Column], naming: Option<usize>, row: usize) -> (String, String) {
     let text = |column: &Column| {
         format!("{} {}", column.name, column.shown.quantity(&column.cells[row]).trim())
     };
@@ -198,7 +212,7 @@ fn texts(physical: &[&Column], naming: Option<usize>, row: usize) -> (String, St
     };
     match naming {
         Some(index) => (physical[index].cells[row].to_string(), all(naming)),
-        None if physical.is_empty() => ("study".to_owned(), String::new()),
+        None if physical.is_empty() => (study.to_owned(), String::new()),
         None => (all(None), String::new()),
     }
 }
@@ -246,7 +260,7 @@ mod tests {
             ],
         };
         let history = |_: &str| Some(Histories { courses: [None, None], simulated: 0.5 });
-        let scenes = scenes(&table, &["seed".to_owned()], &history);
+        let scenes = scenes("study", &table, &["seed".to_owned()], &history);
         let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
         assert_eq!(names, ["a", "b"]);
         let [a, b] = scenes.as_slice() else { panic!() };
@@ -258,7 +272,7 @@ mod tests {
         assert_eq!(a.runs[0].configuration[2], ("contact.distance".to_owned(), Value::Integer(1)));
         assert_eq!(a.runs[0].seconds, Some(2.0), "for a simulated second");
         assert_eq!((b.runs.len(), b.without_result), (1, 1));
-        let peak = PROMISED.iter().position(|id| *id == ColumnId::PeakVz).unwrap();
+        let peak = PROMISED.iter().position(|one| one.measure == ColumnId::PeakVz).unwrap();
         assert_eq!(a.runs[1].results[peak], Some(Outcome::Number(21.0)));
         assert_eq!(a.runs[1].results.len(), PROMISED.len() + COURSES.len());
     }

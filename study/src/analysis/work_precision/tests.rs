@@ -27,6 +27,7 @@ pub fn film(n: i64, cfl: f64, value: f64) -> Run {
         steps,
         seconds: Some(1e-6 * size * size * steps),
         results: vec![Some(Outcome::Number(value))],
+        mesh_errors: Vec::new(),
     }
 }
 
@@ -97,6 +98,26 @@ fn a_known_order_and_a_known_front_are_found() {
     assert_eq!(diagram.lines()[0], (Some(0), vec![1, 3, 2, 0]));
     let drawn: usize = diagram.lines().iter().map(|(_, members)| members.len()).sum();
     assert_eq!(drawn, 8, "each member is drawn once");
+}
+
+#[test]
+fn the_uncertainty_of_a_coarse_reference_holds_its_mesh_error() {
+    let runs = |mesh_error: Option<f64>| {
+        let known = |n, value| Run { mesh_errors: vec![mesh_error], ..film(n, 0.5, value) };
+        vec![known(4, 1.8), known(6, 1.88), Run { mesh_errors: vec![None], ..piston(2.02) }]
+    };
+    let errors = |mesh_error| Diagram::of(scene(None, runs(mesh_error))).quantities.remove(0);
+    let unknown = errors(None);
+    let difference = 1.0 - 1.8 / 1.88;
+    assert!((unknown.uncertainty() - 0.5 * difference).abs() < 1e-12);
+    assert!(unknown.points[0].unwrap().on_front(Cost::Work), "n 4 looks better than the piston");
+    // The finest mesh is 8 % from finer ones: of errors of 4 and 7 % none is known to be smaller.
+    let known = errors(Some(0.08));
+    assert!((known.uncertainty() - 0.08).abs() < 1e-12);
+    assert!(!known.points[0].unwrap().on_front(Cost::Work));
+    assert!(known.points[2].unwrap().on_front(Cost::Work), "the cheapest");
+    let small = errors(Some(0.001));
+    assert_eq!(small.uncertainty().to_bits(), unknown.uncertainty().to_bits());
 }
 
 #[test]

@@ -178,7 +178,7 @@ pub fn has_history(source: &Source<'_>, row: usize) -> bool {
         |row: usize| hash.is_some_and(|column| matches!(column.cells[row], Value::Text(_)));
     match source.runs_of(row) {
         None => stored(row),
-        Some(runs) => runs.rows.iter().any(|row| stored(*row)),
+        Some(runs) => runs.finest.iter().any(|row| stored(*row)),
     }
 }
 
@@ -234,10 +234,12 @@ fn legends(
     runs: &BTreeMap<&str, Run>,
 ) -> Vec<Legend> {
     let mut legends = encoding.legends(false);
-    if source.runs.is_some() {
+    if source.has_replicates() {
         legends.extend(medians::legends(source));
         return legends;
     }
+    let single = source.single();
+    let source = &single;
     let mut ends: Vec<(Sample, String)> = Vec::new();
     for verdict in [Verdict::Partial, Verdict::Stalled] {
         let of_verdict = |run: &&Run| outcome::verdict(source, run.row) == Some(verdict);

@@ -16,6 +16,7 @@ fn run(model: &str, n: Option<i64>, value: f64) -> Run {
         steps,
         seconds: Some(1e-6 * (1.0 + size * size) * steps),
         results: vec![Some(Outcome::Number(value)), None],
+        mesh_errors: Vec::new(),
     }
 }
 

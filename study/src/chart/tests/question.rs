@@ -51,7 +51,7 @@ fn condensed<T>(table: &Table, limits: &[ResultLimit], draw: impl Fn(&Source<'_>
     draw(&Source {
         rows: (0..condensed.table.rows()).collect(),
         limits,
-        runs: Some(Replicated { condensed: &condensed, single: table, names: &names }),
+        runs: Some(Replicated { condensed: &condensed, single: table, names: &names, meshes: &[] }),
         ..source(&condensed.table)
     })
 }

@@ -38,7 +38,7 @@ pub fn lines(auto: &AutoAnswer) -> Vec<String> {
         let cost = 100.0 * cost;
         let so_far = if auto.is_complete { "" } else { " so far" };
         lines.push(format!(
-            "cost{so_far} {cost:.1} % of all points on n {reference} (element-steps)"
+            "cost{so_far} {cost:.1} % of all points on n {reference} (element-steps; pilots, points and checks)"
         ));
     }
     lines

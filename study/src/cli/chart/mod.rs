@@ -18,6 +18,7 @@ use crate::chart::runs::Replicated;
 use crate::chart::share::Judged;
 use crate::chart::standard::{self, ChartKind};
 use crate::chart::{Source, borders, history, map, over};
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
@@ -112,6 +113,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         ..source(args, &name, &table)?
     };
     let replicates = question.replicates(args, asked.as_ref());
+    let is_mesh = |name: &String| name == MESH_PARAMETER;
+    let meshes = if replicates.iter().any(is_mesh) { question.meshes.clone() } else { Vec::new() };
     let condensed =
         (!replicates.is_empty()).then(|| Condensed::of(single.table, &single.rows, &replicates));
     let source = condensed.as_ref().map_or_else(
@@ -119,7 +122,12 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         |condensed| Source {
             table: &condensed.table,
             rows: (0..condensed.table.rows()).collect(),
-            runs: Some(Replicated { condensed, single: &table, names: &replicates }),
+            runs: Some(Replicated {
+                condensed,
+                single: &table,
+                names: &replicates,
+                meshes: &meshes,
+            }),
             ..single.clone()
         },
     );

@@ -15,6 +15,8 @@ pub struct Question {
     /// What its results must meet to be safe.
     pub limits: Vec<ResultLimit>,
     replicates: Vec<String>,
+    /// The meshes from which its values are extrapolated, coarsest first; empty without any.
+    pub meshes: Vec<u32>,
     search: Option<Search>,
 }
 
@@ -44,7 +46,7 @@ impl Question {
             }),
         };
         let (limits, replicates) = (study.result_limits().to_vec(), study.replicates());
-        Ok(Self { limits, replicates, search })
+        Ok(Self { limits, replicates, meshes: study.meshes(), search })
     }
 
     /// The search, for a chart.

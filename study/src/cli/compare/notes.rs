@@ -31,7 +31,9 @@ impl Comparison<'_> {
                 ToleranceSource::Given => "--tie",
                 ToleranceSource::Ranges => "no spread of the method is known",
                 ToleranceSource::Seeds => "spread over the seeds",
-                ToleranceSource::MeshError => "of each pair the larger one",
+                ToleranceSource::MeshError => {
+                    "of a pair the larger one; the median where one is not known"
+                }
                 ToleranceSource::Method => "spread of the method",
                 ToleranceSource::Unknown => "spread not known: lower or higher, not better",
             };
@@ -45,6 +47,10 @@ impl Comparison<'_> {
             let (rows, runs) = (self.table.rows(), points.run_count());
             let text = legend::points(rows, runs, &self.replicates, &self.meshes, MEDIANS);
             eprintln!("{text}; --runs pairs single runs");
+        }
+        let shown = self.measures.iter().any(|measure| measure.errors.is_some());
+        for note in legend::mesh_errors(shown, self.table, &self.meshes) {
+            eprintln!("{note}");
         }
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");

@@ -4,7 +4,6 @@ use std::io::Write;
 
 use super::Comparison;
 use crate::analysis::compare::{self, Compared, Measure, Pair};
-use crate::analysis::statistics::Spread;
 use crate::cli::print::{Heading, print_quantities};
 use crate::cli::{Format, range};
 use crate::input::units::DisplayUnit;
@@ -105,10 +104,8 @@ impl Comparison<'_> {
             let spread = |row| self.points.as_ref()?.spread(&measure.column.name, row);
             let sides = [spread(pair.base), spread(pair.other)];
             row.extend(self.figures(measure, brief).iter().map(|figure| match *figure {
-                "base" => self.value(measure, pair.base, compared.base, sides[0].filter(|_| brief)),
-                "other" => {
-                    self.value(measure, pair.other, compared.other, sides[1].filter(|_| brief))
-                }
+                "base" => self.value(measure, pair.base, compared.base, brief),
+                "other" => self.value(measure, pair.other, compared.other, brief),
                 "base_least" => number(sides[0].map(|spread| spread.least)),
                 "base_largest" => number(sides[0].map(|spread| spread.largest)),
                 "other_least" => number(sides[1].map(|spread| spread.least)),
@@ -121,21 +118,21 @@ impl Comparison<'_> {
         row
     }
 
-    /// A value of a pair; with the range of its runs where they have a spread.
-    fn value(
-        &self,
-        measure: &Measure<'_>,
-        row: usize,
-        value: Option<f64>,
-        spread: Option<Spread>,
-    ) -> Value {
-        match (value, spread, &self.points) {
-            (None, ..) => Value::Null,
-            (Some(_), Some(spread), Some(points)) => {
-                let runs = points.condensed.runs[row].measured.len();
-                Value::Text(range::text(&spread, &measure.column.shown, runs))
-            }
-            (Some(value), ..) => Value::Number(value),
+    /// A value of a pair; for a reader with the range of its runs, and with its mesh error.
+    fn value(&self, measure: &Measure<'_>, row: usize, value: Option<f64>, brief: bool) -> Value {
+        let Some(value) = value else { return Value::Null };
+        if !brief {
+            return Value::Number(value);
+        }
+        if let Some(points) = &self.points
+            && let Some(column) = points.table.column(&measure.column.name)
+        {
+            return points.range(column, row).unwrap_or(Value::Number(value));
+        }
+        let error = measure.errors.and_then(|errors| compare::measured(self.table, errors, row));
+        match error {
+            Some(error) => Value::Text(range::with_error(value, error, &measure.column.shown)),
+            None => Value::Number(value),
         }
     }
 

@@ -26,7 +26,7 @@ pub(super) fn scenes(
             continue;
         }
         if !quiet {
-            eprintln!("billow: runs the scene {} once", scene.name);
+            eprintln!("billow: runs the scene {} once (--study-only leaves it out)", scene.name);
         }
         let run: ExactScene = (scene.body)(&rig)
             .map_err(|problem| Error::JobsFailed(format!("scene {}: {problem}", scene.name)))?;

@@ -33,6 +33,9 @@ pub struct Args {
     /// `square_airbag`, `stretched_disc`, which run once if their results are not stored yet.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     scenes: Vec<String>,
+    /// Leave out the four scenes of the program.
+    #[arg(long, conflicts_with = "scenes")]
+    study_only: bool,
     /// Only these quantities, comma-separated, for example `t_90_z_rim,volume`; of one scene
     /// `end_state:final_volume`.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -74,9 +77,12 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         opened::open_stored(&args.study, &args.set.set, &UnitsOption::default(), None)?;
     let results = stored.results.clone();
     let read = |job: &str| histories(&stored, job, args.quiet.quiet);
-    let of_study = scenes(&table, &stored.study.replicates(), &read);
+    let of_study = scenes(&stored.study.name, &table, &stored.study.replicates(), &read);
     let mut chosen = chosen(of_study, &args.scenes)?;
-    let wanted = |name: &str| args.scenes.is_empty() || args.scenes.iter().any(|one| one == name);
+    let wanted = |name: &str| match args.scenes.as_slice() {
+        [] => !args.study_only,
+        names => names.iter().any(|one| one == name),
+    };
     chosen.extend(exact::scenes(&results, &wanted, args.quiet.quiet)?);
     let mut diagrams: Vec<Diagram> = chosen.into_iter().map(Diagram::of).collect();
     keep_measures(&mut diagrams, &args.measures)?;

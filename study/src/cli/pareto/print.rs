@@ -153,7 +153,22 @@ pub(super) fn notes(diagrams: &[Diagram], cost: Cost) {
         "note: seconds: wall time for a simulated second (at rest: of the search) on one thread; other jobs on the \
          machine lengthen it"
     );
+    for diagram in diagrams {
+        if let Some(note) = reference(diagram) {
+            eprintln!("note: {}: {note}", diagram.name);
+        }
+    }
     for diagram in diagrams.iter().filter(|diagram| diagram.without_result > 0) {
         eprintln!("note: {}: {} runs without a result", diagram.name, diagram.without_result);
     }
+}
+
+/// To what the errors of a diagram refer, where that is a run.
+fn reference(diagram: &Diagram) -> Option<String> {
+    let mut references = diagram.quantities.iter().filter_map(|errors| errors.reference.as_ref());
+    let member = references.find_map(|reference| reference.member)?;
+    let name = label(&diagram.members[member].configuration, &[]);
+    Some(format!(
+        "errors refer to {name}, the finest that ran; its uncertainty holds its mesh error where the table of mesh errors          has it"
+    ))
 }

@@ -113,8 +113,8 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// A measure with its range; `None` for a column that has none.
-    fn range(&self, column: &Column, row: usize) -> Option<Value> {
+    /// A measure with its range and its mesh error; `None` for a column that has none.
+    pub fn range(&self, column: &Column, row: usize) -> Option<Value> {
         self.table.column(&format!("{}{}", column.name, RANGE[0]))?;
         let Some(spread) = self.spread(&column.name, row) else { return Some(Value::Null) };
         let text = range::text(&spread, &column.shown, self.condensed.runs[row].measured.len());

@@ -98,10 +98,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let rows = chosen_runs(&table, args.condition.as_deref(), &replicates)?;
     let rows = by_search(&table, rows, study);
     let format = args.output.format();
+    let meshes = study.map(Study::meshes).unwrap_or_default();
     let listing = if replicates.is_empty() {
         runs(args, &table, &rows, all_columns)?
     } else {
-        let meshes = study.map(Study::meshes).unwrap_or_default();
         points(args, &table, &rows, &replicates, &meshes)?
     };
     print_quantities(&listing.headings, &listing.cells, format, out)?;
@@ -119,8 +119,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         for note in &listing.notes {
             eprintln!("{note}");
         }
-        let cells = listing.cells.iter().flatten();
-        for note in legend::mesh_errors(cells).into_iter().chain(corrected) {
+        let shown = listing.cells.iter().flatten().any(legend::has_mesh_error);
+        let meshes = if args.runs { Vec::new() } else { meshes };
+        for note in legend::mesh_errors(shown, &table, &meshes).into_iter().chain(corrected) {
             eprintln!("{note}");
         }
         best::print(study, &table, &rows);

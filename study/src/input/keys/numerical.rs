@@ -38,6 +38,11 @@ pub fn is_numerical(parameter: &str) -> bool {
     path(parameter).is_some_and(|path| NUMERICAL.contains(&path))
 }
 
+/// Whether a parameter is a numerical choice or the model: it changes how a capsule is computed, not the capsule.
+pub fn is_of_method(parameter: &str) -> bool {
+    is_numerical(parameter) || path(parameter) == Some(MODEL)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

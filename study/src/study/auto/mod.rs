@@ -8,7 +8,7 @@
 //!           or on the reference mesh if none is; a tenth of them also one rung finer (`checks`)
 //! ```
 //! The reference mesh is `design.subdivisions` of the study. No clock and no draw has a part in the plan: the same study
-//! and the same finished jobs give the same plan. Models that give no verdict (piston, storeys) are no rungs, since a row
+//! and the same finished jobs give the same plan. Models that cannot lock (piston, storeys) are no rungs, since a row
 //! must say whether its capsule deploys.
 
 mod checks;

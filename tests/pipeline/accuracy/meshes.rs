@@ -1,0 +1,163 @@
+//! Several meshes of one point, and the meshes that an accuracy chooses.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use super::{film, said};
+use crate::support::{TestFolder, json_of, stderr};
+
+/// A study on two meshes has one row, with values between which and the finest run the table of mesh errors stands.
+#[test]
+fn two_meshes_give_one_row_with_extrapolated_values_and_the_runs_are_kept() {
+    let folder = TestFolder::new(&film(&json!({"solver": {"meshes": [4, 6]}})));
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let (points, runs) = (folder.points("results/grid"), folder.rows("results/grid"));
+    assert_eq!((points.len(), runs.len()), (1, 2));
+    let of_mesh = |n: i64| runs.iter().find(|run| run["subdivisions"] == n).unwrap();
+    let number =
+        |row: &Value, name: &str| row[name].as_f64().unwrap_or_else(|| panic!("{name}: {row}"));
+    for name in ["t_50_z_rim", "peak_kinetic_energy"] {
+        let [coarse, fine] = [4, 6].map(|n| number(of_mesh(n), name));
+        let value = number(&points[0], name);
+        let stored = number(of_mesh(6), &format!("{name}_extrapolated"));
+        assert_eq!(value.to_bits(), stored.to_bits());
+        let beyond = (value - fine) * (fine - coarse) >= 0.0;
+        assert!(beyond && (value - fine).abs() <= 3.0 * (fine - coarse).abs(), "{name}: {value}");
+    }
+    let error = |row: &Value| number(row, "t_50_z_rim_change_to_n24");
+    assert!(error(of_mesh(4)) > error(of_mesh(6)), "a finer mesh has a smaller error");
+    assert!(error(&points[0]) < error(of_mesh(6)), "so has an extrapolated value");
+    // 0.21 s is too short for the state at the end.
+    assert!(of_mesh(4)["no_error_reason"].as_str().unwrap().starts_with("not deployed"));
+    let table = folder.stdout(&["table", "-q"]);
+    assert!(table.contains(" ± "), "{table}");
+    // The stored study plans the same jobs.
+    let again = folder.run(&["run", "results/grid/study.json", "--results", "results/grid"]);
+    assert!(said(&again).contains("all 2 jobs are finished"), "{}", said(&again));
+}
+
+/// Outside the table of mesh errors three meshes have an error, three times the observed difference at least, and two
+/// have none. What is printed says which values are extrapolated.
+#[test]
+fn outside_the_table_three_meshes_tell_their_error_and_two_do_not() {
+    let row = |meshes: &[u32]| {
+        let mut study = film(&json!({"contact": {"friction": 0.2}}));
+        study["solver"] = json!({"model": "film", "end_time": "60 ms", "meshes": meshes});
+        let folder = TestFolder::new(&study);
+        let answer = folder.stdout(&["run", "grid.json"]);
+        let printed = stderr(&folder.run(&["table"]));
+        let points = folder.points("results/grid").remove(0);
+        let finest = folder.rows("results/grid").pop().unwrap();
+        (answer, printed, points, finest)
+    };
+    let (answer, printed, point, finest) = row(&[2, 3, 4]);
+    let [value, error] =
+        ["t_50_z_rim", "t_50_z_rim_change_to_n24"].map(|name| point[name].as_f64().unwrap());
+    assert!(error > 0.01 * value && error < value, "{value} ± {error}");
+    assert_eq!(point["t_50_z_rim_change_to_n24"], finest["t_50_z_rim_extrapolated_error"]);
+    assert!(printed.contains("1 point, 3 runs; t_50_z_rim, "), "{printed}");
+    assert!(printed.contains("are extrapolated from n 2, 3 and 4, all else is that of n 4"));
+    assert!(answer.contains("extrapolated"), "{answer}");
+    assert!(printed.contains("±") && printed.contains("± is 3 times the change"), "{printed}");
+    let (_, printed, point, _) = row(&[2, 4]);
+    assert!(printed.contains("have no ±"), "{printed}");
+    assert_eq!(point["t_50_z_rim_change_to_n24"], Value::Null);
+    assert!(printed.contains("extrapolated from n 2 and 4"), "{printed}");
+}
+
+#[test]
+fn meshes_that_cannot_be_extrapolated_are_refused() {
+    let refused = |more: Value| {
+        let output = TestFolder::new(&film(&more)).run(&["plan", "grid.json"]);
+        assert_eq!(output.status.code(), Some(2));
+        stderr(&output)
+    };
+    assert!(refused(json!({"solver": {"meshes": [8, 4]}})).contains("ascending"));
+    assert!(refused(json!({"solver": {"meshes": [4]}})).contains("two or three meshes"));
+    assert!(refused(json!({"solver": {"meshes": [4, 7]}})).contains("has a mesh that the table"));
+    let both = json!({"solver": {"meshes": [4, 8]}, "grid": {"subdivisions": [4, 8]}});
+    assert!(refused(both).contains("which another axis varies already"));
+    let search = json!({
+        "solver": {"meshes": [4, 8]}, "limits": {"verdict": "deployed"},
+        "grid": {"residual_gas_mass": {"bisect": ["0.01 g", "0.1 g"], "on": "safe"}}
+    });
+    assert!(refused(search).contains("a search judges single runs"));
+    let models = json!({"solver": {"meshes": [4, 8]}, "grid": {"model": ["film", "piston"]}});
+    assert!(refused(models).contains("the model piston has none"));
+}
+
+#[test]
+fn an_accuracy_chooses_the_cheapest_meshes_that_keep_it() {
+    let planned = |tolerance: Value| {
+        let folder = TestFolder::new(&film(&json!({"accuracy": tolerance})));
+        let rows = json_of(&folder, &["plan", "grid.json"]);
+        let rows = rows.as_array().unwrap().clone();
+        let mesh = |row: &Value| row["subdivisions"].as_i64();
+        rows.iter().map(mesh).collect::<Vec<_>>()
+    };
+    let loose = planned(json!({"final_volume": "15 %"}));
+    let strict = planned(json!({"final_volume": 0.03}));
+    let cost = |meshes: &[Option<i64>]| meshes.iter().flatten().map(|n| n * n * n).sum::<i64>();
+    // One mesh is no axis.
+    assert!(loose.len() == 1, "{loose:?}");
+    assert!(strict.len() == 2 && cost(&strict) > 0 || strict.len() == 1, "{strict:?}");
+    let refused = |more: Value| {
+        let output = TestFolder::new(&film(&more)).run(&["plan", "grid.json"]);
+        assert_eq!(output.status.code(), Some(2));
+        stderr(&output)
+    };
+    let message = refused(json!({"accuracy": {"final_volume": 1e-6}}));
+    assert!(message.contains("is kept by no mesh") && message.contains("or more"), "{message}");
+    assert!(refused(json!({"accuracy": {"t_90_z_rm": 0.02}})).contains("did you mean t_90_z_rim?"));
+    let given = json!({"accuracy": {"t_90_z_rim": 0.1}, "design": {"subdivisions": 4}});
+    assert!(refused(given).contains("is given beside accuracy"));
+    let soft = json!({"accuracy": {"t_90_z_rim": 0.1}, "film": {"youngs_modulus": "1 GPa"}});
+    assert!(refused(soft).contains("film.youngs_modulus"));
+}
+
+#[test]
+fn the_choice_of_an_accuracy_stands_in_the_stored_study() {
+    let mut study = film(&json!({"accuracy": {"peak_kinetic_energy": 0.3}}));
+    study["solver"]["end_time"] = json!("10 ms");
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let text = fs::read_to_string(folder.results().join("study.json")).unwrap();
+    let stored: Value = serde_json::from_str(&text).unwrap();
+    let meshes = stored["accuracy"]["meshes"].as_array().unwrap();
+    assert_eq!(meshes.len(), 1, "{meshes:?}");
+    assert_eq!(stored["design"]["subdivisions"], meshes[0]);
+    let again = folder.run(&["run", "grid.json"]);
+    assert!(said(&again).contains("all 1 jobs are finished"), "{}", said(&again));
+}
+
+/// A chart of several meshes shows what the table has: extrapolated values, and outcomes and histories of the finest mesh.
+#[test]
+fn charts_and_comparisons_of_several_meshes_name_what_they_show() {
+    let study = film(&json!({
+        "solver": {"meshes": [2, 3], "end_time": "60 ms"},
+        "design": {"subdivisions": 5},
+        "grid": {"N": [6, 8], "mass_flow_rate": ["3 g/s", "5 g/s"]}
+    }));
+    let folder = TestFolder::new(&study);
+    let plan = stderr(&folder.run(&["plan", "grid.json"]));
+    assert!(plan.contains("solver.meshes replaces design.subdivisions 5"), "{plan}");
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let table = folder.stdout(&["table", "--columns", "runs,runs_done", "--format", "csv", "-q"]);
+    assert!(table.lines().skip(1).all(|line| line.ends_with("2,2")), "{table}");
+    let chart = |options: &[&str]| {
+        folder.stdout(&[&["chart", "--out", "chart.svg", "-q"], options].concat());
+        fs::read_to_string(folder.path().join("chart.svg")).unwrap()
+    };
+    let values = chart(&["--measure", "t_50_z_rim", "--over", "mass_flow_rate"]);
+    assert!(values.contains("4 points on n 2 and 3"), "{values}");
+    assert!(values.contains("Values are extrapolated from n 2 and 3"));
+    assert!(!values.contains("median"), "one run on each mesh has no median");
+    let stress = chart(&["--measure", "film_stress_99", "--over", "mass_flow_rate"]);
+    assert!(stress.contains("Only the runs on the finest mesh, n 3, are shown"));
+    let history = chart(&["--history", "z_rim"]);
+    assert!(history.contains("Only the runs on the finest mesh, n 3, are shown"));
+    let compare = ["compare", "--by", "N", "--base", "6", "--measures", "t_50_z_rim"];
+    let pairs = folder.stdout(&compare);
+    assert!(pairs.contains(" ± "), "{pairs}");
+}
