@@ -4,7 +4,7 @@
 //! change = mean of m_∞/m_ref − 1 over the scenes;  U² = mean of their squared uncertainties + (largest distance from it)²
 //! noise of a median of k runs = half their range/√k
 //! ```
-//! m_∞: [`super::fit`].
+//! m_∞: [`super::fit()`].
 
 use std::collections::BTreeMap;
 
