@@ -92,7 +92,9 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
                 let errors =
                     distinct.values().map(|features| table.error(&method, features, &promised));
                 // A method without an error of a measure promises nothing for it.
-                errors.map(|error| error.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
+                errors
+                    .map(|error| error.map_or(f64::INFINITY, |error| error.of_reference))
+                    .fold(0.0, f64::max)
             };
             let of_model = refusals.iter().find(|(model, _)| *model == method.model);
             let refusal = of_model.and_then(|(_, refusal)| refusal.clone());

@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! b(x) = b_base + Σ_f s_f u_f(x)       u_f: coordinate of the feature f, [`super::coordinates`]
-//! error = |b(x)| + k √(s² + d²)        s: scatter of single runs, d: deviation of scenes that were left out
-//! with a limit m_∞:  |b(x) − (m_∞/m_ref − 1)| + √(k² (…) + U²)     U: uncertainty of m_∞, 95 %
+//! error = |c| + w,  c = b(x),  w = k √(s² + d²)      s: scatter of single runs, d: deviation of scenes that were left out
+//! with a limit m_∞:  c = b(x) − (m_∞/m_ref − 1),  w = √(k² (…) + U²)      U: uncertainty of m_∞, 95 %
+//! over the value itself:  the larger of |c ± w|/(1 + b ± w)               (the value is 1 + b ± w of m_ref)
 //! ```
-//! k = 1.64 holds nine of ten normal deviations.
+//! k holds nine of ten values of Student's distribution; its degrees of freedom are the scenes less the fitted numbers.
 
 use std::collections::BTreeMap;
 
@@ -14,10 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use super::coordinates::Coordinates;
 use super::features::{FEATURE_NAMES, FEATURES, are_equal};
+use super::student::nine_of_ten;
 use crate::input::keys;
-
-/// Normal deviations of which nine of ten are smaller, over the standard deviation.
-const DEVIATIONS: f64 = 1.64;
 
 /// To what a measure tends as the mesh is refined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,6 +30,15 @@ pub struct Limit {
     pub uncertainty: f64,
     /// Observed order of convergence in the edge length; of several scenes the smallest.
     pub order: f64,
+}
+
+/// An error that nine of ten runs keep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelativeError {
+    /// Over the value on the finest mesh.
+    pub of_reference: f64,
+    /// Over the value of the run. Of a value that is too small it is the larger one.
+    pub of_itself: f64,
 }
 
 /// The error of one measure, for one model and mesh.
@@ -89,18 +97,24 @@ impl Entry {
         self.bias + changes.sum::<f64>()
     }
 
-    /// The relative error of nine of ten runs: against the limit if it is known, otherwise against the finest mesh.
+    /// The error of nine of ten runs of a scene: against the limit if it is known, otherwise against the finest mesh.
     pub fn error(
         &self,
         values: &[f64; FEATURES],
         coordinates: &Coordinates,
         limit: Option<&Limit>,
-    ) -> f64 {
-        let (distance, uncertainty) =
+    ) -> RelativeError {
+        let (change, uncertainty) =
             limit.map_or((0.0, 0.0), |limit| (limit.change, limit.uncertainty));
+        let k = nine_of_ten(self.scenes.saturating_sub(1 + self.slopes.len()));
         let scatter = self.scatter * self.scatter + self.deviation * self.deviation;
-        let width = DEVIATIONS * DEVIATIONS * scatter + uncertainty * uncertainty;
-        (self.bias(values, coordinates) - distance).abs() + width.sqrt()
+        let width = (k * k * scatter + uncertainty * uncertainty).sqrt();
+        let bias = self.bias(values, coordinates);
+        let distance = bias - change;
+        let end = |side: f64| (distance + side * width).abs() / (1.0 + bias + side * width);
+        // Below the value 0 nothing is known of a ratio.
+        let of_itself = if bias - width > -1.0 { end(-1.0).max(end(1.0)) } else { f64::INFINITY };
+        RelativeError { of_reference: distance.abs() + width, of_itself }
     }
 }
 

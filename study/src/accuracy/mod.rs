@@ -10,6 +10,7 @@ pub mod entries;
 pub mod entry;
 pub mod features;
 pub mod promised;
+pub mod student;
 pub mod table;
 #[cfg(test)]
 mod tests;
@@ -17,7 +18,7 @@ mod tests;
 pub use choice::{Choice, choices};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
-pub use entry::{Entry, Limit, Method};
+pub use entry::{Entry, Limit, Method, RelativeError};
 pub use features::{Coverage, Features};
 pub use promised::{
     NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED, Promised, Tolerances, all_but_peak_vz,

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::coordinates::Coordinates;
 use super::entries::Entries;
-use super::entry::{Entry, Limit, Method};
+use super::entry::{Entry, Limit, Method, RelativeError};
 use super::features::{Coverage, Features};
 use super::promised::Promised;
 
@@ -85,7 +85,7 @@ impl MeshErrors {
         method: &Method,
         features: &Features,
         promised: &Promised,
-    ) -> Result<f64, String> {
+    ) -> Result<RelativeError, String> {
         let measure = promised.measure.name();
         let limit = self.limits.get(measure).filter(|limit| limit.known && promised.has_limit);
         let (values, coordinates) = (&features.values, &self.coordinates);
@@ -103,9 +103,12 @@ impl MeshErrors {
         if let (Some((coarse, coarse_entry)), Some((fine, fine_entry))) = (below, above) {
             let log = |mesh: u32| libm::log(f64::from(mesh));
             let part = (log(n) - log(*coarse)) / (log(*fine) - log(*coarse));
-            let [coarse_error, fine_error] =
-                [coarse_entry, fine_entry].map(|entry| of_entry(entry));
-            return Ok(coarse_error + part * (fine_error - coarse_error));
+            let [coarse, fine] = [coarse_entry, fine_entry].map(|entry| of_entry(entry));
+            let between = |coarse: f64, fine: f64| coarse + part * (fine - coarse);
+            return Ok(RelativeError {
+                of_reference: between(coarse.of_reference, fine.of_reference),
+                of_itself: between(coarse.of_itself, fine.of_itself),
+            });
         }
         Err(match (known.first(), known.last()) {
             (Some((first, _)), Some((last, _))) => {

@@ -141,8 +141,8 @@ fn between_two_meshes_the_error_is_linear_in_the_logarithm_of_n() {
         let method = Method { model: ModelKind::Film, meshes: vec![n] };
         table.error(&method, &features(&scene()), promised)
     };
-    assert!((error(4).unwrap() - 0.08).abs() < 1e-15);
-    assert!((error(8).unwrap() - 0.05).abs() < 1e-15);
+    assert!((error(4).unwrap().of_reference - 0.08).abs() < 1e-15);
+    assert!((error(8).unwrap().of_reference - 0.05).abs() < 1e-15);
     assert_eq!(
         error(24).unwrap_err(),
         "design.subdivisions 24: for such scenes the table has 4 to 16"
@@ -164,14 +164,19 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     let mut two_storeys = scene();
     two_storeys.design.storeys = 2;
     let error = table.error(&method, &features(&two_storeys), promised).unwrap();
-    assert!((error - 0.12).abs() < 1e-12, "{error}");
+    assert!((error.of_reference - 0.12).abs() < 1e-12, "{error:?}");
+    // The value is 12 % too small: it lacks 12/88 of itself.
+    assert!((error.of_itself - 0.12 / 0.88).abs() < 1e-12, "{error:?}");
     let mut entries: Vec<Entry> = table.errors.into();
     for entry in &mut entries {
-        (entry.scatter, entry.deviation) = (0.03, 0.04);
+        (entry.scatter, entry.deviation, entry.scenes) = (0.03, 0.04, 20);
     }
     table.errors = entries.into();
     let error = table.error(&method, &features(&two_storeys), promised).unwrap();
-    assert!((error - (0.12 + 1.64 * 0.05)).abs() < 1e-12, "{error}");
+    // 20 scenes less bias and slope leave 18 degrees of freedom.
+    let (width, error) = (1.734 * 0.05, error);
+    assert!((error.of_reference - (0.12 + width)).abs() < 1e-12, "{error:?}");
+    assert!((error.of_itself - (0.12 + width) / (0.88 - width)).abs() < 1e-12, "{error:?}");
     // No run on this mesh has one storey, or five panels.
     two_storeys.design.storeys = 1;
     assert!(table.error(&method, &features(&two_storeys), promised).is_err());
@@ -188,7 +193,9 @@ fn the_distance_of_a_known_limit_is_part_of_the_error() {
     let method = Method { model: ModelKind::Film, meshes: vec![4] };
     let error = table(true).error(&method, &features(&scene()), promised).unwrap();
     // The bias of -0.08 is against the finest mesh, the limit lies 0.01 below that.
-    assert!((error - (0.07 + 0.002)).abs() < 1e-15);
+    assert!((error.of_reference - (0.07 + 0.002)).abs() < 1e-15);
+    // Value and limit are 0.92 and 0.99 of the value on the finest mesh.
+    assert!((error.of_itself - 0.072 / 0.918).abs() < 1e-15);
 }
 
 #[test]
@@ -208,7 +215,9 @@ fn the_shipped_table_is_that_of_this_physics_and_agrees_with_the_names_of_the_co
         for n in [4, 5, 8, 10] {
             let method = Method { model: ModelKind::Film, meshes: vec![n] };
             let error = table.error(&method, &features(&scene()), promised).unwrap();
-            assert!((1e-4..0.5).contains(&error), "{name} n {n}: {error}");
+            for part in [error.of_reference, error.of_itself] {
+                assert!((1e-4..0.5).contains(&part), "{name} n {n}: {part}");
+            }
         }
     }
 }

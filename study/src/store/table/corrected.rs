@@ -131,5 +131,6 @@ fn error_of_reference(auto: &Auto, point: &Point, promised: &Promised) -> Option
     let table = MeshErrors::shipped();
     let method = Method { model: ModelKind::Film, meshes: vec![auto.reference] };
     let covered = table.gap(scene, &features).is_none();
-    covered.then(|| table.error(&method, &features, promised).ok()).flatten()
+    let error = covered.then(|| table.error(&method, &features, promised).ok()).flatten();
+    error.map(|error| error.of_itself).filter(|error| error.is_finite())
 }

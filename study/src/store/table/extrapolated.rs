@@ -207,7 +207,7 @@ fn extrapolated(
     let value = of_pair(last);
     let of_table = |features: &Features| {
         let error = table.error(&method(last), features, promised).ok();
-        error.map(|error| error * value.abs())
+        error.map(|error| error.of_itself * value.abs()).filter(|error| error.is_finite())
     };
     let observed = (last > 0).then(|| (value - of_pair(last - 1)).abs());
     let covered = table.gap(scene, features).is_none();

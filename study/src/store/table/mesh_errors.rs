@@ -59,7 +59,7 @@ impl RowErrors {
                 return None;
             }
             match table.error(&method, &features, &promised) {
-                Ok(error) => Some(error * value.abs()),
+                Ok(error) => Some(error.of_itself * value.abs()).filter(|error| error.is_finite()),
                 Err(gap) => {
                     reason = Some(gap);
                     None

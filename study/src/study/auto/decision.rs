@@ -12,17 +12,12 @@
 //! of the reference mesh.
 
 use super::{Auto, Finished, MIN_PILOTS, job_on};
+use crate::accuracy::student::nine_of_ten;
 use crate::accuracy::{Features, MeshErrors, Method, PROMISED};
 use crate::job::point::Solved;
 use crate::study::finished::FinishedRow;
 use crate::study::point::StudyPoint;
 use billow_solver::scene::{ModelKind, Scene};
-
-/// Nine of ten values of Student's distribution are smaller, in magnitude; for 1, 2, … degrees of freedom.
-const STUDENT: [f64; 15] = [
-    6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812, 1.796, 1.782, 1.771,
-    1.761, 1.753,
-];
 
 /// The mesh of the points that are no pilots.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,7 +117,7 @@ impl Auto {
         let from_table = with_table.filter(|known| known.deviation < plain.deviation);
         let Deviations { mean, deviation } = from_table.unwrap_or(plain);
         let deviation = deviation.max(scatter(n, measure).unwrap_or(0.0));
-        let student = STUDENT[(count - 2).min(STUDENT.len() - 1)];
+        let student = nine_of_ten(count - 1);
         let error = libm::exp(student * deviation * (1.0 + 1.0 / count as f64).sqrt()) - 1.0;
         Some(Correction { mean, error, from_table: from_table.is_some() })
     }
