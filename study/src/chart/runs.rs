@@ -1,11 +1,12 @@
 //! The runs behind the points of a chart, where replicates repeat a point: median, range, k of n.
 
 use super::{Source, names};
-use crate::accuracy::error_column;
 use crate::accuracy::promised::promise;
+use crate::accuracy::{NO_ERROR_REASON, error_column};
 use crate::analysis::compare::measured;
 use crate::analysis::replicates::{self, Condensed, Runs};
 use crate::input::keys::numerical::MESH_PARAMETER;
+use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::store::table::{Column, Table};
 
@@ -69,9 +70,20 @@ impl<'a> Source<'a> {
         } else {
             "change up to n 24, 9 of 10 runs"
         };
+        let outside = self.table.column(NO_ERROR_REASON).is_some_and(|reasons| {
+            let has_error = |row: &&usize| self.mesh_error(measure, **row).is_some();
+            self.rows.iter().filter(has_error).any(|row| reasons.cells[*row] != Value::Null)
+        });
+        let meaning = if outside {
+            format!(
+                "{meaning}; where the table does not cover a point, 3 times the change between its meshes"
+            )
+        } else {
+            meaning.to_owned()
+        };
         has_error.then(|| Legend {
             heading: "Mesh error".to_owned(),
-            entries: vec![(Sample::Error, meaning.to_owned())],
+            entries: vec![(Sample::Error, meaning)],
         })
     }
 
@@ -153,7 +165,7 @@ impl<'a> Source<'a> {
     }
 
     /// From which meshes the values of a measure come; without one, the histories.
-    fn meshes_note(&self, measure: Option<&Column>) -> Option<String> {
+    pub(super) fn meshes_note(&self, measure: Option<&Column>) -> Option<String> {
         let Replicated { single, meshes, .. } = self.runs?;
         let [.., second, finest] = meshes else { return None };
         let extrapolated = measure.is_some_and(|measure| {

@@ -115,6 +115,9 @@ pub fn svg(source: &Source<'_>, judged: Judged, axes: [&str; 2]) -> Result<Strin
     } else {
         grid.notes.insert(0, format!("{counted}."));
     }
+    if let Some(note) = source.meshes_note(None) {
+        grid.notes.insert(1, note);
+    }
     if not_all {
         let note = "*: a run failed, is infeasible or has not ended; it is not counted in k/n.";
         grid.notes.insert(1, note.to_owned());

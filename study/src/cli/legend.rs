@@ -7,6 +7,7 @@ use super::print::count;
 use crate::accuracy::{NO_ERROR_REASON, PROMISED, Promised};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
+use crate::store::table::NOT_DEPLOYED;
 use crate::store::table::Table;
 use crate::store::table::corrected::RUN_MESH;
 use crate::study::Study;
@@ -31,13 +32,16 @@ pub fn points(
         let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));
     }
     if let Some((finest, coarser)) = meshes.split_last() {
-        let coarser: Vec<String> = coarser.iter().map(ToString::to_string).collect();
+        let [others @ .., next] = coarser else { return text };
         let _ = write!(
             text,
-            "; {} are extrapolated from n {} and {finest}, all else is that of n {finest}",
+            "; {} are extrapolated from n {next} and {finest} (that of n {finest} where n {next} has none), all else is \
+             that of n {finest}",
             estimated_names(),
-            coarser.join(", ")
         );
+        for coarsest in others {
+            let _ = write!(text, "; n {coarsest} shows how far the extrapolation changes");
+        }
     }
     text
 }
@@ -60,7 +64,8 @@ pub fn mesh_errors(shown: bool, table: &Table, meshes: &[u32]) -> Vec<String> {
     }
     let outside = || {
         let reasons = table.column(NO_ERROR_REASON);
-        reasons.is_some_and(|reasons| reasons.cells.iter().any(|cell| *cell != Value::Null))
+        let is_gap = |cell: &Value| matches!(cell, Value::Text(text) if text != NOT_DEPLOYED);
+        reasons.is_some_and(|reasons| reasons.cells.iter().any(is_gap))
     };
     if !meshes.is_empty() && outside() {
         notes.push(

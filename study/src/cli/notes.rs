@@ -3,7 +3,7 @@
 
 use billow_solver::scene::ModelKind;
 
-use crate::accuracy::{Choice, MeshErrors, Method, Tolerances, choices};
+use crate::accuracy::{Choice, MeshErrors, Method, Tolerances, all_but_peak_vz, choices};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::brief_number;
@@ -30,11 +30,10 @@ fn lines(study: &Study) -> Vec<String> {
     if let Some(meshes) = study.chosen_meshes() {
         let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
         let how = "the cheapest that keeps its errors at every point";
-        lines.push(format!(
-            "note: accuracy chooses {}, {how}{}",
-            method.name(),
-            errors(study, &method)
-        ));
+        let errors = errors(study, &method, study.tolerances()).unwrap_or_default();
+        lines.push(format!("note: accuracy chooses {}, {how}{errors}", method.name()));
+    } else {
+        lines.extend(of_meshes(study));
     }
     let subdivisions = study.key(MESH_PARAMETER).filter(|_| !study.meshes().is_empty());
     if let Some(given) = subdivisions.filter(|key| key.value != key.key.default_value()) {
@@ -84,17 +83,45 @@ fn lines(study: &Study) -> Vec<String> {
     lines
 }
 
-/// The errors and the cost of the method that `accuracy` chose, as the table of mesh errors has them; empty where a newer
-/// table does not cover the study.
-fn errors(study: &Study, method: &Method) -> String {
+/// The errors of a method, as the table of mesh errors has them, of the measures with a tolerance, and its cost.
+///
+/// # Errors
+/// Why the table does not cover the study.
+fn errors(
+    study: &Study,
+    method: &Method,
+    tolerances: Option<Tolerances>,
+) -> Result<String, String> {
     let scenes: Vec<_> = study.points().iter().filter_map(StudyPoint::features).collect();
-    let choices = choices(MeshErrors::shipped(), &scenes).unwrap_or_default();
+    let choices = choices(MeshErrors::shipped(), &scenes)?;
     let choice = choices.iter().find(|choice| choice.method == *method);
     let text = |(choice, tolerances): (&Choice, Tolerances)| {
         let errors = choice.errors_text(&tolerances);
         format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost)
     };
-    choice.zip(study.tolerances()).map(text).unwrap_or_default()
+    Ok(choice.zip(tolerances).map(text).unwrap_or_default())
+}
+
+/// The errors of values from several meshes, and of the mesh to which `auto` corrects; why there are none.
+fn of_meshes(study: &Study) -> Option<String> {
+    let meshes = study.meshes();
+    let (name, meshes) = match (study.auto(), meshes.as_slice()) {
+        (Some(auto), _) => (
+            format!("accuracy is that against n {}, which has", auto.reference),
+            vec![auto.reference],
+        ),
+        (None, [.., next, finest]) => ("solver.meshes gives".to_owned(), vec![*next, *finest]),
+        (None, _) => return None,
+    };
+    let method = Method { model: ModelKind::Film, meshes };
+    let all = all_but_peak_vz(Some(0.0));
+    Some(match errors(study, &method, Some(all)) {
+        Ok(errors) => format!("note: {name} the errors of {}{errors}", method.name()),
+        Err(gap) if study.meshes().len() == 2 => {
+            format!("note: two meshes give no errors here ({gap}); three meshes do")
+        }
+        Err(gap) => format!("note: the table of mesh errors does not cover every point ({gap})"),
+    })
 }
 
 /// A note on capsules whose gas has less than ambient pressure at the start.

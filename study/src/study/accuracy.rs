@@ -91,7 +91,9 @@ impl Accuracy {
             }
             Err(gap) => {
                 let problem = format!("is not known for every point: {gap}");
-                return refuse(problem, "points that the table of mesh errors covers".to_owned());
+                let allowed = "points that the table of mesh errors covers (docs/guide/accuracy.md); elsewhere \
+                               solver.meshes with three meshes gives errors";
+                return refuse(problem, allowed.to_owned());
             }
         };
         let film: Vec<Choice> = film.collect();

@@ -57,7 +57,7 @@ fn outside_the_table_three_meshes_tell_their_error_and_two_do_not() {
     assert!(error > 0.01 * value && error < value, "{value} ± {error}");
     assert_eq!(point["t_50_z_rim_change_to_n24"], finest["t_50_z_rim_extrapolated_error"]);
     assert!(printed.contains("1 point, 3 runs; t_50_z_rim, "), "{printed}");
-    assert!(printed.contains("are extrapolated from n 2, 3 and 4, all else is that of n 4"));
+    assert!(printed.contains("are extrapolated from n 3 and 4 (that of n 4 where n 3 has none)"));
     assert!(answer.contains("extrapolated"), "{answer}");
     assert!(printed.contains("±") && printed.contains("± is 3 times the change"), "{printed}");
     let (_, printed, point, _) = row(&[2, 4]);

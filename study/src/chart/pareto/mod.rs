@@ -134,7 +134,7 @@ fn marks(errors: &[&Errors], diagrams: &[Diagram]) -> Legend {
     let points = || errors.iter().flat_map(|errors| errors.points.iter().flatten());
     let mut entries = vec![
         (Sample::Marker(Fill::Filled), "on the front (dotted line)".to_owned()),
-        (Sample::Marker(Fill::Open), "another one is cheaper and better".to_owned()),
+        (Sample::Marker(Fill::Open), "another one is cheaper and as good or better".to_owned()),
     ];
     if points().any(|point| point.is_reference) {
         let text = "reference, at its uncertainty".to_owned();
@@ -165,7 +165,7 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
         let other = if same { "" } else { " (of some quantities another one)" };
         notes.push(format!(
             "Reference: {}, {runs}{other}. Its uncertainty: half the range over the runs, and half the difference from \
-             the next coarser mesh. A method of low order may be further from its limit.",
+             the next coarser mesh, or its mesh error if that is known and larger. A method of low order may be further from its limit.",
             label(&member.configuration, &diagram.usual())
         ));
     } else {

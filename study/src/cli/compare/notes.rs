@@ -6,6 +6,7 @@ use super::Comparison;
 use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
 use crate::cli::print::count;
 use crate::cli::{best, legend};
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::row::BetterSide;
 
@@ -40,7 +41,9 @@ impl Comparison<'_> {
             let limit = best::within(&measure.tolerance);
             format!("{} within {limit} ({source})", measure.column.name)
         });
-        let ranges = self.measures.iter().any(|measure| measure.ranges.is_some());
+        let is_replicate = |name: &String| self.meshes.is_empty() || name != MESH_PARAMETER;
+        let ranges = self.measures.iter().any(|measure| measure.ranges.is_some())
+            && self.replicates.iter().any(is_replicate);
         let overlap = if ranges { "; or the ranges over the runs overlap" } else { "" };
         eprintln!("tie: {}{overlap}", ties.collect::<Vec<_>>().join(", "));
         if let Some(points) = self.points {
@@ -49,7 +52,8 @@ impl Comparison<'_> {
             eprintln!("{text}; --runs pairs single runs");
         }
         let shown = self.measures.iter().any(|measure| measure.errors.is_some());
-        for note in legend::mesh_errors(shown, self.table, &self.meshes) {
+        let meshes = if self.points.is_some() { self.meshes.as_slice() } else { &[] };
+        for note in legend::mesh_errors(shown, self.table, meshes) {
             eprintln!("{note}");
         }
         for carried in &self.sets.carried {

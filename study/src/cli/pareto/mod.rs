@@ -13,6 +13,7 @@ use crate::analysis::work_precision::table::{COURSES, Histories, scenes};
 use crate::analysis::work_precision::{Cost, Course, Diagram, SceneRuns};
 use crate::cases::work_precision::SCENES;
 use crate::chart::pareto as pictures;
+use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::study_file::MAX_FILE_SIZE;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Disk, Files, disk_error};
@@ -77,7 +78,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         opened::open_stored(&args.study, &args.set.set, &UnitsOption::default(), None)?;
     let results = stored.results.clone();
     let read = |job: &str| histories(&stored, job, args.quiet.quiet);
-    let of_study = scenes(&stored.study.name, &table, &stored.study.replicates(), &read);
+    // The meshes of solver.meshes are configurations here.
+    let mut replicates = stored.study.replicates();
+    replicates.retain(|name| name != MESH_PARAMETER);
+    let of_study = scenes(&stored.study.name, &table, &replicates, &read);
     let mut chosen = chosen(of_study, &args.scenes)?;
     let wanted = |name: &str| match args.scenes.as_slice() {
         [] => !args.study_only,

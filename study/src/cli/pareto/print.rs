@@ -147,7 +147,8 @@ pub(super) fn notes(diagrams: &[Diagram], cost: Cost) {
     let by = if cost == Cost::Seconds { "seconds" } else { "element-steps" };
     eprintln!(
         "note: front by {by}; error: median over the runs, relative to the exact value or to the finest trusted \
-         configuration, whose uncertainty is beside it; a model without elements costs its steps"
+         configuration, whose uncertainty is beside it: an error below that counts as equal to it; a model without elements \
+         costs its steps"
     );
     eprintln!(
         "note: seconds: wall time for a simulated second (at rest: of the search) on one thread; other jobs on the \
@@ -169,6 +170,6 @@ fn reference(diagram: &Diagram) -> Option<String> {
     let member = references.find_map(|reference| reference.member)?;
     let name = label(&diagram.members[member].configuration, &[]);
     Some(format!(
-        "errors refer to {name}, the finest that ran; its uncertainty holds its mesh error where the table of mesh errors          has it"
+        "errors refer to {name}, the finest that ran; its uncertainty holds its mesh error where that is known"
     ))
 }

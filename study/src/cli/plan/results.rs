@@ -47,7 +47,7 @@ fn auto(study: &Study, counts: &PlanCounts) -> Option<String> {
     let others = counts.points.saturating_sub(counts.infeasible + auto.pilots.len());
     Some(format!(
         "auto: {} on n {} and {} first ({}); then {} on the coarsest of these meshes that keeps the accuracy, a tenth of \
-         them also on the next finer mesh (2, 3, 4, 6, 8, 12, 16)",
+         them also on the next finer mesh of the table of mesh errors",
         count(auto.pilots.len(), "pilot"),
         auto.reference,
         meshes.join(", "),

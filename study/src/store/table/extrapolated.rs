@@ -8,8 +8,8 @@
 //! ```
 //! [Record 39](../../../../docs/decisions/0039-mesh-errors.md) has the reasons for the factor.
 //!
-//! The row of a run on the finest mesh has them, if the runs on the other meshes that are equal in all else are
-//! done and trusted.
+//! The row of a run on the finest mesh has them, if the runs on the next mesh that are equal in all else are done and
+//! trusted; otherwise it has the value of the finest mesh with its own error.
 
 use std::collections::BTreeMap;
 
@@ -71,8 +71,14 @@ impl Table {
                     return None;
                 }
                 let rows = on_mesh.get(&self.other_parameters(row))?;
-                let values = meshes.iter().map(|n| self.extrapolable(*rows.get(n)?, promised));
-                let values: Vec<f64> = values.collect::<Option<_>>()?;
+                let value = |n: &u32| self.extrapolable(*rows.get(n)?, promised);
+                // Without a value on the coarsest of three meshes the two others still give one.
+                let finest_two = &meshes[meshes.len() - 2..];
+                let used = [meshes, finest_two].into_iter().find_map(|meshes| {
+                    let values: Option<Vec<f64>> = meshes.iter().map(value).collect();
+                    Some((meshes, values?))
+                });
+                let Some((meshes, values)) = used else { return self.of_one_mesh(row, promised) };
                 let features = self.features(row, scene)?;
                 Some(extrapolated(promised, scene, &features, meshes, &values))
             };
@@ -107,7 +113,7 @@ impl Table {
             let value_of = |cell: Extrapolated| cell.map(|(value, _)| value);
             new.push(column(
                 value,
-                format!("{measure}, extrapolated from the meshes of the study"),
+                format!("{measure}, extrapolated from the meshes of the study; that of the finest where the next one has none"),
                 value_of,
             ));
             let meaning = format!("{measure}: {EXTRAPOLATED_ERROR_MEANING}");
@@ -161,6 +167,16 @@ impl Table {
     fn other_parameters(&self, row: usize) -> Vec<String> {
         let others = self.parameters().filter(|column| column.name != MESH_PARAMETER);
         others.map(|column| column.cells[row].to_string()).collect()
+    }
+
+    /// The value of a row on the finest mesh with its mesh error, where a coarser mesh has no value.
+    fn of_one_mesh(&self, row: usize, promised: &Promised) -> Extrapolated {
+        let number = |value: &Value| match value {
+            Value::Number(number) => Some(*number),
+            _ => None,
+        };
+        let error = self.column(promised.error_column).map(|column| &column.cells[row]);
+        Some((number(self.value(promised.measure, row)?)?, error.and_then(number)))
     }
 
     /// A measure of a trusted run; the state at the end only where the capsule is deployed.

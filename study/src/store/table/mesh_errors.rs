@@ -79,7 +79,7 @@ fn of_another_model(method: &Method) -> String {
 }
 
 /// Why the state at the end of some runs has no error.
-const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
+pub const NOT_DEPLOYED: &str = "not deployed: final_z_rim and final_volume have a mesh error only where the capsule is deployed";
 
 /// The columns of these rows.
 pub(super) fn columns(points: &[PointRow<'_>], rows: &[Cells]) -> Vec<Column> {

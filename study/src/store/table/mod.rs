@@ -25,6 +25,7 @@ pub mod parquet;
 pub mod reference;
 pub mod same_job;
 
+pub use mesh_errors::NOT_DEPLOYED;
 use same_job::PointRow;
 
 /// Suffix of a column whose name a parameter of the study has.

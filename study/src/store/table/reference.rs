@@ -80,7 +80,10 @@ fn table_columns(page: &mut String) {
             writeln!(page, "| `{name}` | {number} | {unit} |  |  |  | {} |", promised.meaning());
     }
     let of_meshes = [
-        (EXTRAPOLATED, "extrapolated from the meshes of a study with `solver.meshes`"),
+        (
+            EXTRAPOLATED,
+            "extrapolated from the meshes of a study with `solver.meshes`; that of the finest where the next one has none",
+        ),
         (EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING),
     ];
     for (end, meaning) in of_meshes {
