@@ -4,7 +4,7 @@
 
 RESULTS is the results folder of a finished study. Every history file is opened with h5py and with xarray
 (h5netcdf), its frames with the reader of VTK and ParaView, summary.parquet with pandas and with pyarrow.
-All of them are compared. The first difference ends the program with exit code 1.
+All of them are compared. The film of no frame intersects itself, as CGAL finds. The first difference ends the program with exit code 1.
 """
 
 import hashlib
@@ -24,6 +24,8 @@ from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
+
+import self_intersections
 
 HISTORY_UNITS = {
     "time": "s",
@@ -237,6 +239,7 @@ def check_frames(path, values, stored):
     regimes = stored["VTKHDF/CellData/regime"].reshape(len(times), len(cells))
     check(regimes.max() <= 2, f"{path}: a regime unknown")
     check(set(storeys) == set(range(storeys.max() + 1)), f"{path}: a storey without elements")
+    check(self_intersections.is_seen(stored["VTKHDF/Points"][:nodes], cells), f"{path}: no intersection is seen")
     for step, time in enumerate(times):
         # By number as in a script, and by time as in ParaView.
         reader.SetStep(step)
@@ -261,6 +264,8 @@ def check_frames(path, values, stored):
         for which in ["velocity", "gap"]:
             expected = stored[f"VTKHDF/PointData/{which}"][step * nodes : (step + 1) * nodes]
             check((vtk_to_numpy(points.GetArray(which)) == expected).all(), f"{path}: {which} at {time} s")
+        passed = self_intersections.pairs(positions, cells)
+        check(passed == 0, f"{path}: {passed} pairs of elements intersect at {time} s")
         sample = np.flatnonzero(values["time"] == time)
         check(len(sample) == 1, f"{path}: the frame at {time} s is no sample")
         highest = np.float32(values["z_max"][sample[0]])
@@ -278,7 +283,7 @@ def main():
     check(len(ran) > 0, f"{results}: no history")
     print(f"{results}: {len(frame)} rows and {len(ran)} histories with {frames} frames read alike by"
           f" h5py {h5py.__version__}, xarray {xr.__version__}, pandas {pd.__version__}, pyarrow {pa.__version__},"
-          f" vtk {vtkVersion.GetVTKVersion()}")
+          f" vtk {vtkVersion.GetVTKVersion()}; no frame intersects itself")
 
 
 if __name__ == "__main__":
