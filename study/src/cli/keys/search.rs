@@ -1,5 +1,6 @@
 //! The keys and columns that a word finds.
 
+use crate::accuracy::{PROMISED, Promised};
 use crate::input::keys::listing::{Entry, FileKind, entries};
 use crate::input::renamed::RENAMED_KEYS;
 use crate::job::row::{COLUMNS, RENAMED_TABLE_COLUMNS, RowColumn};
@@ -52,7 +53,11 @@ pub(super) fn search(file: FileKind, word: Option<&str>) -> Result<Found> {
             return Ok(Found { entries: keys(found), notes });
         }
     }
-    let columns: Vec<_> = columns(&lower).map(|column| (COLUMN, column_entry(column))).collect();
+    let mut columns: Vec<_> =
+        columns(&lower).map(|column| (COLUMN, column_entry(column))).collect();
+    if columns.is_empty() {
+        columns.extend(error_columns(&lower).map(|entry| (COLUMN, entry)));
+    }
     if !columns.is_empty() {
         let names: Vec<&str> = columns.iter().map(|(_, entry)| entry.path.as_str()).collect();
         let one = "is a column of the table, not a key";
@@ -125,6 +130,19 @@ fn columns(lower: &str) -> impl Iterator<Item = &'static RowColumn> {
         } else {
             name.chars().count() >= 3 && column.name.contains(&name)
         }
+    })
+}
+
+/// The columns of mesh errors with a word in their name.
+fn error_columns(lower: &str) -> impl Iterator<Item = Entry> {
+    let long = lower.chars().count() >= 3;
+    let has = move |promised: &&Promised| long && promised.error_column.contains(lower);
+    PROMISED.iter().filter(has).map(|promised| Entry {
+        path: promised.error_column.to_owned(),
+        unit: promised.measure.column().unit,
+        default: String::new(),
+        allowed: String::new(),
+        meaning: promised.meaning(),
     })
 }
 

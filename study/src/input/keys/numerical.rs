@@ -5,6 +5,7 @@
 
 use super::study::KEYS;
 use super::table::find;
+pub use super::words::{AUTO, MODEL};
 
 /// Paths of the numerical keys.
 pub const NUMERICAL: [&str; 9] = [
@@ -25,8 +26,6 @@ pub const SEED: &str = "seed";
 pub const MESH: &str = "design.subdivisions";
 /// The parameter that holds its value in a table: the short name of the key.
 pub const MESH_PARAMETER: &str = "subdivisions";
-/// The key of the model. Models compute the same physics with different simplifications.
-pub const MODEL: &str = "solver.model";
 
 /// The path of a key that a parameter names; `None` for a parameter that is no key, as one of a strategy.
 pub fn path(parameter: &str) -> Option<&'static str> {

@@ -7,6 +7,11 @@ use billow_solver::scene::{ModelKind, Species, SupportLocation};
 
 use crate::input::value::Value;
 
+/// The key of the model. Models compute the same physics with different simplifications.
+pub const MODEL: &str = "solver.model";
+/// What a study file can have in its place: pilots choose the mesh of its runs.
+pub const AUTO: &str = "auto";
+
 /// How residual gas enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ResidualGas {

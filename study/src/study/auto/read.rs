@@ -1,7 +1,7 @@
 //! Reads `"model": "auto"` of a study file.
 
 use super::{Auto, MIN_PILOTS, PILOT_SHARE, pilots};
-use crate::input::keys::numerical::{MESH, MODEL};
+use crate::input::keys::numerical::{AUTO, MESH, MODEL};
 use crate::input::keys::{KEYS, position};
 use crate::input::source::Source;
 use crate::input::study_file::Json;
@@ -12,8 +12,6 @@ use crate::study::point::StudyPoint;
 use crate::study::target::Target;
 use billow_solver::scene::ModelKind;
 
-/// The value of the key.
-const AUTO: &str = "auto";
 /// The section and the member of the key.
 const SOLVER: (&str, &str) = ("solver", "model");
 /// The model of every run.
