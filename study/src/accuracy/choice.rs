@@ -42,15 +42,18 @@ impl Choice {
         self.refusal.is_none()
             && pairs.all(|(error, tolerance)| tolerance.is_none_or(|most| *error <= most))
     }
-}
 
-impl Choice {
     /// Its errors of the measures that have a tolerance, as in `t_90_z_rim 5.5 %`.
     pub fn errors_text(&self, tolerances: &Tolerances) -> String {
         let known = PROMISED.iter().zip(self.errors).zip(tolerances);
         let judged = known.filter(|(_, tolerance)| tolerance.is_some());
         let text = |((promised, error), _): ((&Promised, f64), _)| {
-            format!("{} {:.1} %", promised.measure.name(), 100.0 * error)
+            let name = promised.measure.name();
+            if error.is_finite() {
+                format!("{name} {:.1} %", 100.0 * error)
+            } else {
+                format!("{name} not known")
+            }
         };
         judged.map(text).collect::<Vec<_>>().join(", ")
     }
@@ -69,18 +72,56 @@ pub fn cost(table: &MeshErrors, method: &Method) -> f64 {
     }
 }
 
+/// The features of some scenes, each once: seeds and replicates have equal ones.
+///
+/// # Errors
+/// Why the table does not cover a scene.
+fn distinct<'a>(
+    table: &MeshErrors,
+    scenes: &'a [(&Scene, Features)],
+) -> Result<BTreeMap<[u64; FEATURES], &'a Features>, String> {
+    if let Some(gap) = scenes.iter().find_map(|(scene, features)| table.gap(scene, features)) {
+        return Err(gap);
+    }
+    let bits = |features: &Features| features.values.map(f64::to_bits);
+    Ok(scenes.iter().map(|(_, features)| (bits(features), features)).collect())
+}
+
+/// One method for these scenes, all of which its model can compute.
+///
+/// # Errors
+/// Why the table does not cover a scene.
+pub fn choice(
+    table: &MeshErrors,
+    method: Method,
+    scenes: &[(&Scene, Features)],
+) -> Result<Choice, String> {
+    Ok(of_method(table, method, &distinct(table, scenes)?))
+}
+
+/// A method with its largest errors over some features.
+fn of_method(
+    table: &MeshErrors,
+    method: Method,
+    distinct: &BTreeMap<[u64; FEATURES], &Features>,
+) -> Choice {
+    let largest = |promised| {
+        let errors = distinct.values().map(|features| table.error(&method, features, &promised));
+        // A method without an error of a measure promises nothing for it.
+        errors
+            .map(|error| error.map_or(f64::INFINITY, |error| error.of_reference))
+            .fold(0.0, f64::max)
+    };
+    let errors = PROMISED.map(largest);
+    Choice { cost: cost(table, &method), errors, method, refusal: None }
+}
+
 /// The methods of the table for these scenes, the cheapest first.
 ///
 /// # Errors
 /// Why the table does not cover a scene.
 pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<Choice>, String> {
-    if let Some(gap) = scenes.iter().find_map(|(scene, features)| table.gap(scene, features)) {
-        return Err(gap);
-    }
-    // Seeds and replicates have equal features.
-    let bits = |features: &Features| features.values.map(f64::to_bits);
-    let distinct: BTreeMap<[u64; FEATURES], &Features> =
-        scenes.iter().map(|(_, features)| (bits(features), features)).collect();
+    let distinct = distinct(table, scenes)?;
     let refusals = [ModelKind::Piston, ModelKind::Storeys, ModelKind::Film]
         .map(|model| (model, scenes.iter().find_map(|(scene, _)| refusal(model, scene))));
     let of_measure = |entry: &&Entry| entry.measure == PROMISED[0].measure.name();
@@ -88,17 +129,9 @@ pub fn choices(table: &MeshErrors, scenes: &[(&Scene, Features)]) -> Result<Vec<
     let methods = methods.map(|entry| Method { model: entry.model, meshes: entry.meshes.clone() });
     let mut choices: Vec<Choice> = methods
         .map(|method| {
-            let largest = |promised| {
-                let errors =
-                    distinct.values().map(|features| table.error(&method, features, &promised));
-                // A method without an error of a measure promises nothing for it.
-                errors
-                    .map(|error| error.map_or(f64::INFINITY, |error| error.of_reference))
-                    .fold(0.0, f64::max)
-            };
             let of_model = refusals.iter().find(|(model, _)| *model == method.model);
             let refusal = of_model.and_then(|(_, refusal)| refusal.clone());
-            Choice { cost: cost(table, &method), errors: PROMISED.map(largest), method, refusal }
+            Choice { refusal, ..of_method(table, method, &distinct) }
         })
         .collect();
     // Methods without runs of such scenes promise nothing.

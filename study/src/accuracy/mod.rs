@@ -15,7 +15,7 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 
-pub use choice::{Choice, choices};
+pub use choice::{Choice, choice, choices};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub use entry::{Entry, Limit, Method, RelativeError};

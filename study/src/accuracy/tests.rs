@@ -174,7 +174,7 @@ fn a_feature_changes_the_bias_and_deviations_make_the_error_wider() {
     table.errors = entries.into();
     let error = table.error(&method, &features(&two_storeys), promised).unwrap();
     // 20 scenes less bias and slope leave 18 degrees of freedom.
-    let (width, error) = (1.734 * 0.05, error);
+    let width = 1.734 * 0.05;
     assert!((error.of_reference - (0.12 + width)).abs() < 1e-12, "{error:?}");
     assert!((error.of_itself - (0.12 + width) / (0.88 - width)).abs() < 1e-12, "{error:?}");
     // No run on this mesh has one storey, or five panels.

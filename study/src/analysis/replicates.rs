@@ -173,6 +173,11 @@ pub fn point_key(fixed: &[&Column], row: usize) -> Vec<String> {
     fixed.iter().map(|column| canonical(&column.cells[row])).collect()
 }
 
+/// Whether a replicate is the mesh, and values are extrapolated from these meshes: its runs repeat no point.
+pub fn is_mesh(name: &str, meshes: &[u32]) -> bool {
+    !meshes.is_empty() && name == MESH_PARAMETER
+}
+
 /// The rows of each point, one row per job, in the order of their first rows.
 fn groups(table: &Table, rows: &[usize], replicates: &[String]) -> Vec<Vec<usize>> {
     let fixed = fixed(table, replicates);

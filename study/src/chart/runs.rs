@@ -4,8 +4,7 @@ use super::{Source, names};
 use crate::accuracy::promised::promise;
 use crate::accuracy::{NO_ERROR_REASON, error_column};
 use crate::analysis::compare::measured;
-use crate::analysis::replicates::{self, Condensed, Runs};
-use crate::input::keys::numerical::MESH_PARAMETER;
+use crate::analysis::replicates::{self, Condensed, Runs, is_mesh};
 use crate::input::value::Value;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::store::table::{Column, Table};
@@ -23,13 +22,6 @@ pub struct Replicated<'a> {
     pub meshes: &'a [u32],
 }
 
-impl Replicated<'_> {
-    /// Whether a parameter is the mesh, and values are extrapolated from several.
-    fn is_mesh(&self, name: &str) -> bool {
-        !self.meshes.is_empty() && name == MESH_PARAMETER
-    }
-}
-
 /// "4 and 6", "4, 6 and 8".
 fn meshes_text(meshes: &[u32]) -> String {
     let [coarser @ .., finest] = meshes else { return String::new() };
@@ -40,7 +32,7 @@ fn meshes_text(meshes: &[u32]) -> String {
 impl<'a> Source<'a> {
     /// Whether a point has several runs, on one mesh.
     pub(super) fn has_replicates(&self) -> bool {
-        self.runs.is_some_and(|runs| runs.names.iter().any(|name| !runs.is_mesh(name)))
+        self.runs.is_some_and(|runs| runs.names.iter().any(|name| !is_mesh(name, runs.meshes)))
     }
 
     /// The runs of a row; `None` where each row is one job.
@@ -110,7 +102,7 @@ impl<'a> Source<'a> {
             [] => String::new(),
             meshes => format!(" on n {}", meshes_text(meshes)),
         };
-        let replicates = runs.names.iter().filter(|name| !runs.is_mesh(name));
+        let replicates = runs.names.iter().filter(|name| !is_mesh(name, runs.meshes));
         let names: Vec<String> =
             replicates.map(|name| names::Name::of_parameter(name).plain).collect();
         if names.is_empty() {

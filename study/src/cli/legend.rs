@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::print::count;
 use crate::accuracy::{NO_ERROR_REASON, PROMISED, Promised};
-use crate::input::keys::numerical::MESH_PARAMETER;
+use crate::analysis::replicates::is_mesh;
 use crate::input::value::Value;
 use crate::store::table::NOT_DEPLOYED;
 use crate::store::table::Table;
@@ -24,9 +24,8 @@ pub fn points(
     meshes: &[u32],
     of_each: &str,
 ) -> String {
-    let is_mesh = |name: &str| !meshes.is_empty() && name == MESH_PARAMETER;
     let names: Vec<&str> =
-        replicates.iter().map(String::as_str).filter(|name| !is_mesh(name)).collect();
+        replicates.iter().map(String::as_str).filter(|name| !is_mesh(name, meshes)).collect();
     let mut text = format!("{}, {}", count(points, "point"), count(runs, "run"));
     if !names.is_empty() {
         let _ = write!(text, " that differ in {}: {of_each}", names.join(", "));

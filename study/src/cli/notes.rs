@@ -3,7 +3,7 @@
 
 use billow_solver::scene::ModelKind;
 
-use crate::accuracy::{Choice, MeshErrors, Method, Tolerances, all_but_peak_vz, choices};
+use crate::accuracy::{MeshErrors, Method, Tolerances, all_but_peak_vz, choice};
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::keys::{MODELS, Model};
 use crate::input::value::brief_number;
@@ -30,7 +30,9 @@ fn lines(study: &Study) -> Vec<String> {
     if let Some(meshes) = study.chosen_meshes() {
         let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
         let how = "the cheapest that keeps its errors at every point";
-        let errors = errors(study, &method, study.tolerances()).unwrap_or_default();
+        // A newer table may not cover what an older one did.
+        let errors = study.tolerances().and_then(|asked| errors(study, &method, &asked).ok());
+        let errors = errors.unwrap_or_default();
         lines.push(format!("note: accuracy chooses {}, {how}{errors}", method.name()));
     } else {
         lines.extend(of_meshes(study));
@@ -87,19 +89,11 @@ fn lines(study: &Study) -> Vec<String> {
 ///
 /// # Errors
 /// Why the table does not cover the study.
-fn errors(
-    study: &Study,
-    method: &Method,
-    tolerances: Option<Tolerances>,
-) -> Result<String, String> {
+fn errors(study: &Study, method: &Method, tolerances: &Tolerances) -> Result<String, String> {
     let scenes: Vec<_> = study.points().iter().filter_map(StudyPoint::features).collect();
-    let choices = choices(MeshErrors::shipped(), &scenes)?;
-    let choice = choices.iter().find(|choice| choice.method == *method);
-    let text = |(choice, tolerances): (&Choice, Tolerances)| {
-        let errors = choice.errors_text(&tolerances);
-        format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost)
-    };
-    Ok(choice.zip(tolerances).map(text).unwrap_or_default())
+    let choice = choice(MeshErrors::shipped(), method.clone(), &scenes)?;
+    let errors = choice.errors_text(tolerances);
+    Ok(format!(": {errors}; cost {:.1} % of n 24", 100.0 * choice.cost))
 }
 
 /// The errors of values from several meshes, and of the mesh to which `auto` corrects; why there are none.
@@ -115,7 +109,7 @@ fn of_meshes(study: &Study) -> Option<String> {
     };
     let method = Method { model: ModelKind::Film, meshes };
     let all = all_but_peak_vz(Some(0.0));
-    Some(match errors(study, &method, Some(all)) {
+    Some(match errors(study, &method, &all) {
         Ok(errors) => format!("note: {name} the errors of {}{errors}", method.name()),
         Err(gap) if study.meshes().len() == 2 => {
             format!("note: two meshes give no errors here ({gap}); three meshes do")

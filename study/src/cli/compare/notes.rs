@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::Comparison;
 use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
+use crate::analysis::replicates::is_mesh;
 use crate::cli::print::count;
 use crate::cli::{best, legend};
-use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::value::Value;
 use crate::job::row::BetterSide;
 
@@ -41,9 +41,8 @@ impl Comparison<'_> {
             let limit = best::within(&measure.tolerance);
             format!("{} within {limit} ({source})", measure.column.name)
         });
-        let is_replicate = |name: &String| self.meshes.is_empty() || name != MESH_PARAMETER;
         let ranges = self.measures.iter().any(|measure| measure.ranges.is_some())
-            && self.replicates.iter().any(is_replicate);
+            && self.replicates.iter().any(|name| !is_mesh(name, &self.meshes));
         let overlap = if ranges { "; or the ranges over the runs overlap" } else { "" };
         eprintln!("tie: {}{overlap}", ties.collect::<Vec<_>>().join(", "));
         if let Some(points) = self.points {
