@@ -17,10 +17,11 @@
 //!
 //! | folder | holds |
 //! |---|---|
-//! | [`models`] | the models: piston, film; the run loop |
+//! | [`models`] | the models: piston, storeys, film; the run loop |
 //! | [`statics`] | static equilibrium |
 //! | [`integrators`] | time integration: explicit central differences, Dormand-Prince |
-//! | [`output`] | history, frames, measures, ledger, audit, checkpoint |
+//! | [`system`] | film as a system: constants, state, forces and energies of any state |
+//! | [`output`] | history, frames, measures, ledger, audit, events, checkpoint |
 //! | [`collision`] | broad phase, distances, contact, intersections, tunnelling monitor |
 //! | [`mechanics`] | material, membrane, pressure, gas, supports |
 //! | [`scene`] | everything one run needs: plain data |
@@ -39,6 +40,7 @@ pub mod output;
 pub mod platform;
 pub mod scene;
 pub mod statics;
+pub mod system;
 
 /// Version of the physics: part of every job id. It increases with every change of the solver that changes
 /// a result.

@@ -4,7 +4,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use billow_solver::geometry::shapes::{joined, moved, sheet};
-use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::models::run::Model;
 use billow_solver::platform::simd::InstructionSet;
@@ -74,7 +75,7 @@ fn a_step_without_contact_allocates_nothing() {
     let inflow = Inflow { mass_flow_rate: 0.005, temperature_flow: 0.005 * 293.0 };
     for packed in [true, false] {
         let before = allocations();
-        let until = run.film.state.time + 2e-3;
+        let until = run.film.view().state.time + 2e-3;
         run.advance(until, &Phase { packed, inflow }).unwrap();
         assert_eq!(allocations(), before, "packed {packed}");
     }
@@ -82,7 +83,7 @@ fn a_step_without_contact_allocates_nothing() {
 }
 
 /// Two sheets that settle on each other and on a floor, with this monitor; after 200 ms.
-fn settled_sheets(monitor: MonitorSettings) -> Explicit {
+fn settled_sheets(monitor: MonitorSettings) -> FilmSimulation {
     let lower = moved(sheet(6, 5, 0.3, 0.25), |x| x + Vector3::new(0.0, 0.0, 1.1e-3));
     let upper = moved(sheet(6, 5, 0.3, 0.25), |x| x + Vector3::new(0.011, 0.007, 2.2e-3));
     let floor = Plate {
@@ -112,9 +113,9 @@ fn settled_sheets(monitor: MonitorSettings) -> Explicit {
 
 /// Allocations of one call that takes this number of steps. Each call allocates a little at its end,
 /// whatever the number of steps.
-fn allocations_of(film: &mut Explicit, steps: u64) -> u64 {
+fn allocations_of(film: &mut FilmSimulation, steps: u64) -> u64 {
     let (before, mut remaining) = (allocations(), steps);
-    let target = film.state.time + 1.0;
+    let target = film.view().state.time + 1.0;
     assert!(!film.advance_at_most(target, &Phase::default(), &mut remaining).unwrap());
     allocations() - before
 }
@@ -127,7 +128,7 @@ const MAX_GROWTH: u64 = 20;
 #[test]
 fn a_step_with_contact_allocates_nothing() {
     let mut film = settled_sheets(MonitorSettings { block: 50_000, ..MonitorSettings::FRAMES });
-    let contacts = &film.state.contact_state.contacts;
+    let contacts = &film.view().state.contact.contacts;
     let pressed = contacts.iter().filter(|contact| contact.energy > 0.0).count();
     assert!(pressed > 10, "{pressed} pairs in contact");
     // The first call lets scratch memory grow.

@@ -1,6 +1,6 @@
 //! Pauses and checkpoints of whole runs: the same bits as without them, at any step.
 
-use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit, State};
+use billow_solver::integrators::explicit::{DEFAULT_CFL, FilmSimulation, State};
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{Answer, Observer, Pause, Progress, Run, Unobserved, run};
 use billow_solver::models::{self, ResumeError, Stored};
@@ -151,7 +151,7 @@ fn a_passage_is_found_at_the_same_step_with_and_without_pauses() {
     let faulty = |state: Option<State>| {
         let set = InstructionSet::detect();
         let mut run = FilmRun::from_scene(set, &scene, DEFAULT_CFL, Some(contact.clone())).unwrap();
-        let Explicit { model, mut parameters, state: start, .. } = run.film;
+        let FilmSimulation { model, mut parameters, state: start, .. } = run.film;
         parameters.contact.as_mut().unwrap().edge_contacts = false;
         run.film = match state {
             None => Explicit::new(model, parameters, start.positions, start.velocities, start.gas),

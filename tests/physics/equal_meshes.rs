@@ -134,7 +134,7 @@ fn film_that_starts_closer_than_the_contact_distance_starts_without_contact() {
     let scene = Scene { seed: 1, ..scenes(48)[0].clone() };
     let mut run = with_contact(&scene);
     run.advance(5e-5, &Phase::default()).unwrap();
-    let ledger = run.film.ledger();
+    let ledger = run.film.view().ledger();
     assert!(ledger.contact.abs() < 1e-6, "{ledger:?}");
     assert_eq!(run.passages(), 0);
 }

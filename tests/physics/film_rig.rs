@@ -3,7 +3,7 @@
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::mesh::Shape;
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use billow_solver::integrators::{FilmSimulation, FilmView, SimulationSettings};
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_membrane};
 use billow_solver::mechanics::gas::{Gas, GasState};
@@ -14,6 +14,7 @@ use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::paper::nitrogen_supply;
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, Scene};
+use billow_solver::system::{FilmSystem, PressureLoad};
 use nalgebra::Vector3;
 
 /// The paper's inflow, 5 g/s at 293 K, into a released capsule.
@@ -47,7 +48,12 @@ pub fn mapped(shell: &Shell, mut map: impl FnMut(Vector3<f64>) -> Vector3<f64>) 
 }
 
 /// Film without velocity at the shell's positions.
-pub fn at_rest(shell: &Shell, film: &Film, pressure: PressureLoad, gas: GasState) -> Explicit {
+pub fn at_rest(
+    shell: &Shell,
+    film: &Film,
+    pressure: PressureLoad,
+    gas: GasState,
+) -> FilmSimulation {
     let (nodes, numerical_damping) = (shell.positions.len(), film.numerical_damping);
     let parameters = Parameters { numerical_damping, ..Parameters::free(pressure, nodes) };
     let positions = Field::of(&shell.positions);

@@ -1,6 +1,6 @@
 //! Quiescent film takes longer steps without a larger error, until activity is detected.
 
-use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit, State};
+use billow_solver::integrators::explicit::{DEFAULT_CFL, FilmSimulation, State};
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_scene::FilmContact;
@@ -10,7 +10,7 @@ use crate::film_rig::{INFLOW, stowed};
 use crate::rig::paper_scene;
 
 /// The paper's capsule at n 3 with contact, stowed.
-fn capsule_in_contact() -> Explicit {
+fn capsule_in_contact() -> FilmSimulation {
     let mut scene = paper_scene();
     scene.design.subdivisions = 3;
     // A film that loses enough to come to rest within 0.4 s.
@@ -21,11 +21,11 @@ fn capsule_in_contact() -> Explicit {
 }
 
 /// The film after this time (ms). With `never_quiescent`, activity is reported every millisecond.
-fn after(milliseconds: u32, never_quiescent: bool) -> Explicit {
+fn after(milliseconds: u32, never_quiescent: bool) -> FilmSimulation {
     let mut film = capsule_in_contact();
     for target in 1..=milliseconds {
         if never_quiescent {
-            film.state.quiescence.last_active = film.state.time;
+            film.view().state.quiescence.last_active = film.view().state.time;
         }
         film.advance(1e-3 * f64::from(target), &INFLOW).unwrap();
     }
@@ -37,13 +37,13 @@ fn quiescent_film_takes_longer_steps_without_a_larger_energy_error() {
     let early = after(20, false);
     let (film, control) = (after(400, false), after(400, true));
     assert_eq!(after(20, true).state.positions, early.state.positions);
-    let (steps, all) = (film.state.steps, control.state.steps);
+    let (steps, all) = (film.view().steps(), control.state.steps);
     assert!(f64::from(u32::try_from(steps).unwrap()) < 0.8 * all as f64, "{steps} of {all}");
-    assert!(film.state.last_step > 1.7 * early.state.last_step);
-    assert!(film.state.last_step < 1.8 * early.state.last_step);
+    assert!(film.view().state.last_step > 1.7 * early.state.last_step);
+    assert!(film.view().state.last_step < 1.8 * early.state.last_step);
 
-    let (ledger, control_ledger) = (film.ledger(), control.ledger());
-    assert!((film.state.volume / control.state.volume - 1.0).abs() < 1e-4);
+    let (ledger, control_ledger) = (film.view().ledger(), control.ledger());
+    assert!((film.view().state.volume / control.state.volume - 1.0).abs() < 1e-4);
     // Both ledgers have the same defect to 1e-5 of the work of the gas, 40 J.
     let start = capsule_in_contact().ledger();
     let (defect, control_defect) = (ledger.defect(&start), control_ledger.defect(&start));
@@ -61,16 +61,18 @@ fn activity_shortens_the_steps_of_quiescent_film() {
         let mut film = after(400, false);
         let mut steps = 5;
         assert!(!film.advance_at_most(0.46, &INFLOW, &mut steps).unwrap());
-        assert!(film.state.step_interval.as_ref().is_some_and(|interval| interval.quiescent));
+        assert!(
+            film.view().state.step_interval.as_ref().is_some_and(|interval| interval.quiescent)
+        );
         for node in 0..film.model.nodes() {
-            let position = film.state.positions.get(node);
+            let position = film.view().state.positions.get(node);
             let down = Vector3::new(0.0, 0.0, -60.0 * position.z.max(0.0));
-            film.state.velocities.set(node, down);
+            film.view().state.velocities.set(node, down);
         }
         film
     };
     let short_step = struck.stable_step() * (1.0 + 1e-9);
-    let text = |film: &Explicit| serde_json::to_string(&film.state).unwrap();
+    let text = |film: &FilmView<'_>| serde_json::to_string(&film.state).unwrap();
     let resumed = |film: Explicit| {
         let state: State = serde_json::from_str(&text(&film)).unwrap();
         Explicit::resume(film.model, film.parameters, state)
@@ -79,9 +81,9 @@ fn activity_shortens_the_steps_of_quiescent_film() {
     let (mut film, mut active, mut taken) = (resumed(struck.clone()), false, 0_u32);
     let mut steps = 1;
     while !film.advance_at_most(0.46, &INFLOW, &mut steps).unwrap() {
-        assert!(!active || film.state.last_step <= short_step, "after {taken} steps");
-        let moves = film.state.quiescence.last_active > struck.state.quiescence.last_active;
-        active |= !film.state.contact_state.contacts.is_empty() || moves;
+        assert!(!active || film.view().state.last_step <= short_step, "after {taken} steps");
+        let moves = film.view().state.quiescence.last_active > struck.state.quiescence.last_active;
+        active |= !film.view().state.contact.contacts.is_empty() || moves;
         (steps, taken) = (1, taken + 1);
         if taken % 97 == 0 {
             film = resumed(film);

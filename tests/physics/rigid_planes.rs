@@ -2,12 +2,13 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{nodes_where, sheet};
-use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use billow_solver::integrators::{FilmSimulation, FilmView, SimulationSettings};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::timeline::Phase;
+use billow_solver::system::{FilmSystem, PressureLoad};
 use nalgebra::{Rotation3, Vector3};
 
 use crate::film_rig::at_rest;
@@ -21,7 +22,7 @@ const DAMPED: Film = Film { numerical_damping: 0.1, ..Film::PAPER };
 
 /// A sheet held at one edge, with a heavy plane at the other, everything rotated by `turn`; and the
 /// relative defect of its energy.
-fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
+fn hanging(turn: Rotation3<f64>, cfl: f64) -> (FilmSimulation, f64) {
     let mut piece = sheet(6, 3, 0.3, 0.15);
     let edge = |x: f64| nodes_where(&piece, |position| (position.x - x).abs() < 1e-12);
     let (left, right) = (edge(0.0), edge(0.3));
@@ -34,17 +35,23 @@ fn hanging(turn: Rotation3<f64>, cfl: f64) -> (Explicit, f64) {
     ];
     let mut film = at_rest(&piece, &DAMPED, PressureLoad::Overpressure(0.0), GasState::default());
     let parameters = Parameters {
-        supports: Supports::new(&supports, &film.state.positions),
-        numerical_damping: film.parameters.numerical_damping,
+        supports: Supports::new(&supports, &film.view().state.positions),
+        numerical_damping: film.view().system.numerical_damping,
         mass_damping: 5.0,
         cfl,
         ..Parameters::free(PressureLoad::Overpressure(0.0), piece.positions.len())
     };
     let still = Field::zeros(piece.positions.len());
-    film = Explicit::new(film.model, parameters, film.state.positions, still, GasState::default());
-    let start = film.ledger();
+    film = Explicit::new(
+        film.model,
+        parameters,
+        film.view().state.positions,
+        still,
+        GasState::default(),
+    );
+    let start = film.view().ledger();
     film.advance(0.02, &Phase::default()).unwrap();
-    let end = film.ledger();
+    let end = film.view().ledger();
     let defect = end.defect(&start).abs() / (start.kinetic + end.external());
     (film, defect)
 }
@@ -86,24 +93,29 @@ fn momentum_of_planes_and_film_is_conserved() {
     let supports = [support(edge(0.0), plane(0.01, -1.0)), support(edge(0.3), plane(0.03, 2.0))];
     let film = at_rest(&piece, &DAMPED, PressureLoad::Overpressure(0.0), GasState::default());
     let parameters = Parameters {
-        supports: Supports::new(&supports, &film.state.positions),
+        supports: Supports::new(&supports, &film.view().state.positions),
         ..Parameters::free(PressureLoad::Overpressure(0.0), piece.positions.len())
     };
     let still = Field::zeros(piece.positions.len());
-    let mut film =
-        Explicit::new(film.model, parameters, film.state.positions, still, GasState::default());
-    let momentum = |film: &Explicit| -> f64 {
-        let nodes = film.model.mass.iter().zip(film.state.velocities.iter());
-        let bodies = film.parameters.supports.bodies.iter().zip(&film.state.planes);
+    let mut film = Explicit::new(
+        film.model,
+        parameters,
+        film.view().state.positions,
+        still,
+        GasState::default(),
+    );
+    let momentum = |film: &FilmView<'_>| -> f64 {
+        let nodes = film.view().system.model.mass.iter().zip(film.view().state.velocities.iter());
+        let bodies = film.view().system.supports.bodies.iter().zip(&film.view().state.planes);
         nodes.map(|(m, v)| m * v.x).sum::<f64>()
             + bodies.map(|(b, v)| b.plane.mass * v).sum::<f64>()
     };
     let before = momentum(&film);
     assert!(before > 0.05);
     for _ in 0..10 {
-        film.advance(film.state.time + 1e-3, &Phase::default()).unwrap();
+        film.advance(film.view().state.time + 1e-3, &Phase::default()).unwrap();
         assert!((momentum(&film) / before - 1.0).abs() < 1e-12, "{}", momentum(&film));
     }
-    let apart = film.state.planes[1] - film.state.planes[0];
+    let apart = film.view().state.planes[1] - film.view().state.planes[0];
     assert!(apart < 0.5, "the film has not pulled: {apart}");
 }

@@ -4,10 +4,11 @@
 use std::sync::LazyLock;
 
 use billow_solver::geometry::shapes::{icosphere, tube};
-use billow_solver::integrators::explicit::{Explicit, PressureLoad};
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::scene::{Film, Species};
 use billow_solver::statics::Relaxation;
+use billow_solver::system::PressureLoad;
 use nalgebra::Vector3;
 use serde_json::Value;
 
@@ -27,7 +28,7 @@ fn rows(case: &str) -> Vec<[f64; 2]> {
 }
 
 /// λ − 1 of a relaxed sphere, from the mean radius over that of the unloaded mesh; and its film.
-fn sphere_stretch(level: u32, overpressure: f64) -> (f64, Explicit) {
+fn sphere_stretch(level: u32, overpressure: f64) -> (f64, FilmSimulation) {
     let piece = icosphere(level, number("sphere/radius"));
     let mut film = at_rest(
         &piece,
@@ -35,10 +36,10 @@ fn sphere_stretch(level: u32, overpressure: f64) -> (f64, Explicit) {
         PressureLoad::Overpressure(overpressure),
         GasState::default(),
     );
-    film.parameters.cfl = 0.9;
+    film.view().system.cfl = 0.9;
     let relaxation = Relaxation { max_kinetic_fraction: 1e-14, ..Relaxation::default() };
     relaxation.relax_at(&mut film, overpressure).unwrap();
-    let loaded: f64 = film.state.positions.iter().map(|x| x.norm()).sum();
+    let loaded: f64 = film.view().state.positions.iter().map(|x| x.norm()).sum();
     let unloaded: f64 = piece.positions.iter().map(Vector3::norm).sum();
     (loaded / unloaded - 1.0, film)
 }
@@ -72,17 +73,17 @@ fn hoop_stretch_and_axial_force_of_a_cylinder_converge() {
                 PressureLoad::Overpressure(overpressure),
                 GasState::default(),
             );
-            film.parameters.cfl = 0.9;
+            film.view().system.cfl = 0.9;
             let ends: Vec<u32> = (0..around).chain(along * around..(along + 1) * around).collect();
-            film.parameters.supports.hold(&ends, "z");
+            film.view().system.supports.hold(&ends, "z");
             for node in 0..film.state.positions.len() {
-                film.state.positions.z[node] *= 1.0 + axial;
+                film.view().state.positions.z[node] *= 1.0 + axial;
             }
             let relaxation = Relaxation { max_kinetic_fraction: 1e-14, ..Relaxation::default() };
             relaxation.relax_at(&mut film, overpressure).unwrap();
-            let mean: f64 = film.state.positions.iter().map(|x| x.xy().norm()).sum::<f64>()
-                / film.state.positions.len() as f64;
-            let pull: f64 = (0..around as usize).map(|node| film.force(node).z).sum();
+            let mean: f64 = film.view().state.positions.iter().map(|x| x.xy().norm()).sum::<f64>()
+                / film.view().state.positions.len() as f64;
+            let pull: f64 = (0..around as usize).map(|node| film.view().force(node).z).sum();
             // The axial force of a closed end is p π r².
             let r = radius * (1.0 + hoop);
             let expected = overpressure * std::f64::consts::PI * r * r;
@@ -97,13 +98,13 @@ fn hoop_stretch_and_axial_force_of_a_cylinder_converge() {
 }
 
 /// A sphere released unstretched. Its gas has this pressure (Pa) at equilibrium.
-fn released(level: u32, pressure: f64) -> Explicit {
+fn released(level: u32, pressure: f64) -> FilmSimulation {
     let gas = nitrogen_gas();
     let rest = sphere_stretch(level, pressure).1.state.volume;
     let piece = icosphere(level, number("breathing_sphere/radius"));
     let empty = at_rest(&piece, &Film::PAPER_ELASTIC, PressureLoad::Gas(gas), GasState::default());
-    let pressure = pressure * (rest / empty.state.volume).powf(gas.gamma());
-    let mass = pressure * empty.state.volume / (Species::NITROGEN.gas_constant * 293.0);
+    let pressure = pressure * (rest / empty.view().state.volume).powf(gas.gamma());
+    let mass = pressure * empty.view().state.volume / (Species::NITROGEN.gas_constant * 293.0);
     at_rest(&piece, &Film::PAPER_ELASTIC, PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0))
 }
 
@@ -111,9 +112,9 @@ fn released(level: u32, pressure: f64) -> Explicit {
 fn film_with_gas_is_of_second_order_in_the_step() {
     let volume = |cfl: f64| {
         let mut film = released(1, 1000.0);
-        film.parameters.cfl = cfl;
+        film.view().system.cfl = cfl;
         film.advance(0.9e-3, &free()).unwrap();
-        film.state.volume
+        film.view().state.volume
     };
     let exact = volume(0.005);
     let errors: Vec<f64> = [0.4, 0.2, 0.1].map(|cfl| volume(cfl) - exact).to_vec();

@@ -5,8 +5,9 @@ use std::time::Instant;
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{grid, icosphere, nodes_where, pseudo_random};
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use billow_solver::integrators::{FilmSimulation, FilmView, SimulationSettings};
 use billow_solver::mechanics::film_model::FilmModel;
+use billow_solver::mechanics::forces::tangent::{self, Stiffness};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::supports::Supports;
@@ -17,10 +18,10 @@ use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::scene::paper::free_film;
-use billow_solver::statics::tangent::{self, Stiffness};
 use billow_solver::statics::{
     Loaded, Relaxation, StaticError, StaticFailureKind, Tolerances, equilibrium, solve_unobserved,
 };
+use billow_solver::system::{FilmSystem, PressureLoad};
 use nalgebra::{SVector, Vector2, Vector3};
 
 use crate::film_rig::{film_forces, model};
@@ -170,11 +171,12 @@ fn damped_motion_and_newton_find_the_same_equilibrium() {
     Relaxation { max_kinetic_fraction: 1e-16, ..Relaxation::default() }
         .relax_at(&mut film, 100.0)
         .unwrap();
-    let moved = (0..nodes).map(|n| (film.state.positions.get(n) - state.positions.get(n)).norm());
+    let moved =
+        (0..nodes).map(|n| (film.view().state.positions.get(n) - state.positions.get(n)).norm());
     let moved = moved.fold(0.0, f64::max);
     println!("{} Newton steps; damped motion moves {moved:e} m on", state.iterations);
     assert!(moved < 1e-6, "{moved}");
-    assert!((film.state.volume / state.volume - 1.0).abs() < 1e-9);
+    assert!((film.view().state.volume / state.volume - 1.0).abs() < 1e-9);
 }
 
 fn scene(shell: Shell, pressure: f64, supports: Vec<FilmSupport>) -> FilmScene {

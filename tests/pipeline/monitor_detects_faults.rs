@@ -1,7 +1,7 @@
 //! The tunnelling monitor detects passages of film through film when contact is faulty.
 
 use billow_solver::collision::contact::ContactModel;
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::audit::Audit;
 use billow_solver::output::outcome::{FailureKind, Stop};
@@ -23,13 +23,14 @@ fn deploy(end_time: f64, fault: Fault) -> (Stop, Audit, f64) {
     // Far enough for contact to store energy worth a fault.
     let contact = FilmContact { distance: Some(1e-3), ..FilmContact::default() };
     let mut run = stowed(&Rig::default(), &scene, contact).expect("a capsule");
-    let Explicit { model, mut parameters, state, .. } = run.film;
-    fault(parameters.contact.as_mut().expect("contact"));
-    run.film = Explicit::new(model, parameters, state.positions, state.velocities, state.gas);
+    let (mut system, state, settings) = run.film.into_parts();
+    fault(system.contact.as_mut().expect("contact"));
+    let (positions, velocities) = (state.positions, state.velocities);
+    run.film = FilmSimulation::new(system, settings, positions, velocities, state.gas);
     let deployment = run::run(&mut run, &Timeline::new(&scene), &mut Unobserved);
     let kinetic = deployment.history.column("kinetic_energy");
     let peak = kinetic.iter().copied().fold(0.0, f64::max);
-    (deployment.stop, deployment.audit, unrecovered_contact_energy(&run.film) / peak)
+    (deployment.stop, deployment.audit, unrecovered_contact_energy(&run.view()) / peak)
 }
 
 #[test]

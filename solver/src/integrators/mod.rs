@@ -1,7 +1,75 @@
 //! Time integration.
 //!
-//! [`dormand_prince`]: Runge-Kutta of order 5(4) for small smooth systems. [`explicit`]: central
-//! differences for film and its gas.
+//! [`dormand_prince`]: Runge-Kutta of order 5(4) for small smooth systems. Film has one interface
+//! ([`interface::Integrator`]) and a table of the integrators behind it ([`entry`]): a kind without a row
+//! does not compile. A [`FilmSimulation`] is film with its integrator and its audit; who only looks at it
+//! has a [`FilmView`].
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::IntegratorKind;
+use crate::system::{FilmState, FilmSystem, Workspace};
 
 pub mod dormand_prince;
+pub mod energy_accounting;
 pub mod explicit;
+pub mod film_simulation;
+pub mod film_view;
+pub mod interface;
+pub mod passage_audit;
+
+pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
+pub use film_view::FilmView;
+pub use interface::{Advance, Budget, Integrator, Interval, NoAudit, StepAudit};
+
+/// Everything in which integrators of film differ, but for the trait. To add one: a variant of
+/// [`IntegratorKind`], a folder, and an arm of [`entry`].
+#[derive(Debug)]
+pub struct IntegratorEntry {
+    /// Name, as in `solver.integrator`.
+    pub name: &'static str,
+    /// Meaning, one line.
+    pub meaning: &'static str,
+    /// The integrator of a state, with the workspace that evaluated it, at a CFL number.
+    pub start: fn(&FilmSystem, &FilmState, Workspace, f64) -> Box<dyn Integrator>,
+}
+
+/// The row of an integrator.
+pub fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
+    match kind {
+        IntegratorKind::Explicit => &explicit::ENTRY,
+    }
+}
+
+/// Private state of an integrator, tagged with its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StoredIntegrator {
+    /// Of [`explicit`].
+    Explicit(explicit::StoredExplicit),
+}
+
+impl StoredIntegrator {
+    /// The integrator that it is of.
+    pub fn kind(&self) -> IntegratorKind {
+        match self {
+            Self::Explicit(_) => IntegratorKind::Explicit,
+        }
+    }
+
+    /// The integrator at a state and a CFL number; it continues with the same bits.
+    fn resume(self, system: &FilmSystem, state: &FilmState, cfl: f64) -> Box<dyn Integrator> {
+        match self {
+            Self::Explicit(stored) => {
+                Box::new(explicit::Explicit::resume(system, state, stored, cfl))
+            }
+        }
+    }
+
+    /// Whether it can be of this system.
+    fn fits(&self, system: &FilmSystem) -> bool {
+        match self {
+            Self::Explicit(stored) => stored.fits(system),
+        }
+    }
+}

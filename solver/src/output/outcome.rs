@@ -1,6 +1,7 @@
 //! The result of a run: its history and measures, and how it ended.
 
 use super::audit::Audit;
+use super::events::Event;
 use super::frames::Frames;
 use super::history::{History, Track};
 use super::measures::{self, Measures, Reference};
@@ -13,6 +14,8 @@ pub struct Deployment {
     pub history: History,
     /// Further time series: followed nodes and elements, contact, plates.
     pub tracks: Vec<Track>,
+    /// Decisions of the step controller, in order of time.
+    pub events: Vec<Event>,
     /// Stored shapes of the film; `None` for a model without a mesh, or if the scene asks for none.
     pub frames: Option<Frames>,
     /// Measures: single numbers computed from the history.
@@ -33,6 +36,7 @@ impl Deployment {
         Self {
             history: History::new(),
             tracks: Vec::new(),
+            events: Vec::new(),
             frames: None,
             measures: Measures::default(),
             audit: Audit::default(),

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::film_support::FilmSupport;
 use super::monitor_settings::MonitorSettings;
 use super::plate::Plate;
-use super::{Contact, Film, GasSupply};
+use super::{Contact, Film, GasSupply, IntegratorKind};
 use crate::geometry::shell::Shell;
 use crate::platform::simd::InstructionSet;
 
@@ -94,6 +94,8 @@ impl Default for FilmContact {
 /// Solution parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmSolver {
+    /// Integrator.
+    pub integrator: IntegratorKind,
     /// Fraction of the stable step (CFL number), above 0, at most 1.
     pub cfl: f64,
     /// Simulated time, s; statics ignores it.

@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 
 use super::film_scene::{Filling, FilmOutputs, FilmScene, FilmSolver};
 use super::{
-    Contact, Film, GasSupply, HeatTransfer, InflowWindow, ModelKind, Outputs, Scene, Solver,
-    Species, Stepping, Support, SupportLocation, Thresholds,
+    Contact, Film, GasSupply, HeatTransfer, InflowWindow, IntegratorKind, ModelKind, Outputs,
+    Scene, Solver, Species, Stepping, Support, SupportLocation, Thresholds,
 };
 use crate::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
 use crate::geometry::shell::Shell;
@@ -115,6 +115,7 @@ pub fn empty_capsule(subdivisions: u32, end_time: f64) -> Scene {
         gravity: 0.0,
         release_time: 0.0,
         solver: Solver {
+            integrator: IntegratorKind::default(),
             model: ModelKind::Piston,
             end_time,
             // The default of `integrators::dormand_prince`.
@@ -145,6 +146,7 @@ pub fn free_film(shell: Shell, film: Film) -> FilmScene {
         gravity: Vector3::zeros(),
         release_time: 0.0,
         solver: FilmSolver {
+            integrator: IntegratorKind::default(),
             // The default of `integrators::explicit`.
             cfl: 0.45,
             end_time: 0.0,

@@ -14,6 +14,26 @@ pub enum ModelKind {
     Film,
 }
 
+/// The integrator of film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IntegratorKind {
+    /// Central differences: [`crate::integrators::explicit`].
+    #[default]
+    Explicit,
+}
+
+impl IntegratorKind {
+    /// Every kind.
+    pub const ALL: [Self; 1] = [Self::Explicit];
+
+    /// Whether it is the one of a scene that names none. Job ids depend on this: a scene that names none
+    /// keeps its id.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Model and solution parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -22,6 +42,9 @@ pub struct Solver {
     pub model: ModelKind,
     /// Simulated time, s.
     pub end_time: f64,
+    /// Integrator of film; other models ignore it.
+    #[serde(default, skip_serializing_if = "IntegratorKind::is_default")]
+    pub integrator: IntegratorKind,
     /// Choice of the time step.
     pub stepping: Stepping,
     /// Maximum number of accepted steps; a run that reaches it stops with `step_limit`.

@@ -24,12 +24,13 @@ use super::newton::{
 use super::relaxation::Relaxation;
 use super::system::System;
 use crate::geometry::field::Field;
-use crate::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use crate::integrators::{FilmSimulation, SimulationSettings};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::pressure::volume;
 use crate::mechanics::gas::GasState;
 use crate::mechanics::resultants::thickness;
 use crate::mechanics::supports::Supports;
+use crate::system::{FilmSystem, PressureLoad};
 
 /// p L/(E t) of the first pressure. Chosen.
 const FIRST_LOAD: f64 = 0.5;
@@ -308,25 +309,24 @@ fn relaxed(loaded: &Loaded<'_>, positions: &Field) -> Option<Field> {
     let mut supports = loaded.supports.clone();
     // Moving supports are at the end of their motion.
     supports.movers.clear();
-    let parameters = Parameters {
+    let load = PressureLoad::Overpressure(loaded.overpressure);
+    let system = FilmSystem {
         supports,
         gravity: loaded.gravity,
         instruction_set: loaded.instruction_set,
-        cfl: Relaxation::default().cfl,
-        ..Parameters::free(PressureLoad::Overpressure(loaded.overpressure), loaded.model.nodes())
+        ..FilmSystem::free(loaded.model.clone(), load)
     };
+    let settings =
+        SimulationSettings { cfl: Relaxation::default().cfl, ..SimulationSettings::default() };
     let at_rest = Field::zeros(loaded.model.nodes());
-    let mut film = Explicit::new(
-        loaded.model.clone(),
-        parameters,
-        positions.clone(),
-        at_rest,
-        GasState::default(),
-    );
+    let film =
+        FilmSimulation::new(system, settings, positions.clone(), at_rest, GasState::default());
     let relaxation = Relaxation { step_limit: RELAXATION_STEPS, ..Relaxation::default() };
     // An unfinished relaxation is a good start too, as long as it is finite.
-    let _ = relaxation.relax_at(&mut film, loaded.overpressure);
-    let finite =
-        film.state.positions.iter().all(|position: Vector3<f64>| position.norm().is_finite());
-    finite.then_some(film.state.positions)
+    let film = match relaxation.relax_at(film, loaded.overpressure) {
+        Ok(film) | Err((_, film)) => film,
+    };
+    let (_, state, _) = film.into_parts();
+    let finite = state.positions.iter().all(|position: Vector3<f64>| position.norm().is_finite());
+    finite.then_some(state.positions)
 }

@@ -10,10 +10,10 @@
 
 use super::dense::{Front, clear, factor_panel, solve_backward, solve_forward, update_complement};
 use super::plan::{FaceEntries, FrontFace, Plan, plan};
-use super::tangent::Stiffness;
 use super::unknowns::Unknowns;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::forces::tangent::Stiffness;
 use crate::platform::simd::{InstructionSet, Lanes, WIDTH};
 
 /// Lower bound of a pivot over its diagonal entry for the matrix to count as positive definite. Chosen:

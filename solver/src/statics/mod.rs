@@ -30,7 +30,6 @@ pub mod order;
 pub mod plan;
 mod relaxation;
 mod system;
-pub mod tangent;
 pub mod unknowns;
 
 pub use approach::settle;

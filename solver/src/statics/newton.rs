@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 use super::system::System;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_membrane};
+use crate::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_conservative};
 use crate::mechanics::forces::pressure::add_closure;
 use crate::mechanics::resultants::thickness;
 use crate::mechanics::supports::Supports;
@@ -207,11 +207,11 @@ impl<'a> NewtonSearch<'a> {
         }
         let Loaded { model, overpressure, gravity, instruction_set, .. } = *self.loaded;
         model.closure_nodes.place(&mut self.trial);
-        let _ = assemble_membrane(
+        let _ = assemble_conservative(
             instruction_set,
             model,
             &self.trial,
-            0.0,
+            &[],
             &mut self.element_history,
             &mut self.nodes,
         );

@@ -11,9 +11,10 @@
 use nalgebra::Vector3;
 
 use crate::geometry::field::Field;
-use crate::integrators::explicit::{Explicit, PressureLoad};
+use crate::integrators::{FilmSimulation, FilmView, SimulationSettings};
 use crate::output::outcome::Failure;
 use crate::scene::timeline::Phase;
+use crate::system::{FilmSystem, PressureLoad};
 
 /// Settings of a relaxation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,42 +36,54 @@ impl Default for Relaxation {
 }
 
 impl Relaxation {
-    /// Relaxes film at this overpressure (Pa) until it is at rest. Adapts the mass damping.
+    /// Relaxes film at this overpressure (Pa) until it is at rest. Adapts the mass damping: each time it
+    /// continues with another system.
     ///
     /// # Errors
-    /// [`Failure`] of the motion; `step_limit` if the film does not come to rest.
-    pub fn relax_at(&self, film: &mut Explicit, overpressure: f64) -> Result<(), Failure> {
-        film.parameters.pressure_load = PressureLoad::Overpressure(overpressure);
-        film.state.pressure = overpressure;
-        let limit = film.state.steps + self.step_limit;
-        film.parameters.step_limit = limit;
+    /// [`Failure`] of the motion; `step_limit` if the film does not come to rest. With it the film as far as
+    /// it came.
+    pub fn relax_at(
+        &self,
+        film: FilmSimulation,
+        overpressure: f64,
+    ) -> Result<FilmSimulation, (Failure, FilmSimulation)> {
+        let step_limit = film.view().steps() + self.step_limit;
+        let mut film = film.with(|system, settings| {
+            let pressure_load = PressureLoad::Overpressure(overpressure);
+            (FilmSystem { pressure_load, ..system }, SimulationSettings { step_limit, ..settings })
+        });
         let mut settled_checks = 0;
         while settled_checks < 2 {
-            let (positions, forces) = (film.state.positions.clone(), free_forces(film));
-            let target = film.state.time + film.stable_step() * f64::from(self.check_interval);
-            film.advance(target, &Phase::default())?;
-            film.parameters.mass_damping = 2.0 * frequency(film, &positions, &forces);
-            let energy = film.overpressure() * film.state.volume;
-            let settled = film.kinetic_energy().abs() < self.max_kinetic_fraction * energy;
+            let before = film.view();
+            let (positions, forces) = (before.state.positions.clone(), free_forces(&before));
+            let target = before.state.time + before.next_step() * f64::from(self.check_interval);
+            if let Err(failure) = film.advance(target, &Phase::default()) {
+                return Err((failure, film));
+            }
+            let mass_damping = 2.0 * frequency(&film.view(), &positions, &forces);
+            film = film.with(|system, settings| (FilmSystem { mass_damping, ..system }, settings));
+            let now = film.view();
+            let energy = now.overpressure() * now.state.volume;
+            let settled = now.kinetic_energy().abs() < self.max_kinetic_fraction * energy;
             settled_checks = if settled { settled_checks + 1 } else { 0 };
         }
-        Ok(())
+        Ok(film)
     }
 }
 
 /// Forces on all nodes along free directions, N.
-fn free_forces(film: &Explicit) -> Vec<Vector3<f64>> {
-    let free_force = |node: usize| film.parameters.supports.projector(node) * film.force(node);
-    (0..film.model.nodes()).map(free_force).collect()
+fn free_forces(film: &FilmView<'_>) -> Vec<Vector3<f64>> {
+    let free_force = |node: usize| film.system.supports.projector(node) * film.force(node);
+    (0..film.system.model.nodes()).map(free_force).collect()
 }
 
 /// Frequency ω of the motion since these positions (m) with these forces (N), rad/s.
-fn frequency(film: &Explicit, positions: &Field, forces: &[Vector3<f64>]) -> f64 {
+fn frequency(film: &FilmView<'_>, positions: &Field, forces: &[Vector3<f64>]) -> f64 {
     let (mut stiffness, mut mass) = (0.0, 0.0);
     for (node, (before, now)) in forces.iter().zip(free_forces(film)).enumerate() {
         let moved = film.state.positions.get(node) - positions.get(node);
         stiffness += moved.dot(&(before - now));
-        mass += film.model.mass[node] * moved.norm_squared();
+        mass += film.system.model.mass[node] * moved.norm_squared();
     }
     // A negative quotient belongs to a motion that still accelerates: no damping then.
     if mass > 0.0 { (stiffness / mass).max(0.0).sqrt() } else { 0.0 }

@@ -8,10 +8,10 @@
 //! displacements and forces along the unknowns.
 
 use super::factor::{Elimination, Factor};
-use super::tangent::{self, Stiffness};
 use super::unknowns::Unknowns;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::forces::tangent::{self, Stiffness};
 use crate::mechanics::supports::Supports;
 use crate::platform::simd::InstructionSet;
 

@@ -4,7 +4,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::integrators::explicit::reference_step::{
     FilmMotion, reference_step, vector_step,
 };
@@ -12,10 +12,12 @@ use billow_solver::integrators::explicit::update::KickParameters;
 use billow_solver::platform::simd::InstructionSet;
 use billow_solver::platform::stopwatch::Untimed;
 use billow_solver::scene::timeline::Timeline;
+use billow_solver::system::FilmSystem;
 
 use super::capsule::{Capsule, Mark, run_to_marks};
 use super::stages::take_steps;
 use super::{Effort, Line, RISING, interrupted};
+use crate::cases::rig::explicit;
 use crate::input::value::Value;
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
@@ -68,7 +70,9 @@ pub fn measure(
     let mark = Mark { time: RISING, state: Some("rising"), case: false };
     let (states, _) = run_to_marks(&capsule, &[mark], stop)?;
     let film = &states[0].run.film;
-    let (elements, steps) = (film.model.elements(), effort.kernel_steps());
+    let (now, last_step) = (film.view(), explicit(film).motion.last_step);
+    let model = &now.system.model;
+    let (elements, steps) = (model.elements(), effort.kernel_steps());
     let row = |kernel, instruction_set, seconds: f64| KernelRow {
         subdivisions,
         kernel,
@@ -86,23 +90,23 @@ pub fn measure(
     }
     // Membrane and update as in the step, at a fixed pressure.
     let push = KickParameters {
-        overpressure: film.overpressure(),
-        gravity: film.parameters.gravity,
+        overpressure: now.overpressure(),
+        gravity: now.system.gravity,
         weight_factor: 1.0,
         velocity_factor: 1.0,
-        acceleration_factor: film.state.last_step,
+        acceleration_factor: last_step,
         contact_active: false,
     };
-    let (free, length) = (&film.parameters.supports.free, film.state.last_step);
+    let (free, length) = (&now.system.supports.free, last_step);
     let moving = |set| {
-        let (positions, velocities) = (film.state.positions.clone(), film.state.velocities.clone());
-        FilmMotion::new(set, &film.model, positions, velocities)
+        let (positions, velocities) = (now.state.positions.clone(), now.state.velocities.clone());
+        FilmMotion::new(set, model, positions, velocities)
     };
     for set in sets {
         let seconds = least(effort, stop, &mut || {
             let mut motion = moving(set);
             Ok(timed(steps, &mut || {
-                black_box(vector_step(set, &film.model, &push, free, length, &mut motion));
+                black_box(vector_step(set, model, &push, free, length, &mut motion));
             }))
         })?;
         rows.push(row(FILM, set, seconds));
@@ -110,7 +114,7 @@ pub fn measure(
     let seconds = least(effort, stop, &mut || {
         let mut motion = moving(InstructionSet::Scalar);
         Ok(timed(steps, &mut || {
-            black_box(reference_step(&film.model, &push, free, length, &mut motion));
+            black_box(reference_step(model, &push, free, length, &mut motion));
         }))
     })?;
     rows.push(row(REFERENCE, InstructionSet::Scalar, seconds));
@@ -119,13 +123,13 @@ pub fn measure(
 
 /// Seconds of a number of steps with an instruction set.
 fn step_seconds(
-    film: &Explicit,
+    film: &FilmSimulation,
     instruction_set: InstructionSet,
     timeline: &Timeline,
     steps: u64,
 ) -> Result<f64> {
-    let mut film = film.clone();
-    film.parameters.instruction_set = instruction_set;
+    let mut film =
+        film.clone().with(|system, settings| (FilmSystem { instruction_set, ..system }, settings));
     let start = Instant::now();
     take_steps(&mut film, timeline, steps, &mut Untimed)?;
     Ok(start.elapsed().as_secs_f64())

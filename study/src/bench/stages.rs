@@ -6,7 +6,7 @@
 
 use std::time::Instant;
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::run::Model;
 use billow_solver::platform::stopwatch::{Stage, Stopwatch, Untimed};
 use billow_solver::scene::timeline::Timeline;
@@ -86,7 +86,7 @@ pub fn measure(capsule: &Capsule, state: &State, effort: Effort, stop: &Stop) ->
             let on_core = machine::core_seconds().zip(core).map(|(now, then)| now - then);
             core_share = machine::core_share(on_core, wall);
         }
-        step = (film.state.time - state.run.film.state.time) / steps as f64;
+        step = (film.view().state.time - state.run.view().state.time) / steps as f64;
         interrupted(stop)?;
 
         let (mut film, mut clock) = (state.run.film.clone(), Clock::default());
@@ -127,13 +127,13 @@ fn steps(effort: Effort, elements: usize) -> u64 {
 /// # Errors
 /// A failure of the run.
 pub fn take_steps(
-    film: &mut Explicit,
+    film: &mut FilmSimulation,
     timeline: &Timeline,
     mut steps: u64,
     stopwatch: &mut dyn Stopwatch,
 ) -> Result<()> {
     let breakpoints = timeline.breakpoints();
-    let mut time = film.state.time;
+    let mut time = film.view().state.time;
     loop {
         let to = next_stop(timeline, &breakpoints, time);
         let phase = timeline.phase(time, to);
@@ -163,7 +163,7 @@ fn next_stop(timeline: &Timeline, breakpoints: &[f64], time: f64) -> f64 {
 
 /// Shortest time of a sample and a frame, s.
 fn output(capsule: &Capsule, state: &State, repeats: usize) -> f64 {
-    let time = state.run.film.state.time;
+    let time = state.run.view().state.time;
     let phase = capsule.timeline.phase(time, time + capsule.timeline.sample_interval);
     let mut tracked = Vec::new();
     let times = (0..repeats.max(3)).map(|_| {

@@ -50,13 +50,13 @@ fn common_rows(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: 
     let audit = &deployment.audit;
     let count = |counted: Option<u64>| counted.map_or(f64::NAN, |counted| counted as f64);
     let peak = deployment.history.column("kinetic_energy").iter().copied().fold(0.0, worse);
-    let contact_state = &run.film.state.contact_state;
+    let accounting = run.view().accounting();
     let note = format!(
         "{} elements, {} steps, {} broad-phase rebuilds, {} collision impulses",
         deployment.elements,
         deployment.steps,
-        contact_state.broad_phase_rebuilds,
-        contact_state.collision_impulses
+        accounting.broad_phase_rebuilds,
+        accounting.collision_impulses
     );
     vec![
         Row::at_most(&format!("{name}passages"), count(audit.passages), 0.0).with_note(&note),
@@ -64,7 +64,7 @@ fn common_rows(run: &FilmRun, deployment: &Deployment, name: &str, ledger_band: 
         Row::at_most(&format!("{name}film energy residual"), audit.ledger_residual, ledger_band),
         Row::at_most(
             &format!("{name}unrecovered contact energy"),
-            unrecovered_contact_energy(&run.film) / peak,
+            unrecovered_contact_energy(&run.film.view()) / peak,
             number("contact/not_returned_band"),
         ),
     ]
@@ -138,7 +138,7 @@ pub(super) fn capsule_deployed_fine(rig: &Rig) -> Outcome {
 pub(super) fn contact_distance(rig: &Rig) -> Outcome {
     let scene = paper::capsule(5, 0.3);
     let (run, _) = deploy(rig, &scene, FilmContact::default())?;
-    let distance = run.film.parameters.contact.as_ref().ok_or("no contact")?.distance;
+    let distance = run.film.view().system.contact.as_ref().ok_or("no contact")?.distance;
     let expected = run.volume();
     let mut judged = Vec::new();
     for factor in [0.5, 2.0] {

@@ -7,7 +7,7 @@
 
 use billow_solver::geometry::shapes::{icosphere, joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
@@ -41,10 +41,10 @@ fn two_films() -> (Shell, usize) {
 }
 
 /// Number of nodes on the wrong side of an element of the other film, seen along z.
-fn misplaced_nodes(film: &Explicit, split: usize) -> usize {
+fn misplaced_nodes(film: &FilmView<'_>, split: usize) -> usize {
     let positions: Vec<Vector3<f64>> = film.state.positions.iter().collect();
     let wrong = |node: usize| {
-        film.model.triangles.iter().any(|corners| {
+        film.system.model.triangles.iter().any(|corners| {
             let below = node < split;
             if below == ((corners[0] as usize) < split) {
                 return false;
@@ -77,20 +77,21 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
             ..free_film(shell, damped())
         };
         let mut film = rig.start(&scene)?;
-        let momentum = |film: &Explicit| -> Vector3<f64> {
-            let all = film.model.mass.iter().zip(film.state.velocities.iter());
+        let momentum = |film: &FilmView<'_>| -> Vector3<f64> {
+            let all = film.system.model.mass.iter().zip(film.state.velocities.iter());
             all.map(|(mass, velocity)| velocity * *mass).sum()
         };
-        let before = momentum(&film);
-        let scale: f64 = (0..nodes).map(|n| film.model.mass[n] * velocity(n).norm()).sum();
+        let before = momentum(&film.view());
+        let scale: f64 =
+            (0..nodes).map(|n| film.view().system.model.mass[n] * velocity(n).norm()).sum();
         let record = run_recorded(&mut film, 4e-3, 40, &Phase::default())?;
         let mean = |from: usize, to: usize| {
-            film.state.velocities.z[from..to].iter().sum::<f64>() / (to - from) as f64
+            film.view().state.velocities.z[from..to].iter().sum::<f64>() / (to - from) as f64
         };
         let separation_speed = mean(split, nodes) - mean(0, split);
         judged.push(Row::at_most(
             &format!("{run}nodes on the wrong side"),
-            misplaced_nodes(&film, split) as f64,
+            misplaced_nodes(&film.view(), split) as f64,
             0.0,
         ));
         judged.push(Row::at_least(
@@ -100,11 +101,11 @@ pub fn films_at_50_m_s(rig: &Rig) -> Outcome {
         ));
         judged.push(Row::at_most(
             &format!("{run}change of momentum over sum of m v"),
-            (momentum(&film) - before).norm() / scale,
+            (momentum(&film.view()) - before).norm() / scale,
             number("contact/momentum_band"),
         ));
-        judged.push(record.unrecovered(&film, run));
-        judged.extend(record.rows(&film, run, number("contact/ledger_band")));
+        judged.push(record.unrecovered(&film.view(), run));
+        judged.extend(record.rows(&film.view(), run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
@@ -138,7 +139,7 @@ fn squeezed(rig: &Rig, compressions: &[f64]) -> Outcome {
         let up = Vector3::z() * sign;
         plate(up * start, -up, Some((up * (share * tall - start), closed)))
     };
-    let height = |film: &Explicit| {
+    let height = |film: &FilmView<'_>| {
         let z = || film.state.positions.z.iter().copied();
         z().fold(f64::NEG_INFINITY, f64::max) - z().fold(f64::INFINITY, f64::min)
     };
@@ -152,16 +153,16 @@ fn squeezed(rig: &Rig, compressions: &[f64]) -> Outcome {
             ..free_film(shell.clone(), Film { compression, ..damped() })
         };
         let mut film = rig.start(&scene)?;
-        let whole = height(&film);
+        let whole = height(&film.view());
         let record = run_recorded(&mut film, closed, 60, &Phase::default())?;
         let run = format!("c {compression}: ");
         if compression > 0.0 {
-            judged.extend(record.counts(&film, &run));
+            judged.extend(record.counts(&film.view(), &run));
             continue;
         }
-        let squeezed = height(&film) / whole;
+        let squeezed = height(&film.view()) / whole;
         judged.push(Row::at_most(&format!("{run}height over initial height"), squeezed, share));
-        judged.extend(record.rows(&film, &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&film.view(), &run, number("contact/ledger_band")));
     }
     Ok(judged)
 }
@@ -188,11 +189,11 @@ pub fn dropped_sheet(rig: &Rig) -> Outcome {
         };
         let mut film = rig.start(&scene)?;
         let record = run_recorded(&mut film, 0.03, 60, &Phase::default())?;
-        let lowest = film.state.positions.z.iter().copied().fold(f64::INFINITY, f64::min);
+        let lowest = film.view().state.positions.z.iter().copied().fold(f64::INFINITY, f64::min);
         let run = format!("c {compression}: ");
         judged.push(Row::at_least(&format!("{run}lowest node above the floor, m"), lowest, 0.0));
-        judged.push(record.unrecovered(&film, &run));
-        judged.extend(record.rows(&film, &run, number(&format!("contact/{key}"))));
+        judged.push(record.unrecovered(&film.view(), &run));
+        judged.extend(record.rows(&film.view(), &run, number(&format!("contact/{key}"))));
     }
     Ok(judged)
 }

@@ -9,7 +9,8 @@
 //! strain energy are compared. The reference is the static state, not a stored value.
 
 use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::integrators::explicit::{DEFAULT_CFL, Explicit};
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::models::film::{StaticState, capsule, static_states};
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
@@ -32,7 +33,7 @@ const LATEST: f64 = 5.0;
 const CHECK_INTERVAL: f64 = 0.01;
 
 /// The stowed capsule at rest under a fixed pressure (Pa).
-fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), String> {
+fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(FilmSimulation, Mesh), String> {
     let stowed = Shape::Stowed(scene.design.stowed_height);
     let (film, mesh) = capsule::film_scene(rig.instruction_set, scene, stowed, DEFAULT_CFL)
         .map_err(|error| error.to_string())?;
@@ -46,26 +47,27 @@ fn relaxed(rig: &Rig, scene: &Scene, pressure: f64) -> Result<(Explicit, Mesh), 
     // Twice in succession: a motion that reverses has no kinetic energy for a moment either.
     let mut quiet_checks = 0;
     while quiet_checks < 2 {
-        let target = film.state.time + CHECK_INTERVAL;
+        let target = film.view().state.time + CHECK_INTERVAL;
         if target > LATEST {
             return Err(format!("not at rest at {LATEST} s"));
         }
         advance(&mut film, target, &Phase::default())?;
-        let settled = film.kinetic_energy().abs() < share * pressure * film.state.volume;
+        let settled =
+            film.view().kinetic_energy().abs() < share * pressure * film.view().state.volume;
         quiet_checks = if settled && target > EARLIEST { quiet_checks + 1 } else { 0 };
     }
     Ok((film, mesh))
 }
 
 /// Rows of one pressure.
-fn compare(film: &Explicit, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
+fn compare(film: &FilmView<'_>, mesh: &Mesh, expected: &StaticState) -> Vec<Row> {
     let name = |what: &str| format!("{what}, at {} Pa", expected.overpressure);
     let band = |key: &str| number(&format!("deployed_equals_inflated/{key}"));
     let rim = mesh.top_ring.iter().map(|node| film.state.positions.z[*node as usize]).sum::<f64>()
         / mesh.top_ring.len() as f64;
     let share = film.kinetic_energy() / (expected.overpressure * film.state.volume);
-    let passages = film.monitor.as_ref().map_or(f64::NAN, |monitor| monitor.passages as f64);
-    let note = format!("at rest after {:.2} s, {} steps", film.state.time, film.state.steps);
+    let passages = film.passages().map_or(f64::NAN, |passages| passages as f64);
+    let note = format!("at rest after {:.2} s, {} steps", film.state.time, film.steps());
     let strain = film.strain_energy();
     vec![
         Row::new(&name("volume, m3"), film.state.volume, expected.volume, band("volume_band"))
@@ -91,7 +93,7 @@ fn judge(rig: &Rig, subdivisions: u32) -> Outcome {
     let mut judged = Vec::new();
     for expected in &inflated {
         let (film, mesh) = relaxed(rig, &scene, expected.overpressure)?;
-        judged.extend(compare(&film, &mesh, expected));
+        judged.extend(compare(&film.view(), &mesh, expected));
     }
     Ok(judged)
 }

@@ -6,7 +6,7 @@
 //! ```
 
 use billow_solver::collision::contact::intersections::intersections;
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::output::ledger::{Ledger, residuals};
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::monitor_settings::MonitorSettings;
@@ -63,35 +63,35 @@ pub struct RunRecord {
 /// # Errors
 /// A failure; a passage is one.
 pub fn run_recorded(
-    film: &mut Explicit,
+    film: &mut FilmSimulation,
     end: f64,
     samples: u32,
     phase: &Phase,
 ) -> Result<RunRecord, String> {
-    let mut record = RunRecord { intersections: 0, pairs: 0, ledgers: vec![film.ledger()] };
+    let mut record = RunRecord { intersections: 0, pairs: 0, ledgers: vec![film.view().ledger()] };
     for sample in 1..=samples {
         advance(film, end * f64::from(sample) / f64::from(samples), phase)?;
-        record.intersections = record.intersections.max(intersection_count(film));
-        let contacts = &film.state.contact_state.contacts;
+        record.intersections = record.intersections.max(intersection_count(&film.view()));
+        let contacts = &film.view().state.contact.contacts;
         let pairs = contacts.iter().filter(|contact| contact.energy > 0.0).count();
         record.pairs = record.pairs.max(pairs);
-        record.ledgers.push(film.ledger());
+        record.ledgers.push(film.view().ledger());
     }
     Ok(record)
 }
 
 /// Number of intersections of the whole film in its present state.
-pub fn intersection_count(film: &Explicit) -> usize {
-    let model = film.parameters.contact.as_ref();
+pub fn intersection_count(film: &FilmView<'_>) -> usize {
+    let model = film.system.contact.as_ref();
     model.map_or(0, |model| intersections(&model.mesh, &film.state.positions).len())
 }
 
 /// Work into contact that is neither stored in contact nor accounted for by impulses, J.
-pub fn unrecovered_contact_energy(film: &Explicit) -> f64 {
-    let contact_state = &film.state.contact_state;
+pub fn unrecovered_contact_energy(film: &FilmView<'_>) -> f64 {
+    let contact_state = &film.state.contact;
     let pairs: f64 = contact_state.contacts.iter().map(|contact| contact.energy).sum();
     let plates: f64 = contact_state.plates.iter().map(|plate| plate.energy).sum();
-    (film.ledger().contact - pairs - plates + contact_state.collision_dissipation).abs()
+    (film.ledger().contact - pairs - plates + film.accounting().collision_dissipation).abs()
 }
 
 impl RunRecord {
@@ -101,14 +101,14 @@ impl RunRecord {
     }
 
     /// Rows of passages and intersections.
-    pub fn counts(&self, film: &Explicit, run: &str) -> Vec<Row> {
-        let passages = film.monitor.as_ref().map_or(f64::NAN, |monitor| monitor.passages as f64);
+    pub fn counts(&self, film: &FilmView<'_>, run: &str) -> Vec<Row> {
+        let passages = film.passages().map_or(f64::NAN, |passages| passages as f64);
         vec![
             Row::at_most(&format!("{run}passages"), passages, 0.0).with_note(&format!(
                 "{} steps monitored, at most {} pairs in contact, {} collision impulses; ledger residual {:.1e}",
-                film.state.steps,
+                film.steps(),
                 self.pairs,
-                film.state.contact_state.collision_impulses,
+                film.accounting().collision_impulses,
                 self.residual()
             )),
             Row::at_most(&format!("{run}intersections"), self.intersections as f64, 0.0),
@@ -121,7 +121,7 @@ impl RunRecord {
     }
 
     /// Rows of passages, intersections and ledger residual.
-    pub fn rows(&self, film: &Explicit, run: &str, ledger_band: f64) -> Vec<Row> {
+    pub fn rows(&self, film: &FilmView<'_>, run: &str, ledger_band: f64) -> Vec<Row> {
         let mut rows = self.counts(film, run);
         rows.push(Row::at_most(
             &format!("{run}film energy residual"),
@@ -132,7 +132,7 @@ impl RunRecord {
     }
 
     /// Row of the unrecovered contact energy over the largest kinetic energy.
-    pub fn unrecovered(&self, film: &Explicit, run: &str) -> Row {
+    pub fn unrecovered(&self, film: &FilmView<'_>, run: &str) -> Row {
         let share = unrecovered_contact_energy(film) / self.peak_kinetic();
         Row::at_most(
             &format!("{run}unrecovered contact energy"),

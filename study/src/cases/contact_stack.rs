@@ -10,7 +10,7 @@
 use billow_solver::collision::contact::{ContactModel, ContactState};
 use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
@@ -66,17 +66,18 @@ fn nodes_of(shell: &Shell) -> u32 {
 }
 
 /// Mean and largest interlayer pressure between sheet `k` and the next one, Pa.
-fn between(film: &Explicit, model: &ContactModel, k: u32) -> [f64; 2] {
-    let each = film.model.mass.len() / LAYERS as usize;
+fn between(film: &FilmView<'_>, model: &ContactModel, k: u32) -> [f64; 2] {
+    let each = film.system.model.mass.len() / LAYERS as usize;
     let layer = |node: u32| node as usize / each;
     let mut state = ContactState::default();
-    let contacts = film.state.contact_state.contacts.iter().filter(|contact| {
+    let contacts = film.state.contact.contacts.iter().filter(|contact| {
         let layers = contact.pair.nodes(&model.mesh.topology).map(layer);
         let (low, high) = (layers.iter().min(), layers.iter().max());
         low == Some(&(k as usize)) && high == Some(&(k as usize + 1))
     });
     state.contacts = contacts.copied().collect();
-    let areas: Vec<f64> = film.model.mass.iter().map(|mass| mass / model.area_density).collect();
+    let areas: Vec<f64> =
+        film.system.model.mass.iter().map(|mass| mass / model.area_density).collect();
     let pressed = model.interlayer_pressure(&film.state.positions, &areas, &state);
     let whole: f64 = areas.iter().sum();
     // Each of the two sheets carries the force once.
@@ -91,9 +92,9 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
     for distance in numbers("stack/distances") {
         let mut film = rig.start(&stack(distance, pressure))?;
         let record = run_recorded(&mut film, REST, 10, &Phase::default())?;
-        let model = film.parameters.contact.as_ref().ok_or("no contact")?;
+        let model = film.view().system.contact.as_ref().ok_or("no contact")?;
         for k in 0..LAYERS - 1 {
-            let [mean, largest] = between(&film, model, k);
+            let [mean, largest] = between(&film.view(), model, k);
             let quantity = format!(
                 "distance {} mm, sheets {} and {}: interlayer pressure, Pa",
                 1e3 * distance,
@@ -104,7 +105,7 @@ pub fn stack_of_sheets(rig: &Rig) -> Outcome {
             judged.push(Row::new(&quantity, mean, pressure, band).with_note(&note));
         }
         judged.extend(record.rows(
-            &film,
+            &film.view(),
             &format!("distance {} mm, ", 1e3 * distance),
             number("contact/ledger_band"),
         ));

@@ -75,15 +75,18 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
     for row in rows("tube_between_plates") {
         let (gap, area, force) = (row[0], row[2], row[3]);
         let mut film = rig.start(&slice(radius, gap))?;
-        let start = film.state.volume;
+        let start = film.view().state.volume;
         let record = run_recorded(&mut film, REST, 8, &Phase::default())?;
         let nodes = 2 * AROUND as usize;
-        let top = film.state.positions.y.iter().take(nodes).copied().fold(0.0, f64::max);
+        let top = film.view().state.positions.y.iter().take(nodes).copied().fold(0.0, f64::max);
         let force_on_plates: f64 =
-            film.state.contact_state.plates.iter().map(|plate| 0.5 * plate.force).sum();
+            film.view().state.contact.plates.iter().map(|plate| 0.5 * plate.force).sum();
         let run = format!("g {gap} m: ");
-        let note =
-            format!("g is {:.6} m; kinetic energy {:.1e} J", 2.0 * top, film.kinetic_energy());
+        let note = format!(
+            "g is {:.6} m; kinetic energy {:.1e} J",
+            2.0 * top,
+            film.view().kinetic_energy()
+        );
         judged.push(
             Row::new(
                 &format!("{run}force per length over p0, N/m/Pa"),
@@ -93,9 +96,9 @@ pub fn tube_between_plates(rig: &Rig) -> Outcome {
             )
             .with_note(&note),
         );
-        let share = film.state.volume / start;
+        let share = film.view().state.volume / start;
         judged.push(Row::new(&format!("{run}A/A0"), share, area, area_band));
-        judged.extend(record.rows(&film, &run, number("contact/ledger_band")));
+        judged.extend(record.rows(&film.view(), &run, number("contact/ledger_band")));
     }
     Ok(judged)
 }

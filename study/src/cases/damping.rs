@@ -13,7 +13,7 @@
 use core::f64::consts::{PI, TAU};
 
 use billow_solver::geometry::shapes::{sheet, strip};
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::mechanics::material_loss::Creep;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
@@ -28,7 +28,7 @@ use super::{Outcome, Rig, Row};
 
 /// What a vibrating strip shows.
 struct Vibration {
-    film: Explicit,
+    film: FilmSimulation,
     /// Angular frequency, rad/s.
     omega: f64,
     /// Log decrement of a period.
@@ -54,17 +54,17 @@ fn vibrate(rig: &Rig, film: Film, cfl: f64) -> Result<Vibration, String> {
     let centre = columns as usize / 2;
     let position = scene.shell.positions[centre].x;
     let mut film = rig.start(&scene)?;
-    let interval = film.stable_step();
+    let interval = film.view().next_step();
     let extrema =
         extrema(&mut film, interval, 25, |film| film.state.positions.x[centre] - position)?;
     // Eight half periods.
     let omega = 4.0 * TAU / (extrema[24].time - extrema[16].time);
     let decrement = libm::log(extrema[16].value / extrema[24].value) / 4.0;
-    let ledger = film.ledger();
+    let ledger = film.view().ledger();
     let kinetic: f64 = scene
         .velocities
         .iter()
-        .zip(&film.model.mass)
+        .zip(&film.view().system.model.mass)
         .map(|(v, mass)| 0.5 * mass * v.norm_squared())
         .sum();
     Ok(Vibration { film, omega, decrement, lost: kinetic - ledger.kinetic - ledger.strain })
@@ -74,11 +74,11 @@ fn vibrate(rig: &Rig, film: Film, cfl: f64) -> Result<Vibration, String> {
 pub fn strip_decrement(rig: &Rig) -> Outcome {
     let film = Film { compression: 1.0, numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
     let Vibration { film: moved, omega, decrement, lost } = vibrate(rig, film, 0.1)?;
-    let expected = TAU * film.numerical_damping * omega / moved.model.frequency[0];
+    let expected = TAU * film.numerical_damping * omega / moved.view().system.model.frequency[0];
     let band = number("damping/band");
     Ok(vec![
         Row::new("log decrement of a strip's mode", decrement, expected, band),
-        Row::new("dissipated energy, J", moved.ledger().numerical_dissipation, lost, band),
+        Row::new("dissipated energy, J", moved.view().ledger().numerical_dissipation, lost, band),
     ])
 }
 
@@ -96,7 +96,7 @@ pub fn strip_loss(rig: &Rig) -> Outcome {
     Ok(vec![
         Row::new("log decrement of a strip's mode", extrapolated, expected, band)
             .with_note(&format!("at CFL 0.1 {:.6}, 0.05 {decrement:.6}", coarse.decrement)),
-        Row::new("energy lost in the material, J", moved.ledger().material_loss, lost, band),
+        Row::new("energy lost in the material, J", moved.view().ledger().material_loss, lost, band),
     ])
 }
 
@@ -129,13 +129,13 @@ pub fn free_flight(rig: &Rig) -> Outcome {
     let mut scene = FilmScene { velocities, ..free_film(shell, Film::PAPER_ELASTIC) };
     scene.solver.mass_damping = damping;
     let mut film = rig.start(&scene)?;
-    let before = film.kinetic_energy();
+    let before = film.view().kinetic_energy();
     advance(&mut film, time, &Phase::default())?;
-    let share = film.velocities().get(4).norm() / start.norm();
-    let lost = before - film.kinetic_energy();
+    let share = film.view().state.velocities.get(4).norm() / start.norm();
+    let lost = before - film.view().kinetic_energy();
     let band = number("damping/band");
     Ok(vec![
         Row::new("remaining speed of free flight", share, libm::exp(-damping * time), band),
-        Row::new("dissipated energy, J", film.ledger().damping_work, lost, band),
+        Row::new("dissipated energy, J", film.view().ledger().damping_work, lost, band),
     ])
 }

@@ -12,7 +12,7 @@
 use core::f64::consts::TAU;
 
 use billow_solver::geometry::shapes::{disc, disc_rim};
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::paper::free_film;
@@ -34,7 +34,7 @@ fn displaced(
     shape: &[f64],
     amplitude: f64,
     cfl: f64,
-) -> Result<Explicit, String> {
+) -> Result<FilmSimulation, String> {
     for (position, shape) in scene.shell.positions.iter_mut().zip(shape) {
         position.z = amplitude * shape;
     }
@@ -44,13 +44,13 @@ fn displaced(
 
 /// Frequency of a displaced disc, sampled at an interval (s), over a number of zero crossings.
 fn ringing_frequency(
-    film: &mut Explicit,
+    film: &mut FilmSimulation,
     shape: &[f64],
     (interval, crossings): (f64, usize),
 ) -> Result<f64, String> {
     frequency(film, interval, crossings, |film| {
         let heights = film.state.positions.z.iter().zip(shape);
-        heights.zip(&film.model.mass).map(|((z, shape), mass)| mass * z * shape).sum()
+        heights.zip(&film.system.model.mass).map(|((z, shape), mass)| mass * z * shape).sum()
     })
 }
 
@@ -83,7 +83,12 @@ pub fn drum_modes() -> Vec<DrumMode> {
 ///
 /// # Errors
 /// A failure of the run.
-pub fn drum(rig: &Rig, mode: &DrumMode, rings: u32, cfl: f64) -> Result<(f64, Explicit), String> {
+pub fn drum(
+    rig: &Rig,
+    mode: &DrumMode,
+    rings: u32,
+    cfl: f64,
+) -> Result<(f64, FilmSimulation), String> {
     let [radius, tension, share] =
         ["radius", "tension", "amplitude"].map(|key| number(&format!("stretched_disc/{key}")));
     let film = Film::PAPER_ELASTIC;

@@ -72,12 +72,15 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     let mut film = rig.start(&scene)?;
     let inflow = Inflow { mass_flow_rate: 1.0, temperature_flow: 400.0 };
     let phase = Phase { packed: false, inflow };
-    let (mut ledgers, mut balances) = (vec![film.ledger()], vec![film.gas_balance()]);
+    let (mut ledgers, mut balances) = (vec![film.view().ledger()], vec![film.view().gas_balance()]);
     for sample in 1..=40 {
         let time = f64::from(sample) * 1e-3;
         advance(&mut film, time, &phase)?;
-        ledgers.push(film.ledger());
-        balances.push(GasBalance { mass_in: inflow.mass_flow_rate * time, ..film.gas_balance() });
+        ledgers.push(film.view().ledger());
+        balances.push(GasBalance {
+            mass_in: inflow.mass_flow_rate * time,
+            ..film.view().gas_balance()
+        });
     }
     let largest = |series: Vec<f64>| series.into_iter().fold(0.0, worse);
     Ok(vec![

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use billow_solver::geometry::shapes::{crossed_grid, moved, pseudo_random};
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::paper::free_film;
@@ -91,12 +91,12 @@ impl Strip {
 
     /// Kinetic energy of arm B as one body, J: of the columns from the free end on whose mean speed along
     /// the strip is at least half that of the end.
-    pub fn body_energy(self, film: &Explicit) -> f64 {
-        let velocities = film.velocities();
+    pub fn body_energy(self, film: &FilmView<'_>) -> f64 {
+        let velocities = &film.state.velocities;
         let column = |column: u32| {
             let nodes = self.nodes(column).into_iter().map(|node| node as usize);
             nodes.fold([0.0, 0.0], |[mass, momentum], node| {
-                let added = film.model.mass[node];
+                let added = film.system.model.mass[node];
                 [mass + added, momentum + added * velocities.x[node]]
             })
         };

@@ -9,7 +9,7 @@
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::mechanics::forces::membrane::{numerical_forces, strain, strain_energy};
 use billow_solver::mechanics::forces::pressure;
 use billow_solver::mechanics::material::Regime;
@@ -20,7 +20,7 @@ use billow_solver::scene::timeline::Phase;
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
-use super::rig::advance;
+use super::rig::{advance, explicit};
 use super::row::worse;
 use super::{Outcome, Rig, Row};
 
@@ -31,7 +31,7 @@ fn film_at(
     film: Film,
     positions: Vec<Vector3<f64>>,
     velocities: Vec<Vector3<f64>>,
-) -> Result<Explicit, String> {
+) -> Result<FilmSimulation, String> {
     let shell = Shell { positions, ..shell.clone() };
     rig.start(&FilmScene { velocities, ..free_film(shell, film) })
 }
@@ -85,14 +85,15 @@ pub fn force_energy(rig: &Rig) -> Outcome {
         for (name, a, b, regime) in regimes {
             let film = Film { compression, ..Film::PAPER_ELASTIC };
             let moved = film_at(rig, &shell, film, stretched(&shell, a, b), Vec::new())?;
-            let (model, positions) = (&moved.model, &moved.state.positions);
+            let (model, positions) = (&moved.view().system.model, &moved.view().state.positions);
             let mut elements = 0..model.elements();
             if !elements.all(|e| model.material.regime(strain(model, positions, e)) == regime) {
                 return Err(format!("the film is not {name}"));
             }
             let scale = film.youngs_modulus * film.thickness * cell;
-            let off =
-                defect(&moved.forces.films(), positions, 1e-7, |x| strain_energy(model, x)) / scale;
+            let off = defect(&moved.view().forces().films(), positions, 1e-7, |x| {
+                strain_energy(model, x)
+            }) / scale;
             let quantity = format!("film force, {name}, c {compression}, over E t h");
             judged.push(Row::at_most(&quantity, off, band));
         }
@@ -107,8 +108,8 @@ pub fn force_energy(rig: &Rig) -> Outcome {
         .map(perturbed)
         .collect();
     let moved = film_at(rig, &shell, Film::PAPER_ELASTIC, positions, Vec::new())?;
-    let (areas, positions) = (moved.forces.areas(), &moved.state.positions);
-    let volume = |x: &Field| -pressure::volume(&moved.model, x);
+    let (areas, positions) = (moved.view().forces().areas(), &moved.view().state.positions);
+    let volume = |x: &Field| -pressure::volume(&moved.view().system.model, x);
     let off = defect(&areas, positions, 1e-6, volume) / (0.25 * 0.25);
     judged.push(Row::at_most("force of pressure over p h^2", off, band));
     let net: Vector3<f64> = areas.iter().sum();
@@ -119,14 +120,15 @@ pub fn force_energy(rig: &Rig) -> Outcome {
     let gravity = Vector3::new(1.0, -2.0, -9.806_65);
     let heavy =
         rig.start(&FilmScene { gravity, ..free_film(test_sheet(), Film::PAPER_ELASTIC) })?;
-    let mut weight = Field::zeros(heavy.model.nodes());
-    (0..heavy.model.nodes()).for_each(|node| weight.set(node, heavy.force(node)));
-    let masses = &heavy.model.mass;
+    let mut weight = Field::zeros(heavy.view().system.model.nodes());
+    (0..heavy.view().system.model.nodes())
+        .for_each(|node| weight.set(node, heavy.view().force(node)));
+    let masses = &heavy.view().system.model.mass;
     let energy = |x: &Field| -> f64 {
         masses.iter().zip(x.iter()).map(|(mass, x)| -mass * gravity.dot(&x)).sum()
     };
     let total: f64 = masses.iter().sum::<f64>() * gravity.norm();
-    let off = defect(&weight, &heavy.state.positions, 1e-3, energy) / total;
+    let off = defect(&weight, &heavy.view().state.positions, 1e-3, energy) / total;
     judged.push(Row::at_most("weight over total weight", off, band));
     Ok(judged)
 }
@@ -141,18 +143,20 @@ pub fn path_energy(rig: &Rig) -> Outcome {
         stretched(&shell, 8e-3 * libm::sin(s), 8e-3 * libm::sin(1.7 * s + 0.4))
     };
     let mut moved = film_at(rig, &shell, film, positions(0), Vec::new())?;
-    let start = moved.strain_energy();
+    let start = moved.view().strain_energy();
     let (mut work, mut largest) = (0.0, 0.0_f64);
     for k in 1..=steps {
         let next = film_at(rig, &shell, film, positions(k), Vec::new())?;
-        for node in 0..next.model.nodes() {
-            let mean = (moved.forces.film(node) + next.forces.film(node)) * 0.5;
-            work -= mean.dot(&(next.state.positions.get(node) - moved.state.positions.get(node)));
+        let (before, after) = (moved.view(), next.view());
+        for node in 0..after.system.model.nodes() {
+            let mean = (before.forces().film(node) + after.forces().film(node)) * 0.5;
+            let [from, to] = [before, after].map(|film| film.state.positions.get(node));
+            work -= mean.dot(&(to - from));
         }
         moved = next;
-        largest = largest.max(moved.strain_energy());
+        largest = largest.max(moved.view().strain_energy());
     }
-    let change = moved.strain_energy() - start;
+    let change = moved.view().strain_energy() - start;
     Ok(vec![
         Row::at_least("largest energy on the path, J", largest, 0.1),
         Row::at_most(
@@ -182,7 +186,7 @@ pub fn dissipation(rig: &Rig) -> Outcome {
             .map(|(x, off)| x + off * 0.01)
             .collect();
         let velocities = pseudo_random(count, seed + 100);
-        let after_step = |film: Film| -> Result<Explicit, String> {
+        let after_step = |film: Film| -> Result<FilmSimulation, String> {
             let mut film = film_at(rig, &shell, film, positions.clone(), velocities.clone())?;
             advance(&mut film, SHORT_STEP, &Phase::default())?;
             Ok(film)
@@ -191,13 +195,16 @@ pub fn dissipation(rig: &Rig) -> Outcome {
         let difference = |a: Field, b: Field| -> Vec<Vector3<f64>> {
             a.iter().zip(b.iter()).map(|(f, g)| f - g).collect()
         };
-        let numerical = |film: &Explicit| {
-            numerical_forces(&film.model, &film.state.positions, &film.state.element_history)
+        let numerical = |film: &FilmSimulation| {
+            let (now, histories) = (film.view(), explicit(film).histories);
+            numerical_forces(&now.system.model, &now.state.positions, &histories)
         };
         // The damping part of the force: the difference to film without damping.
-        let damping_part = difference(with.forces.films(), without.forces.films());
+        let damping_part =
+            difference(with.view().forces().films(), without.view().forces().films());
         let reported = difference(numerical(&with), numerical(&without));
-        let (positions, velocities) = (&with.state.positions, &with.state.velocities);
+        let (positions, velocities) =
+            (&with.view().state.positions, &explicit(&with).motion.velocities);
         let power: f64 = reported.iter().zip(velocities.iter()).map(|(f, v)| -f.dot(&v)).sum();
         let dissipated: f64 =
             damping_part.iter().zip(velocities.iter()).map(|(f, v)| -f.dot(&v)).sum();

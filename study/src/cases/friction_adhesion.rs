@@ -52,15 +52,16 @@ pub fn friction(rig: &Rig) -> Outcome {
     let mut film = rig.start(&scene)?;
     let record = run_recorded(&mut film, time, 20, &Phase::default())?;
     let sum = |of: &dyn Fn(usize) -> f64| -> f64 { (split..nodes).map(of).sum() };
-    let mass = sum(&|node| film.model.mass[node]);
-    let momentum = sum(&|node| film.model.mass[node] * film.state.velocities.x[node]);
+    let mass = sum(&|node| film.view().system.model.mass[node]);
+    let momentum =
+        sum(&|node| film.view().system.model.mass[node] * film.view().state.velocities.x[node]);
     let lost = speed - momentum / mass;
-    let dissipated = film.ledger().contact_dissipation;
+    let dissipated = film.view().ledger().contact_dissipation;
     let mut judged = vec![
         Row::new("speed loss, m/s", lost, mu * gravity * time, band),
         Row::at_least("energy dissipated by friction, J", dissipated, 0.0),
     ];
-    judged.extend(record.rows(&film, "", number("contact/ledger_band")));
+    judged.extend(record.rows(&film.view(), "", number("contact/ledger_band")));
     Ok(judged)
 }
 
@@ -84,7 +85,7 @@ fn pulled(rig: &Rig, pull: f64, pressure: f64) -> Result<[f64; 2], String> {
     scene.solver.mass_damping = 200.0;
     let mut film = rig.start(&scene)?;
     run_recorded(&mut film, 0.05, 10, &Phase::default())?;
-    let heights = &film.state.positions.z[split..];
+    let heights = &film.view().state.positions.z[split..];
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     Ok([lowest, heights.iter().copied().fold(0.0, worse)])
 }

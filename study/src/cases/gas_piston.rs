@@ -8,7 +8,7 @@
 //! The plate is film on a rigid plane; the walls close the volume and are no film. Each run halves the
 //! CFL number of the one before.
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
 use billow_solver::scene::timeline::Phase;
@@ -34,7 +34,7 @@ struct Piston {
 }
 
 impl Piston {
-    fn start(&self, rig: &Rig) -> Result<Explicit, String> {
+    fn start(&self, rig: &Rig) -> Result<FilmSimulation, String> {
         let column = column(self.area, self.height);
         let film = Film { ..Film::PAPER_ELASTIC };
         let supports = column.piston(self.mass, film.area_density(), self.speed, self.force);
@@ -47,7 +47,7 @@ impl Piston {
 }
 
 /// Height of the plate, m.
-pub fn height(film: &Explicit) -> f64 {
+pub fn height(film: &FilmView<'_>) -> f64 {
     film.state.positions.z[4]
 }
 
@@ -69,7 +69,7 @@ pub fn injected_exact(time: f64) -> f64 {
 ///
 /// # Errors
 /// A failure of the run.
-pub fn injected(rig: &Rig, cfl: f64) -> Result<Explicit, String> {
+pub fn injected(rig: &Rig, cfl: f64) -> Result<FilmSimulation, String> {
     let [mass, rate, entering, c, start, end] =
         ["mass", "rate", "inflow_temperature", "C", "start", "end"]
             .map(|key| number(&format!("injected_piston/{key}")));
@@ -97,13 +97,13 @@ pub fn injected_piston(rig: &Rig) -> Outcome {
     let cp = number("nitrogen/cp");
     let runs = [injected(rig, 0.16)?, injected(rig, 0.08)?, injected(rig, 0.04)?];
     let expected = number("injected_piston/position_at_50_ms");
-    let errors = runs.each_ref().map(|film| height(film) / expected - 1.0);
+    let errors = runs.each_ref().map(|film| height(&film.view()) / expected - 1.0);
     let seen = order(errors[0], errors[1]).min(order(errors[1], errors[2]));
     let finest = &runs[2];
     let enthalpy = rate * end * cp * entering;
-    let kinetic_fraction = finest.kinetic_energy() / enthalpy;
+    let kinetic_fraction = finest.view().kinetic_energy() / enthalpy;
     Ok(vec![
-        Row::new("x at 50 ms, m", height(finest), expected, number("injected_piston/band"))
+        Row::new("x at 50 ms, m", height(&finest.view()), expected, number("injected_piston/band"))
             .with_least_order(seen, number("injected_piston/order"))
             .with_errors(errors),
         Row::new(
@@ -134,7 +134,7 @@ pub fn injected_piston_dead_volume(rig: &Rig) -> Outcome {
         };
         let mut film = piston.start(rig)?;
         advance(&mut film, end, &injection())?;
-        Ok(height(&film) - start)
+        Ok(height(&film.view()) - start)
     };
     let values = [run(0.04)?, run(0.02)?, run(0.01)?];
     let expected = piston_model::from_dead_volume(area, volume, 1e-13)?;
@@ -171,8 +171,9 @@ pub fn gas_spring(rig: &Rig) -> Outcome {
             advance(&mut film, ratio * linear, &Phase::default())?;
             // After one period the plate is at rest: the remaining speed over the acceleration is the
             // error of the period.
-            let speed = film.velocities().z[4];
-            let force = film.force_on(&film.parameters.supports.bodies[0]) - pressure * area;
+            let speed = film.view().state.velocities.z[4];
+            let force =
+                film.view().force_on(&film.view().system.supports.bodies[0]) - pressure * area;
             Ok(ratio * linear - speed / (force / mass))
         };
         let values = [period(0.8)?, period(0.4)?, period(0.2)?];

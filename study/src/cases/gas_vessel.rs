@@ -7,7 +7,7 @@
 //! cooling:                     T − T_film ~ exp(−h A t/(m cv))
 //! ```
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
@@ -36,7 +36,7 @@ fn gamma() -> f64 {
 }
 
 /// Relative error of the gas mass.
-fn mass_defect(film: &Explicit, expected: f64) -> f64 {
+fn mass_defect(film: &FilmView<'_>, expected: f64) -> f64 {
     (film.state.gas.mass / expected - 1.0).abs()
 }
 
@@ -52,14 +52,14 @@ pub fn tank_filling(rig: &Rig) -> Outcome {
     for row in rows("tank_filling") {
         advance(&mut tank, (row[0] - initial) / rate, &phase)?;
         let quantity = format!("T at {} kg, K", row[0]);
-        judged.push(Row::new(&quantity, temperature(&tank), row[1], band));
+        judged.push(Row::new(&quantity, temperature(&tank.view()), row[1], band));
     }
-    judged.push(Row::at_most("mass defect", mass_defect(&tank, 0.01), 1e-12));
+    judged.push(Row::at_most("mass defect", mass_defect(&tank.view(), 0.01), 1e-12));
     let mut empty = rig.start(&vessel(0.6, nitrogen_supply(), 0.0, start))?;
     for until in [1e-3, 1.0] {
         advance(&mut empty, until, &phase)?;
         let quantity = format!("T {until} s after the start from vacuum, K");
-        judged.push(Row::new(&quantity, temperature(&empty), gamma() * entering, band));
+        judged.push(Row::new(&quantity, temperature(&empty.view()), gamma() * entering, band));
     }
     Ok(judged)
 }
@@ -80,7 +80,7 @@ pub fn blow_down(rig: &Rig) -> Outcome {
     let (gamma, band) = (gamma(), number("blow_down/band"));
     let tau = emptying_time(&supply, 0.5 * height, start);
     let mut tank = rig.start(&vessel(height, supply, mass, start))?;
-    let first = tank.state.pressure;
+    let first = tank.view().state.pressure;
     let mut judged = Vec::new();
     for share in [0.1, 0.5, 1.0, 3.0] {
         advance(&mut tank, share * tau, &Phase::default())?;
@@ -88,8 +88,8 @@ pub fn blow_down(rig: &Rig) -> Outcome {
         let cooled = 1.0 / (root * root);
         let pressure = libm::pow(cooled, gamma / (gamma - 1.0));
         let [of_temperature, of_pressure] = ["T/T0", "p/p0"].map(|q| format!("{q} at {share} tau"));
-        judged.push(Row::new(&of_temperature, temperature(&tank) / start, cooled, band));
-        judged.push(Row::new(&of_pressure, tank.state.pressure / first, pressure, band));
+        judged.push(Row::new(&of_temperature, temperature(&tank.view()) / start, cooled, band));
+        judged.push(Row::new(&of_pressure, tank.view().state.pressure / first, pressure, band));
     }
     Ok(judged)
 }
@@ -107,11 +107,16 @@ pub fn cooling(rig: &Rig) -> Outcome {
     let mut judged = Vec::new();
     for elapsed in [0.3, 1.0, 4.0] {
         advance(&mut tank, elapsed / rate, &Phase::default())?;
-        let share = (temperature(&tank) - around) / (start - around);
+        let share = (temperature(&tank.view()) - around) / (start - around);
         let quantity = format!("(T - T_film)/(T0 - T_film) at {elapsed} time constants");
         judged.push(Row::new(&quantity, share, libm::exp(-elapsed), band));
     }
     let heat = capacity * (start - around) * (libm::exp(-4.0) - 1.0);
-    judged.push(Row::new("heat from the film, J", tank.state.gas_balance.heat, heat, band));
+    judged.push(Row::new(
+        "heat from the film, J",
+        tank.view().accounting().gas_balance.heat,
+        heat,
+        band,
+    ));
     Ok(judged)
 }

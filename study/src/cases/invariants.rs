@@ -9,9 +9,9 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, pseudo_random, sheet};
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::mechanics::forces::membrane::{
-    NodeForces, assemble_membrane, numerical_forces, strain,
+    CreepStep, NodeForces, assemble_membrane, numerical_forces, strain,
 };
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
@@ -20,7 +20,7 @@ use billow_solver::scene::{Film, GasSupply};
 use nalgebra::{Rotation3, Vector3};
 
 use super::reference::number;
-use super::rig::advance;
+use super::rig::{advance, explicit};
 use super::row::worse;
 use super::{Outcome, Rig, Row};
 
@@ -39,10 +39,13 @@ pub fn patch(rig: &Rig) -> Outcome {
     }
     let film = rig.start(&free_film(shell, Film::PAPER_ELASTIC))?;
     let scale = number("film/youngs_modulus") * number("film/thickness") * 0.04;
-    let force = inside.iter().map(|node| film.forces.film(*node).norm()).fold(0.0, worse);
+    let force = inside.iter().map(|node| film.view().forces().film(*node).norm()).fold(0.0, worse);
     let expected = 0.5 * (1.004 * 1.004 - 1.0);
-    let off = (0..film.model.elements())
-        .map(|element| (strain(&film.model, &film.state.positions, element).xx - expected).abs())
+    let off = (0..film.view().system.model.elements())
+        .map(|element| {
+            (strain(&film.view().system.model, &film.view().state.positions, element).xx - expected)
+                .abs()
+        })
         .fold(0.0, worse);
     Ok(vec![
         Row::at_most("force on inner nodes over E t h", force / scale, band),
@@ -63,15 +66,23 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let film = Film { compression: 1.0, numerical_damping: 0.1, ..Film::PAPER };
     let scale = film.youngs_modulus * film.thickness * 0.1;
     let film = rig.start(&FilmScene { velocities, ..free_film(shell, film) })?;
-    let force = film.forces.films().iter().map(|force| force.norm()).fold(0.0, worse);
+    let force = film.view().forces().films().iter().map(|force| force.norm()).fold(0.0, worse);
     // A large rotation in a single step.
-    let mut history = film.state.element_history.clone();
-    let mut out = NodeForces::new(&film.model);
-    let spun = film.state.positions.iter().map(|x| turn * x).collect::<Vec<_>>();
-    let (spun, instruction_set) = (Field::of(&spun), film.parameters.instruction_set);
-    let stepped =
-        assemble_membrane(instruction_set, &film.model, &spun, 1e-5, &mut history, &mut out);
-    let after = numerical_forces(&film.model, &spun, &history);
+    let mut histories = explicit(&film).histories;
+    let (model, mut creep) = (&film.view().system.model, CreepStep::none());
+    let mut out = NodeForces::new(model);
+    let spun = film.view().state.positions.iter().map(|x| turn * x).collect::<Vec<_>>();
+    let (spun, instruction_set) = (Field::of(&spun), film.view().system.instruction_set);
+    let stepped = assemble_membrane(
+        instruction_set,
+        model,
+        &spun,
+        1e-5,
+        &mut creep,
+        &mut histories,
+        &mut out,
+    );
+    let after = numerical_forces(model, &spun, &histories);
     let after = after.iter().map(|force| force.norm()).fold(0.0, worse);
     let band = number("patch/band");
     Ok(vec![
@@ -86,19 +97,21 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
             stepped.numerical_dissipation.abs() / (scale * 0.1),
             band,
         ),
-        Row::at_most("strain energy over E t h^2", film.strain_energy() / (scale * 0.1), band),
+        Row::at_most(
+            "strain energy over E t h^2",
+            film.view().strain_energy() / (scale * 0.1),
+            band,
+        ),
     ])
 }
 
 /// Σ m v, Σ m x × v and Σ |m v|.
-fn momentum(film: &Explicit) -> (Vector3<f64>, Vector3<f64>, f64) {
-    // The positions half a step earlier, at the time of the velocities.
-    let back = -0.5 * film.state.last_step;
+fn momentum(film: &FilmView<'_>) -> (Vector3<f64>, Vector3<f64>, f64) {
     let (mut sum, mut moment, mut size) = (Vector3::zeros(), Vector3::zeros(), 0.0);
-    for (node, mass) in film.model.mass.iter().enumerate() {
+    for (node, mass) in film.system.model.mass.iter().enumerate() {
         let velocity = film.state.velocities.get(node);
         sum += velocity * *mass;
-        moment += (film.state.positions.get(node) + velocity * back).cross(&velocity) * *mass;
+        moment += film.state.positions.get(node).cross(&velocity) * *mass;
         size += velocity.norm() * mass;
     }
     (sum, moment, size)
@@ -117,14 +130,14 @@ pub fn momenta(rig: &Rig) -> Outcome {
     };
     let film = Film { numerical_damping: 0.1, ..Film::PAPER };
     let mut film = rig.start(&FilmScene { velocities, filling, ..free_film(shell, film) })?;
-    let before = momentum(&film);
-    let target = 1e5 * film.stable_step();
+    let before = momentum(&film.view());
+    let target = 1e5 * film.view().next_step();
     advance(&mut film, target, &Phase::default())?;
-    let after = momentum(&film);
+    let after = momentum(&film.view());
     let band = number("momentum/band");
     let relative = |change: Vector3<f64>| change.norm() / before.2;
     Ok(vec![
-        Row::at_least("steps", film.state.steps as f64, 1e5),
+        Row::at_least("steps", film.view().steps() as f64, 1e5),
         Row::at_most(
             "change of linear momentum over sum of |m v|",
             relative(after.0 - before.0),
@@ -147,8 +160,8 @@ pub fn shear_panel(rig: &Rig) -> Outcome {
         x.x += gamma * x.y;
     }
     let film = rig.start(&free_film(shell, Film::PAPER_ELASTIC))?;
-    let volume: f64 = film.model.volume.iter().sum();
-    let forces = film.forces.films();
+    let volume: f64 = film.view().system.model.volume.iter().sum();
+    let forces = film.view().forces().films();
     let forces = forces.iter().zip(&reference.positions);
     let stress = -forces.map(|(force, x)| force.x * x.y).sum::<f64>() / volume;
     let (expected, band) = (number("shear_panel/P12"), number("shear_panel/band"));

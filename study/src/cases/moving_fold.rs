@@ -15,7 +15,7 @@
 //! rigid. Where film behind the fold wrinkles, arm A is shorter and arm B has less mass than that, so the
 //! notes give the kinetic energy of arm B as one body beside it.
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::output::ledger::{Ledger, residuals};
 use billow_solver::scene::timeline::Phase;
 
@@ -62,21 +62,21 @@ impl Unrolling {
         let scene = strip.scene(seed);
         let mut film = rig.start(&scene)?;
         let end = strip.nodes(strip.columns() - 1);
-        let position = |film: &Explicit| {
+        let position = |film: &FilmView<'_>| {
             let sum: f64 = end.iter().map(|node| film.state.positions.x[*node as usize]).sum();
             sum / end.len() as f64
         };
-        let start = position(&film);
-        let sample = |film: &Explicit| Sample {
+        let start = position(&film.view());
+        let sample = |film: &FilmView<'_>| Sample {
             time: film.state.time,
             length: 1.0 - 0.5 * (position(film) - start) / arm,
             ledger: film.ledger(),
             body: strip.body_energy(film),
         };
-        let mut samples = vec![sample(&film)];
+        let mut samples = vec![sample(&film.view())];
         for number in 1..=MAX_SAMPLES {
             advance(&mut film, SAMPLE_INTERVAL * f64::from(number), &Phase::default())?;
-            let now = sample(&film);
+            let now = sample(&film.view());
             samples.push(now);
             if now.length < last - HALF_WINDOW {
                 break;

@@ -1,6 +1,6 @@
 //! Frequency and extrema of an oscillation.
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::scene::timeline::Phase;
 
 use super::rig::advance;
@@ -15,16 +15,16 @@ const MAX_SAMPLES: usize = 200_000;
 /// # Errors
 /// A failure of the film, or that it does not oscillate.
 pub fn frequency(
-    film: &mut Explicit,
+    film: &mut FilmSimulation,
     interval: f64,
     crossings: usize,
-    signal: impl Fn(&Explicit) -> f64,
+    signal: impl Fn(&FilmView<'_>) -> f64,
 ) -> Result<f64, String> {
-    let (mut found, mut before) = (Vec::with_capacity(crossings), signal(film));
+    let (mut found, mut before) = (Vec::with_capacity(crossings), signal(&film.view()));
     for _ in 0..MAX_SAMPLES {
-        let time = film.state.time;
+        let time = film.view().state.time;
         advance(film, time + interval, &Phase::default())?;
-        let now = signal(film);
+        let now = signal(&film.view());
         if before * now < 0.0 {
             found.push(time + interval * before / (before - now));
             if found.len() == crossings {
@@ -34,7 +34,11 @@ pub fn frequency(
         }
         before = now;
     }
-    Err(format!("no oscillation: {} zero crossings until {} s", found.len(), film.state.time))
+    Err(format!(
+        "no oscillation: {} zero crossings until {} s",
+        found.len(),
+        film.view().state.time
+    ))
 }
 
 /// An extremum of a signal.
@@ -51,17 +55,17 @@ pub struct Extremum {
 /// # Errors
 /// As [`frequency`].
 pub fn extrema(
-    film: &mut Explicit,
+    film: &mut FilmSimulation,
     interval: f64,
     count: usize,
-    signal: impl Fn(&Explicit) -> f64,
+    signal: impl Fn(&FilmView<'_>) -> f64,
 ) -> Result<Vec<Extremum>, String> {
-    let mut last = [signal(film); 3];
+    let mut last = [signal(&film.view()); 3];
     let mut found = Vec::with_capacity(count);
     for sample in 1..MAX_SAMPLES {
-        let time = film.state.time;
+        let time = film.view().state.time;
         advance(film, time + interval, &Phase::default())?;
-        last = [last[1], last[2], signal(film)];
+        last = [last[1], last[2], signal(&film.view())];
         let (rise, fall) = (last[1] - last[0], last[2] - last[1]);
         if sample > 2 && rise * fall < 0.0 {
             let shift = 0.5 * (rise + fall) / (rise - fall);
@@ -72,5 +76,5 @@ pub fn extrema(
             }
         }
     }
-    Err(format!("no oscillation: {} extrema until {} s", found.len(), film.state.time))
+    Err(format!("no oscillation: {} extrema until {} s", found.len(), film.view().state.time))
 }

@@ -1,7 +1,8 @@
 //! What the cases share: supports and inflow, advancing film, and the deliberate fault that a test
 //! may inject.
 
-use billow_solver::integrators::explicit::{Explicit, PressureLoad};
+use billow_solver::integrators::explicit::StoredExplicit;
+use billow_solver::integrators::{FilmSimulation, FilmView, StoredIntegrator};
 use billow_solver::models::film::capsule;
 use billow_solver::platform::fault_injection::Fault;
 use billow_solver::platform::simd::InstructionSet;
@@ -9,6 +10,7 @@ use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::timeline::Phase;
+use billow_solver::system::PressureLoad;
 
 /// How cases are run: as they are, or with a deliberate fault that a case must detect.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +32,8 @@ impl Rig {
     ///
     /// # Errors
     /// What is invalid in the scene.
-    pub fn start(&self, scene: &FilmScene) -> Result<Explicit, String> {
-        let film = capsule::start(&self.on_instruction_set(scene));
+    pub fn start(&self, scene: &FilmScene) -> Result<FilmSimulation, String> {
+        let film = capsule::start(&self.on_instruction_set(scene), &[]);
         let film = film.map_err(|error| error.to_string())?;
         Ok(self.faulty(film))
     }
@@ -44,12 +46,12 @@ impl Rig {
     }
 
     /// The same film at time 0, with the fault injected.
-    pub fn faulty(&self, film: Explicit) -> Explicit {
+    pub fn faulty(&self, film: FilmSimulation) -> FilmSimulation {
         let Some(fault) = self.fault else { return film };
-        let Explicit { mut model, mut parameters, state, .. } = film;
-        model.inject_fault(fault);
-        parameters.fault = Some(fault);
-        Explicit::new(model, parameters, state.positions, state.velocities, state.gas)
+        let (mut system, state, settings) = film.into_parts();
+        system.model.inject_fault(fault);
+        system.fault = Some(fault);
+        FilmSimulation::new(system, settings, state.positions, state.velocities, state.gas)
     }
 }
 
@@ -71,14 +73,25 @@ pub fn inflow(rate: f64, temperature: f64) -> Phase {
 ///
 /// # Errors
 /// Kind, time and location of the failure.
-pub fn advance(film: &mut Explicit, target: f64, phase: &Phase) -> Result<(), String> {
+pub fn advance(film: &mut FilmSimulation, target: f64, phase: &Phase) -> Result<(), String> {
     film.advance(target, phase)
         .map_err(|failure| format!("{:?} at {} s: {}", failure.kind, failure.time, failure.place))
 }
 
+/// What central differences keep beside the state.
+///
+/// # Panics
+/// If the film has another integrator.
+pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
+    match film.stored().map(|stored| stored.integrator) {
+        Some(StoredIntegrator::Explicit(explicit)) => explicit,
+        None => unreachable!("central differences can be stored"),
+    }
+}
+
 /// Temperature of the gas, K; NaN under a fixed pressure.
-pub fn temperature(film: &Explicit) -> f64 {
-    match film.parameters.pressure_load {
+pub fn temperature(film: &FilmView<'_>) -> f64 {
+    match film.system.pressure_load {
         PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
         PressureLoad::Overpressure(_) => f64::NAN,
     }

@@ -6,12 +6,13 @@
 
 use billow_solver::geometry::shapes::icosphere;
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::explicit::{Explicit, PressureLoad};
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::film::Relaxation;
 use billow_solver::scene::Film;
 use billow_solver::scene::GasSupply;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::system::PressureLoad;
 
 use super::oscillation::{extrema, frequency};
 use super::reference::{number, rows};
@@ -29,16 +30,15 @@ fn sphere(level: u32) -> Shell {
 }
 
 /// The sphere in equilibrium under an overpressure, Pa.
-fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<Explicit, String> {
+fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<FilmSimulation, String> {
     let filling = Filling::Pressure(overpressure);
-    let mut film =
+    let film =
         rig.start(&FilmScene { filling, ..free_film(sphere(level), Film::PAPER_ELASTIC) })?;
     // The remaining motion must be small against an amplitude of 1e-5 of the radius.
     let relaxation = Relaxation { max_kinetic_fraction: 1e-15, ..Relaxation::default() };
     relaxation
-        .relax_at(&mut film, overpressure)
-        .map_err(|failure| format!("no equilibrium: {:?}, {}", failure.kind, failure.place))?;
-    Ok(film)
+        .relax_at(film, overpressure)
+        .map_err(|(failure, _)| format!("no equilibrium: {:?}, {}", failure.kind, failure.place))
 }
 
 /// Gas of this pressure (Pa) in this volume (m³).
@@ -60,25 +60,25 @@ pub fn breathing_start(
     level: u32,
     pressure: f64,
     cfl: Option<f64>,
-) -> Result<(Explicit, f64), String> {
+) -> Result<(FilmSimulation, f64), String> {
     let rest = equilibrium(rig, level, pressure)?;
     let mut shell = sphere(level);
-    shell.positions = rest.state.positions.iter().collect();
+    shell.positions = rest.view().state.positions.iter().collect();
     // An amplitude of 1e-5 of the radius at about 5300 rad/s.
     let rate = number("breathing_sphere/amplitude") * 5300.0;
     let velocities = shell.positions.iter().map(|x| x * rate).collect();
-    let filling = filled(pressure, rest.state.volume);
+    let filling = filled(pressure, rest.view().state.volume);
     let mut scene = FilmScene { velocities, filling, ..free_film(shell, Film::PAPER_ELASTIC) };
     scene.solver.cfl = cfl.unwrap_or(scene.solver.cfl);
-    Ok((rig.start(&scene)?, rest.state.volume))
+    Ok((rig.start(&scene)?, rest.view().state.volume))
 }
 
 /// Frequency of the radial mode of a breathing sphere with this volume at rest (m³), Hz.
 ///
 /// # Errors
 /// A failure of the run.
-pub fn breathing_frequency(film: &mut Explicit, volume: f64) -> Result<f64, String> {
-    let interval = film.stable_step();
+pub fn breathing_frequency(film: &mut FilmSimulation, volume: f64) -> Result<f64, String> {
+    let interval = film.view().next_step();
     frequency(film, interval, 13, |film| film.state.volume - volume)
 }
 
@@ -127,19 +127,19 @@ fn breathing(rig: &Rig, [coarse, middle, fine]: [u32; 3]) -> Outcome {
 /// equilibrium.
 fn release(rig: &Rig, level: u32, pressure: f64) -> Result<[f64; 2], String> {
     let rest = equilibrium(rig, level, pressure)?;
-    let PressureLoad::Overpressure(_) = rest.parameters.pressure_load else {
+    let PressureLoad::Overpressure(_) = rest.view().system.pressure_load else {
         unreachable!("relaxed under an overpressure")
     };
     let empty = sphere(level);
     let start = empty.volume(|node| empty.positions[node as usize]);
     let species = nitrogen_supply().species;
     let gamma = species.cp / (species.cp - species.gas_constant);
-    let denser = pressure * libm::pow(rest.state.volume / start, gamma);
+    let denser = pressure * libm::pow(rest.view().state.volume / start, gamma);
     let filling = filled(denser, start);
     let mut scene = FilmScene { filling, ..free_film(empty, Film::PAPER_ELASTIC) };
     scene.solver.cfl = CFL;
     let mut film = rig.start(&scene)?;
-    let interval = film.stable_step();
+    let interval = film.view().next_step();
     let extrema = extrema(&mut film, interval, 2, |film| film.state.volume)?;
     Ok([libm::cbrt(extrema[0].value / start) - 1.0, extrema[1].time])
 }

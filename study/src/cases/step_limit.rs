@@ -10,6 +10,7 @@
 
 use billow_solver::geometry::shapes::{pseudo_random, sheet};
 use billow_solver::geometry::shell::Shell;
+use billow_solver::integrators::SimulationSettings;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::FilmScene;
@@ -67,13 +68,15 @@ fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
 fn grows(rig: &Rig, shell: &Shell, film: &Film, fraction: f64, omega: f64) -> Result<bool, String> {
     let kick = |kick: &Vector3<f64>| Vector3::new(kick.x, kick.y, 0.0) * 1e-6;
     let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();
-    let mut moving = rig.start(&FilmScene { velocities, ..free_film(shell.clone(), *film) })?;
-    moving.parameters.cfl = fraction * moving.model.largest_frequency() / omega;
-    let target = 3000.0 * moving.stable_step();
+    let moving = rig.start(&FilmScene { velocities, ..free_film(shell.clone(), *film) })?;
+    let cfl = fraction * moving.view().system.model.largest_frequency() / omega;
+    let mut moving =
+        moving.with(|system, settings| (system, SimulationSettings { cfl, ..settings }));
+    let target = 3000.0 * moving.view().next_step();
     if moving.advance(target, &Phase::default()).is_err() {
         return Ok(true);
     }
-    let fastest = moving.state.velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let fastest = moving.view().state.velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
     Ok(fastest > 1e-3)
 }
 

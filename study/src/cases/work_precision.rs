@@ -8,7 +8,7 @@
 
 use std::time::Instant;
 
-use billow_solver::integrators::explicit::Explicit;
+use billow_solver::integrators::FilmView;
 use billow_solver::models::run::Model;
 use billow_solver::scene::Stepping;
 use serde_json::{Value, json};
@@ -82,9 +82,9 @@ struct Meter {
 
 impl Meter {
     /// Adds film that ran for this wall time, s.
-    fn add(&mut self, film: &Explicit, wall: f64) {
-        self.elements = film.model.elements() as f64;
-        self.steps += film.state.steps as f64;
+    fn add(&mut self, film: &FilmView<'_>, wall: f64) {
+        self.elements = film.system.model.elements() as f64;
+        self.steps += film.steps() as f64;
         self.simulated += film.state.time;
         self.wall += wall;
     }
@@ -123,9 +123,9 @@ fn injected_piston(rig: &Rig) -> Result<ExactScene, String> {
     for cfl in PISTON_CFL {
         let (film, wall) = timed(|| gas_piston::injected(rig, cfl))?;
         let mut meter = Meter::default();
-        meter.add(&film, wall);
+        meter.add(&film.view(), wall);
         let configuration = vec!["film".into(), cfl.into(), Value::Null, Value::Null];
-        found.runs.push(meter.run(configuration, vec![gas_piston::height(&film)]));
+        found.runs.push(meter.run(configuration, vec![gas_piston::height(&film.view())]));
     }
     let adaptive = TOLERANCES.map(|value| (Stepping::Adaptive(value), json!(value), Value::Null));
     let fixed = FIXED_STEPS.map(|value| (Stepping::Fixed(value), Value::Null, json!(value)));
@@ -164,7 +164,7 @@ fn breathing_sphere(rig: &Rig) -> Result<ExactScene, String> {
         for row in &rows {
             let (mut film, volume) = sphere_motion::breathing_start(rig, level, row[0], Some(cfl))?;
             let (value, wall) = timed(|| sphere_motion::breathing_frequency(&mut film, volume))?;
-            meter.add(&film, wall);
+            meter.add(&film.view(), wall);
             values.push(value);
         }
         found.runs.push(meter.run(vec![level.into(), cfl.into()], values));
@@ -217,7 +217,7 @@ fn stretched_disc(rig: &Rig) -> Result<ExactScene, String> {
         let (mut meter, mut values) = (Meter::default(), Vec::new());
         for mode in &modes {
             let ((value, film), wall) = timed(|| drum::drum(rig, mode, rings, cfl))?;
-            meter.add(&film, wall);
+            meter.add(&film.view(), wall);
             values.push(value);
         }
         found.runs.push(meter.run(vec![rings.into(), cfl.into()], values));

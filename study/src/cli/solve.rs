@@ -145,7 +145,7 @@ fn write_files(args: &Args, scene: &SceneFile, solved: &Solved) -> Result<()> {
     }
     if let Some(path) = &args.shape {
         let positions = match &solved.end {
-            Ended::Motion(motion) => &motion.0.film.state.positions,
+            Ended::Motion(motion) => &motion.0.view().state.positions,
             Ended::Equilibrium(equilibrium) => &equilibrium.positions,
             Ended::NoEquilibrium(_) => return Ok(()),
         };

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use billow_solver::integrators::explicit::State;
+use billow_solver::integrators::StoredFilm;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{Answer, Model, Observer, Pause, Progress, Run};
 use billow_solver::output::checkpoint::{Checkpoint, CheckpointError};
@@ -236,8 +236,7 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         Error::from(refused("", "", &error.to_string(), ""))
     };
     let Some(path) = &pauses.resume else {
-        let mut model = FilmRun::of(&scene.film, rings).map_err(invalid)?;
-        model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
+        let model = FilmRun::seated(&scene.film, rings, &scene.seating).map_err(invalid)?;
         return Ok((model, Run::default()));
     };
     let refuse = |problem: String| Error::Disk { path: path.clone(), problem };
@@ -247,7 +246,7 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
     })?;
     let text = String::from_utf8(bytes)
         .map_err(|_| refuse(format!("is not a checkpoint: not UTF-8{START_AGAIN}")))?;
-    let stored = Checkpoint::<State, Run>::from_text(&text, &scene.fingerprint);
+    let stored = Checkpoint::<StoredFilm, Run>::from_text(&text, &scene.fingerprint);
     let checkpoint = stored.map_err(|error| {
         let next = match error {
             CheckpointError::Scene => {
@@ -260,8 +259,7 @@ fn begin(scene: &SceneFile, pauses: &Pauses, files: &dyn Files) -> Result<(FilmR
         };
         refuse(format!("{error}{next}"))
     })?;
-    let mut model = FilmRun::resume(&scene.film, rings, checkpoint.state)
+    let model = FilmRun::resume(&scene.film, rings, &scene.seating, checkpoint.state)
         .map_err(|error| refuse(format!("{error}{START_AGAIN}")))?;
-    model.film.parameters.supports.movers.extend(scene.seating.iter().cloned());
     Ok((model, checkpoint.run))
 }

@@ -27,7 +27,6 @@
 use billow_solver::collision::broad_phase::collision_mesh::CollisionMesh;
 use billow_solver::collision::contact::intersections::intersections;
 use billow_solver::geometry::field::Field;
-use billow_solver::integrators::explicit::PressureLoad;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::{resultants, thickness};
@@ -35,6 +34,7 @@ use billow_solver::models::film::{FILM_STRESS_99, FilmRun};
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::film_scene::Filling;
 use billow_solver::statics::StaticSolution;
+use billow_solver::system::PressureLoad;
 use nalgebra::Vector3;
 use serde_json::{Map, Value as Json, json};
 
@@ -125,23 +125,23 @@ fn reaction([force, moment]: [Vector3<f64>; 2]) -> Json {
 }
 
 fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json {
-    let explicit = &run.film;
-    let mut summary = film(scene, &explicit.model, &explicit.state.positions);
-    let ledger = explicit.ledger();
-    let temperature = match explicit.parameters.pressure_load {
-        PressureLoad::Gas(gas) => gas.temperature(explicit.state.gas),
+    let now = run.view();
+    let mut summary = film(scene, &now.system.model, &now.state.positions);
+    let ledger = now.ledger();
+    let temperature = match now.system.pressure_load {
+        PressureLoad::Gas(gas) => gas.temperature(now.state.gas),
         PressureLoad::Overpressure(_) => scene.film.film.temperature,
     };
     let reactions = scene.film.supports.iter().map(|support| {
-        let on_support = explicit.reaction(&support.nodes, &support.hold.projector());
+        let on_support = now.reaction(&support.nodes, &support.hold.projector());
         (support.name.clone(), reaction(on_support))
     });
     let more = json!({
         "volume": run.volume(),
-        "pressure": explicit.state.pressure,
-        "overpressure": explicit.overpressure(),
+        "pressure": now.state.pressure,
+        "overpressure": now.overpressure(),
         "temperature": temperature,
-        "gas_mass": explicit.state.gas.mass,
+        "gas_mass": now.state.gas.mass,
         "reactions": reactions.collect::<Map<_, _>>(),
         "ledger": {
             "kinetic": ledger.kinetic,
@@ -168,10 +168,10 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
             "peak_kinetic_energy": deployment.measures.peak_kinetic_energy,
         },
         "energies": {"kinetic": ledger.kinetic, "strain": ledger.strain},
-        "film_stress": explicit.state.film_stress,
+        "film_stress": now.accounting().film_stress,
         "film_stress_99": deployment.followed(FILM_STRESS_99.0).iter().copied().fold(0.0, f64::max),
-        "steps": explicit.state.steps,
-        "end_time": explicit.state.time,
+        "steps": now.steps(),
+        "end_time": now.state.time,
     });
     merge(&mut summary, more);
     if let Stop::Failed(failure) = &deployment.stop {
@@ -183,21 +183,21 @@ fn in_motion(scene: &SceneFile, run: &FilmRun, deployment: &Deployment) -> Json 
 
 /// Contact, with its extremes over the samples; `null` where it is off.
 fn contact(run: &FilmRun, deployment: &Deployment) -> Json {
-    let Some(model) = &run.film.parameters.contact else { return Json::Null };
-    let state = &run.film.state.contact_state;
+    let now = run.view();
+    let Some(model) = &now.system.contact else { return Json::Null };
+    let (state, accounting) = (&now.state.contact, now.accounting());
     let largest = |name: &str| deployment.followed(name).iter().copied().fold(0.0, f64::max);
     let plates = model.plates.iter().zip(&state.plates);
-    let stored = state.contacts.iter().map(|contact| contact.energy).sum::<f64>()
-        + state.plates.iter().map(|plate| plate.energy).sum::<f64>();
+    let stored = state.stored_energy();
     json!({
         "distance": model.distance,
         "smallest_gap": deployment.followed("smallest_gap").iter().copied().fold(model.distance, f64::min),
         "interlayer_pressure": largest("interlayer_pressure"),
         "contact_area_fraction": largest("contact_area_fraction"),
-        "broad_phase_rebuilds": state.broad_phase_rebuilds,
+        "broad_phase_rebuilds": accounting.broad_phase_rebuilds,
         "pairs": largest("contact_pairs"),
-        "collision_impulses": state.collision_impulses,
-        "unrecovered_contact_energy": run.film.ledger().contact - stored + state.collision_dissipation,
+        "collision_impulses": accounting.collision_impulses,
+        "unrecovered_contact_energy": now.ledger().contact - stored + accounting.collision_dissipation,
         "plates": plates.map(|(plate, state)| (plate.name.clone(), state.force.into()))
             .collect::<Map<_, _>>(),
     })

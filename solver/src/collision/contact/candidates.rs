@@ -12,9 +12,10 @@
 //! matter are always in the list, whatever the history. Other pairs in the list exert no force. So no
 //! result depends on when a pair was measured.
 
+use serde::{Deserialize, Serialize};
+
 use super::model::{ContactModel, pair_kind};
 use super::pair::{CandidatePair, Pair, PairKind};
-use super::state::ContactState;
 use crate::collision::broad_phase::query::QueryKind;
 use crate::collision::broad_phase::queue::PairQueue;
 use crate::collision::broad_phase::scheduler::{CandidateScheduler, ProximityQuery};
@@ -62,6 +63,16 @@ pub(super) struct FeatureHit {
     pub gap: f64,
     /// Gap at the update before, m.
     pub previous_gap: f64,
+}
+
+/// How far the search for candidates has come; with the positions it determines when it starts again.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SearchProgress {
+    /// Sum over the steps of an upper bound of the largest displacement of any node, m.
+    pub path_length: f64,
+    /// Number of times that the candidates were built without history, the first included.
+    pub rebuilds: u64,
 }
 
 /// Pairs that may be in contact in the next step, and when the others must be measured.
@@ -154,15 +165,15 @@ impl CandidateList {
         &mut self,
         model: &ContactModel,
         positions: &Field,
-        state: &mut ContactState,
+        progress: &mut SearchProgress,
         max_displacement: f64,
     ) {
-        let (from, to) = (state.path_length, state.path_length + max_displacement);
-        state.path_length = to;
+        let (from, to) = (progress.path_length, progress.path_length + max_displacement);
+        progress.path_length = to;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
         let rebuilds = 1 + (to / (REBUILD_PATH * model.edge_length)) as u64;
-        if rebuilds > state.broad_phase_rebuilds {
-            state.broad_phase_rebuilds = rebuilds;
+        if rebuilds > progress.rebuilds {
+            progress.rebuilds = rebuilds;
             self.reset(positions, from);
         }
         self.collect(model, positions, [from, to]);
@@ -267,12 +278,12 @@ mod tests {
             let mesh = CollisionMesh::new(18, &triangles);
             let model = ContactModel::new(mesh, 0.05, 1.0, 0.7, InstructionSet::detect());
             let mut x: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
-            let mut state = ContactState { broad_phase_rebuilds: 1, ..ContactState::default() };
+            let mut progress = SearchProgress { path_length: 0.0, rebuilds: 1 };
             let mut list = CandidateList::build(&model, &Field::of(&x), 0.0);
             for motion in motions {
                 let from = Field::of(&x);
                 let longest = motion.iter().map(|u| Vector3::from(*u).norm()).fold(0.0, f64::max);
-                list.prepare_step(&model, &from, &mut state, longest);
+                list.prepare_step(&model, &from, &mut progress, longest);
                 for (x, u) in x.iter_mut().zip(motion) {
                     *x += Vector3::from(u);
                 }
@@ -290,7 +301,7 @@ mod tests {
                 for (candidate, gap) in list.candidates.iter_mut().zip(&list.gaps) {
                     candidate.gap = *gap;
                 }
-                list.release_distant(&model, state.path_length);
+                list.release_distant(&model, progress.path_length);
             }
         }
     }

@@ -11,7 +11,6 @@ use super::distance::Closest;
 use super::force_law::Contact;
 use super::model::ContactModel;
 use super::pair::{CandidatePair, Pair, PairKind, vectors_of};
-use super::state::ContactState;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Feature;
 
@@ -43,22 +42,21 @@ struct Update<'a> {
 }
 
 impl ContactModel {
-    /// Updates the contacts at these positions (m) and adds their forces (N) to `forces`. `mass`:
-    /// mass of each node, kg. Returns the energy stored in all contacts, J.
-    pub fn update_contacts(
+    /// The contacts at these positions (m), of those at the last positions, `previous`; adds their forces
+    /// (N) to `forces`. `mass`: mass of each node, kg. `path_length` (m): that of the search so far.
+    pub fn contacts_at(
         &self,
         positions: &Field,
         mass: &[f64],
-        forces: &mut Field,
-        state: &mut ContactState,
+        previous: &[Contact],
+        path_length: f64,
         list: &mut CandidateList,
-    ) -> f64 {
+        (contacts, forces): (&mut Vec<Contact>, &mut Field),
+    ) {
         list.measure(self, positions);
         let CandidateList { candidates, smallest_gap, gaps, hits, .. } = &mut *list;
-        let mut previous =
-            core::mem::replace(&mut state.contacts, core::mem::take(&mut state.scratch));
-        state.contacts.clear();
-        let update = Update { positions, mass, previous: &previous };
+        contacts.clear();
+        let update = Update { positions, mass, previous };
         let mut start = 0;
         while start < candidates.len() {
             let mut end = start + 1;
@@ -72,10 +70,10 @@ impl ContactModel {
                 }
                 let of_node = &mut candidates[start..end];
                 let gaps = &gaps[start..end];
-                self.update_node_contacts(&update, of_node, gaps, hits, &mut state.contacts);
+                self.update_node_contacts(&update, of_node, gaps, hits, contacts);
             } else {
                 let candidate = &mut candidates[start];
-                self.update_edge_contact(&update, candidate, gaps[start], &mut state.contacts);
+                self.update_edge_contact(&update, candidate, gaps[start], contacts);
             }
             start = end;
         }
@@ -85,10 +83,8 @@ impl ContactModel {
             .iter()
             .filter(|candidate| candidate.gap < self.distance_of(candidate.pair.kind));
         *smallest_gap = in_contact.map(|candidate| candidate.gap).fold(f64::INFINITY, f64::min);
-        list.release_distant(self, state.path_length);
-        previous.clear();
-        state.scratch = previous;
-        self.add_contact_forces(positions, forces, state)
+        list.release_distant(self, path_length);
+        self.add_contact_forces(positions, forces, contacts);
     }
 
     /// Adds the contacts of one node to `contacts`. `candidates` are all candidates of this node,
@@ -224,15 +220,9 @@ impl ContactModel {
         self.stiffness_per_mass / mobility
     }
 
-    /// Adds the forces of the contacts (N) to `forces`. Returns their stored energy, J.
-    fn add_contact_forces(
-        &self,
-        positions: &Field,
-        forces: &mut Field,
-        state: &mut ContactState,
-    ) -> f64 {
-        let mut energy = 0.0;
-        for contact in &mut state.contacts {
+    /// Adds the forces of the contacts (N) to `forces`, and sets their stored energies.
+    fn add_contact_forces(&self, positions: &Field, forces: &mut Field, contacts: &mut [Contact]) {
+        for contact in contacts {
             let nodes = contact.pair.nodes(&self.mesh.topology);
             let Closest { weights, between, squared } =
                 contact.pair.closest(&vectors_of(positions, nodes));
@@ -247,10 +237,8 @@ impl ContactModel {
                     forces.set(node, forces.get(node) + force * weight);
                 }
                 contact.energy = contact.stored_energy(gap);
-                energy += contact.energy;
             }
         }
-        energy
     }
 }
 

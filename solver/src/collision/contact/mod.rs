@@ -1,4 +1,4 @@
-//! Contact of film with film and with plates: it repels, sticks and rubs, and it prevents passages.
+//! Contact of film with film and with plates: energies, forces, stiffness, and steps without a passage.
 //!
 //! ```text
 //! pair energy  k (o − d)³/(6 o)  while d < o     force k (o − d)²/(2 o) along the line between closest points
@@ -19,31 +19,28 @@
 //!   once ([`contacts`]). A contact that slides to a neighbouring feature keeps penetration and
 //!   stiffness. Two edges are in contact if their closest points lie inside both, at half the contact
 //!   distance.
-//! - **Adhesion** pulls over a range beyond the offset ([`force_law`]). **Friction** removes
-//!   tangential motion from contacts, at most μ times the normal force ([`friction`]).
-//! - **Collision response.** Before nodes move, the straight motion of each candidate is tested by
-//!   continuous collision detection ([`ccd`]). A pair that would lose more than nine tenths of its
-//!   distance gets a restitution impulse: its approach is reflected, not removed. The impulse
-//!   conserves momentum, except at supports. So no accepted step lets film through
-//!   ([`collision_response`]). What the impulses dissipate is counted.
+//! - **Adhesion** pulls over a range beyond the offset ([`force_law`]).
+//! - **Safe step.** The straight motion of each candidate is tested by continuous collision detection
+//!   ([`ccd`], [`safe_step`]): a step is safe while no pair loses more than nine tenths of its distance.
+//!   How an integrator keeps its steps safe is its choice; explicit central differences give colliding
+//!   pairs impulses ([`crate::integrators::explicit`]).
 
 pub mod candidates;
 pub mod ccd;
-pub mod collision_response;
-pub mod collision_step;
 pub mod contacts;
 pub mod distance;
 pub mod distance_batch;
 pub mod force_law;
-pub mod friction;
 pub mod intersections;
 pub mod model;
 pub mod pair;
 pub mod plates;
 pub mod pressure;
+pub mod safe_step;
 pub mod separating_planes;
 pub mod state;
 
+pub use candidates::SearchProgress;
 pub use force_law::Contact;
 pub use model::{Adhesion, ContactModel, DISTANCE_PER_GAP, default_distance};
 pub use pair::{Pair, PairKind};

@@ -18,224 +18,184 @@
 //!
 //! Between two targets all steps are equal, so a run reaches every target exactly and without a tiny
 //! last step. One exception: contact with a quiescent film shortens the steps from there on.
-//! Everything that changes is one [`State`]: a run resumed from it continues with the same bits, from
-//! any step.
+//! Private to the method are the velocities half a step ago, the last step, the numerical stress and the plan
+//! of steps ([`StoredExplicit`]): with the film's state they continue a run with the same bits, from any
+//! step. At the end of an interval the state has the velocities of its own time.
 
-use nalgebra::Vector3;
-
-use crate::collision::contact::candidates::CandidateList;
-use crate::collision::monitor::TunnellingMonitor;
+use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
+use crate::integrators::energy_accounting::EnergyAccounting;
+use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
+use crate::integrators::{IntegratorEntry, StoredIntegrator};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
 use crate::mechanics::forces::membrane::{
-    ElementHistory, MembraneSums, NodeForces, assemble_membrane, numerical_forces,
+    MembraneSums, NodeForces, stored_energy, stress_on_fraction,
 };
-use crate::mechanics::forces::pressure::{add_closure, gas_frequency_squared};
-use crate::mechanics::gas::GasState;
+use crate::mechanics::forces::pressure::gas_frequency_squared;
+use crate::output::ledger::Ledger;
 use crate::output::outcome::{Failure, FailureKind};
 use crate::platform::fault_injection::Term;
-use crate::platform::stopwatch::{Stage, Stopwatch, Untimed};
+use crate::platform::stopwatch::{Stage, Stopwatch};
 use crate::scene::inflow::Inflow;
-use crate::scene::timeline::Phase;
+use crate::system::{FilmState, FilmSystem, PressureLoad, Workspace};
 
+use motion::Motion;
 use update::{drift_nodes, sparse_power};
 
+mod collisions;
 mod contact_step;
-mod energy_accounting;
 mod kick;
-mod parameters;
+pub mod motion;
 mod quiescence;
 pub mod reference_step;
 mod stability;
-mod state;
 pub mod update;
 
-pub use parameters::{DEFAULT_CFL, Parameters, PressureLoad};
+pub use motion::StoredExplicit;
 pub use quiescence::Quiescence;
-pub use state::{State, StepInterval, Works};
+
+/// CFL number where the scene gives none. Chosen: the energy ledger of the paper's capsule without
+/// contact stays well inside its bound.
+pub const DEFAULT_CFL: f64 = 0.45;
+
+/// The row in the table of integrators.
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    name: "explicit",
+    meaning: "central differences with the stable step",
+    start: |system, state, workspace, cfl| Box::new(Explicit::start(system, state, workspace, cfl)),
+};
 
 /// Upper bound of step × largest film frequency for a step that leaves creep and damping unchanged. Such
 /// steps lie between targets that differ by rounding. Chosen: far below any step of a run (about 1).
 const MAX_TINY_STEP: f64 = 1e-6;
 
-/// Film in motion: film model, parameters and state.
-#[derive(Debug, Clone, PartialEq)]
+/// Central differences.
+#[derive(Debug, Clone)]
 pub struct Explicit {
-    /// Film model: constant.
-    pub model: FilmModel,
-    /// Everything else that is constant.
-    pub parameters: Parameters,
-    /// Everything that changes.
-    pub state: State,
-    /// Forces on the nodes now: a function of the state.
-    pub forces: NodeForces,
-    /// Tunnelling monitor: counts passages of film through film. `None` without contact.
-    pub monitor: Option<TunnellingMonitor>,
-    /// Largest principal stress now, Pa: a function of the state.
+    /// CFL number: the step as a fraction of the stable step.
+    cfl: f64,
+    /// What changes and is private to the method.
+    motion: Motion,
+    /// Forces now, and the search for contacts.
+    workspace: Workspace,
+    /// Largest principal stress now, Pa.
     largest_stress: f64,
-    /// Candidate pairs of contact: a function of the state, built at first use.
-    candidates: Option<CandidateList>,
-    /// Scratch: the velocities after a kick.
+    /// Scratch: the velocities after a kick; then those before it.
     next: Field,
 }
 
 impl Explicit {
-    /// Film at time 0 with these positions (m), velocities (m/s) and gas.
-    pub fn new(
-        model: FilmModel,
-        parameters: Parameters,
-        positions: Field,
-        velocities: Field,
-        gas: GasState,
+    /// Starts at a state.
+    pub fn start(system: &FilmSystem, state: &FilmState, workspace: Workspace, cfl: f64) -> Self {
+        let mut accounting = EnergyAccounting::start(system, state);
+        accounting.broad_phase_rebuilds = u64::from(system.contact.is_some());
+        let motion = Motion::start(state, accounting);
+        let mut explicit = Self::with(system, state, workspace, motion, cfl);
+        explicit.motion.accounting.start_energy = explicit.ledger(system, state).stored();
+        explicit
+    }
+
+    /// Resumes at a state with what was stored there. The run continues with the same bits.
+    pub fn resume(
+        system: &FilmSystem,
+        state: &FilmState,
+        stored: StoredExplicit,
+        cfl: f64,
     ) -> Self {
-        let planes = parameters.supports.bodies.iter().map(|body| body.plane.velocity).collect();
-        let state = State::start(positions, velocities, Vec::new(), planes, gas);
-        let mut film = Self::with(model, parameters, state);
-        film.bind_to_planes();
-        film.state.element_history = ElementHistory::at_rest(&film.model, &film.state.positions);
-        film.initialise_contact();
-        let sums = film.assemble_forces(0.0, 0.0, &mut Untimed);
-        film.state.volume = sums.six_volumes / 6.0;
-        film.state.pressure = match film.parameters.pressure_load {
-            PressureLoad::Gas(gas) => {
-                film.parameters.fault_factor(Term::GasPressure)
-                    * gas.pressure(film.state.gas, film.state.volume)
-            }
-            PressureLoad::Overpressure(pressure) => pressure,
-        };
-        film.state.start_moment = film.first_moment().into();
-        film.state.start_energy = film.ledger().stored();
-        film
+        let StoredExplicit { motion, histories, path_length } = stored;
+        let rebuilds = motion.accounting.broad_phase_rebuilds;
+        let mut workspace =
+            Workspace::resumed(system, state, SearchProgress { path_length, rebuilds });
+        workspace.histories = histories;
+        Self::with(system, state, workspace, motion, cfl)
     }
 
-    /// Resumes from a state of the same film under the same parameters. The run continues with the same
-    /// bits.
-    ///
-    /// # Panics
-    /// If the state is that of another film.
-    pub fn resume(model: FilmModel, parameters: Parameters, state: State) -> Self {
-        let mut film = Self::with(model, parameters, state);
-        let _ = film.assemble_forces(film.state.time, 0.0, &mut Untimed);
-        film
+    fn with(
+        system: &FilmSystem,
+        state: &FilmState,
+        mut workspace: Workspace,
+        motion: Motion,
+        cfl: f64,
+    ) -> Self {
+        let sums = workspace.forces_at(system, state, Some(0.0));
+        let next = Field::zeros(system.model.nodes());
+        Self { cfl, motion, workspace, largest_stress: sums.largest_stress, next }
     }
 
-    fn with(model: FilmModel, parameters: Parameters, state: State) -> Self {
-        let forces = NodeForces::new(&model);
-        let next = Field::zeros(model.nodes());
-        let monitor = parameters.monitor.zip(parameters.contact.as_ref());
-        let monitor = monitor.map(|(settings, contact_model)| {
-            let (mesh, positions) = (&contact_model.mesh, &state.positions);
-            let instruction_set = parameters.instruction_set;
-            TunnellingMonitor::new(settings, mesh, positions, state.steps, instruction_set)
-        });
-        Self {
-            model,
-            parameters,
-            state,
-            forces,
-            monitor,
-            largest_stress: 0.0,
-            candidates: None,
-            next,
-        }
-    }
-
-    /// Advances to exactly `target` (s) under a phase.
-    ///
-    /// # Errors
-    /// [`Failure`]: `unstable`, `overstretched`, `inverted_volume`, `step_limit` or `interpenetrated`.
-    pub fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
-        self.advance_at_most(target, phase, &mut u64::MAX.clone()).map(|_| ())
-    }
-
-    /// Advances towards `target` (s) under a phase by at most `steps` steps, and subtracts the steps taken
-    /// from `steps`. Returns whether it reached the target. A pause changes no bit of the run: the monitor
-    /// tests its block when it is complete.
-    ///
-    /// # Errors
-    /// As [`Self::advance`].
-    pub fn advance_at_most(
+    fn advance_steps(
         &mut self,
-        target: f64,
-        phase: &Phase,
-        steps: &mut u64,
-    ) -> Result<bool, Failure> {
-        self.advance_timed(target, phase, steps, &mut Untimed)
-    }
-
-    /// [`Self::advance_at_most`] with a stopwatch that learns when each stage begins.
-    ///
-    /// # Errors
-    /// As [`Self::advance`].
-    pub fn advance_timed(
-        &mut self,
-        target: f64,
-        phase: &Phase,
-        steps: &mut u64,
-        stopwatch: &mut dyn Stopwatch,
-    ) -> Result<bool, Failure> {
-        let mut interval = match self.state.step_interval.take() {
+        state: &mut FilmState,
+        system: &FilmSystem,
+        Interval { target, phase }: Interval<'_>,
+        budget: &mut Budget<'_>,
+    ) -> Result<Advance, Failure> {
+        let mut interval = match self.motion.step_interval.take() {
             Some(interval) => interval,
-            None => self.plan_interval(target, phase).ok_or_else(|| self.no_advance())?,
+            None => self
+                .plan_interval(system, state, target, phase, budget.events)
+                .ok_or_else(|| no_advance(state))?,
         };
         while let Some(end) = interval.next_end() {
-            if *steps == 0 {
-                self.state.step_interval = Some(interval);
-                return Ok(false);
+            if *budget.steps == 0 {
+                self.motion.step_interval = Some(interval);
+                return Ok(Advance::Paused);
             }
-            if self.state.steps >= self.parameters.step_limit {
-                let place = format!("after {} accepted steps", self.state.steps);
-                return Err(self.failure(FailureKind::StepLimit, &place));
+            if self.motion.accounting.steps >= budget.step_limit {
+                let place = format!("after {} accepted steps", self.motion.accounting.steps);
+                return Err(failure(state, FailureKind::StepLimit, &place));
             }
-            *steps -= 1;
+            *budget.steps -= 1;
             interval.index += 1;
-            if phase.packed && self.parameters.contact.is_none() {
-                self.wait(interval.length, phase.inflow);
+            if phase.packed && system.contact.is_none() {
+                self.wait(system, state, interval.length, phase.inflow);
+                state.time = end;
             } else {
-                self.step(interval.length, end, phase.inflow, stopwatch)?;
+                self.step(system, state, interval.length, end, phase.inflow, budget.stopwatch)?;
+                state.time = end;
+                budget.audit.record(system, state)?;
             }
-            self.state.time = end;
-            self.state.steps += 1;
-            if self.activity_detected(&interval) || self.step_too_long(&interval) {
-                let target = interval.target;
-                interval = self.replan_interval(target).ok_or_else(|| self.no_advance())?;
+            self.motion.accounting.steps += 1;
+            if self.activity_detected(system, state, &interval)
+                || self.step_too_long(system, state, &interval)
+            {
+                interval = self
+                    .replan_interval(system, state, interval.target, budget.events)
+                    .ok_or_else(|| no_advance(state))?;
             }
         }
-        stopwatch.begins(Stage::Audit);
-        self.monitor_interval()?;
-        Ok(true)
-    }
-
-    /// Whether a run that is resumed from the state now reports a passage of film at the same step as this
-    /// one: the tunnelling monitor has tested every step so far.
-    pub fn is_monitored(&self) -> bool {
-        self.monitor.as_ref().is_none_or(TunnellingMonitor::is_block_start)
-    }
-
-    fn no_advance(&self) -> Failure {
-        self.failure(FailureKind::StepLimit, "the step is too small to advance time")
+        budget.stopwatch.begins(Stage::Audit);
+        budget.audit.complete(system, state)?;
+        Ok(Advance::Reached)
     }
 
     /// The longest step of film in motion now, s: CFL number times stable step.
-    pub fn stable_step(&self) -> f64 {
-        self.max_step(self.parameters.cfl, true)
+    fn stable_step(&self, system: &FilmSystem, state: &FilmState) -> f64 {
+        self.max_step(system, state, self.cfl, true)
     }
 
     /// The longest step at this CFL number now, s; with `contact_active` also stable under contact forces.
-    fn max_step(&self, cfl: f64, contact_active: bool) -> f64 {
-        let film = self.model.largest_frequency();
-        let gas = match self.parameters.pressure_load {
+    fn max_step(
+        &self,
+        system: &FilmSystem,
+        state: &FilmState,
+        cfl: f64,
+        contact_active: bool,
+    ) -> f64 {
+        let film = system.model.largest_frequency();
+        let gas = match system.pressure_load {
             PressureLoad::Gas(gas) => {
-                let stiffness = gas.gamma() * self.state.pressure;
-                let (supports, forces) = (&self.parameters.supports, &self.forces);
-                gas_frequency_squared(&self.model, supports, forces, stiffness, self.state.volume)
+                let stiffness = gas.gamma() * state.pressure;
+                let (supports, forces) = (&system.supports, &self.workspace.forces);
+                gas_frequency_squared(&system.model, supports, forces, stiffness, state.volume)
             }
             PressureLoad::Overpressure(_) => 0.0,
         };
-        let factor = stable_share(self.parameters.numerical_damping) * 2.0;
-        let max_step = cfl * factor / (self.stretched_squared() + gas).sqrt();
-        match self.parameters.contact.as_ref().filter(|_| contact_active) {
+        let terms = system.energy_terms.iter();
+        let gas = terms.fold(gas, |sum, term| sum + term.frequency_squared(&system.model.mass));
+        let factor = stable_share(system.numerical_damping) * 2.0;
+        let max_step = cfl * factor / (self.stretched_squared(system) + gas).sqrt();
+        match system.contact.as_ref().filter(|_| contact_active) {
             // Contact bounds stability only: the CFL number already keeps the step well below it.
             Some(contact_model) => {
                 let contact = contact_model.added_frequency_squared();
@@ -246,161 +206,146 @@ impl Explicit {
     }
 
     /// A step in which no node moves: packed film without contact.
-    fn wait(&mut self, length: f64, inflow: Inflow) {
-        self.state.last_step = 0.0;
-        self.step_gas(self.state.volume, length, inflow);
+    fn wait(&mut self, system: &FilmSystem, state: &mut FilmState, length: f64, inflow: Inflow) {
+        self.motion.last_step = 0.0;
+        let (volume, gas) = (state.volume, system.gas_step(state, state.volume, length, inflow));
+        self.motion.accounting.commit_gas(system, state, gas, volume);
     }
 
     /// A step of `length` (s) that ends at the time `end` (s).
     fn step(
         &mut self,
+        system: &FilmSystem,
+        state: &mut FilmState,
         length: f64,
         end: f64,
         inflow: Inflow,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<(), Failure> {
         stopwatch.begins(Stage::Update);
-        self.kick(0.5 * (self.state.last_step + length), length, end);
-        self.collision_step(0.5 * (self.state.last_step + length), length, stopwatch)?;
+        let kick = 0.5 * (self.motion.last_step + length);
+        self.kick(system, state, kick, length, end);
+        self.collision_step(system, state, kick, length, stopwatch)?;
         stopwatch.begins(Stage::Update);
-        self.half_step_works(length);
-        let drift = length * self.parameters.fault_factor(Term::Drift);
-        let state = &mut self.state;
-        let instruction_set = self.parameters.instruction_set;
+        self.half_step_works(system, state, length);
+        let drift = length * system.fault_factor(Term::Drift);
+        let velocities = &self.motion.velocities;
         let max_speed_squared =
-            drift_nodes(instruction_set, &state.velocities, drift, &mut state.positions);
-        self.add_plate_work(end);
+            drift_nodes(system.instruction_set, velocities, drift, &mut state.positions);
+        self.add_plate_work(system, state, end);
         // In a tiny step the rounding of a stress would count as a stress rate.
-        let tiny = length * self.model.largest_frequency() < MAX_TINY_STEP;
-        let sums = self.assemble_forces(end, if tiny { 0.0 } else { length }, stopwatch);
+        let tiny = length * system.model.largest_frequency() < MAX_TINY_STEP;
+        let elapsed = if tiny { 0.0 } else { length };
+        let sums = self.workspace.step_forces(system, state, elapsed, end, stopwatch);
+        self.largest_stress = sums.largest_stress;
         stopwatch.begins(Stage::Gas);
-        self.add_plate_work(end);
+        self.add_plate_work(system, state, end);
         let volume = sums.six_volumes / 6.0;
         let max_speed = max_speed_squared.sqrt();
-        self.check_finite(max_speed * drift, volume)?;
-        let works = &mut self.state.works;
-        works.numerical_dissipation +=
-            sums.numerical_dissipation * self.parameters.fault_factor(Term::NumericalWork);
-        works.material_loss += sums.material_loss;
-        self.state.film_stress = self.state.film_stress.max(sums.largest_stress);
-        if matches!(self.parameters.pressure_load, PressureLoad::Gas(_)) && volume <= 0.0 {
-            return Err(self.inverted_volume());
+        self.check_finite(system, state, max_speed * drift, volume)?;
+        self.add_dissipation(system, &sums);
+        if matches!(system.pressure_load, PressureLoad::Gas(_)) && volume <= 0.0 {
+            return Err(self.inverted_volume(system, state));
         }
-        self.step_gas(volume, length, inflow);
+        let gas = system.gas_step(state, volume, length, inflow);
+        self.motion.accounting.commit_gas(system, state, gas, volume);
         stopwatch.begins(Stage::Update);
-        self.half_step_works(length);
-        self.state.last_step = length;
+        self.half_step_works(system, state, length);
+        self.motion.last_step = length;
         stopwatch.begins(Stage::Audit);
-        self.check_source(max_speed)?;
-        self.check_stretch()?;
-        self.monitor_step()
+        self.check_source(system, state, max_speed)?;
+        self.check_stretch(system, state)
+    }
+
+    /// Adds what a step dissipated in the film.
+    fn add_dissipation(&mut self, system: &FilmSystem, sums: &MembraneSums) {
+        let accounting = &mut self.motion.accounting;
+        let factor = system.fault_factor(Term::NumericalWork);
+        accounting.works.numerical_dissipation += sums.numerical_dissipation * factor;
+        accounting.works.material_loss += sums.material_loss;
+        accounting.film_stress = accounting.film_stress.max(sums.largest_stress);
     }
 
     /// Adds half a step's work of the forces now along the velocities now: of contact, of moving supports,
     /// and of a fixed overpressure. Called before and after the drift, so each work is a trapezoid.
-    fn half_step_works(&mut self, length: f64) {
+    fn half_step_works(&mut self, system: &FilmSystem, state: &FilmState, length: f64) {
         let half = 0.5 * length;
-        if self.contact_active() {
-            let (contact, velocities) = (&self.forces.contact, &self.state.velocities);
-            self.state.works.contact +=
-                half * sparse_power(self.parameters.instruction_set, contact, velocities);
+        let (forces, velocities) = (&self.workspace.forces, &self.motion.velocities);
+        if self.workspace.contact_active() {
+            let power = sparse_power(system.instruction_set, &forces.contact, velocities);
+            self.motion.accounting.works.contact += half * power;
         }
-        self.state.works.support -= half * self.support_power();
-        if let PressureLoad::Overpressure(pressure) = self.parameters.pressure_load {
-            let volume_rate: f64 = (0..self.model.nodes())
-                .map(|node| self.forces.area(node).dot(&self.state.velocities.get(node)))
+        let support = self.support_power(system, state);
+        let works = &mut self.motion.accounting.works;
+        works.support -= half * support;
+        if let PressureLoad::Overpressure(pressure) = system.pressure_load {
+            let velocities = &self.motion.velocities;
+            let volume_rate: f64 = (0..system.model.nodes())
+                .map(|node| self.workspace.forces.area(node).dot(&velocities.get(node)))
                 .sum();
-            self.state.works.gas += half * pressure * volume_rate;
+            works.gas += half * pressure * volume_rate;
         }
     }
+}
 
-    /// Advances the gas by `length` (s) while the volume changes to `volume` (m³).
-    fn step_gas(&mut self, volume: f64, length: f64, inflow: Inflow) {
-        let state = &mut self.state;
-        if let PressureLoad::Gas(gas) = self.parameters.pressure_load {
-            let mut step = gas.step(state.gas, state.volume, volume, length, inflow);
-            if let Some(fault) = self.parameters.fault {
-                step.inject_fault(&gas, volume, inflow.mass_flow_rate * length, fault);
-            }
-            state.gas = step.state;
-            state.pressure = step.pressure;
-            state.works.gas += step.work;
-            state.works.ambient -= gas.ambient_pressure * (volume - state.volume);
-            state.gas_balance.mass_out += step.mass_out;
-            state.gas_balance.enthalpy_in += step.enthalpy_in;
-            state.gas_balance.enthalpy_out += step.enthalpy_out;
-            state.gas_balance.heat += step.heat;
-        }
-        state.volume = volume;
-    }
+/// A failure at the time of a state.
+fn failure(state: &FilmState, kind: FailureKind, place: &str) -> Failure {
+    Failure { kind, time: state.time, place: place.to_owned() }
+}
 
-    /// Overpressure p − `p_ambient`, Pa.
-    pub fn overpressure(&self) -> f64 {
-        match self.parameters.pressure_load {
-            PressureLoad::Gas(gas) => {
-                let ambient = gas.ambient_pressure * self.parameters.fault_factor(Term::Ambient);
-                self.state.pressure - ambient
-            }
-            PressureLoad::Overpressure(pressure) => pressure,
-        }
-    }
+fn no_advance(state: &FilmState) -> Failure {
+    failure(state, FailureKind::StepLimit, "the step is too small to advance time")
+}
 
-    /// Sum of all forces on a node now, N.
-    #[inline]
-    pub fn force(&self, node: usize) -> Vector3<f64> {
-        self.forces.film(node)
-            + self.forces.contact.get(node)
-            + self.forces.area(node) * self.overpressure()
-            + self.parameters.gravity
-                * (self.model.mass[node] * self.parameters.fault_factor(Term::Gravity))
-    }
-
-    /// Computes all forces at the positions now. `time` (s) is the time of these positions, `step` (s) the
-    /// time since the last call; 0 leaves creep and numerical stress unchanged.
-    fn assemble_forces(
+impl Integrator for Explicit {
+    fn advance(
         &mut self,
-        time: f64,
-        step: f64,
-        stopwatch: &mut dyn Stopwatch,
-    ) -> MembraneSums {
-        stopwatch.begins(Stage::Membrane);
-        let (model, instruction_set) = (&self.model, self.parameters.instruction_set);
-        let State { positions, element_history, .. } = &mut self.state;
-        model.closure_nodes.place(positions);
-        let mut sums = assemble_membrane(
-            instruction_set,
-            model,
-            positions,
-            step,
-            element_history,
-            &mut self.forces,
-        );
-        self.largest_stress = sums.largest_stress;
-        sums.six_volumes += add_closure(model, positions, &mut self.forces);
-        if self.parameters.fault.is_some() {
-            self.inject_fault(&mut sums);
-        }
-        stopwatch.begins(Stage::Pairs);
-        self.update_contact_forces(time);
-        sums
+        state: &mut FilmState,
+        system: &FilmSystem,
+        interval: Interval<'_>,
+        mut budget: Budget<'_>,
+    ) -> Result<Advance, Failure> {
+        let advanced = self.advance_steps(state, system, interval, &mut budget);
+        self.synchronise(system, state);
+        advanced
     }
 
-    /// Applies a deliberate fault to the forces: tests only.
-    fn inject_fault(&mut self, sums: &mut MembraneSums) {
-        let [elastic, numerical, area] =
-            [Term::Elastic, Term::NumericalStress, Term::PressureForce]
-                .map(|term| self.parameters.fault_factor(term));
-        let damping =
-            numerical_forces(&self.model, &self.state.positions, &self.state.element_history);
-        for (node, damping) in damping.iter().enumerate() {
-            let elastic_force = self.forces.film(node) - damping;
-            self.forces.set_film(node, elastic_force * elastic + damping * numerical);
-            self.forces.scale_area(node, area);
-        }
-        sums.six_volumes *= self.parameters.fault_factor(Term::Volume);
+    fn next_step(&self, system: &FilmSystem, state: &FilmState) -> f64 {
+        self.stable_step(system, state)
     }
 
-    fn failure(&self, kind: FailureKind, place: &str) -> Failure {
-        Failure { kind, time: self.state.time, place: place.to_owned() }
+    fn forces(&self) -> &NodeForces {
+        &self.workspace.forces
+    }
+
+    fn accounting(&self) -> &EnergyAccounting {
+        &self.motion.accounting
+    }
+
+    fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
+        let strain = stored_energy(&system.model, &state.creep, &self.workspace.histories);
+        let kinetic = self.kinetic_energy(system, state);
+        self.motion.accounting.ledger(system, state, kinetic, strain)
+    }
+
+    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
+        stress_on_fraction(&system.model, &self.workspace.histories, fraction)
+    }
+
+    fn smallest_gap(&self) -> f64 {
+        self.workspace.contact.as_ref().map_or(f64::INFINITY, |contact| contact.list.smallest_gap)
+    }
+
+    fn stored(&self) -> Option<StoredIntegrator> {
+        let progress = self.workspace.contact.as_ref().map(|contact| contact.progress);
+        Some(StoredIntegrator::Explicit(StoredExplicit {
+            motion: self.motion.clone(),
+            histories: self.workspace.histories.clone(),
+            path_length: progress.unwrap_or_default().path_length,
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Integrator> {
+        Box::new(self.clone())
     }
 }

@@ -19,8 +19,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Explicit, StepInterval};
+use super::Explicit;
+use super::motion::StepInterval;
+use crate::output::events::{Event, EventKind};
 use crate::scene::timeline::Phase;
+use crate::system::{FilmState, FilmSystem};
 
 /// Upper bound of the kinetic energy of a quiescent film, as a fraction of its largest value so far.
 /// Chosen.
@@ -49,13 +52,22 @@ pub struct Quiescence {
     packed: bool,
     /// Mass flow rate of the inflow in the last interval, kg/s.
     mass_flow_rate: f64,
+    /// Whether the film was found quiescent when steps were planned last.
+    quiescent: bool,
 }
 
 impl Explicit {
     /// Plans equal steps from now to `target` (s) under a phase, as long as the stable step allows.
     /// `None` if a step would not advance time.
-    pub(super) fn plan_interval(&mut self, target: f64, phase: &Phase) -> Option<StepInterval> {
-        let (time, quiescence) = (self.state.time, &mut self.state.quiescence);
+    pub(super) fn plan_interval(
+        &mut self,
+        system: &FilmSystem,
+        state: &FilmState,
+        target: f64,
+        phase: &Phase,
+        events: &mut Vec<Event>,
+    ) -> Option<StepInterval> {
+        let (time, quiescence) = (state.time, &mut self.motion.quiescence);
         let rate = phase.inflow.mass_flow_rate;
         if quiescence.packed != phase.packed
             || quiescence.mass_flow_rate.to_bits() != rate.to_bits()
@@ -63,65 +75,85 @@ impl Explicit {
             (quiescence.packed, quiescence.mass_flow_rate, quiescence.last_active) =
                 (phase.packed, rate, time);
         }
-        self.replan_interval(target)
+        self.replan_interval(system, state, target, events)
     }
 
     /// [`Self::plan_interval`] within a phase.
-    pub(super) fn replan_interval(&mut self, target: f64) -> Option<StepInterval> {
-        let quiescent = self.update_quiescence();
-        let max_step = if quiescent { self.quiescent_step() } else { self.stable_step() };
-        StepInterval::new(self.state.time, target, max_step, quiescent)
+    pub(super) fn replan_interval(
+        &mut self,
+        system: &FilmSystem,
+        state: &FilmState,
+        target: f64,
+        events: &mut Vec<Event>,
+    ) -> Option<StepInterval> {
+        let quiescent = self.update_quiescence(system, state);
+        if core::mem::replace(&mut self.motion.quiescence.quiescent, quiescent) != quiescent {
+            let kind = if quiescent { EventKind::Quiescent } else { EventKind::Active };
+            events.push(Event { time: state.time, kind });
+        }
+        let max_step = if quiescent {
+            self.quiescent_step(system, state)
+        } else {
+            self.stable_step(system, state)
+        };
+        StepInterval::new(state.time, target, max_step, quiescent)
     }
 
     /// Whether an interval of a quiescent film must be planned again: the film is active, or the steps
     /// are too long by now. Call it after every step.
-    pub(super) fn activity_detected(&mut self, interval: &StepInterval) -> bool {
-        if self.in_contact() {
-            self.state.quiescence.last_active = self.state.time;
+    pub(super) fn activity_detected(
+        &mut self,
+        system: &FilmSystem,
+        state: &FilmState,
+        interval: &StepInterval,
+    ) -> bool {
+        if in_contact(system, state) {
+            self.motion.quiescence.last_active = state.time;
             return interval.quiescent;
         }
         if !interval.index.is_multiple_of(CHECK_INTERVAL) {
             return false;
         }
-        let quiescent = self.update_quiescence();
-        interval.quiescent && (!quiescent || interval.length > self.quiescent_step() * (1.0 + 1e-9))
+        let quiescent = self.update_quiescence(system, state);
+        let too_long = || interval.length > self.quiescent_step(system, state) * (1.0 + 1e-9);
+        interval.quiescent && (!quiescent || too_long())
     }
 
     /// The longest step of a quiescent film now, s. A scene whose CFL number is already [`MAX_CFL`] or
     /// more keeps its usual step, with contact's bound.
-    fn quiescent_step(&self) -> f64 {
-        if self.parameters.cfl >= MAX_CFL {
-            return self.stable_step();
+    fn quiescent_step(&self, system: &FilmSystem, state: &FilmState) -> f64 {
+        if self.cfl >= MAX_CFL {
+            return self.stable_step(system, state);
         }
-        self.max_step((STEP_RATIO * self.parameters.cfl).min(MAX_CFL), false)
-    }
-
-    /// Whether film touches film, or a plate is present.
-    fn in_contact(&self) -> bool {
-        let Some(contact_model) = &self.parameters.contact else { return false };
-        let plates = contact_model.plates.iter().any(|plate| self.state.time < plate.removal_time);
-        plates || !self.state.contact_state.contacts.is_empty()
+        self.max_step(system, state, (STEP_RATIO * self.cfl).min(MAX_CFL), false)
     }
 
     /// Checks the kinetic energy now; whether the film is quiescent.
-    fn update_quiescence(&mut self) -> bool {
-        if self.parameters.contact.is_none() {
+    fn update_quiescence(&mut self, system: &FilmSystem, state: &FilmState) -> bool {
+        if system.contact.is_none() {
             return false;
         }
-        let velocities = &self.state.velocities;
-        let nodes = self.model.mass.iter().enumerate();
+        let velocities = &self.motion.velocities;
+        let nodes = system.model.mass.iter().enumerate();
         let energy: f64 =
             nodes.map(|(node, mass)| mass * velocities.get(node).norm_squared()).sum();
         let energy = 0.5 * energy;
-        let (time, quiescence) = (self.state.time, &mut self.state.quiescence);
+        let (time, quiescence) = (state.time, &mut self.motion.quiescence);
         quiescence.largest_kinetic_energy = quiescence.largest_kinetic_energy.max(energy);
         // False before the first motion, when no scale of the energy is known, and for NaN.
         let slow = energy < MAX_ENERGY_FRACTION * quiescence.largest_kinetic_energy;
         if !slow {
             quiescence.last_active = time;
         }
-        time - self.state.quiescence.last_active >= QUIET_TIME && !self.in_contact()
+        time - self.motion.quiescence.last_active >= QUIET_TIME && !in_contact(system, state)
     }
+}
+
+/// Whether film touches film, or a plate is present.
+fn in_contact(system: &FilmSystem, state: &FilmState) -> bool {
+    let Some(contact_model) = &system.contact else { return false };
+    let plates = contact_model.plates.iter().any(|plate| state.time < plate.removal_time);
+    plates || !state.contact.contacts.is_empty()
 }
 
 #[cfg(test)]

@@ -11,7 +11,8 @@ use super::update::{KickParameters, drift_nodes, kick_nodes};
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::{ElementBlock, FilmModel};
 use crate::mechanics::forces::membrane::{
-    ElementHistory, MembraneSums, NORMAL_TO_GRADIENT, NodeForces, assemble_membrane,
+    CreepStep, CreepStrain, ElementHistory, MembraneSums, NORMAL_TO_GRADIENT, NodeForces,
+    assemble_membrane,
 };
 use crate::mechanics::supports::FreeComponents;
 use crate::platform::simd::{InstructionSet, Lanes, NodeSum, WIDTH};
@@ -27,6 +28,9 @@ pub struct FilmMotion {
     pub forces: NodeForces,
     /// Strains and stresses of the elements after the last step.
     pub histories: Vec<[ElementHistory; 2]>,
+    /// Creep strains; empty for film without loss.
+    pub creep: Vec<[CreepStrain; 2]>,
+    next_creep: Vec<[CreepStrain; 2]>,
     next: Field,
 }
 
@@ -39,10 +43,21 @@ impl FilmMotion {
         velocities: Field,
     ) -> Self {
         let mut forces = NodeForces::new(model);
-        let mut histories = ElementHistory::at_rest(model, &positions);
-        let _ =
-            assemble_membrane(instruction_set, model, &positions, 0.0, &mut histories, &mut forces);
-        Self { positions, velocities, forces, histories, next: Field::zeros(model.nodes()) }
+        let mut histories = ElementHistory::zero(model);
+        let creep = CreepStrain::at_rest(model, &positions);
+        let next = Field::zeros(model.nodes());
+        let mut next_creep = creep.clone();
+        let creep_step = &mut CreepStep { last: &creep, next: &mut next_creep };
+        let _ = assemble_membrane(
+            instruction_set,
+            model,
+            &positions,
+            0.0,
+            creep_step,
+            &mut histories,
+            &mut forces,
+        );
+        Self { positions, velocities, forces, histories, creep, next_creep, next }
     }
 }
 
@@ -56,11 +71,15 @@ pub fn vector_step(
     length: f64,
     film: &mut FilmMotion,
 ) -> (MembraneSums, f64) {
-    let FilmMotion { positions, velocities, forces, histories, next } = film;
+    let FilmMotion { positions, velocities, forces, histories, creep, next_creep, next } = film;
     kick_nodes(instruction_set, model, forces, parameters, free, velocities, next);
     core::mem::swap(velocities, next);
     let largest = drift_nodes(instruction_set, velocities, length, positions);
-    (assemble_membrane(instruction_set, model, positions, length, histories, forces), largest)
+    let step = &mut CreepStep { last: creep, next: next_creep };
+    let sums =
+        assemble_membrane(instruction_set, model, positions, length, step, histories, forces);
+    core::mem::swap(creep, next_creep);
+    (sums, largest)
 }
 
 /// The same step by plain loops, with the same bits.
@@ -71,7 +90,7 @@ pub fn reference_step(
     length: f64,
     film: &mut FilmMotion,
 ) -> (MembraneSums, f64) {
-    let FilmMotion { positions, velocities, forces, histories, next } = film;
+    let FilmMotion { positions, velocities, forces, histories, creep, next, .. } = film;
     let gravity = parameters.gravity != Vector3::zeros();
     for node in 0..model.nodes() {
         let [x, y, z, _] = forces.sums[node].normal;
@@ -95,7 +114,7 @@ pub fn reference_step(
         positions.set(node, positions.get(node) + velocity * length);
         largest = largest.max(velocity.norm_squared());
     }
-    (assemble_kites(model, positions, length, histories, forces), largest)
+    (assemble_kites(model, positions, length, (creep, histories), forces), largest)
 }
 
 type Vector = [f64; 3];
@@ -161,7 +180,7 @@ impl Constants {
     }
 }
 
-/// A lane of an [`ElementHistory`].
+/// A lane of an [`ElementHistory`] and of the [`CreepStrain`] beside it.
 #[derive(Clone, Copy)]
 struct Stored {
     strain: Vector,
@@ -171,22 +190,22 @@ struct Stored {
 }
 
 impl Stored {
-    fn load(history: &ElementHistory, lane: usize) -> Self {
+    fn load(history: &ElementHistory, creep: &CreepStrain, lane: usize) -> Self {
         let of = |stored: &[Lanes; 3]| stored.each_ref().map(|lanes| lanes.0[lane]);
         Self {
             strain: of(&history.strain),
             stress: of(&history.stress),
             numerical_stress: of(&history.numerical_stress),
-            creep: of(&history.creep),
+            creep: creep.lane(lane),
         }
     }
 
-    fn store(&self, history: &mut ElementHistory, lane: usize) {
+    fn store(&self, history: &mut ElementHistory, creep: &mut CreepStrain, lane: usize) {
         for component in 0..3 {
             history.strain[component].0[lane] = self.strain[component];
             history.stress[component].0[lane] = self.stress[component];
             history.numerical_stress[component].0[lane] = self.numerical_stress[component];
-            history.creep[component].0[lane] = self.creep[component];
+            creep.0[component].0[lane] = self.creep[component];
         }
     }
 }
@@ -273,7 +292,7 @@ fn assemble_kites(
     model: &FilmModel,
     positions: &Field,
     step: f64,
-    histories: &mut [[ElementHistory; 2]],
+    (creep, histories): (&mut [[CreepStrain; 2]], &mut [[ElementHistory; 2]]),
     out: &mut NodeForces,
 ) -> MembraneSums {
     let (mut six_volumes, mut largest_stress) = ([0.0; WIDTH], 0.0_f64);
@@ -293,9 +312,11 @@ fn assemble_kites(
         let [first, second] = [0, 1].map(|half| {
             let constants = Constants::of(&model.constants[block][half], lane);
             let history = &mut histories[block][half];
-            let last = Stored::load(history, lane);
+            let mut none = CreepStrain::default();
+            let creep = creep.get_mut(block).map_or(&mut none, |both| &mut both[half]);
+            let last = Stored::load(history, creep, lane);
             let response = element_response(model, &constants, metrics[half], step, &last);
-            response.stored.store(history, lane);
+            response.stored.store(history, creep, lane);
             response
         });
         for response in [&first, &second] {

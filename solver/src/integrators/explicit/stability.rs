@@ -9,11 +9,13 @@
 //! The tangent of St. Venant-Kirchhoff film along a stretch λ is λ² C + S, with λ² = 1 + 2 e and e ≤ S1/E: at
 //! most C (1 + 3 S1/E). A node may be faster than the waves of its film: soft film under gas is.
 
-use super::{Explicit, StepInterval};
-use crate::mechanics::film_model::FilmModel;
+use super::motion::StepInterval;
+use super::{Explicit, FilmModel, failure};
+use crate::integrators::interface::Integrator as _;
 use crate::mechanics::forces::membrane::strain;
 use crate::output::audit::MAX_LEDGER_RESIDUAL;
 use crate::output::outcome::{Failure, FailureKind};
+use crate::system::{FilmState, FilmSystem};
 
 /// Growth of ω² with S1/E. Source: the tangent above.
 const STIFFENING: f64 = 3.0;
@@ -38,102 +40,121 @@ const MAX_PARTIAL_DEFECT: f64 = 0.1;
 
 impl Explicit {
     /// S1/E now.
-    fn stress_ratio(&self) -> f64 {
+    fn stress_ratio(&self, system: &FilmSystem) -> f64 {
         // Written so that NaN counts as no stress: the volume is NaN too, and is checked.
-        (self.largest_stress / self.model.material.youngs_modulus).max(0.0)
+        (self.largest_stress / system.model.material.youngs_modulus).max(0.0)
     }
 
     /// Upper bound of ω² of the film as it is stretched now, rad²/s²; that of the film at rest below
     /// [`MIN_STRETCHED`].
-    pub(super) fn stretched_squared(&self) -> f64 {
-        let film = self.model.largest_frequency();
-        let ratio = self.stress_ratio();
+    pub(super) fn stretched_squared(&self, system: &FilmSystem) -> f64 {
+        let film = system.model.largest_frequency();
+        let ratio = self.stress_ratio(system);
         let at_rest = film * film;
         if ratio > MIN_STRETCHED { at_rest * (1.0 + STIFFENING * ratio) } else { at_rest }
     }
 
     /// Whether the steps of an interval are too long for the film as it is stretched now.
-    pub(super) fn step_too_long(&self, interval: &StepInterval) -> bool {
+    pub(super) fn step_too_long(
+        &self,
+        system: &FilmSystem,
+        state: &FilmState,
+        interval: &StepInterval,
+    ) -> bool {
         !interval.quiescent
-            && self.stress_ratio() > MIN_STRETCHED
-            && interval.length > MAX_STEP_RATIO * self.stable_step()
+            && self.stress_ratio(system) > MIN_STRETCHED
+            && interval.length > MAX_STEP_RATIO * self.stable_step(system, state)
     }
 
     /// Checks a step whose largest displacement (m) and volume (m³) after it are these.
-    pub(super) fn check_finite(&self, displacement: f64, volume: f64) -> Result<(), Failure> {
-        if !moves_too_far(&self.model, displacement) && volume.is_finite() {
+    pub(super) fn check_finite(
+        &self,
+        system: &FilmSystem,
+        state: &FilmState,
+        displacement: f64,
+        volume: f64,
+    ) -> Result<(), Failure> {
+        if !moves_too_far(&system.model, displacement) && volume.is_finite() {
             return Ok(());
         }
-        Err(self.unstable("farther than the size of the film in one step"))
+        Err(self.unstable(state, "farther than the size of the film in one step"))
     }
 
     /// Checks the energy after a step with this largest speed (m/s), where it is above that of the film's
     /// waves.
-    pub(super) fn check_source(&self, speed: f64) -> Result<(), Failure> {
-        if speed <= self.model.wave_speed() || self.energy_has_source() {
+    pub(super) fn check_source(
+        &self,
+        system: &FilmSystem,
+        state: &FilmState,
+        speed: f64,
+    ) -> Result<(), Failure> {
+        if speed <= system.model.wave_speed() || self.energy_has_source(system, state) {
             return Ok(());
         }
-        Err(self.unstable("its energy came without a source"))
+        Err(self.unstable(state, "its energy came without a source"))
     }
 
-    fn unstable(&self, problem: &str) -> Failure {
+    fn unstable(&self, state: &FilmState, problem: &str) -> Failure {
         let (node, speed) = self.fastest_node();
         let place = format!("node {node} moves at {speed:.3e} m/s: {problem}");
-        self.failure(FailureKind::Unstable, &place)
+        failure(state, FailureKind::Unstable, &place)
     }
 
     /// The fastest node and its speed, m/s. NaN counts as the fastest.
     fn fastest_node(&self) -> (usize, f64) {
-        let speed = |node: usize| self.state.velocities.get(node).norm();
-        let fastest = (0..self.model.nodes())
+        let speed = |node: usize| self.motion.velocities.get(node).norm();
+        let fastest = (0..self.motion.velocities.len())
             .fold(0, |fastest, node| if speed(node) <= speed(fastest) { fastest } else { node });
         (fastest, speed(fastest))
     }
 
     /// Whether the external works cover kinetic and elastic energy. Contact that gave energy is no source.
-    fn energy_has_source(&self) -> bool {
-        let ledger = self.ledger();
+    fn energy_has_source(&self, system: &FilmSystem, state: &FilmState) -> bool {
+        let ledger = self.ledger(system, state);
         let works =
             ledger.gas_work + ledger.ambient_work + ledger.gravity_work + ledger.support_work;
-        let excess = ledger.kinetic + ledger.strain - self.state.start_energy - works;
-        excess <= MAX_PARTIAL_DEFECT * (ledger.external() + self.state.start_energy)
+        let excess = ledger.kinetic + ledger.strain - self.motion.accounting.start_energy - works;
+        excess <= MAX_PARTIAL_DEFECT * (ledger.external() + self.motion.accounting.start_energy)
     }
 
     /// Whether the energy ledger now closes to this fraction of the energy moved.
-    fn energy_balances(&self, fraction: f64) -> bool {
-        let ledger = self.ledger();
-        let defect = ledger.defect_since(self.state.start_energy).abs();
+    fn energy_balances(&self, system: &FilmSystem, state: &FilmState, fraction: f64) -> bool {
+        let ledger = self.ledger(system, state);
+        let defect = ledger.defect_since(self.motion.accounting.start_energy).abs();
         defect <= fraction * (ledger.kinetic + ledger.external())
     }
 
     /// The failure of a gas volume that is not above 0: by an unstable step if energy came without a source.
-    pub(super) fn inverted_volume(&self) -> Failure {
-        if self.energy_balances(MAX_PARTIAL_DEFECT) {
-            return self.failure(FailureKind::InvertedVolume, "gas volume");
+    pub(super) fn inverted_volume(&self, system: &FilmSystem, state: &FilmState) -> Failure {
+        if self.energy_balances(system, state, MAX_PARTIAL_DEFECT) {
+            return failure(state, FailureKind::InvertedVolume, "gas volume");
         }
         let (node, speed) = self.fastest_node();
         let place = format!(
             "node {node} moves at {speed:.3e} m/s: the gas volume is negative, and energy came without a source"
         );
-        self.failure(FailureKind::Unstable, &place)
+        failure(state, FailureKind::Unstable, &place)
     }
 
     /// Checks the stretch of the film after a step. Film that stretched by itself has a balanced ledger.
-    pub(super) fn check_stretch(&self) -> Result<(), Failure> {
-        if self.stress_ratio() <= MAX_STRESS_RATIO {
+    pub(super) fn check_stretch(
+        &self,
+        system: &FilmSystem,
+        state: &FilmState,
+    ) -> Result<(), Failure> {
+        if self.stress_ratio(system) <= MAX_STRESS_RATIO {
             return Ok(());
         }
-        let first =
-            |element: usize| strain(&self.model, &self.state.positions, element).principal().0;
-        let element = (0..self.model.elements()).fold(0, |largest, element| {
+        let first = |element: usize| strain(&system.model, &state.positions, element).principal().0;
+        let element = (0..system.model.elements()).fold(0, |largest, element| {
             if first(element) > first(largest) { element } else { largest }
         });
         let stretch = (1.0 + 2.0 * first(element)).sqrt();
-        let balanced = self.energy_balances(MAX_LEDGER_RESIDUAL);
-        let node = self.model.triangles[element][0];
+        let balanced = self.energy_balances(system, state, MAX_LEDGER_RESIDUAL);
+        let node = system.model.triangles[element][0];
         let place =
             format!("node {node}, element {element}: stretched to {stretch:.2} times its length");
         let kind = if balanced { FailureKind::Overstretched } else { FailureKind::Unstable };
-        Err(self.failure(kind, &place))
+        Err(failure(state, kind, &place))
     }
 }

@@ -6,3 +6,4 @@
 pub mod damping;
 pub mod membrane;
 pub mod pressure;
+pub mod tangent;

@@ -8,16 +8,17 @@ use crate::geometry::field::Field;
 use crate::geometry::fold::{FoldDesign, FoldPattern};
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::geometry::shell::Shell;
-use crate::integrators::explicit::{Explicit, Parameters, PressureLoad};
+use crate::integrators::{FilmSimulation, SimulationSettings};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::gas::{Gas, GasState};
-use crate::mechanics::supports::Supports;
+use crate::mechanics::supports::{PrescribedNodes, Supports};
 use crate::platform::simd::InstructionSet;
 use crate::scene::error::SceneError;
 use crate::scene::film_scene::{Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver};
 use crate::scene::film_support::{FilmSupport, Hold};
 use crate::scene::plate::Plate;
 use crate::scene::{Scene, Support, SupportLocation};
+use crate::system::{FilmSystem, PressureLoad};
 
 /// Subdivisions of the mesh on which the largest displacement of the imperfection is its amplitude.
 /// Chosen: an edge is short against the shortest wave.
@@ -110,6 +111,7 @@ pub fn film_scene(
         gravity: Vector3::new(0.0, 0.0, scene.gravity),
         release_time: scene.release_time,
         solver: FilmSolver {
+            integrator: scene.solver.integrator,
             cfl,
             end_time: scene.solver.end_time,
             statics: false,
@@ -150,25 +152,28 @@ fn sorted(mut nodes: Vec<u32>) -> Vec<u32> {
     nodes
 }
 
-/// The film of a scene at time 0.
+/// The film of a scene at time 0, with further nodes that move as prescribed.
 ///
 /// # Errors
 /// [`SceneError::Invalid`] if the mesh is not a film, or a number is out of range.
-pub fn start(scene: &FilmScene) -> Result<Explicit, SceneError> {
-    let (model, parameters, gas) = constants(scene)?;
+pub fn start(scene: &FilmScene, seating: &[PrescribedNodes]) -> Result<FilmSimulation, SceneError> {
+    let (mut system, settings, gas) = constants(scene)?;
+    system.supports.movers.extend(seating.iter().cloned());
     let positions = Field::of(&scene.shell.positions);
     let mut velocities = Field::zeros(positions.len());
     for (node, velocity) in scene.velocities.iter().enumerate() {
         velocities.set(node, *velocity);
     }
-    Ok(Explicit::new(model, parameters, positions, velocities, gas))
+    Ok(FilmSimulation::new(system, settings, positions, velocities, gas))
 }
 
-/// The film model and parameters of a scene, and its gas at time 0.
+/// The film of a scene as a system, how it is integrated, and its gas at time 0.
 ///
 /// # Errors
 /// As [`start`].
-pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState), SceneError> {
+pub fn constants(
+    scene: &FilmScene,
+) -> Result<(FilmSystem, SimulationSettings, GasState), SceneError> {
     let solver = &scene.solver;
     check_cfl(solver.cfl)?;
     let invalid = |key: &str, problem: String| SceneError::Invalid { key: key.to_owned(), problem };
@@ -184,20 +189,22 @@ pub fn constants(scene: &FilmScene) -> Result<(FilmModel, Parameters, GasState),
             (PressureLoad::Gas(gas), gas.at_temperature(supply.initial_mass, *initial_temperature))
         }
     };
-    let parameters = Parameters {
-        pressure_load,
+    let system = FilmSystem {
         supports,
         gravity: scene.gravity,
         numerical_damping: scene.film.numerical_damping,
         mass_damping: solver.mass_damping,
-        cfl: solver.cfl,
-        step_limit: solver.step_limit,
         instruction_set: solver.instruction_set,
         contact: scene.contact.as_ref().map(|_| contact_model(scene, &model, &positions)),
-        monitor: scene.contact.as_ref().map(|contact| contact.monitor),
-        fault: None,
+        ..FilmSystem::free(model, pressure_load)
     };
-    Ok((model, parameters, gas))
+    let settings = SimulationSettings {
+        integrator: solver.integrator,
+        cfl: solver.cfl,
+        step_limit: solver.step_limit,
+        monitor: scene.contact.as_ref().map(|contact| contact.monitor),
+    };
+    Ok((system, settings, gas))
 }
 
 /// The contact model of a scene. Until its release the film lies packed between base and lid.

@@ -1,7 +1,7 @@
 //! Model `film`: film of any shape, explicit in time, with or without contact.
 //!
-//! Tension-field triangles ([`crate::mechanics::forces`]), a pressure or one gas volume, central
-//! differences ([`crate::integrators::explicit`]), contact of film with film
+//! Tension-field triangles ([`crate::mechanics::forces`]), a pressure or one gas volume, an integrator
+//! ([`crate::integrators`]), contact of film with film
 //! ([`crate::collision::contact`]). A capsule is such a film, with rings. The tunnelling monitor counts
 //! passages of film through film, and every sample counts the intersections of the mesh. The first
 //! passage or intersection ends the run as `interpenetrated`. Without contact film passes through film,
@@ -17,11 +17,13 @@ use nalgebra::Vector3;
 use super::{Cost, ModelEntry, ReferenceEntry};
 use crate::geometry::field::Field;
 use crate::geometry::mesh::{Mesh, Part, Shape};
-use crate::integrators::explicit::{Explicit, PressureLoad, State};
+use crate::integrators::{FilmSimulation, FilmView, StoredFilm};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping;
+use crate::mechanics::supports::PrescribedNodes;
 use crate::models::run::{CheckpointText, Model, Run};
 use crate::output::checkpoint::Checkpoint;
+use crate::output::events::Event;
 use crate::output::frames::Frame;
 use crate::output::history::{Sample, Track};
 use crate::output::outcome::Failure;
@@ -30,6 +32,7 @@ use crate::scene::error::SceneError;
 use crate::scene::film_scene::{FilmContact, FilmScene};
 use crate::scene::timeline::Phase;
 use crate::scene::{Scene, Stepping};
+use crate::system::PressureLoad;
 
 pub mod capsule;
 mod imperfection;
@@ -97,10 +100,10 @@ fn cfl_of(scene: &Scene) -> Result<f64, SceneError> {
 }
 
 /// Film during a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct FilmRun {
     /// The film.
-    pub film: Explicit,
+    pub film: FilmSimulation,
     rings: Option<Rings>,
     nodes: Vec<u32>,
     elements: Vec<u32>,
@@ -151,7 +154,19 @@ impl FilmRun {
     /// # Errors
     /// [`SceneError::Invalid`] if the mesh is not a film, or a number is out of range.
     pub fn of(scene: &FilmScene, rings: Option<Rings>) -> Result<Self, SceneError> {
-        Ok(Self::with(capsule::start(scene)?, scene, rings))
+        Self::seated(scene, rings, &[])
+    }
+
+    /// [`Self::of`] with further nodes that move as prescribed.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn seated(
+        scene: &FilmScene,
+        rings: Option<Rings>,
+        seating: &[PrescribedNodes],
+    ) -> Result<Self, SceneError> {
+        Ok(Self::with(capsule::start(scene, seating)?, scene, rings))
     }
 
     /// The film of a scene in a stored state. The run continues with the same bits.
@@ -161,22 +176,20 @@ impl FilmRun {
     pub fn resume(
         scene: &FilmScene,
         rings: Option<Rings>,
-        state: State,
+        seating: &[PrescribedNodes],
+        stored: StoredFilm,
     ) -> Result<Self, SceneError> {
-        let (model, parameters, _) = capsule::constants(scene)?;
-        let bodies = parameters.supports.bodies.len();
-        let fits = [&state.positions, &state.velocities].iter().all(|field| {
-            [&field.x, &field.y, &field.z].iter().all(|column| column.len() == model.nodes())
-        });
-        let fits = fits && state.element_history.len() == model.constants.len();
-        if !fits || state.planes.len() != bodies {
+        let (mut system, settings, _) = capsule::constants(scene)?;
+        system.supports.movers.extend(seating.iter().cloned());
+        let Some(film) = FilmSimulation::resume(system, settings, stored) else {
             let problem = "the stored state belongs to another film".to_owned();
             return Err(SceneError::Invalid { key: "mesh".to_owned(), problem });
-        }
-        Ok(Self::with(Explicit::resume(model, parameters, state), scene, rings))
+        };
+        Ok(Self::with(film, scene, rings))
     }
 
-    fn with(film: Explicit, scene: &FilmScene, rings: Option<Rings>) -> Self {
+    /// Film in motion that a scene describes, with what the scene records.
+    pub fn with(film: FilmSimulation, scene: &FilmScene, rings: Option<Rings>) -> Self {
         let (nodes, elements) = (scene.outputs.nodes.clone(), scene.outputs.elements.clone());
         let temperature = scene.film.temperature;
         let fans = scene.shell.fans();
@@ -198,31 +211,38 @@ impl FilmRun {
         Self::of(&film, Some(rings))
     }
 
+    /// The film as it is now.
+    pub fn view(&self) -> FilmView<'_> {
+        self.film.view()
+    }
+
     /// Force on the lid while packed, N.
     fn lid_force(&self, rings: &Rings) -> f64 {
-        if let Some(contact_model) = &self.film.parameters.contact {
-            let plates = contact_model.plates.iter().zip(&self.film.state.contact_state.plates);
+        let film = self.view();
+        if let Some(contact_model) = &film.system.contact {
+            let plates = contact_model.plates.iter().zip(&film.state.contact.plates);
             return plates
                 .filter(|(p, _)| p.name == capsule::LID)
                 .map(|(_, state)| state.force)
                 .sum();
         }
-        let lift: f64 = (0..self.film.model.nodes())
-            .map(|node| self.film.force(node).z * self.film.state.positions.z[node])
+        let lift: f64 = (0..film.system.model.nodes())
+            .map(|node| film.force(node).z * film.state.positions.z[node])
             .sum();
         (lift / rings.stowed_height).max(0.0)
     }
 
     /// Enclosed volume, m³. An open film is closed by fans over its free edges.
     pub fn volume(&self) -> f64 {
-        let position = |node: u32| self.film.state.positions.get(node as usize);
+        let state = self.view().state;
+        let position = |node: u32| state.positions.get(node as usize);
         let fan = |(apex, boundary): &(Vector3<f64>, Vec<u32>)| -> f64 {
             let edge = |k: usize| {
                 position(boundary[k]).dot(&position(boundary[(k + 1) % boundary.len()]).cross(apex))
             };
             (0..boundary.len()).map(edge).sum()
         };
-        let volume = self.film.state.volume;
+        let volume = state.volume;
         if self.fans.is_empty() {
             volume
         } else {
@@ -232,7 +252,8 @@ impl FilmRun {
 
     /// Largest z of any node with mass, m.
     fn largest_height(&self) -> f64 {
-        let masses = self.film.model.mass.iter().zip(self.film.state.positions.z.iter());
+        let film = self.view();
+        let masses = film.system.model.mass.iter().zip(film.state.positions.z.iter());
         masses.filter(|(mass, _)| **mass > 0.0).map(|(_, z)| *z).fold(f64::NEG_INFINITY, f64::max)
     }
 }
@@ -256,25 +277,29 @@ impl Model for FilmRun {
         self.film.advance_at_most(target, phase, steps)
     }
 
+    fn take_events(&mut self) -> Vec<Event> {
+        self.film.take_events()
+    }
+
     fn sample(&self, phase: &Phase) -> Sample {
-        let film = &self.film;
+        let film = self.view();
         let positions = &film.state.positions;
         let (mut sample, mut lid_force) = (Sample::default(), 0.0);
         if let Some(rings) = &self.rings {
             let centre = rings.top_centre as usize;
             sample.z_centre = positions.z[centre];
             sample.z_rim = mean_z(positions, &rings.top_ring);
-            sample.vz = mean_z(&film.velocities(), &rings.top_ring);
+            sample.vz = mean_z(&film.state.velocities, &rings.top_ring);
             lid_force = if phase.packed { self.lid_force(rings) } else { 0.0 };
         }
         Sample {
             time: film.state.time,
             passages: self.passages(),
-            intersections: film.intersections(),
+            intersections: film.intersections().unwrap_or(0),
             z_max: self.largest_height(),
             volume: self.volume(),
             pressure: film.state.pressure,
-            temperature: match film.parameters.pressure_load {
+            temperature: match film.system.pressure_load {
                 PressureLoad::Gas(gas) => gas.temperature(film.state.gas),
                 PressureLoad::Overpressure(_) => self.temperature,
             },
@@ -302,7 +327,7 @@ impl Model for FilmRun {
     }
 
     fn surface(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
-        let triangles = self.film.model.triangles.clone();
+        let triangles = self.view().system.model.triangles.clone();
         let storeys = match &self.rings {
             Some(rings) => rings.storeys.clone(),
             None => vec![0; triangles.len()],
@@ -311,30 +336,30 @@ impl Model for FilmRun {
     }
 
     fn film_stress(&self) -> f64 {
-        self.film.state.film_stress
+        self.view().accounting().film_stress
     }
 
     fn steps(&self) -> u64 {
-        self.film.state.steps
+        self.view().steps()
     }
 
     fn elements(&self) -> usize {
-        self.film.model.elements()
+        self.view().system.model.elements()
     }
 
     fn counts_passages(&self) -> bool {
-        self.film.parameters.contact.is_some()
+        self.view().system.contact.is_some()
     }
 
     fn passages(&self) -> u64 {
-        self.film.monitor.as_ref().map_or(0, |monitor| monitor.passages)
+        self.view().passages().unwrap_or(0)
     }
 
     fn can_store(&self) -> bool {
-        self.film.is_monitored()
+        self.film.is_audited()
     }
 
     fn checkpoint(&self, fingerprint: &str, run: &Run) -> Option<CheckpointText> {
-        Some(Checkpoint::text(fingerprint, &self.film.state, run))
+        Some(Checkpoint::text(fingerprint, &self.film.stored()?, run))
     }
 }

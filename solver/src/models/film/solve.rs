@@ -2,7 +2,7 @@
 
 use super::{FilmRun, Rings, capsule, cfl_of};
 use crate::geometry::mesh::Shape;
-use crate::integrators::explicit::State;
+use crate::integrators::StoredFilm;
 use crate::models::run::{self, Observer, Run};
 use crate::models::{ResumeError, Stored};
 use crate::output::checkpoint::Checkpoint;
@@ -58,13 +58,13 @@ pub fn resume_scene(
     stored: &Stored<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Deployment, ResumeError> {
-    let checkpoint = Checkpoint::<State, Run>::from_text(stored.text, stored.fingerprint)?;
+    let checkpoint = Checkpoint::<StoredFilm, Run>::from_text(stored.text, stored.fingerprint)?;
     let contact = FilmContact::of(&scene.contact);
     let (film, rings) = stowed(instruction_set, scene, cfl_of(scene)?, Some(contact))?;
     if !observer.prepares() {
         return Ok(Deployment::cancelled());
     }
-    let mut model = FilmRun::resume(&film, Some(rings), checkpoint.state)?;
+    let mut model = FilmRun::resume(&film, Some(rings), &[], checkpoint.state)?;
     if !observer.prepares() {
         return Ok(Deployment::cancelled());
     }

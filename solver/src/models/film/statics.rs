@@ -23,7 +23,8 @@ use crate::scene::error::SceneError;
 use crate::scene::film_scene::Filling;
 use crate::scene::motion::{Motion, Profile};
 use crate::scene::{
-    Contact, Film, GasSupply, HeatTransfer, Outputs, Scene, Solver, Stepping, Thresholds,
+    Contact, Film, GasSupply, HeatTransfer, IntegratorKind, Outputs, Scene, Solver, Stepping,
+    Thresholds,
 };
 use crate::statics::{Loaded, StaticFailure, Tolerances, settle};
 
@@ -206,9 +207,10 @@ pub fn reference_scene(scene: &Scene) -> Scene {
         release_time: 0.0,
         solver: Solver {
             end_time: 1.0,
+            model: scene.solver.model,
+            integrator: IntegratorKind::default(),
             stepping: Stepping::Stable(1.0),
             step_limit: 1,
-            ..scene.solver
         },
         outputs: Outputs { sample_interval: 1.0, frames: 0, thresholds: Thresholds::default() },
         seed: 0,

@@ -1,7 +1,7 @@
 //! Tracks and frames of the film: followed nodes and elements, the top centre, contact, plates.
 
 use super::FilmRun;
-use crate::mechanics::forces::membrane::{strain, stress_on_fraction};
+use crate::mechanics::forces::membrane::strain;
 use crate::mechanics::resultants::resultants;
 use crate::output::frames::{Frame, rounded};
 use crate::output::history::Track;
@@ -55,7 +55,7 @@ pub(super) fn names(run: &FilmRun) -> Vec<Track> {
         let meaning = "velocity of the top centre node along z";
         all.push(track("vz_centre".to_owned(), "m/s", meaning));
     }
-    if let Some(contact_model) = &run.film.parameters.contact {
+    if let Some(contact_model) = &run.view().system.contact {
         all.extend(CONTACT.map(|(name, unit, meaning)| track(name.to_owned(), unit, meaning)));
         let plates = contact_model.plates.iter();
         all.extend(plates.map(|plate| {
@@ -68,7 +68,8 @@ pub(super) fn names(run: &FilmRun) -> Vec<Track> {
 
 /// The values of the tracks now, in the order of [`names`].
 pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
-    let (model, state) = (&run.film.model, &run.film.state);
+    let film = run.view();
+    let (model, state) = (&film.system.model, film.state);
     for node in &run.nodes {
         let position = state.positions.get(*node as usize);
         values.extend([position.x, position.y, position.z]);
@@ -76,12 +77,12 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
     for element in &run.elements {
         values.extend(resultants(model, &state.positions, *element as usize).principal);
     }
-    values.push(stress_on_fraction(model, &state.element_history, ABOVE_99));
+    values.push(film.stress_on_fraction(ABOVE_99));
     if let Some(rings) = &run.rings {
-        values.push(run.film.velocities().z[rings.top_centre as usize]);
+        values.push(state.velocities.z[rings.top_centre as usize]);
     }
-    if let Some(contact_model) = &run.film.parameters.contact {
-        let contact_state = &state.contact_state;
+    if let Some(contact_model) = &film.system.contact {
+        let (contact_state, accounting) = (&state.contact, film.accounting());
         let areas: Vec<f64> =
             model.mass.iter().map(|mass| mass / contact_model.area_density).collect();
         let interlayer = contact_model.interlayer_pressure(&state.positions, &areas, contact_state);
@@ -89,10 +90,10 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
             interlayer.largest,
             interlayer.mean,
             interlayer.area_fraction,
-            run.film.smallest_gap().min(contact_model.distance),
+            film.smallest_gap().min(contact_model.distance),
             contact_state.contacts.len() as f64,
-            contact_state.broad_phase_rebuilds as f64,
-            contact_state.collision_impulses as f64,
+            accounting.broad_phase_rebuilds as f64,
+            accounting.collision_impulses as f64,
         ]);
         values.extend(contact_state.plates.iter().map(|plate| plate.force));
     }
@@ -100,7 +101,8 @@ pub(super) fn values(run: &FilmRun, values: &mut Vec<f64>) {
 
 /// The shape of the film now.
 pub(super) fn frame(run: &FilmRun) -> Frame {
-    let (model, state) = (&run.film.model, &run.film.state);
+    let film = run.view();
+    let (model, state) = (&film.system.model, film.state);
     #[expect(clippy::cast_possible_truncation, reason = "frames are in single precision")]
     let positions = state.positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]).collect();
     let mut regimes = Vec::with_capacity(model.elements());
@@ -111,11 +113,10 @@ pub(super) fn frame(run: &FilmRun) -> Frame {
         regimes.push(model.material.regime(strain));
         stresses.push([rounded(first), rounded(second)]);
     }
-    let velocities = run.film.velocities();
-    let velocities = velocities.iter().map(|v| [v.x, v.y, v.z].map(rounded)).collect();
-    let contact_model = run.film.parameters.contact.as_ref();
+    let velocities = state.velocities.iter().map(|v| [v.x, v.y, v.z].map(rounded)).collect();
+    let contact_model = film.system.contact.as_ref();
     let gaps = contact_model.map_or_else(Vec::new, |contact_model| {
-        contact_model.node_gaps(&state.positions, &state.contact_state)
+        contact_model.node_gaps(&state.positions, &state.contact)
     });
     let gaps = gaps.into_iter().map(rounded).collect();
     Frame { time: state.time, positions, regimes, velocities, stresses, gaps }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::output::audit::{self, Audit};
 use crate::output::checkpoint::CheckpointError;
+use crate::output::events::Event;
 use crate::output::frames::{Frame, Frames};
 use crate::output::history::{History, Sample, Track};
 use crate::output::measures::{self, Measures, Reference};
@@ -35,6 +36,11 @@ pub trait Model {
         _steps: &mut u64,
     ) -> Result<bool, Failure> {
         self.advance(target, phase).map(|()| true)
+    }
+
+    /// The decisions of the step controller since the last call.
+    fn take_events(&mut self) -> Vec<Event> {
+        Vec::new()
     }
 
     /// The sampled quantities now, except the mass let in ([`crate::output::ledger::GasBalance::mass_in`]):
@@ -123,6 +129,8 @@ pub struct Run {
     tracks: Vec<Vec<f64>>,
     /// Frames so far.
     frames: Vec<Frame>,
+    /// Events so far.
+    events: Vec<Event>,
     /// Last breakpoint or sample time reached, s.
     time: f64,
 }
@@ -192,7 +200,9 @@ impl Run {
             while self.time < target {
                 let end = next_breakpoint(&breakpoints, self.time, target).min(target);
                 phase = timeline.phase(self.time, end);
-                match model.advance_at_most(end, &phase, &mut steps) {
+                let advanced = model.advance_at_most(end, &phase, &mut steps);
+                self.events.extend(model.take_events());
+                match advanced {
                     Ok(true) => self.time = end,
                     Ok(false) => return None,
                     Err(failure) => return Some(Stop::Failed(failure)),
@@ -267,7 +277,8 @@ impl Run {
             let (triangles, storeys) = model.surface();
             Frames { triangles, storeys, frames: self.frames }
         });
-        Deployment { history, tracks, frames, measures, audit, stop, steps, elements }
+        let events = self.events;
+        Deployment { history, tracks, events, frames, measures, audit, stop, steps, elements }
     }
 }
 

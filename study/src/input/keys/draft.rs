@@ -3,8 +3,8 @@
 
 use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign};
 use billow_solver::scene::{
-    Contact, Film, GasSupply, HeatTransfer, ModelKind, Outputs, Scene, Solver, Species, Stepping,
-    Thresholds,
+    Contact, Film, GasSupply, HeatTransfer, IntegratorKind, ModelKind, Outputs, Scene, Solver,
+    Species, Stepping, Thresholds,
 };
 
 use super::words::{Named, ResidualGas, pick};
@@ -145,6 +145,7 @@ fn empty_scene() -> Scene {
         solver: Solver {
             model: ModelKind::Film,
             end_time: f64::NAN,
+            integrator: IntegratorKind::default(),
             stepping: Stepping::Stable(f64::NAN),
             step_limit: 0,
         },

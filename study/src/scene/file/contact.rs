@@ -86,8 +86,8 @@ const TOUCHING_DISTANCE: f64 = 1e-7;
 /// # Errors
 /// When the solver refuses the film.
 pub(super) fn touches_itself(film: &FilmScene) -> Result<bool, SceneError> {
-    let (_, parameters, _) = capsule::constants(film)?;
-    let Some(model) = &parameters.contact else { return Ok(false) };
+    let (system, ..) = capsule::constants(film)?;
+    let Some(model) = &system.contact else { return Ok(false) };
     let mut touches = false;
     let positions = Field::of(&film.shell.positions);
     model.pairs_within(&positions, TOUCHING_DISTANCE * model.edge_length, |_, _| touches = true);

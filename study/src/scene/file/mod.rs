@@ -175,6 +175,7 @@ impl SceneFile {
             gravity: gravity(tree.get("gravity"), &reader.source)?,
             release_time: draft.scene.release_time,
             solver: FilmSolver {
+                integrator: draft.scene.solver.integrator,
                 cfl: draft.stepping.cfl,
                 end_time,
                 statics,

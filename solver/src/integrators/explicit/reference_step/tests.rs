@@ -26,7 +26,7 @@ fn sheet(compression: f64, loss_factor: f64) -> (FilmModel, Vec<Vector3<f64>>) {
 /// All values of the nodes and of the first `kites` kites. The reference step does not compute the
 /// elements of zero volume that fill the last block.
 fn bits(film: &FilmMotion, kites: usize) -> Vec<u64> {
-    let FilmMotion { positions, velocities, forces, histories, .. } = film;
+    let FilmMotion { positions, velocities, forces, histories, creep, .. } = film;
     let (films, areas) = (forces.films(), forces.areas());
     let node_fields = [positions, velocities, &films, &areas];
     node_fields
@@ -34,10 +34,11 @@ fn bits(film: &FilmMotion, kites: usize) -> Vec<u64> {
         .flat_map(Field::iter)
         .flat_map(|vector| [vector.x, vector.y, vector.z])
         .chain((0..kites).flat_map(|kite| {
-            let stored = histories[kite / WIDTH].iter().flat_map(|history| {
-                [history.strain, history.stress, history.numerical_stress, history.creep]
-            });
-            stored.flatten().map(move |lanes| lanes.0[kite % WIDTH])
+            let stored = histories[kite / WIDTH]
+                .iter()
+                .flat_map(|history| [history.strain, history.stress, history.numerical_stress]);
+            let creep = creep.get(kite / WIDTH).into_iter().flatten().map(|creep| creep.0);
+            stored.chain(creep).flatten().map(move |lanes| lanes.0[kite % WIDTH])
         }))
         .map(f64::to_bits)
         .collect()

@@ -1,16 +1,16 @@
-//! What an element keeps from one step to the next: elastic strain, stress, numerical stress, creep.
+//! What a method keeps of an element from one step to the next: elastic strain, stress, numerical stress.
 //!
 //! ```text
 //! e = (Exx + Eyy, Exx − Eyy, 2 Exy)        s = ((Sxx + Syy)/2, (Sxx − Syy)/2, Sxy)        S:E = s·e
 //! ```
 //!
-//! The creep strain and the numerical stress depend on earlier steps, so they belong to the state. The
-//! elastic strain and the stress follow from it; they are kept for the change of the next step.
+//! The elastic strain and the stress follow from positions and creep strain; they are kept for the change of
+//! the next step. The numerical stress depends on the last step. So all of it belongs to an integrator and
+//! not to the state of the film.
 
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::strain;
+use super::{CreepStrain, strain};
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::platform::simd::{Lanes, WIDTH};
@@ -26,36 +26,13 @@ pub struct ElementHistory {
     pub(crate) stress: [Lanes; 3],
     /// Numerical stress D, Pa.
     pub(crate) numerical_stress: [Lanes; 3],
-    /// Creep strain P; not used by film without loss.
-    pub(crate) creep: [Lanes; 3],
 }
 
 impl ElementHistory {
-    /// Zero histories of the first and the second elements of each block of eight kites: right for film
-    /// without loss, before the first call of [`super::assemble_membrane`] sets strain and stress.
+    /// Zero histories of the first and the second elements of each block of eight kites: right before the
+    /// first call of [`super::assemble_membrane`], which sets strain and stress.
     pub fn zero(model: &FilmModel) -> Vec<[Self; 2]> {
         vec![[Self::default(); 2]; model.constants.len()]
-    }
-
-    /// Histories of a film that has been at these positions (m) for so long that its creep is over. The
-    /// first call of [`super::assemble_membrane`] sets strain and stress.
-    pub fn at_rest(model: &FilmModel, positions: &Field) -> Vec<[Self; 2]> {
-        let mut histories = Self::zero(model);
-        if model.creep.ratio > 0.0 {
-            for (index, kite) in model.kites.iter().enumerate() {
-                let (block, lane) = (index / WIDTH, index % WIDTH);
-                for (half, [p, q]) in edges(positions, kite).into_iter().enumerate() {
-                    let inverse_shape = &model.constants[block][half].inverse_shape;
-                    let [a, b, d] = inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
-                    let strain = strain::of_edges([p, q], [[a, b], [0.0, d]]);
-                    let creep = model.creep.at_rest(&model.material, strain);
-                    for (stored, value) in histories[block][half].creep.iter_mut().zip(creep) {
-                        stored.0[lane] = value;
-                    }
-                }
-            }
-        }
-        histories
     }
 }
 
@@ -64,21 +41,21 @@ fn lane_of(stored: &[Lanes; 3], lane: usize) -> [f64; 3] {
     stored.each_ref().map(|lanes| lanes.0[lane])
 }
 
-/// Edges p and q of the two elements of a kite.
-fn edges(field: &Field, kite: &[u32; 4]) -> [[Vector3<f64>; 2]; 2] {
-    let [s, a, t, b] = kite.map(|node| field.get(node as usize));
-    [[a - s, t - s], [t - s, b - s]]
-}
-
 /// Energy Σ A t ψ stored in the film now, J: elastic energy, and that of creep
 /// ([`crate::mechanics::material_loss`]).
-pub fn stored_energy(model: &FilmModel, histories: &[[ElementHistory; 2]]) -> f64 {
-    let mut energy = 0.0;
-    for (constants, histories) in model.constants.iter().zip(histories) {
-        for (block, history) in constants.iter().zip(histories) {
+pub fn stored_energy(
+    model: &FilmModel,
+    creep: &[[CreepStrain; 2]],
+    histories: &[[ElementHistory; 2]],
+) -> f64 {
+    let (mut energy, none) = (0.0, [CreepStrain::default(); 2]);
+    for (index, (constants, histories)) in model.constants.iter().zip(histories).enumerate() {
+        let creep = creep.get(index).unwrap_or(&none);
+        for ((block, history), creep) in constants.iter().zip(histories).zip(creep) {
             for (lane, minus_volume) in block.minus_volume.0.iter().enumerate() {
-                let [strain, stress, creep] = [&history.strain, &history.stress, &history.creep]
-                    .map(|stored| lane_of(stored, lane));
+                let [strain, stress] =
+                    [&history.strain, &history.stress].map(|stored| lane_of(stored, lane));
+                let creep = creep.lane(lane);
                 energy -= minus_volume * model.creep.stored_energy(strain, stress, creep);
             }
         }
@@ -126,7 +103,7 @@ pub fn numerical_forces(
         let (block, lane) = (index / WIDTH, index % WIDTH);
         let [s, a, t, b] = *kite;
         let nodes = [[s, a, t], [s, t, b]];
-        for (half, [p, q]) in edges(positions, kite).into_iter().enumerate() {
+        for (half, [p, q]) in strain::edges_of_kite(positions, kite).into_iter().enumerate() {
             let constants = &model.constants[block][half];
             let [a, b, d] = lane_of(&constants.inverse_shape, lane);
             let [mean, half_difference, xy] =

@@ -26,7 +26,7 @@
 
 #![allow(clippy::inline_always, reason = "inside the element loop")]
 
-use super::ElementHistory;
+use super::{CreepStep, CreepStrain, ElementHistory};
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::{ElementBlock, FilmModel};
 use crate::mechanics::material::{Material, MohrCircle, StressResponse};
@@ -116,16 +116,25 @@ struct TimeStep {
     creep_share: f64,
 }
 
-/// Response of eight elements at their metric. Replaces the stored values by the current ones.
+/// What a pass over the elements includes: only forces that are derivatives of an energy.
+const CONSERVATIVE: u8 = 0;
+/// The same and the numerical stress that is stored; nothing moved since.
+const STORED: u8 = 1;
+/// The same and the numerical stress and the creep of a step of some length.
+const MOVED: u8 = 2;
+
+/// Response of eight elements at their metric. Replaces the stored values by the current ones; the creep
+/// strain after the step is written beside that before it.
 ///
-/// `LOSS`: whether the film creeps; `MOVED`: whether the step has a length.
+/// `LOSS`: whether the film creeps; `PASS`: [`CONSERVATIVE`], [`STORED`] or [`MOVED`].
 #[inline(always)]
-fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
+fn element_response<L: Wide, const LOSS: bool, const PASS: u8>(
     (material, creep): (&Material, &Creep),
     block: &ElementBlock,
     metric: Metric<L>,
     step: TimeStep,
     history: &mut ElementHistory,
+    (last_creep, next_creep): (&CreepStrain, &mut CreepStrain),
 ) -> ElementResponse<L> {
     let zero = L::splat(0.0);
     let total_strain = metric.strain(block);
@@ -134,13 +143,13 @@ fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
     let (mut creep_step, mut minus_twice_loss) = ([zero; 3], zero);
     let (mut last_driving, mut weighted_creep) = ([zero; 3], [zero; 3]);
     if LOSS {
-        let mut creep_strain = load_all::<L, 3>(&history.creep);
-        if MOVED {
+        let mut creep_strain = load_all::<L, 3>(&last_creep.0);
+        if PASS == MOVED {
             last_driving = subtract(last_stress, isotropic(creep_strain, creep.stiffness));
             creep_step =
                 scale(isotropic(last_driving, creep.compliance), L::splat(step.creep_share));
             creep_strain = add(creep_strain, creep_step);
-            store(creep_strain, &mut history.creep);
+            store(creep_strain, &mut next_creep.0);
             weighted_creep = isotropic(creep_strain, creep.stiffness);
         }
         let overstrain = scale(subtract(strain, creep_strain), L::splat(creep.ratio));
@@ -149,7 +158,8 @@ fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
     // The square root in `MohrCircle` has a long latency: independent work follows it.
     let circle = MohrCircle::of_difference(strain[0], strain[1], strain[2]);
     let last_strain = load_all::<L, 3>(&history.strain);
-    let last_numerical = load_all::<L, 3>(&history.numerical_stress);
+    let last_numerical =
+        if PASS == CONSERVATIVE { [zero; 3] } else { load_all::<L, 3>(&history.numerical_stress) };
     store(strain, &mut history.strain);
     let StressResponse { mean, shear_modulus, largest } = material.response(circle);
     let stress = [mean, shear_modulus * circle.difference, shear_modulus * circle.shear];
@@ -157,7 +167,7 @@ fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
 
     let minus_volume = load::<L>(&block.minus_volume);
     let (mut numerical, mut minus_twice_numerical) = (last_numerical, zero);
-    if MOVED {
+    if PASS == MOVED {
         let (strain_step, stress_step) =
             (subtract(strain, last_strain), subtract(stress, last_stress));
         // Twice the energy that a step of mean stress (S + S⁻)/2 misses, and the work ΔS:ΔÊ.
@@ -200,10 +210,11 @@ fn element_response<L: Wide, const LOSS: bool, const MOVED: bool>(
 }
 
 #[inline(always)]
-fn element_kernel<L: Wide, const LOSS: bool, const MOVED: bool>(
+fn element_kernel<L: Wide, const LOSS: bool, const PASS: u8>(
     model: &FilmModel,
     positions: &Field,
     step: TimeStep,
+    creep_step: &mut CreepStep<'_>,
     histories: &mut [[ElementHistory; 2]],
     sums: &mut [NodeSum],
 ) -> LaneSums {
@@ -220,9 +231,17 @@ fn element_kernel<L: Wide, const LOSS: bool, const MOVED: bool>(
     let blocks = corners.blocks();
     let (constants, histories) = (&model.constants[..blocks], &mut histories[..blocks]);
     let positions = Columns::new(&model.corners, [&positions.x, &positions.y, &positions.z]);
+    let creep_blocks = if LOSS { blocks } else { 0 };
+    let last_creep = &creep_step.last[..creep_blocks];
+    let writes_creep = LOSS && PASS == MOVED;
+    let next_creep = &mut creep_step.next[..if writes_creep { blocks } else { 0 }];
+    let (none, mut unused) = ([CreepStrain::default(); 2], [CreepStrain::default(); 2]);
     for block in 0..blocks {
         let [first_block, second_block] = &constants[block];
         let [first_history, second_history] = &mut histories[block];
+        let [first_last, second_last] = if LOSS { &last_creep[block] } else { &none };
+        let [first_next, second_next] =
+            if writes_creep { &mut next_creep[block] } else { &mut unused };
         let kites = positions.corners::<L>(block);
         let [p, d, q] = edges(kites);
         let (first_normal, second_normal) = (p.cross(d), d.cross(q));
@@ -231,11 +250,23 @@ fn element_kernel<L: Wide, const LOSS: bool, const MOVED: bool>(
 
         let d_metric = d.dot(d) * half;
         let metric = Metric([p.dot(p) * half, p.dot(d), d_metric]);
-        let first =
-            element_response::<L, LOSS, MOVED>(law, first_block, metric, step, first_history);
+        let first = element_response::<L, LOSS, PASS>(
+            law,
+            first_block,
+            metric,
+            step,
+            first_history,
+            (first_last, first_next),
+        );
         let metric = Metric([d_metric, d.dot(q), q.dot(q) * half]);
-        let second =
-            element_response::<L, LOSS, MOVED>(law, second_block, metric, step, second_history);
+        let second = element_response::<L, LOSS, PASS>(
+            law,
+            second_block,
+            metric,
+            step,
+            second_history,
+            (second_last, second_next),
+        );
 
         largest_stress = largest_stress.max(first.largest_stress).max(second.largest_stress);
         numerical = numerical + (first.minus_twice_numerical + second.minus_twice_numerical);
@@ -257,25 +288,39 @@ fn element_kernel<L: Wide, const LOSS: bool, const MOVED: bool>(
     }
 }
 
-/// Selects the kernel for a step of this length (s) before the loop.
+/// Selects the kernel before the loop. `step`: the length of the step, s, or `None` for the conservative
+/// part alone.
 #[inline(always)]
 fn step_kernel<L: Wide>(
     model: &FilmModel,
     positions: &Field,
-    step: f64,
+    step: Option<f64>,
+    creep: &mut CreepStep<'_>,
     histories: &mut [[ElementHistory; 2]],
     sums: &mut [NodeSum],
 ) -> LaneSums {
-    let moved = step > 0.0;
-    let inverse = if moved { 1.0 / step } else { 0.0 };
-    let step = TimeStep { inverse, creep_share: model.creep.share(step) };
-    match (model.creep.ratio > 0.0, moved) {
-        (false, false) => {
-            element_kernel::<L, false, false>(model, positions, step, histories, sums)
+    let length = step.unwrap_or(0.0);
+    let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
+    let time = TimeStep { inverse, creep_share: model.creep.share(length) };
+    match (model.creep.ratio > 0.0, step) {
+        (false, None) => {
+            element_kernel::<L, false, CONSERVATIVE>(model, positions, time, creep, histories, sums)
         }
-        (false, true) => element_kernel::<L, false, true>(model, positions, step, histories, sums),
-        (true, false) => element_kernel::<L, true, false>(model, positions, step, histories, sums),
-        (true, true) => element_kernel::<L, true, true>(model, positions, step, histories, sums),
+        (true, None) => {
+            element_kernel::<L, true, CONSERVATIVE>(model, positions, time, creep, histories, sums)
+        }
+        (false, Some(length)) if length > 0.0 => {
+            element_kernel::<L, false, MOVED>(model, positions, time, creep, histories, sums)
+        }
+        (true, Some(length)) if length > 0.0 => {
+            element_kernel::<L, true, MOVED>(model, positions, time, creep, histories, sums)
+        }
+        (false, Some(_)) => {
+            element_kernel::<L, false, STORED>(model, positions, time, creep, histories, sums)
+        }
+        (true, Some(_)) => {
+            element_kernel::<L, true, STORED>(model, positions, time, creep, histories, sums)
+        }
     }
 }
 
@@ -284,7 +329,8 @@ dispatch_wide! {
     pub(super) fn sum_elements / step_kernel(
         model: &FilmModel,
         positions: &Field,
-        step: f64,
+        step: Option<f64>,
+        creep: &mut CreepStep<'_>,
         histories: &mut [[ElementHistory; 2]],
         sums: &mut [NodeSum],
     ) -> LaneSums

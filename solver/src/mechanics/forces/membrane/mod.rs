@@ -18,10 +18,12 @@ use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::material_loss::Creep;
 use crate::platform::simd::{InstructionSet, NodeSum};
 
+mod creep_strain;
 mod element_history;
 mod elements;
 mod strain;
 
+pub use creep_strain::{CreepStep, CreepStrain};
 pub use element_history::{ElementHistory, numerical_forces, stored_energy, stress_on_fraction};
 pub use strain::{deformation_gradient, strain, strain_energy};
 
@@ -51,20 +53,37 @@ impl LaneSums {
     }
 }
 
-/// Computes the membrane forces and ∂V/∂x of all nodes at these positions (m), into `out`.
+/// Computes the membrane forces and ∂V/∂x of all nodes at these positions (m), into `out`: the conservative
+/// part and the numerical stress.
 ///
 /// `step` is the time since the previous call, s. Where it is 0 (no previous call, or nothing moved),
 /// creep strain and numerical stress are the stored ones. Replaces `histories` by those of these
-/// positions.
+/// positions, and writes the creep strain after the step beside that before it.
 pub fn assemble_membrane(
     instruction_set: InstructionSet,
     model: &FilmModel,
     positions: &Field,
     step: f64,
+    creep: &mut CreepStep<'_>,
     histories: &mut [[ElementHistory; 2]],
     out: &mut NodeForces,
 ) -> MembraneSums {
-    sum_elements(instruction_set, model, positions, step, histories, &mut out.sums)
+    sum_elements(instruction_set, model, positions, Some(step), creep, histories, &mut out.sums)
+        .sums(&model.creep)
+}
+
+/// The conservative part of [`assemble_membrane`]: elastic forces at a fixed creep strain, and ∂V/∂x. Sets
+/// strain and stress of `histories`; their numerical stress is neither read nor written.
+pub fn assemble_conservative(
+    instruction_set: InstructionSet,
+    model: &FilmModel,
+    positions: &Field,
+    creep: &[[CreepStrain; 2]],
+    histories: &mut [[ElementHistory; 2]],
+    out: &mut NodeForces,
+) -> MembraneSums {
+    let mut creep = CreepStep { last: creep, next: &mut [] };
+    sum_elements(instruction_set, model, positions, None, &mut creep, histories, &mut out.sums)
         .sums(&model.creep)
 }
 
@@ -78,13 +97,15 @@ pub struct NodeForces {
     pub(crate) sums: Vec<NodeSum>,
     /// Contact force on each node, N.
     pub contact: Field,
+    /// Force of further energy terms on each node, N; empty without them.
+    pub terms: Field,
 }
 
 impl NodeForces {
     /// Zero forces on the nodes of a model.
     pub fn new(model: &FilmModel) -> Self {
         let sums = vec![NodeSum::default(); model.nodes()];
-        Self { sums, contact: Field::zeros(model.nodes()) }
+        Self { sums, contact: Field::zeros(model.nodes()), terms: Field::zeros(0) }
     }
 
     /// Membrane force on a node, N.

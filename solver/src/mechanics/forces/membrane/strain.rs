@@ -27,6 +27,12 @@ pub(super) fn of_edges(edges: [Vector3<f64>; 2], inverse_shape: [[f64; 2]; 2]) -
     green_strain(gradient(edges, inverse_shape))
 }
 
+/// Edges p and q of the two elements of a kite.
+pub(super) fn edges_of_kite(field: &Field, kite: &[u32; 4]) -> [[Vector3<f64>; 2]; 2] {
+    let [s, a, t, b] = kite.map(|node| field.get(node as usize));
+    [[a - s, t - s], [t - s, b - s]]
+}
+
 /// E = (`FᵀF` − 1)/2 of the columns of F.
 fn green_strain([f, g]: [Vector3<f64>; 2]) -> PlaneTensor {
     PlaneTensor { xx: (f.dot(&f) - 1.0) * 0.5, yy: (g.dot(&g) - 1.0) * 0.5, xy: f.dot(&g) * 0.5 }

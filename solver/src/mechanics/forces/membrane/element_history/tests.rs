@@ -1,8 +1,9 @@
 use nalgebra::Vector2;
 
 use super::*;
+use crate::geometry::field::Field;
 use crate::mechanics::forces::membrane::{
-    MembraneSums, NodeForces, assemble_membrane, deformation_gradient, strain,
+    CreepStep, MembraneSums, NodeForces, assemble_membrane, deformation_gradient, strain,
 };
 use crate::mechanics::material::PlaneTensor;
 use crate::platform::simd::InstructionSet;
@@ -15,6 +16,43 @@ struct MovingFilm {
     velocities: Field,
     positions: [Field; 3],
     length: f64,
+}
+
+/// Creep strain and histories of a film that is assembled step by step.
+#[derive(Clone)]
+struct Histories {
+    creep: Vec<[CreepStrain; 2]>,
+    of_method: Vec<[ElementHistory; 2]>,
+}
+
+impl Histories {
+    fn at_rest(model: &FilmModel, positions: &Field) -> Self {
+        let creep = CreepStrain::at_rest(model, positions);
+        Self { creep, of_method: ElementHistory::zero(model) }
+    }
+
+    fn assemble(
+        &mut self,
+        model: &FilmModel,
+        positions: &Field,
+        length: f64,
+        out: &mut NodeForces,
+    ) -> MembraneSums {
+        let mut next = self.creep.clone();
+        let mut creep = CreepStep { last: &self.creep, next: &mut next };
+        let (set, histories) = (InstructionSet::detect(), &mut self.of_method);
+        let sums = assemble_membrane(set, model, positions, length, &mut creep, histories, out);
+        self.creep = next;
+        sums
+    }
+
+    fn numerical_forces(&self, model: &FilmModel, positions: &Field) -> Field {
+        numerical_forces(model, positions, &self.of_method)
+    }
+
+    fn stored_energy(&self, model: &FilmModel) -> f64 {
+        stored_energy(model, &self.creep, &self.of_method)
+    }
 }
 
 fn wave(k: usize) -> f64 {
@@ -51,15 +89,14 @@ impl MovingFilm {
     }
 
     /// The histories after one and two steps, and the sums of the second step.
-    fn steps(&self) -> ([Vec<[ElementHistory; 2]>; 2], MembraneSums) {
+    fn steps(&self) -> ([Histories; 2], MembraneSums) {
         let Self { model, positions: [first, second, third], length, .. } = self;
-        let mut histories = ElementHistory::at_rest(model, first);
+        let mut histories = Histories::at_rest(model, first);
         let mut out = NodeForces::new(model);
-        let set = InstructionSet::detect();
-        let _ = assemble_membrane(set, model, first, 0.0, &mut histories, &mut out);
-        let _ = assemble_membrane(set, model, second, *length, &mut histories, &mut out);
+        let _ = histories.assemble(model, first, 0.0, &mut out);
+        let _ = histories.assemble(model, second, *length, &mut out);
         let middle = histories.clone();
-        let sums = assemble_membrane(set, model, third, *length, &mut histories, &mut out);
+        let sums = histories.assemble(model, third, *length, &mut out);
         ([middle, histories], sums)
     }
 }
@@ -109,7 +146,7 @@ fn damping_force_follows_the_change_of_stress_in_a_step() {
         }
     };
     let expected = forces_by_gradient(model, third, rate);
-    assert_close(&numerical_forces(model, third, &histories), &expected, 1e-9);
+    assert_close(&histories.numerical_forces(model, third), &expected, 1e-9);
 }
 
 #[test]
@@ -117,11 +154,10 @@ fn a_step_of_no_length_keeps_numerical_forces_and_dissipates_nothing() {
     let film = MovingFilm::new(2e-6);
     let MovingFilm { model, positions: [.., third], .. } = &film;
     let ([_, mut histories], _) = film.steps();
-    let before = numerical_forces(model, third, &histories);
+    let before = histories.numerical_forces(model, third);
     let mut out = NodeForces::new(model);
-    let set = InstructionSet::detect();
-    let sums = assemble_membrane(set, model, third, 0.0, &mut histories, &mut out);
-    assert_close(&numerical_forces(model, third, &histories), &before, 1e-15);
+    let sums = histories.assemble(model, third, 0.0, &mut out);
+    assert_close(&histories.numerical_forces(model, third), &before, 1e-15);
     assert!(sums.numerical_dissipation.abs() <= 0.0 && sums.material_loss.abs() <= 0.0);
 }
 
@@ -138,8 +174,8 @@ fn numerical_dissipation_is_the_trapezoidal_work_of_the_damping_forces() {
         };
         let trapezoid = 0.5
             * length
-            * (power(&numerical_forces(model, second, &before))
-                + power(&numerical_forces(model, third, &after)));
+            * (power(&before.numerical_forces(model, second))
+                + power(&after.numerical_forces(model, third)));
         assert!(trapezoid > 0.0);
         (sums.numerical_dissipation / trapezoid - 1.0).abs()
     };
@@ -163,18 +199,16 @@ fn work_on_the_film_is_stored_lost_or_dissipated() {
         Field::of(&flat.iter().enumerate().map(position).collect::<Vec<_>>())
     };
     let run = |length: f64| {
-        let set = InstructionSet::detect();
         let (mut last, mut time) = (at(0.0), 0.0);
-        let mut histories = ElementHistory::at_rest(&model, &last);
+        let mut histories = Histories::at_rest(&model, &last);
         let (mut forces, mut next) = (NodeForces::new(&model), NodeForces::new(&model));
-        let _ = assemble_membrane(set, &model, &last, 0.0, &mut histories, &mut forces);
-        let start = stored_energy(&model, &histories);
+        let _ = histories.assemble(&model, &last, 0.0, &mut forces);
+        let start = histories.stored_energy(&model);
         let (mut work, mut loss, mut numerical) = (0.0, 0.0, 0.0);
         while time < 0.02 {
             time += length;
             let positions = at(time);
-            let sums =
-                assemble_membrane(set, &model, &positions, length, &mut histories, &mut next);
+            let sums = histories.assemble(&model, &positions, length, &mut next);
             for node in 0..model.nodes() {
                 let force = forces.film(node) + next.film(node);
                 work -= 0.5 * force.dot(&(positions.get(node) - last.get(node)));
@@ -184,7 +218,7 @@ fn work_on_the_film_is_stored_lost_or_dissipated() {
             last = positions;
             core::mem::swap(&mut forces, &mut next);
         }
-        let stored = stored_energy(&model, &histories) - start;
+        let stored = histories.stored_energy(&model) - start;
         (work, stored, loss, numerical)
     };
     let (work, stored, loss, numerical) = run(2e-5);
@@ -197,14 +231,13 @@ fn work_on_the_film_is_stored_lost_or_dissipated() {
 
 #[test]
 fn film_at_rest_for_long_has_the_stress_of_film_without_loss() {
-    let set = InstructionSet::detect();
     let [with, without] = [0.1, 0.0].map(|loss_factor| {
         let (model, flat) = nine_elements(&Film { loss_factor, ..Film::PAPER });
         let stretched = |p: &Vector2<f64>| Vector3::new(1.002 * p.x, 0.999 * p.y, 0.1 * p.x);
         let positions = Field::of(&flat.iter().map(stretched).collect::<Vec<_>>());
-        let mut histories = ElementHistory::at_rest(&model, &positions);
+        let mut histories = Histories::at_rest(&model, &positions);
         let mut out = NodeForces::new(&model);
-        let _ = assemble_membrane(set, &model, &positions, 0.0, &mut histories, &mut out);
+        let _ = histories.assemble(&model, &positions, 0.0, &mut out);
         out.films()
     });
     assert_close(&with, &without, 1e-12);
@@ -227,14 +260,13 @@ fn the_stress_on_a_fraction_of_the_area_is_that_of_its_element() {
         })
         .collect();
     let positions = Field::of(&positions);
-    let mut histories = ElementHistory::at_rest(&model, &positions);
+    let mut histories = Histories::at_rest(&model, &positions);
     let mut out = NodeForces::new(&model);
-    let set = InstructionSet::detect();
-    let _ = assemble_membrane(set, &model, &positions, 0.0, &mut histories, &mut out);
+    let _ = histories.assemble(&model, &positions, 0.0, &mut out);
     let modulus = film.youngs_modulus;
     for (fraction, rank) in [(0.0, 20.0), (0.049, 20.0), (0.051, 19.0), (0.249, 16.0), (0.999, 1.0)]
     {
-        let stress = stress_on_fraction(&model, &histories, fraction);
+        let stress = stress_on_fraction(&model, &histories.of_method, fraction);
         assert!((stress / (1e-3 * rank * modulus) - 1.0).abs() < 1e-9, "{fraction}: {stress}");
     }
 }

@@ -16,14 +16,10 @@
 
 use nalgebra::Vector3;
 
-use super::pair::Pair;
+use crate::collision::contact::pair::Pair;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::supports::Supports;
-
-/// Smallest share of its distance that a pair, or a node and a plate, keeps in a step. Chosen: the
-/// distance never becomes zero, and only pairs that would nearly touch get an impulse.
-pub const MIN_KEPT_SHARE: f64 = 0.1;
 
 /// Impulses in a step: node and impulse, N s.
 pub type Impulses = Vec<(usize, Vector3<f64>)>;

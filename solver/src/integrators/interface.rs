@@ -1,0 +1,123 @@
+//! The interface of every integrator of film.
+//!
+//! ```text
+//! advance(state at t, system, interval) → state at the end of the interval
+//! ```
+//!
+//! An integrator has a state of its own (velocities between two times, the last step, its plan), which it can
+//! give away as text for a checkpoint. It keeps the energy accounting of the run, with an entry for what its
+//! numerics dissipate. It reads no clock: a budget bounds its steps.
+
+use core::fmt;
+
+use crate::integrators::StoredIntegrator;
+use crate::integrators::energy_accounting::EnergyAccounting;
+use crate::mechanics::forces::membrane::NodeForces;
+use crate::output::events::Event;
+use crate::output::ledger::Ledger;
+use crate::output::outcome::Failure;
+use crate::platform::stopwatch::Stopwatch;
+use crate::scene::timeline::Phase;
+use crate::system::{FilmState, FilmSystem};
+
+/// An interval of time in which the phase is constant. Its end is reached exactly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval<'a> {
+    /// Its end, s.
+    pub target: f64,
+    /// Inflow, and whether the film is packed.
+    pub phase: &'a Phase,
+}
+
+/// What an integrator may use, and to whom it reports.
+pub struct Budget<'a> {
+    /// Steps that may be taken before the integrator pauses; it subtracts those it takes.
+    pub steps: &'a mut u64,
+    /// Accepted steps since time 0 at which the run fails with `step_limit`.
+    pub step_limit: u64,
+    /// Checks every accepted step.
+    pub audit: &'a mut dyn StepAudit,
+    /// Learns when each stage of a step begins.
+    pub stopwatch: &'a mut dyn Stopwatch,
+    /// Receives the decisions of the step controller.
+    pub events: &'a mut Vec<Event>,
+}
+
+/// Checks accepted steps, whatever the integrator.
+pub trait StepAudit: fmt::Debug {
+    /// Records the state after a step.
+    ///
+    /// # Errors
+    /// A [`Failure`] ends the run.
+    fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
+
+    /// Completes the checks of all recorded steps, at the end of an interval.
+    ///
+    /// # Errors
+    /// A [`Failure`] ends the run.
+    fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
+}
+
+/// Checks nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoAudit;
+
+impl StepAudit for NoAudit {
+    fn record(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn complete(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// Where [`Integrator::advance`] ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Advance {
+    /// At the end of the interval.
+    Reached,
+    /// Within the interval: the steps of the budget are used. The next call continues with the same bits.
+    Paused,
+}
+
+/// An integrator of film in time.
+pub trait Integrator: fmt::Debug + Send {
+    /// Advances the state to the end of the interval, or until the budget is used. All fields of the state
+    /// are then at the same time.
+    ///
+    /// # Errors
+    /// [`Failure`]: the state is that of the last step, accepted or not.
+    fn advance(
+        &mut self,
+        state: &mut FilmState,
+        system: &FilmSystem,
+        interval: Interval<'_>,
+        budget: Budget<'_>,
+    ) -> Result<Advance, Failure>;
+
+    /// The length of the next step if nothing bounds it but this method, s.
+    fn next_step(&self, system: &FilmSystem, state: &FilmState) -> f64;
+
+    /// Forces on the nodes at the state's time, dissipative ones included.
+    fn forces(&self) -> &NodeForces;
+
+    /// Energy accounting since time 0.
+    fn accounting(&self) -> &EnergyAccounting;
+
+    /// The energy ledger of the film. [`EnergyAccounting::ledger`] needs only the energies that the method
+    /// conserves.
+    fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger;
+
+    /// Stress (Pa) that the largest principal stress reaches on this fraction of the film's area.
+    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64;
+
+    /// Smallest gap of pairs of film closer than their contact distance, m; infinite if there is none.
+    fn smallest_gap(&self) -> f64;
+
+    /// Private state for a checkpoint; `None` for an integrator that cannot be resumed.
+    fn stored(&self) -> Option<StoredIntegrator>;
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn Integrator>;
+}
