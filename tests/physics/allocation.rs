@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::integrators::explicit::DEFAULT_CFL;
-use billow_solver::integrators::{FilmSimulation, FilmView};
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::models::run::Model;
 use billow_solver::platform::simd::InstructionSet;
@@ -106,7 +106,7 @@ fn settled_sheets(monitor: MonitorSettings) -> FilmSimulation {
         ..free_film(shell, Film { numerical_damping: 0.1, ..Film::PAPER })
     };
     scene.solver.mass_damping = 300.0;
-    let mut film = capsule::start(&scene).unwrap();
+    let mut film = capsule::start(&scene, &[]).unwrap();
     film.advance(0.2, &Phase::default()).unwrap();
     film
 }

@@ -1,6 +1,7 @@
 //! Pauses and checkpoints of whole runs: the same bits as without them, at any step.
 
-use billow_solver::integrators::explicit::{DEFAULT_CFL, FilmSimulation, State};
+use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::integrators::{FilmSimulation, StoredFilm};
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{Answer, Observer, Pause, Progress, Run, Unobserved, run};
 use billow_solver::models::{self, ResumeError, Stored};
@@ -148,14 +149,17 @@ fn a_checkpoint_of_another_scene_or_model_is_refused() {
 fn a_passage_is_found_at_the_same_step_with_and_without_pauses() {
     let scene = paper::capsule(3, 0.03);
     let contact = FilmContact { distance: Some(1e-3), ..FilmContact::default() };
-    let faulty = |state: Option<State>| {
+    let faulty = |stored: Option<StoredFilm>| {
         let set = InstructionSet::detect();
         let mut run = FilmRun::from_scene(set, &scene, DEFAULT_CFL, Some(contact.clone())).unwrap();
-        let FilmSimulation { model, mut parameters, state: start, .. } = run.film;
-        parameters.contact.as_mut().unwrap().edge_contacts = false;
-        run.film = match state {
-            None => Explicit::new(model, parameters, start.positions, start.velocities, start.gas),
-            Some(state) => Explicit::resume(model, parameters, state),
+        let (mut system, start, settings) = run.film.into_parts();
+        system.contact.as_mut().unwrap().edge_contacts = false;
+        run.film = match stored {
+            None => {
+                let (positions, velocities) = (start.positions, start.velocities);
+                FilmSimulation::new(system, settings, positions, velocities, start.gas)
+            }
+            Some(stored) => FilmSimulation::resume(system, settings, stored).unwrap(),
         };
         run
     };
@@ -169,7 +173,7 @@ fn a_passage_is_found_at_the_same_step_with_and_without_pauses() {
         let mut pausing = Pausing::new(1, Some(whole.steps - before));
         run(&mut faulty(None), &timeline, &mut pausing);
         let text = pausing.stored.unwrap();
-        let checkpoint = Checkpoint::<State, Run>::from_text(&text, "scene").unwrap();
+        let checkpoint = Checkpoint::<StoredFilm, Run>::from_text(&text, "scene").unwrap();
         let mut model = faulty(Some(checkpoint.state));
         let resumed = checkpoint.run.complete(&mut model, &timeline, &mut Unobserved);
         assert_eq!(bits(&resumed), bits(&whole), "{before} steps before");

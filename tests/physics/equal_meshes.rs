@@ -37,7 +37,7 @@ fn with_contact(scene: &Scene) -> FilmRun {
 }
 
 fn contact_distance(scene: &Scene) -> f64 {
-    with_contact(scene).film.parameters.contact.unwrap().distance
+    with_contact(scene).view().system.contact.as_ref().unwrap().distance
 }
 
 /// Positions of the nodes at the start, m.
@@ -70,7 +70,8 @@ fn the_reference_gap_is_the_smallest_gap_at_16_subdivisions() {
         let contact = Some(FilmContact::default());
         let mut film = stowed(InstructionSet::detect(), &scene, DEFAULT_CFL);
         film.contact = contact;
-        let distance = capsule::start(&film).unwrap().parameters.contact.unwrap().distance;
+        let distance =
+            capsule::start(&film, &[]).unwrap().view().system.contact.as_ref().unwrap().distance;
         let gap = reference_gap(&scene.design).unwrap();
         assert!((distance - 0.4 * gap).abs() < 1e-9 * gap, "{distance} {gap}");
     }

@@ -1,6 +1,7 @@
 //! Film in motion: moving supports, free fall, failures. Momentum, the stable step and damping are
 //! reference cases of `billow validate`.
 
+use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, nodes_where, sheet};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
@@ -12,16 +13,13 @@ use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::system::PressureLoad;
 use nalgebra::Vector3;
 
-use crate::film_rig::{at_rest, free, mapped, nitrogen_gas};
+use crate::film_rig::{at_rest, free, mapped, moving, nitrogen_gas};
 
 #[test]
 fn the_work_of_a_moving_support_balances() {
     let piece = sheet(6, 3, 0.3, 0.15);
-    let mut film =
-        at_rest(&piece, &Film::PAPER, PressureLoad::Overpressure(0.0), GasState::default());
     let edge = |x: f64| nodes_where(&piece, |position| (position.x - x).abs() < 1e-12);
     let (left, right) = (edge(0.0), edge(0.3));
-    let start = film.view().ledger();
     let motion = Motion {
         from: 0.0,
         to: 1e-3,
@@ -37,7 +35,12 @@ fn the_work_of_a_moving_support_balances() {
         motion,
     });
     let right_node = right.nodes[0] as usize;
-    film.view().system.supports = Supports::new(&[left, right], &film.view().state.positions);
+    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
+    let (still, positions) = (Field::zeros(piece.positions.len()), Field::of(&piece.positions));
+    let mut film = moving(&piece, &Film::PAPER, unloaded, still, |system, _| {
+        system.supports = Supports::new(&[left, right], &positions);
+    });
+    let start = film.view().ledger();
     film.advance(1e-3, &free()).unwrap();
     film.advance(2e-3, &free()).unwrap();
     let end: Ledger = film.view().ledger();
@@ -51,9 +54,11 @@ fn the_work_of_a_moving_support_balances() {
 #[test]
 fn free_fall_follows_gravity() {
     let piece = icosphere(0, 0.5);
-    let mut film =
-        at_rest(&piece, &Film::PAPER, PressureLoad::Overpressure(0.0), GasState::default());
-    film.view().system.gravity = Vector3::new(0.0, 0.0, -9.806_65);
+    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
+    let still = Field::zeros(piece.positions.len());
+    let mut film = moving(&piece, &Film::PAPER, unloaded, still, |system, _| {
+        system.gravity = Vector3::new(0.0, 0.0, -9.806_65);
+    });
     film.advance(0.1, &free()).unwrap();
     let drop = film.view().state.positions.z[0] - piece.positions[0].z;
     assert!((drop / (-0.5 * 9.806_65 * 0.01) - 1.0).abs() < 1e-12, "{drop}");
@@ -65,37 +70,41 @@ fn free_fall_follows_gravity() {
 fn failures_have_their_kind() {
     let piece = icosphere(1, 0.5);
     let gas = nitrogen_gas();
-    let mut film =
-        at_rest(&piece, &Film::PAPER, PressureLoad::Gas(gas), gas.at_temperature(1e-3, 293.0));
-    film.view().system.step_limit = 7;
+    let filled = (PressureLoad::Gas(gas), gas.at_temperature(1e-3, 293.0));
+    let still = || Field::zeros(piece.positions.len());
+    let mut film = moving(&piece, &Film::PAPER, filled, still(), |_, settings| {
+        settings.step_limit = 7;
+    });
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!((failure.kind, film.view().steps()), (FailureKind::StepLimit, 7));
 
-    film.view().system.step_limit = u64::MAX;
-    film.view().system.cfl = 3.0;
+    let mut film = moving(&piece, &Film::PAPER, filled, still(), |_, settings| {
+        settings.cfl = 3.0;
+    });
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::Unstable, "{failure:?}");
     assert!(failure.place.starts_with("node ") && failure.time < 0.1, "{failure:?}");
 
     // Soft film under a pressure far beyond its modulus stretches without end; its energy balances.
     let soft = Film { youngs_modulus: 1e4, ..Film::PAPER_ELASTIC };
-    let mut film = at_rest(&piece, &soft, PressureLoad::Overpressure(50.0), GasState::default());
-    film.view().system.cfl = 0.01;
+    let pressed = (PressureLoad::Overpressure(50.0), GasState::default());
+    let mut film = moving(&piece, &soft, pressed, still(), |_, settings| settings.cfl = 0.01);
     let failure = film.advance(10.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::Overstretched, "{failure:?}");
     assert!(failure.place.contains("times its length"), "{failure:?}");
 
     // A node faster than the waves of its film is no failure.
-    let mut film = at_rest(&piece, &soft, PressureLoad::Overpressure(0.0), GasState::default());
-    let speed = 3.0 * film.view().system.model.wave_speed();
-    film.view().state.velocities = mapped(&piece, |_| Vector3::x() * speed);
-    film.view().state.start_energy = film.view().ledger().kinetic;
+    let unloaded = (PressureLoad::Overpressure(0.0), GasState::default());
+    let wave_speed =
+        at_rest(&piece, &soft, unloaded.0, unloaded.1).view().system.model.wave_speed();
+    let fast = mapped(&piece, |_| Vector3::x() * (3.0 * wave_speed));
+    let mut film = moving(&piece, &soft, unloaded, fast, |_, _| ());
     film.advance(0.02, &free()).unwrap();
 
     // Thrown inward through itself, the sphere turns inside out.
-    let mut film = at_rest(&piece, &Film::PAPER, PressureLoad::Gas(gas), GasState::default());
-    film.view().state.velocities = mapped(&piece, |x| x * -400.0);
-    film.view().state.start_energy = film.view().ledger().kinetic;
+    let (empty, inward) =
+        ((PressureLoad::Gas(gas), GasState::default()), mapped(&piece, |x| x * -400.0));
+    let mut film = moving(&piece, &Film::PAPER, empty, inward, |_, _| ());
     let failure = film.advance(1.0, &free()).unwrap_err();
     assert_eq!(failure.kind, FailureKind::InvertedVolume, "{failure:?}");
 }

@@ -3,9 +3,14 @@
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::mesh::Shape;
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::{FilmSimulation, FilmView, SimulationSettings};
+use billow_solver::integrators::explicit::StoredExplicit;
+use billow_solver::integrators::{
+    FilmSimulation, SimulationSettings, StoredFilm, StoredIntegrator,
+};
 use billow_solver::mechanics::film_model::FilmModel;
-use billow_solver::mechanics::forces::membrane::{ElementHistory, NodeForces, assemble_membrane};
+use billow_solver::mechanics::forces::membrane::{
+    ElementHistory, NodeForces, assemble_conservative,
+};
 use billow_solver::mechanics::gas::{Gas, GasState};
 use billow_solver::models::film::capsule;
 use billow_solver::platform::simd::InstructionSet;
@@ -37,8 +42,9 @@ pub fn model(shell: &Shell, film: &Film) -> FilmModel {
 /// Film forces on nodes at these positions, without motion.
 pub fn film_forces(model: &FilmModel, positions: &Field) -> NodeForces {
     let mut nodes = NodeForces::new(model);
-    let history = &mut ElementHistory::at_rest(model, positions);
-    let _ = assemble_membrane(InstructionSet::detect(), model, positions, 0.0, history, &mut nodes);
+    let histories = &mut ElementHistory::zero(model);
+    let set = InstructionSet::detect();
+    let _ = assemble_conservative(set, model, positions, &[], histories, &mut nodes);
     nodes
 }
 
@@ -54,10 +60,50 @@ pub fn at_rest(
     pressure: PressureLoad,
     gas: GasState,
 ) -> FilmSimulation {
-    let (nodes, numerical_damping) = (shell.positions.len(), film.numerical_damping);
-    let parameters = Parameters { numerical_damping, ..Parameters::free(pressure, nodes) };
-    let positions = Field::of(&shell.positions);
-    Explicit::new(model(shell, film), parameters, positions, Field::zeros(nodes), gas)
+    let still = Field::zeros(shell.positions.len());
+    moving(shell, film, (pressure, gas), still, |_, _| ())
+}
+
+/// Film with these velocities (m/s) at the shell's positions, after a change of system and settings.
+pub fn moving(
+    shell: &Shell,
+    film: &Film,
+    (pressure, gas): (PressureLoad, GasState),
+    velocities: Field,
+    change: impl FnOnce(&mut FilmSystem, &mut SimulationSettings),
+) -> FilmSimulation {
+    let mut system = FilmSystem {
+        numerical_damping: film.numerical_damping,
+        ..FilmSystem::free(model(shell, film), pressure)
+    };
+    let mut settings = SimulationSettings::default();
+    change(&mut system, &mut settings);
+    FilmSimulation::new(system, settings, Field::of(&shell.positions), velocities, gas)
+}
+
+/// The same film after a change of what is stored of it.
+pub fn edited(film: FilmSimulation, edit: impl FnOnce(&mut StoredFilm)) -> FilmSimulation {
+    let mut stored = film.stored().expect("a film that can be stored");
+    edit(&mut stored);
+    let (system, _, settings) = film.into_parts();
+    FilmSimulation::resume(system, settings, stored).expect("the same film")
+}
+
+/// The same film, resumed from text.
+pub fn resumed(film: FilmSimulation) -> FilmSimulation {
+    let text = text(&film);
+    edited(film, |stored| *stored = serde_json::from_str(&text).expect("what was stored"))
+}
+
+/// Everything that a run resumes from, as text.
+pub fn text(film: &FilmSimulation) -> String {
+    serde_json::to_string(&film.stored()).expect("finite numbers")
+}
+
+/// What central differences keep beside the state.
+pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
+    let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator;
+    explicit
 }
 
 pub fn free() -> Phase {

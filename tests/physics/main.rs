@@ -33,3 +33,4 @@ mod rigid_planes;
 mod shells;
 mod statics;
 mod storeys_capsule;
+mod system;

@@ -3,8 +3,9 @@
 
 use std::sync::LazyLock;
 
+use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{icosphere, tube};
-use billow_solver::integrators::{FilmSimulation, FilmView};
+use billow_solver::integrators::{FilmSimulation, SimulationSettings};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::scene::{Film, Species};
 use billow_solver::statics::Relaxation;
@@ -12,7 +13,7 @@ use billow_solver::system::PressureLoad;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-use crate::film_rig::{at_rest, free, nitrogen_gas, orders};
+use crate::film_rig::{at_rest, edited, free, moving, nitrogen_gas, orders};
 
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../reference/film.json")).expect("JSON in tests/reference")
@@ -30,15 +31,11 @@ fn rows(case: &str) -> Vec<[f64; 2]> {
 /// λ − 1 of a relaxed sphere, from the mean radius over that of the unloaded mesh; and its film.
 fn sphere_stretch(level: u32, overpressure: f64) -> (f64, FilmSimulation) {
     let piece = icosphere(level, number("sphere/radius"));
-    let mut film = at_rest(
-        &piece,
-        &Film::PAPER,
-        PressureLoad::Overpressure(overpressure),
-        GasState::default(),
-    );
-    film.view().system.cfl = 0.9;
+    let load = (PressureLoad::Overpressure(overpressure), GasState::default());
+    let still = Field::zeros(piece.positions.len());
+    let film = moving(&piece, &Film::PAPER, load, still, |_, settings| settings.cfl = 0.9);
     let relaxation = Relaxation { max_kinetic_fraction: 1e-14, ..Relaxation::default() };
-    relaxation.relax_at(&mut film, overpressure).unwrap();
+    let film = relaxation.relax_at(film, overpressure).unwrap();
     let loaded: f64 = film.view().state.positions.iter().map(|x| x.norm()).sum();
     let unloaded: f64 = piece.positions.iter().map(Vector3::norm).sum();
     (loaded / unloaded - 1.0, film)
@@ -67,20 +64,19 @@ fn hoop_stretch_and_axial_force_of_a_cylinder_converge() {
         .map(|around| {
             let along = around / 8;
             let piece = tube(around, along, radius, 0.4);
-            let mut film = at_rest(
-                &piece,
-                &Film::PAPER,
-                PressureLoad::Overpressure(overpressure),
-                GasState::default(),
-            );
-            film.view().system.cfl = 0.9;
             let ends: Vec<u32> = (0..around).chain(along * around..(along + 1) * around).collect();
-            film.view().system.supports.hold(&ends, "z");
-            for node in 0..film.state.positions.len() {
-                film.view().state.positions.z[node] *= 1.0 + axial;
-            }
+            let load = (PressureLoad::Overpressure(overpressure), GasState::default());
+            let still = Field::zeros(piece.positions.len());
+            let film = moving(&piece, &Film::PAPER, load, still, |system, settings| {
+                settings.cfl = 0.9;
+                system.supports.hold(&ends, "z");
+            });
+            let film = edited(film, |stored| {
+                let z = &mut stored.state.positions.z;
+                (0..z.len()).for_each(|node| z[node] *= 1.0 + axial);
+            });
             let relaxation = Relaxation { max_kinetic_fraction: 1e-14, ..Relaxation::default() };
-            relaxation.relax_at(&mut film, overpressure).unwrap();
+            let film = relaxation.relax_at(film, overpressure).unwrap();
             let mean: f64 = film.view().state.positions.iter().map(|x| x.xy().norm()).sum::<f64>()
                 / film.view().state.positions.len() as f64;
             let pull: f64 = (0..around as usize).map(|node| film.view().force(node).z).sum();
@@ -100,7 +96,7 @@ fn hoop_stretch_and_axial_force_of_a_cylinder_converge() {
 /// A sphere released unstretched. Its gas has this pressure (Pa) at equilibrium.
 fn released(level: u32, pressure: f64) -> FilmSimulation {
     let gas = nitrogen_gas();
-    let rest = sphere_stretch(level, pressure).1.state.volume;
+    let rest = sphere_stretch(level, pressure).1.view().state.volume;
     let piece = icosphere(level, number("breathing_sphere/radius"));
     let empty = at_rest(&piece, &Film::PAPER_ELASTIC, PressureLoad::Gas(gas), GasState::default());
     let pressure = pressure * (rest / empty.view().state.volume).powf(gas.gamma());
@@ -111,8 +107,9 @@ fn released(level: u32, pressure: f64) -> FilmSimulation {
 #[test]
 fn film_with_gas_is_of_second_order_in_the_step() {
     let volume = |cfl: f64| {
-        let mut film = released(1, 1000.0);
-        film.view().system.cfl = cfl;
+        let film = released(1, 1000.0);
+        let mut film =
+            film.with(|system, settings| (system, SimulationSettings { cfl, ..settings }));
         film.advance(0.9e-3, &free()).unwrap();
         film.view().state.volume
     };

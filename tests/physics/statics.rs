@@ -5,7 +5,7 @@ use std::time::Instant;
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{grid, icosphere, nodes_where, pseudo_random};
 use billow_solver::geometry::shell::Shell;
-use billow_solver::integrators::{FilmSimulation, FilmView, SimulationSettings};
+use billow_solver::integrators::{FilmSimulation, SimulationSettings};
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::forces::tangent::{self, Stiffness};
 use billow_solver::mechanics::gas::GasState;
@@ -146,15 +146,16 @@ fn damped_motion_and_newton_find_the_same_equilibrium() {
     let mut capsule = erected(InstructionSet::detect(), &scene).unwrap();
     let state = capsule.settle(100.0).unwrap();
     let nodes = capsule.model.nodes();
-    let parameters = Parameters {
+    let load = PressureLoad::Overpressure(100.0);
+    let system = FilmSystem {
         supports: capsule.supports.clone(),
-        cfl: 0.9,
         numerical_damping: scene.film.numerical_damping,
-        ..Parameters::free(PressureLoad::Overpressure(100.0), nodes)
+        ..FilmSystem::free(capsule.model.clone(), load)
     };
-    let mut film = Explicit::new(
-        capsule.model.clone(),
-        parameters,
+    let settings = SimulationSettings { cfl: 0.9, ..SimulationSettings::default() };
+    let film = FilmSimulation::new(
+        system,
+        settings,
         // Displaced by a tenth of a millimetre, so that there is motion to damp.
         Field::of(
             &state
@@ -168,9 +169,8 @@ fn damped_motion_and_newton_find_the_same_equilibrium() {
         Field::zeros(nodes),
         GasState::default(),
     );
-    Relaxation { max_kinetic_fraction: 1e-16, ..Relaxation::default() }
-        .relax_at(&mut film, 100.0)
-        .unwrap();
+    let relaxation = Relaxation { max_kinetic_fraction: 1e-16, ..Relaxation::default() };
+    let film = relaxation.relax_at(film, 100.0).unwrap();
     let moved =
         (0..nodes).map(|n| (film.view().state.positions.get(n) - state.positions.get(n)).norm());
     let moved = moved.fold(0.0, f64::max);

@@ -19,6 +19,7 @@ const ROOMS: [(&str, &[&str]); 2] = [
             "mechanics",
             "collision",
             "output",
+            "system",
             "integrators",
             "statics",
             "models",

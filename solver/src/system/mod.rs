@@ -12,13 +12,19 @@
 //!
 //! The integrators are above this room, and know each other only through these types.
 
+mod dissipation;
+mod evaluation;
 mod film_state;
 mod film_system;
+mod stiffness;
 
 mod workspace;
 
+pub use dissipation::Dissipation;
+pub use evaluation::Evaluation;
 pub use film_state::FilmState;
 pub(crate) use film_state::bind;
 pub use film_system::{FilmSystem, PressureLoad};
+pub use stiffness::GasStiffness;
 
 pub use workspace::{ContactWorkspace, Workspace};

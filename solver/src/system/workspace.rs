@@ -115,6 +115,16 @@ impl Workspace {
         sums
     }
 
+    /// Prepares the search for contacts at any positions (m).
+    pub(super) fn prepare_search(&mut self, system: &FilmSystem, positions: &Field) {
+        let (Some(model), Some(contact)) = (&system.contact, &mut self.contact) else { return };
+        let moved = contact.prepared.largest_displacement(positions);
+        if moved > 0.0 {
+            contact.list.prepare_step(model, positions, &mut contact.progress, moved);
+            contact.prepared.copy_from(positions);
+        }
+    }
+
     /// Membrane forces and ∂V/∂x of the film alone.
     pub(super) fn membrane(
         &mut self,

@@ -1,8 +1,9 @@
 //! One contact, and its force as a function of the gap.
 //!
 //! ```text
-//! repulsion   F = k (o − d)²/(2 o)          E = k (o − d)³/(6 o)        d < o
-//! adhesion    F = −4 F_a s (1 − s)          s = (d − o)/range           0 < s < 1
+//! repulsion   F = k (o − d)²/(2 o)          E = k (o − d)³/(6 o)                        d < o
+//! adhesion    F = −4 F_a s (1 − s)          E = −4 F_a range (1/6 − s²/2 + s³/3)        0 < s < 1
+//!             s = (d − o)/range
 //! ```
 //!
 //! Symbols: d gap, o offset, m; k stiffness, N/m; `F_a` largest adhesive force, N.
@@ -47,6 +48,32 @@ impl Contact {
         } else {
             0.0
         }
+    }
+
+    /// Energy that separating the pair from a gap (m) costs against adhesion, J: 0 at the end of its range.
+    pub fn adhesive_energy(&self, gap: f64, range: f64) -> f64 {
+        let valid = self.adhesion > 0.0 && range > 0.0;
+        if !valid {
+            return 0.0;
+        }
+        let share = ((gap - self.offset) / range).clamp(0.0, 1.0);
+        let remaining = 1.0 / 6.0 - share * share * (0.5 - share / 3.0);
+        4.0 * self.adhesion * range * remaining
+    }
+
+    /// Slope of the attractive force with the gap, N/m.
+    pub fn adhesive_stiffness(&self, gap: f64, range: f64) -> f64 {
+        let share = (gap - self.offset) / range;
+        if self.adhesion > 0.0 && share > 0.0 && share < 1.0 {
+            4.0 * self.adhesion * (1.0 - 2.0 * share) / range
+        } else {
+            0.0
+        }
+    }
+
+    /// Minus the slope of the repulsive force with the gap, N/m.
+    pub fn repulsive_stiffness(&self, gap: f64) -> f64 {
+        self.stiffness * (self.offset - gap).max(0.0) / self.offset
     }
 
     /// Repulsive force at a gap (m), N.

@@ -39,6 +39,7 @@ pub mod pressure;
 pub mod safe_step;
 pub mod separating_planes;
 pub mod state;
+pub mod stiffness;
 
 pub use candidates::SearchProgress;
 pub use force_law::Contact;

@@ -164,16 +164,38 @@ mod tests {
     use crate::collision::broad_phase::collision_mesh::CollisionMesh;
     use crate::collision::contact::{Contact, ContactModel, Pair, PairKind};
     use crate::geometry::field::Field;
-    use crate::integrators::explicit::{Parameters, PressureLoad};
     use crate::mechanics::film_model::FilmModel;
     use crate::mechanics::gas::GasState;
     use crate::platform::simd::InstructionSet;
     use crate::scene::Film;
     use crate::scene::inflow::Inflow;
     use crate::scene::plate::Plate;
+    use crate::system::PressureLoad;
 
     /// Two triangles far apart, at rest for 50 ms after a motion.
-    fn quiescent_film() -> Explicit {
+    struct Scene {
+        system: FilmSystem,
+        state: FilmState,
+        explicit: Explicit,
+    }
+
+    impl Scene {
+        fn plan(&mut self, phase: &Phase) -> Option<StepInterval> {
+            let (system, state) = (&self.system, &self.state);
+            self.explicit.plan_interval(system, state, 0.06, phase, &mut Vec::new())
+        }
+
+        fn replan(&mut self) -> Option<StepInterval> {
+            let (system, state) = (&self.system, &self.state);
+            self.explicit.replan_interval(system, state, 0.06, &mut Vec::new())
+        }
+
+        fn is_active(&mut self, interval: &StepInterval) -> bool {
+            self.explicit.activity_detected(&self.system, &self.state, interval)
+        }
+    }
+
+    fn quiescent_film() -> Scene {
         let film = Film::PAPER;
         let flat = [Vector2::new(0.0, 0.0), Vector2::new(0.1, 0.0), Vector2::new(0.0, 0.1)];
         let triangles = [[0, 1, 2], [3, 4, 5]];
@@ -188,21 +210,22 @@ mod tests {
             0.1,
             InstructionSet::detect(),
         );
-        let parameters = Parameters {
+        let system = FilmSystem {
             contact: Some(contact_model),
             numerical_damping: 0.1,
-            ..Parameters::free(PressureLoad::Overpressure(0.0), 6)
+            ..FilmSystem::free(model, PressureLoad::Overpressure(0.0))
         };
-        let still = Field::zeros(6);
-        let mut film = Explicit::new(model, parameters, positions, still, GasState::default());
-        film.state.quiescence.largest_kinetic_energy = 1.0;
-        film.state.time = 0.05;
-        film
+        let gas = GasState::default();
+        let (mut state, workspace) = FilmState::start(&system, positions, Field::zeros(6), gas);
+        let mut explicit = Explicit::start(&system, &state, workspace, 0.45);
+        explicit.motion.quiescence.largest_kinetic_energy = 1.0;
+        state.time = 0.05;
+        Scene { system, state, explicit }
     }
 
-    fn is_quiescent(mut film: Explicit, phase: &Phase) -> bool {
-        let stable_step = film.stable_step();
-        let interval = film.plan_interval(0.06, phase).expect("an interval");
+    fn is_quiescent(mut scene: Scene, phase: &Phase) -> bool {
+        let stable_step = scene.explicit.stable_step(&scene.system, &scene.state);
+        let interval = scene.plan(phase).expect("an interval");
         let longer = interval.length > 1.5 * stable_step;
         assert!(longer || interval.length <= stable_step);
         assert_eq!(longer, interval.quiescent);
@@ -231,22 +254,22 @@ mod tests {
     fn film_is_quiescent_after_quiet_time_without_motion_or_contact() {
         let still = Phase::default();
         assert!(is_quiescent(quiescent_film(), &still));
-        let with = |change: &dyn Fn(&mut Explicit)| {
+        let with = |change: &dyn Fn(&mut Scene)| {
             let mut film = quiescent_film();
             change(&mut film);
             is_quiescent(film, &still)
         };
-        assert!(!with(&|film| film.state.quiescence.last_active = 0.035));
-        assert!(with(&|film| film.state.quiescence.last_active = 0.025));
-        assert!(!with(&|film| film.state.quiescence.largest_kinetic_energy = 0.0));
-        assert!(!with(&|film| film.state.velocities.x[2] = f64::NAN));
-        assert!(!with(&|film| film.state.contact_state.contacts.push(contact())));
-        let plates = |film: &mut Explicit, until: f64| {
-            film.parameters.contact.iter_mut().for_each(|model| model.plates.push(plate(until)));
+        assert!(!with(&|film| film.explicit.motion.quiescence.last_active = 0.035));
+        assert!(with(&|film| film.explicit.motion.quiescence.last_active = 0.025));
+        assert!(!with(&|film| film.explicit.motion.quiescence.largest_kinetic_energy = 0.0));
+        assert!(!with(&|film| film.explicit.motion.velocities.x[2] = f64::NAN));
+        assert!(!with(&|film| film.state.contact.contacts.push(contact())));
+        let plates = |film: &mut Scene, until: f64| {
+            film.system.contact.iter_mut().for_each(|model| model.plates.push(plate(until)));
         };
         assert!(!with(&|film| plates(film, 0.2)));
         assert!(with(&|film| plates(film, 0.04)));
-        assert!(!with(&|film| film.parameters.contact = None));
+        assert!(!with(&|film| film.system.contact = None));
         let inflow = Inflow { mass_flow_rate: 1e-3, temperature_flow: 0.3 };
         assert!(!is_quiescent(quiescent_film(), &Phase { packed: false, inflow }));
         assert!(!is_quiescent(quiescent_film(), &Phase { packed: true, ..still }));
@@ -255,20 +278,23 @@ mod tests {
     #[test]
     fn contact_ends_quiescence_at_once_and_motion_at_the_next_check() {
         let mut film = quiescent_film();
-        let mut interval = film.plan_interval(0.06, &Phase::default()).expect("an interval");
+        let mut interval = film.plan(&Phase::default()).expect("an interval");
         interval.index = 3;
-        assert!(!film.activity_detected(&interval));
-        film.state.velocities.x[0] = 100.0;
-        assert!(!film.activity_detected(&interval));
+        assert!(!film.is_active(&interval));
+        film.explicit.motion.velocities.x[0] = 100.0;
+        assert!(!film.is_active(&interval));
         interval.index = CHECK_INTERVAL;
-        assert!(film.activity_detected(&interval));
-        assert!(film.replan_interval(0.06).is_some_and(|interval| !interval.quiescent));
+        assert!(film.is_active(&interval));
+        assert!(film.replan().is_some_and(|interval| !interval.quiescent));
 
         let mut film = quiescent_film();
         interval.index = 3;
-        film.state.contact_state.contacts.push(contact());
-        assert!(film.activity_detected(&interval));
-        assert_eq!(film.state.quiescence.last_active.to_bits(), film.state.time.to_bits());
-        assert!(film.replan_interval(0.06).is_some_and(|interval| !interval.quiescent));
+        film.state.contact.contacts.push(contact());
+        assert!(film.is_active(&interval));
+        assert_eq!(
+            film.explicit.motion.quiescence.last_active.to_bits(),
+            film.state.time.to_bits()
+        );
+        assert!(film.replan().is_some_and(|interval| !interval.quiescent));
     }
 }

@@ -11,7 +11,8 @@
 //!
 //! Symbols: g gradients of the shape functions of the corners (1/m), B strain of a unit displacement, n
 //! direction of tension, m direction across it, c compression fraction. D is positive semidefinite in
-//! every regime; for c = 0 so is K without the pressure. The tangent of a follower pressure is not
+//! every regime; for c = 0 so is K without the pressure. Film that creeps has S(Ê) and (1 + g) D(Ê), at a fixed
+//! creep strain. The tangent of a follower pressure is not
 //! symmetric element by element; `K_p` is its symmetric part. The antisymmetric part cancels over a closed
 //! surface, and over an open surface whose edge is held or slides in planes.
 
@@ -19,8 +20,9 @@ use nalgebra::{Matrix3, Matrix3x2, SMatrix, Vector2, Vector3};
 
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
-use crate::mechanics::forces::membrane::strain;
+use crate::mechanics::forces::membrane::{CreepStrain, strain, strain_of};
 use crate::mechanics::material::{Material, PlaneTensor, Regime};
+use crate::platform::simd::WIDTH;
 
 /// Stiffness of three nodes, three components each, N/m.
 pub type Stiffness = SMatrix<f64, 9, 9>;
@@ -47,17 +49,68 @@ pub fn material_tangent(material: &Material, strain: PlaneTensor) -> Matrix3<f64
     relaxed + (full - relaxed) * material.compression
 }
 
-/// Elastic stiffness of an element with its nodes at these positions (m).
+/// Elastic stiffness of an element of film without loss with its nodes at these positions (m).
 pub fn elastic(model: &FilmModel, positions: &Field, element: usize) -> Stiffness {
     let corners = model.triangles[element].map(|node| positions.get(node as usize));
-    let [a, b, c, d] = model.inverse_shape.each_ref().map(|column| column[element]);
+    let inverse_shape = model.inverse_shape.each_ref().map(|column| column[element]);
+    let strain = strain(model, positions, element);
+    let tangent = material_tangent(&model.material, strain);
+    let stress = model.material.stress(strain).tensor;
+    of_element(corners, inverse_shape, model.volume[element], stress, &tangent)
+}
+
+/// Nodes and elastic stiffness of every element at these positions (m) and creep strains; no creep strains for
+/// film without loss.
+pub fn elements<'a>(
+    model: &'a FilmModel,
+    creep: &'a [[CreepStrain; 2]],
+    positions: &'a Field,
+) -> Box<dyn Iterator<Item = ([u32; 3], Stiffness)> + 'a> {
+    if creep.is_empty() {
+        let triangles = model.triangles.iter().enumerate();
+        return Box::new(
+            triangles.map(|(element, nodes)| (*nodes, elastic(model, positions, element))),
+        );
+    }
+    let halves = model.kites.iter().enumerate().flat_map(|(index, kite)| {
+        let [s, a, t, b] = *kite;
+        [(index, 0, [s, a, t]), (index, 1, [s, t, b])]
+    });
+    Box::new(halves.filter_map(move |(index, half, nodes)| {
+        let (block, lane) = (index / WIDTH, index % WIDTH);
+        let constants = &model.constants[block][half];
+        let volume = -constants.minus_volume.0[lane];
+        if volume <= 0.0 {
+            return None;
+        }
+        let [a, b, d] = constants.inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
+        let corners = nodes.map(|node| positions.get(node as usize));
+        let inverse_shape = [a, b, 0.0, d];
+        let (total, ratio) = (strain_of(corners, inverse_shape), model.creep.ratio);
+        let [sum, difference, shear] = creep[block][half].lane(lane);
+        let elastic = PlaneTensor {
+            xx: total.xx + ratio * (total.xx - 0.5 * (sum + difference)),
+            yy: total.yy + ratio * (total.yy - 0.5 * (sum - difference)),
+            xy: total.xy + ratio * (total.xy - 0.5 * shear),
+        };
+        let tangent = material_tangent(&model.material, elastic) * (1.0 + ratio);
+        let stress = model.material.stress(elastic).tensor;
+        Some((nodes, of_element(corners, inverse_shape, volume, stress, &tangent)))
+    }))
+}
+
+/// Stiffness of an element with these corners (m), Dm⁻¹ (row by row, 1/m), volume A t (m³), stress (Pa) and
+/// material tangent (Pa).
+fn of_element(
+    corners: [Vector3<f64>; 3],
+    [a, b, c, d]: [f64; 4],
+    volume: f64,
+    stress: PlaneTensor,
+    tangent: &Matrix3<f64>,
+) -> Stiffness {
     let slopes = [Vector2::new(-(a + c), -(b + d)), Vector2::new(a, b), Vector2::new(c, d)];
     let (p, q) = (corners[1] - corners[0], corners[2] - corners[0]);
     let gradient = Matrix3x2::from_columns(&[p * a + q * c, p * b + q * d]);
-    let strain = strain(model, positions, element);
-    let stress = model.material.stress(strain).tensor;
-    let tangent = material_tangent(&model.material, strain);
-    let volume = model.volume[element];
     // Strain of a displacement u of corner i: `slopes[i]` (u·f, u·g), f and g the columns of the gradient.
     let strain_matrices =
         slopes.map(|slope| Matrix3x2::new(slope.x, 0.0, 0.0, slope.y, slope.y, slope.x));

@@ -25,7 +25,7 @@ mod strain;
 
 pub use creep_strain::{CreepStep, CreepStrain};
 pub use element_history::{ElementHistory, numerical_forces, stored_energy, stress_on_fraction};
-pub use strain::{deformation_gradient, strain, strain_energy};
+pub use strain::{deformation_gradient, strain, strain_energy, strain_of};
 
 use elements::{LaneSums, sum_elements};
 

@@ -27,6 +27,11 @@ pub(super) fn of_edges(edges: [Vector3<f64>; 2], inverse_shape: [[f64; 2]; 2]) -
     green_strain(gradient(edges, inverse_shape))
 }
 
+/// Green strain of an element with these corners (m) and this Dm⁻¹ (row by row, 1/m).
+pub fn strain_of([x0, x1, x2]: [Vector3<f64>; 3], [a, b, c, d]: [f64; 4]) -> PlaneTensor {
+    of_edges([x1 - x0, x2 - x0], [[a, b], [c, d]])
+}
+
 /// Edges p and q of the two elements of a kite.
 pub(super) fn edges_of_kite(field: &Field, kite: &[u32; 4]) -> [[Vector3<f64>; 2]; 2] {
     let [s, a, t, b] = kite.map(|node| field.get(node as usize));

@@ -1,4 +1,4 @@
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use super::*;
 use crate::geometry::field::Field;

@@ -1,0 +1,69 @@
+//! The stiffness ∂²Π/∂x² at positions that were just evaluated, block by block.
+//!
+//! ```text
+//! K = membrane + pressure on faces + contact + plates + terms       given as 3 × 3 blocks
+//!   + (γ p/V) ∂V/∂x (∂V/∂x)ᵀ                                         gas: of rank one, given apart
+//! ```
+//!
+//! The pressure on a face is given with its symmetric part; the rest cancels over a closed surface
+//! ([`crate::mechanics::forces::tangent`]). A block of a vertex without film belongs to its rim.
+
+use nalgebra::Matrix3;
+
+use super::{Evaluation, FilmState, FilmSystem, PressureLoad, Workspace};
+use crate::geometry::field::Field;
+use crate::mechanics::energy_term::Blocks;
+use crate::mechanics::forces::tangent::{self, Stiffness};
+use crate::scene::HeatTransfer;
+
+/// The gas as a stiffness of rank one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GasStiffness {
+    /// γ p/V, or p/V for isothermal gas, N/m⁵.
+    pub factor: f64,
+    /// ∂V/∂x of each node, m².
+    pub gradient: Field,
+}
+
+impl FilmSystem {
+    /// Gives the blocks of the stiffness at these positions (m) and this time (s), which `evaluation` and the
+    /// workspace are of; returns that of the gas, `None` under a fixed overpressure.
+    pub fn stiffness(
+        &self,
+        state: &FilmState,
+        (positions, time): (&Field, f64),
+        evaluation: &Evaluation,
+        workspace: &Workspace,
+        add: Blocks<'_>,
+    ) -> Option<GasStiffness> {
+        let overpressure = self.overpressure_at(evaluation.gas_pressure);
+        let give = |nodes: [u32; 3], stiffness: &Stiffness, add: Blocks<'_>| {
+            for i in 0..3 {
+                for j in 0..3 {
+                    let block: Matrix3<f64> = stiffness.fixed_view::<3, 3>(3 * i, 3 * j).into();
+                    add([nodes[i], nodes[j]], &block);
+                }
+            }
+        };
+        for (nodes, mut stiffness) in tangent::elements(&self.model, &state.creep, positions) {
+            tangent::add_pressure(&mut stiffness, nodes, positions, overpressure);
+            give(nodes, &stiffness, add);
+        }
+        for face in &self.model.closure {
+            give(*face, &tangent::pressure(*face, positions, overpressure), add);
+        }
+        if let (Some(model), Some(contact)) = (&self.contact, &workspace.contact) {
+            model.stiffness(&self.model, &contact.trial, positions, time, add);
+        }
+        for term in &self.energy_terms {
+            term.stiffness(positions, add);
+        }
+        let PressureLoad::Gas(gas) = self.pressure_load else { return None };
+        let exponent = match gas.heat_transfer {
+            HeatTransfer::Isothermal => 1.0,
+            HeatTransfer::Coefficient(_) => gas.gamma(),
+        };
+        let factor = exponent * evaluation.gas_pressure / evaluation.volume;
+        Some(GasStiffness { factor, gradient: workspace.forces.areas() })
+    }
+}

@@ -1,0 +1,266 @@
+//! The system of film: energies and their derivatives agree, dissipation takes energy, looking changes nothing.
+
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{icosphere, joined, moved, pseudo_random, sheet};
+use billow_solver::integrators::FilmSimulation;
+use billow_solver::models::film::capsule;
+use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
+use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::scene::plate::Plate;
+use billow_solver::scene::{Film, GasSupply, HeatTransfer};
+use billow_solver::system::{Evaluation, FilmState, FilmSystem, Workspace};
+use nalgebra::Vector3;
+
+use crate::film_rig::{INFLOW, explicit, free, stowed};
+use crate::rig::paper_scene;
+
+/// The paper's capsule at n 3 with gas, contact, friction and adhesion, 15 ms after its release.
+fn capsule_in_contact() -> FilmSimulation {
+    let mut scene = paper_scene();
+    scene.design.subdivisions = 3;
+    scene.gravity = -9.8;
+    scene.film.numerical_damping = 0.05;
+    let mut film = stowed(InstructionSet::detect(), &scene, 0.45);
+    film.contact = Some(FilmContact { friction: 0.2, adhesion: 50.0, ..FilmContact::default() });
+    let mut film = capsule::start(&film, &[]).unwrap();
+    film.advance(0.015, &INFLOW).unwrap();
+    assert!(film.view().state.contact.contacts.iter().any(|contact| contact.energy > 0.0));
+    film
+}
+
+/// A sphere of film with loss under gas and gravity, out of shape, after 2 ms.
+fn sphere(heat_transfer: HeatTransfer) -> FilmSimulation {
+    let supply = GasSupply {
+        initial_mass: 2e-2,
+        ambient_pressure: 300.0,
+        heat_transfer,
+        ..nitrogen_supply()
+    };
+    let film = Film { loss_factor: 0.1, loss_frequency: 300.0, compression: 0.1, ..Film::PAPER };
+    let shell = icosphere(2, 0.5);
+    let velocities = pseudo_random(shell.positions.len(), 3);
+    let mut film = capsule::start(
+        &FilmScene {
+            filling: Filling::Gas { supply, initial_temperature: 320.0 },
+            gravity: Vector3::new(1.0, -2.0, -9.8),
+            velocities,
+            ..free_film(shell, film)
+        },
+        &[],
+    )
+    .unwrap();
+    film.advance(2e-3, &free()).unwrap();
+    film
+}
+
+/// Two sheets that cross over a floor, pressed together by their weight.
+fn pressed_sheets() -> FilmSimulation {
+    let lower = moved(sheet(6, 5, 0.3, 0.25), |x| x + Vector3::new(0.0, 0.0, 0.9e-3));
+    let turned = |x: Vector3<f64>| Vector3::new(0.24 - x.y, 0.013 + 0.8 * x.x, 1.5e-3 + 2e-3 * x.x);
+    let shell = joined(&[lower, moved(sheet(6, 5, 0.3, 0.25), turned)]);
+    let plate = Plate {
+        name: "floor".to_owned(),
+        point: Vector3::zeros(),
+        normal: Vector3::z(),
+        motion: None,
+        removal_time: f64::INFINITY,
+    };
+    let contact =
+        FilmContact { distance: Some(1e-3), plates: vec![plate], ..FilmContact::default() };
+    let scene = FilmScene {
+        gravity: Vector3::new(0.0, 0.0, -100.0),
+        contact: Some(contact),
+        ..free_film(shell, Film { numerical_damping: 0.1, compression: 0.2, ..Film::PAPER_ELASTIC })
+    };
+    let mut film = capsule::start(&scene, &[]).unwrap();
+    film.advance(0.01, &free()).unwrap();
+    film
+}
+
+fn films() -> [(&'static str, FilmSimulation); 4] {
+    [
+        ("capsule", capsule_in_contact()),
+        ("sphere", sphere(HeatTransfer::Coefficient(3.0))),
+        ("isothermal sphere", sphere(HeatTransfer::Isothermal)),
+        ("pressed sheets", pressed_sheets()),
+    ]
+}
+
+/// Positions plus `factor` times a pseudo-random displacement of all nodes.
+fn displaced(state: &FilmState, factor: f64) -> (Field, Vec<Vector3<f64>>) {
+    let directions = pseudo_random(state.positions.len(), 11);
+    let moved = state.positions.iter().zip(&directions).map(|(x, u)| x + u * factor);
+    (Field::of(&moved.collect::<Vec<_>>()), directions)
+}
+
+fn forces(
+    system: &FilmSystem,
+    workspace: &Workspace,
+    evaluation: &Evaluation,
+) -> Vec<Vector3<f64>> {
+    let overpressure = system.overpressure_at(evaluation.gas_pressure);
+    let planes = |node: usize| -> Vector3<f64> {
+        let bodies = system.supports.bodies.iter();
+        let of = bodies.filter(|body| body.nodes.first() == Some(&u32::try_from(node).unwrap()));
+        of.map(|body| body.plane.normal * body.plane.force).sum()
+    };
+    (0..system.model.nodes())
+        .map(|node| system.node_force(&workspace.forces, overpressure, node) + planes(node))
+        .collect()
+}
+
+#[test]
+fn forces_are_minus_the_slope_of_the_energy() {
+    for (name, film) in films() {
+        let now = film.view();
+        let (system, state) = (now.system, now.state);
+        let mut workspace = Workspace::new(system, state);
+        let mut at = |factor: f64| {
+            let (positions, _) = displaced(state, factor);
+            system.evaluate(state, &positions, state.time, &mut workspace).energy()
+        };
+        let small = 1e-8;
+        let slope = (at(small) - at(-small)) / (2.0 * small);
+        let (positions, directions) = displaced(state, 0.0);
+        let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
+        let forces = forces(system, &workspace, &evaluation);
+        let power: f64 = forces.iter().zip(&directions).map(|(f, u)| f.dot(u)).sum();
+        let size: f64 = forces.iter().zip(&directions).map(|(f, u)| f.dot(u).abs()).sum();
+        println!("{name}: slope {slope:e}, power {power:e}, size {size:e}");
+        assert!((slope + power).abs() < 2e-6 * size, "{name}: {slope} {power} of {size}");
+        assert!(evaluation.contact != 0.0 || system.contact.is_none(), "{name}");
+        // At the state itself the conservative forces are those of the run but for its numerical stress.
+        assert!((evaluation.volume / state.volume - 1.0).abs() < 1e-12, "{name}");
+        assert!((evaluation.gas_pressure - state.pressure).abs() <= 1e-12 * state.pressure.abs());
+    }
+}
+
+#[test]
+fn the_stiffness_is_minus_the_slope_of_the_forces() {
+    for (name, film) in films() {
+        let now = film.view();
+        let (system, state) = (now.system, now.state);
+        let mut workspace = Workspace::new(system, state);
+        let small = 1e-9;
+        let mut at = |factor: f64| {
+            let (positions, _) = displaced(state, factor);
+            let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
+            forces(system, &workspace, &evaluation)
+        };
+        let (after, before) = (at(small), at(-small));
+        let (positions, directions) = displaced(state, 0.0);
+        let evaluation = system.evaluate(state, &positions, state.time, &mut workspace);
+        let mut product = vec![Vector3::zeros(); directions.len()];
+        let at_now = (&positions, state.time);
+        let gas = system.stiffness(state, at_now, &evaluation, &workspace, &mut |[a, b], block| {
+            product[a as usize] += block * directions[b as usize];
+        });
+        if let Some(gas) = gas {
+            let rate: f64 = gas.gradient.iter().zip(&directions).map(|(g, u)| g.dot(u)).sum();
+            for (sum, gradient) in product.iter_mut().zip(gas.gradient.iter()) {
+                *sum += gradient * (gas.factor * rate);
+            }
+        }
+        let norm = |all: &[Vector3<f64>]| all.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+        let slope: Vec<Vector3<f64>> =
+            after.iter().zip(&before).map(|(a, b)| (b - a) / (2.0 * small)).collect();
+        let off: Vec<Vector3<f64>> = slope.iter().zip(&product).map(|(a, b)| a - b).collect();
+        let (off, size) = (norm(&off), norm(&product));
+        println!("{name}: stiffness off by {:e}", off / size);
+        assert!(off < 1e-4 * size, "{name}: {off} of {size}");
+    }
+}
+
+#[test]
+fn looking_at_film_changes_nothing() {
+    let film = capsule_in_contact();
+    let (system, state) = (film.view().system, film.view().state);
+    let before = state.clone();
+    let mut workspace = Workspace::new(system, state);
+    let first = system.evaluate(state, &displaced(state, 1e-5).0, state.time, &mut workspace);
+    let _ = system.evaluate(state, &displaced(state, -2e-5).0, state.time, &mut workspace);
+    let again = system.evaluate(state, &displaced(state, 1e-5).0, state.time, &mut workspace);
+    assert_eq!(first, again);
+    assert_eq!(*state, before);
+}
+
+#[test]
+fn dissipative_forces_take_the_energy_they_report() {
+    for (name, film) in films() {
+        let (system, state) = (film.view().system, film.view().state);
+        let mut damped = system.clone();
+        damped.mass_damping = 20.0;
+        let mut forces = Field::zeros(system.model.nodes());
+        let taken = damped.dissipate(state, &state.velocities, 1e-7, &mut forces);
+        let power: f64 = forces.iter().zip(state.velocities.iter()).map(|(f, v)| f.dot(&v)).sum();
+        let sum = taken.viscosity + taken.friction + taken.mass_damping;
+        println!("{name}: {taken:?}");
+        assert!((power - sum).abs() < 1e-9 * sum.abs(), "{name}: {power} {sum}");
+        assert!(taken.mass_damping < 0.0 && taken.friction <= 0.0 && taken.viscosity <= 0.0);
+        let rubs = system.contact.as_ref().is_some_and(|contact| contact.friction > 0.0);
+        assert_eq!(taken.friction < 0.0, rubs, "{name}");
+        assert_eq!(taken.viscosity < 0.0, system.numerical_damping > 0.0, "{name}");
+    }
+}
+
+/// The numerical stress of a short step of central differences is the viscosity of the system.
+#[test]
+fn a_short_step_has_the_viscosity_of_the_system() {
+    let shell = icosphere(2, 0.5);
+    let stretch = |x: Vector3<f64>| x.component_mul(&Vector3::new(1.01, 1.02, 1.03));
+    let velocities = pseudo_random(shell.positions.len(), 8);
+    let film = Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
+    let scene = FilmScene { velocities, ..free_film(moved(shell, stretch), film) };
+    let mut film = capsule::start(&scene, &[]).unwrap();
+    let start = film.view().state.clone();
+    let step = 1e-9;
+    let mut expected = Field::zeros(start.positions.len());
+    film.view().system.dissipate(&start, &start.velocities, step, &mut expected);
+    film.advance(step, &free()).unwrap();
+    let (now, histories) = (film.view(), explicit(&film).histories);
+    let found = billow_solver::mechanics::forces::membrane::numerical_forces(
+        &now.system.model,
+        &now.state.positions,
+        &histories,
+    );
+    let size = expected.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    assert!(size > 0.0);
+    for (found, expected) in found.iter().zip(expected.iter()) {
+        assert!((found - expected).norm() < 1e-4 * size, "{found} {expected}");
+    }
+}
+
+/// The safe share of a motion through film and floor leaves every pair a tenth of its distance, and is 1 where
+/// nothing meets.
+#[test]
+fn a_safe_step_lets_nothing_through() {
+    let film = pressed_sheets();
+    let (system, state) = (film.view().system, film.view().state);
+    let model = system.contact.as_ref().unwrap();
+    let gaps = |positions: &Field| {
+        let mut least = f64::INFINITY;
+        model.pairs_within(positions, 2.0 * model.distance, |_, gap| least = least.min(gap));
+        least.min(model.plates[0].smallest_gap(positions, state.time))
+    };
+    let half = state.positions.len() / 2;
+    let apart = |factor: f64| {
+        let up = |node: usize| Vector3::z() * if node < half { 0.5 * factor } else { factor };
+        Field::of(&(0..state.positions.len()).map(up).collect::<Vec<_>>())
+    };
+    let moved = |displacements: &Field, share: f64| {
+        let all = state.positions.iter().zip(displacements.iter());
+        Field::of(&all.map(|(x, u)| x + u * share).collect::<Vec<_>>())
+    };
+    let before = gaps(&state.positions);
+    for factor in [-0.01, -0.05, -3.0] {
+        let displacements = apart(factor);
+        let share = system.safe_step(state, &displacements, &mut Workspace::new(system, state));
+        let after = gaps(&moved(&displacements, share));
+        println!("{factor} m: share {share}, gap {before:e} to {after:e}");
+        assert!(share > 0.0 && share < 1.0, "{factor}: {share}");
+        assert!(after >= 0.0999 * before, "{factor}: {before} to {after}");
+    }
+    let share = system.safe_step(state, &apart(0.05), &mut Workspace::new(system, state));
+    assert_eq!(share.to_bits(), 1.0_f64.to_bits());
+}
