@@ -4,8 +4,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use billow_solver::geometry::shapes::{joined, moved, sheet};
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::integrators::FilmSimulation;
+use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::models::run::Model;
 use billow_solver::platform::simd::InstructionSet;

@@ -35,7 +35,7 @@ pub struct IntegratorEntry {
 }
 
 /// The row of an integrator.
-pub fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
+pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
     match kind {
         IntegratorKind::Explicit => &explicit::ENTRY,
     }

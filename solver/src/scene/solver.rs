@@ -14,6 +14,11 @@ pub enum ModelKind {
     Film,
 }
 
+impl ModelKind {
+    /// Every kind, from cheap to complete.
+    pub const ALL: [Self; 3] = [Self::Piston, Self::Storeys, Self::Film];
+}
+
 /// The integrator of film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -122,14 +122,15 @@ mod tests {
     fn the_start_is_free_of_strain_and_moves_as_given() {
         let (strip, rig) = (Strip { cells: 20 }, Rig::default());
         let [first, second] = [1, 2].map(|seed| rig.start(&strip.scene(seed)).unwrap());
-        let ledger = first.ledger();
+        let ledger = first.view().ledger();
         let [arm, ramp, speed] = ["arm", "ramp", "speed"].map(size);
         let moving = arm - 2.0 / 3.0 * ramp;
         let kinetic = 0.5 * FILM.area_density() * Strip::width() * moving * speed * speed;
         assert!((ledger.kinetic / kinetic - 1.0).abs() < 1e-2, "{}", ledger.kinetic);
         assert!(ledger.strain < 1e-6 * kinetic, "{}", ledger.strain);
-        assert!((strip.body_energy(&first) / kinetic - 1.0).abs() < 2e-2);
-        let height = first.state.positions.z.iter().zip(second.state.positions.z.iter());
+        assert!((strip.body_energy(&first.view()) / kinetic - 1.0).abs() < 2e-2);
+        let height =
+            first.view().state.positions.z.iter().zip(second.view().state.positions.z.iter());
         let largest = height.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(largest > 1e-6 && largest < size("contact_distance"), "{largest}");
     }

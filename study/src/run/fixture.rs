@@ -11,8 +11,8 @@ use billow_solver::output::history::{COLUMNS, History};
 use billow_solver::output::measures::{Measures, Verdict};
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::scene::{
-    Contact, Film, GasSupply, HeatTransfer, ModelKind, Outputs, Scene, Solver, Species, Stepping,
-    Thresholds,
+    Contact, Film, GasSupply, HeatTransfer, IntegratorKind, ModelKind, Outputs, Scene, Solver,
+    Species, Stepping, Thresholds,
 };
 
 use crate::input::value::Value;
@@ -77,6 +77,7 @@ fn scene(number: u32) -> Scene {
         gravity: 0.0,
         release_time: 0.0,
         solver: Solver {
+            integrator: IntegratorKind::default(),
             model: ModelKind::Piston,
             end_time: 1.0,
             stepping: Stepping::Adaptive(1e-9),
@@ -113,6 +114,7 @@ pub fn deployment(number: u32, samples: usize) -> Deployment {
     Deployment {
         history,
         tracks: Vec::new(),
+        events: Vec::new(),
         frames: None,
         measures,
         audit: Audit { ledger_residual: 1e-12, ..Audit::default() },

@@ -1,14 +1,14 @@
 //! From the settings of a point to its scene.
 
 use billow_solver::geometry::fold::FoldDesign;
-use billow_solver::scene::{InflowWindow, ModelKind, Scene, Stepping};
+use billow_solver::scene::{InflowWindow, IntegratorKind, ModelKind, Scene, Stepping};
 
 use super::base::Base;
 use super::ground;
 use super::schedule::Schedule;
 use super::strategy::{Strategy, Window};
 use crate::input::keys::draft::{Draft, SteppingDraft};
-use crate::input::keys::{KEYS, Key, ResidualGas, named};
+use crate::input::keys::{self, KEYS, Key, ResidualGas, named};
 use crate::input::settings::{check_sample_interval, species};
 use crate::input::source::{Source, shown};
 use crate::platform::error::InputError;
@@ -47,9 +47,10 @@ pub(super) fn scene(point: &Base, source: &Source) -> Result<Scene, InputError> 
     scene.supports.clone_from(&point.supports);
     scene.release_time = strategy.release_time();
     scene.solver.stepping = stepping(scene.solver.model, &draft.stepping, point, source)?;
-    if !has_shape(scene.solver.model) {
-        // Equal physics gives an equal job, whatever number of shapes is asked for.
+    if !keys::model(scene.solver.model).has_film {
+        // Equal physics gives an equal job, whatever is asked for that the model does not have.
         scene.outputs.frames = 0;
+        scene.solver.integrator = IntegratorKind::default();
     }
     if scene.seed == 0 {
         // Without an imperfection its amplitude is not physics.
@@ -92,14 +93,6 @@ fn burst_mass(draft: &Draft) -> f64 {
     if draft.inflow.residual == ResidualGas::Burst { draft.inflow.residual_mass } else { 0.0 }
 }
 
-/// Whether a model has a shape to keep.
-fn has_shape(model: ModelKind) -> bool {
-    match model {
-        ModelKind::Film => true,
-        ModelKind::Piston | ModelKind::Storeys => false,
-    }
-}
-
 /// How a model chooses its step.
 fn stepping(
     model: ModelKind,
@@ -109,16 +102,16 @@ fn stepping(
 ) -> Result<Stepping, InputError> {
     const FIXED: &Key = named(KEYS, "solver.stepping.fixed");
     const ADAPTIVE: &Key = named(KEYS, "solver.stepping.adaptive");
-    match (model, draft.fixed) {
-        (ModelKind::Film | ModelKind::Storeys, Some(step)) => Err(source.error(
+    match (keys::model(model).has_stable_step, draft.fixed) {
+        (true, Some(step)) => Err(source.error(
             FIXED.path,
             &shown(step),
             "the models storeys and film take a fraction of their stable step",
             "solver.cfl in its place; only the model piston takes a fixed step",
         )),
-        (ModelKind::Film | ModelKind::Storeys, None) => Ok(Stepping::Stable(draft.cfl)),
-        (ModelKind::Piston, Some(step)) => Ok(Stepping::Fixed(step)),
-        (ModelKind::Piston, None) => match draft.adaptive {
+        (true, None) => Ok(Stepping::Stable(draft.cfl)),
+        (false, Some(step)) => Ok(Stepping::Fixed(step)),
+        (false, None) => match draft.adaptive {
             Some(tolerance) => Ok(Stepping::Adaptive(tolerance)),
             None => Err(point.settings.missing(ADAPTIVE, source)),
         },

@@ -5,14 +5,15 @@
 
 use super::study::KEYS;
 use super::table::find;
-pub use super::words::{AUTO, MODEL};
+pub use super::words::{AUTO, INTEGRATOR, MODEL};
 
 /// Paths of the numerical keys.
-pub const NUMERICAL: [&str; 9] = [
+pub const NUMERICAL: [&str; 10] = [
     SEED,
     "imperfection_amplitude",
     MESH,
     "solver.cfl",
+    INTEGRATOR,
     "solver.stepping.adaptive",
     "solver.stepping.fixed",
     "film.numerical_damping",

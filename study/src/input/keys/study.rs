@@ -13,7 +13,7 @@ use super::key::Default::{Absent, Integer, Number, Required, Word};
 use super::key::{Key, KeyKind, above, from, key, likely};
 use super::quantity::Quantity;
 use super::words::{
-    CAPS, CHIRALITIES, FITS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, pick, plain, words,
+    CAPS, CHIRALITIES, FITS, INTEGRATORS, MODEL_KINDS, RESIDUAL_GAS, SPECIES, pick, plain, words,
 };
 use crate::input::units::Dimension;
 
@@ -264,6 +264,9 @@ pub static KEYS: &[Key] = &[
          other points on the coarsest mesh that keeps `accuracy`.")
         .to(|draft, value| choose(&mut draft.scene.solver.model, &MODEL_KINDS, value))
         .study_only(),
+    key("solver.integrator", KeyKind::Choice(&words(&INTEGRATORS)), Word("explicit"), "\"explicit\"",
+        "How film moves in time.")
+        .to(|draft, value| choose(&mut draft.scene.solver.integrator, &INTEGRATORS, value)),
     key("solver.end_time", END_TIME, Required, "\"0.5 s\"",
         "Simulated time.")
         .to(|draft, value| draft.scene.solver.end_time = number(value))

@@ -2,14 +2,17 @@
 //! values, errors, schema and reference follow from these tables.
 
 use billow_solver::geometry::fold::{Caps, Chirality, Fit};
+use billow_solver::integrators;
 use billow_solver::scene::motion::Profile;
-use billow_solver::scene::{ModelKind, Species, SupportLocation};
+use billow_solver::scene::{IntegratorKind, ModelKind, Species, SupportLocation};
 
 use crate::input::value::Value;
 
 /// The key of the model. Models compute the same physics with different simplifications.
 pub const MODEL: &str = "solver.model";
-/// What a study file can have in its place: pilots choose the mesh of its runs.
+/// The key of the integrator of film.
+pub const INTEGRATOR: &str = "solver.integrator";
+/// What a study file can have in place of a model: pilots choose the mesh of its runs.
 pub const AUTO: &str = "auto";
 
 /// How residual gas enters.
@@ -86,6 +89,10 @@ pub struct Model {
     pub meaning: &'static str,
     /// Keys of a study that change no result of this model.
     pub ignores: &'static [&'static str],
+    /// Whether it moves film: it has an integrator, and shapes to store.
+    pub has_film: bool,
+    /// Whether it takes a fraction of its stable step; if not, its step is fixed or follows its error.
+    pub has_stable_step: bool,
 }
 
 /// The model of a kind. A kind without a row does not compile.
@@ -105,10 +112,13 @@ pub const fn model(kind: ModelKind) -> Model {
                 "contact.friction",
                 "contact.adhesion",
                 "solver.cfl",
+                INTEGRATOR,
                 "outputs.frames",
                 "seed",
                 "imperfection_amplitude",
             ],
+            has_film: false,
+            has_stable_step: false,
         },
         ModelKind::Storeys => Model {
             kind,
@@ -122,21 +132,46 @@ pub const fn model(kind: ModelKind) -> Model {
                 "contact.adhesion",
                 "solver.stepping.adaptive",
                 "solver.stepping.fixed",
+                INTEGRATOR,
                 "outputs.frames",
             ],
+            has_film: false,
+            has_stable_step: true,
         },
         ModelKind::Film => Model {
             kind,
             name: "film",
             meaning: "the whole film, with contact",
             ignores: &["solver.stepping.adaptive", "solver.stepping.fixed"],
+            has_film: true,
+            has_stable_step: true,
         },
     }
 }
 
 /// Every model, in the order of the documentation.
-pub const MODELS: [Model; 3] =
-    [model(ModelKind::Piston), model(ModelKind::Storeys), model(ModelKind::Film)];
+pub const MODELS: [Model; ModelKind::ALL.len()] = {
+    let mut models = [model(ModelKind::Film); ModelKind::ALL.len()];
+    let mut index = 0;
+    while index < models.len() {
+        models[index] = model(ModelKind::ALL[index]);
+        index += 1;
+    }
+    models
+};
+
+/// Values of `solver.integrator`: the rows of the solver's table.
+pub(super) const INTEGRATORS: [Named<IntegratorKind>; IntegratorKind::ALL.len()] = {
+    let mut rows = [word("", IntegratorKind::Explicit, ""); IntegratorKind::ALL.len()];
+    let mut index = 0;
+    while index < rows.len() {
+        let kind = IntegratorKind::ALL[index];
+        let entry = integrators::entry(kind);
+        rows[index] = word(entry.name, kind, entry.meaning);
+        index += 1;
+    }
+    rows
+};
 
 /// Values of `solver.model`.
 pub(super) const MODEL_KINDS: [Named<ModelKind>; MODELS.len()] = {
