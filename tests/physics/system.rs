@@ -253,7 +253,7 @@ fn a_safe_step_lets_nothing_through() {
         Field::of(&all.map(|(x, u)| x + u * share).collect::<Vec<_>>())
     };
     let before = gaps(&state.positions);
-    for factor in [-0.01, -0.05, -3.0] {
+    for factor in [-0.1, -1.0, -10.0] {
         let displacements = apart(factor);
         let share = system.safe_step(state, &displacements, &mut Workspace::new(system, state));
         let after = gaps(&moved(&displacements, share));

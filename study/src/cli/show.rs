@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use billow_solver::output::events::Event;
 use billow_solver::output::history::COLUMNS;
 
 use super::options::{OutputOptions, QuietOption, UnitsOption};
@@ -158,6 +159,7 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         }));
     }
     rows.extend(mesh_errors(stored, id));
+    rows.extend(events(stored, id));
     // The row is shown even if its file cannot be read: the error is then one of the rows.
     match scene(stored, id) {
         Ok(scene) => rows.extend(summary::rows(&scene).into_iter().map(|mut pair| {
@@ -170,6 +172,17 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         Err(error) => rows.push(vec![text("scene"), text("error"), text(&error.to_string())]),
     }
     rows
+}
+
+/// The decisions of the step controller; none for a job without a history.
+fn events(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
+    let Ok(history) = history_of(stored, id) else { return Vec::new() };
+    let text = |text: &str| Value::Text(text.to_owned());
+    let row = |event: &Event| {
+        let (name, meaning) = (event.kind.name(), event.kind.meaning());
+        vec![text("events"), text(name), Value::Number(event.time), text("s"), text(meaning)]
+    };
+    history.events.iter().map(row).collect()
 }
 
 /// The mesh errors of a job's row, or why it has none.

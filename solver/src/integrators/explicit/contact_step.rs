@@ -130,8 +130,8 @@ impl Explicit {
             impulses: Impulses::new(),
         };
         let contacts = &state.contact.contacts;
-        let rubbed = &mut accounting.friction_dissipation;
-        apply_friction(contact_model, contacts, &mut step, kick_length, rubbed);
+        let friction = &mut accounting.friction_dissipation;
+        apply_friction(contact_model, contacts, &mut step, kick_length, friction);
         // Friction can make a node faster.
         let current = if contact_model.friction > 0.0 {
             prepared.max(largest_speed(set, step.velocities) * length)

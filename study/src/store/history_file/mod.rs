@@ -7,6 +7,7 @@
 //!              and long_name. Film without rings has no z_centre, z_rim, vz. A scene adds
 //!              node_NAME_x, …, element_NAME_N1, … for what it follows; film with contact adds
 //!              interlayer_pressure, smallest_gap, …, plate_NAME_force
+//! /events/     time, kind: decisions of the step controller, when there were any (events)
 //! /VTKHDF/     shapes of the film, when the run stored any (vtkhdf)
 //! ```
 //!
@@ -27,6 +28,7 @@ use hdf5::{File, Location};
 use crate::platform::error::{Error, Result};
 
 mod content_hash;
+mod events;
 mod raw;
 mod read;
 mod sha256;

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::PoisonError;
 
+use billow_solver::output::events::Event;
 use billow_solver::output::history::{ADDED_COLUMNS, COLUMNS, History, RING_COLUMNS};
 use hdf5::{File, Group};
 
-use super::{HDF5_LOCK, damaged, open, read_text};
+use super::{HDF5_LOCK, damaged, events, open, read_text};
 use crate::job::row::{RENAMED_COLUMNS, current_column_name};
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
@@ -23,6 +24,8 @@ pub struct StoredHistory {
     pub status: Status,
     /// Content hash, as stored.
     pub content_hash: String,
+    /// Decisions of the step controller, in order of time.
+    pub events: Vec<Event>,
     /// The columns that every history has.
     pub history: History,
     /// The other columns, by name.
@@ -49,6 +52,7 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
         status: Status::from_name(&status)
             .ok_or_else(|| damaged(format!("unknown status {status:?}").into()))?,
         content_hash: read_text(&file, "content_hash").map_err(damaged)?,
+        events: events::read(&file).map_err(damaged)?,
         history: read_history(&file).map_err(damaged)?,
         tracks,
         labels,

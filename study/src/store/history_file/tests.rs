@@ -2,6 +2,7 @@
 
 #![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
+use billow_solver::output::events::{Event, EventKind};
 use billow_solver::output::history::{COLUMNS, History, Track};
 use billow_solver::output::outcome::{Deployment, Failure, FailureKind, Stop};
 
@@ -37,6 +38,20 @@ fn a_history_is_read_back_bit_for_bit_and_written_twice_as_the_same_bytes() {
         assert_eq!(stored.content_hash, hash_of(&stored.history, &[], None));
         assert_eq!(stored.scene, serde_json::to_string(&job.scene).unwrap());
     }
+}
+
+#[test]
+fn events_are_read_back_and_do_not_enter_the_content_hash() {
+    let (job, mut deployment, bytes) = encoded(3);
+    let (_folder, path) = path_with(&bytes);
+    assert!(read(&path).unwrap().events.is_empty());
+    let event = |time: f64, kind| Event { time, kind };
+    deployment.events = vec![event(0.1 + 0.2, EventKind::Quiescent), event(0.5, EventKind::Active)];
+    let hash = content_hash(&deployment);
+    let (_folder, path) = path_with(&encode(&job, &deployment, &hash).unwrap());
+    let stored = read(&path).unwrap();
+    assert_eq!(stored.events, deployment.events);
+    assert_eq!(stored.content_hash, hash_of(&stored.history, &[], None));
 }
 
 #[test]

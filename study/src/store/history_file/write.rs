@@ -9,7 +9,7 @@ use hdf5::file::LinkCreationOrder;
 use hdf5::{File, Group};
 
 use super::{
-    DEFLATE_LEVEL, FORMAT, HDF5_LOCK, MAX_CHUNK_SAMPLES, MIN_CHUNKED_SAMPLES, VERSION,
+    DEFLATE_LEVEL, FORMAT, HDF5_LOCK, MAX_CHUNK_SAMPLES, MIN_CHUNKED_SAMPLES, VERSION, events,
     number_attribute, raw, vtkhdf,
 };
 use crate::job::{Job, JobId, Status};
@@ -73,6 +73,7 @@ fn build(id: &JobId, scene: &str, deployment: &Deployment, hash: &str) -> hdf5::
         .with_gcpl(|creation| creation.link_creation_order(ordered))
         .create("history")?;
     write_history(&writer, &group, &deployment.history, &deployment.tracks)?;
+    events::write(&writer, &file, &deployment.events)?;
     if let Some(frames) = &deployment.frames {
         vtkhdf::write(&file, frames)?;
     }
