@@ -324,7 +324,8 @@ fn relaxed(loaded: &Loaded<'_>, positions: &Field) -> Option<Field> {
     let relaxation = Relaxation { step_limit: RELAXATION_STEPS, ..Relaxation::default() };
     // An unfinished relaxation is a good start too, as long as it is finite.
     let film = match relaxation.relax_at(film, loaded.overpressure) {
-        Ok(film) | Err((_, film)) => film,
+        Ok(film) => film,
+        Err(unsettled) => unsettled.film,
     };
     let (_, state, _) = film.into_parts();
     let finite = state.positions.iter().all(|position: Vector3<f64>| position.norm().is_finite());

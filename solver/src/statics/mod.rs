@@ -37,7 +37,7 @@ pub use newton::{
     Equilibrium, Iteration, IterationObserver, Loaded, StaticFailure, StaticFailureKind,
     Tolerances, equilibrium,
 };
-pub use relaxation::Relaxation;
+pub use relaxation::{Relaxation, Unsettled};
 
 /// Why a scene has no static equilibrium.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

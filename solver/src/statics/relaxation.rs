@@ -35,18 +35,26 @@ impl Default for Relaxation {
     }
 }
 
+/// A relaxation that did not come to rest.
+#[derive(Debug)]
+pub struct Unsettled {
+    /// Why.
+    pub failure: Failure,
+    /// The film as far as it came.
+    pub film: FilmSimulation,
+}
+
 impl Relaxation {
     /// Relaxes film at this overpressure (Pa) until it is at rest. Adapts the mass damping: each time it
     /// continues with another system.
     ///
     /// # Errors
-    /// [`Failure`] of the motion; `step_limit` if the film does not come to rest. With it the film as far as
-    /// it came.
+    /// [`Unsettled`]: a failure of the motion; `step_limit` if the film does not come to rest.
     pub fn relax_at(
         &self,
         film: FilmSimulation,
         overpressure: f64,
-    ) -> Result<FilmSimulation, (Failure, FilmSimulation)> {
+    ) -> Result<FilmSimulation, Box<Unsettled>> {
         let step_limit = film.view().steps() + self.step_limit;
         let mut film = film.with(|system, settings| {
             let pressure_load = PressureLoad::Overpressure(overpressure);
@@ -58,7 +66,7 @@ impl Relaxation {
             let (positions, forces) = (before.state.positions.clone(), free_forces(&before));
             let target = before.state.time + before.next_step() * f64::from(self.check_interval);
             if let Err(failure) = film.advance(target, &Phase::default()) {
-                return Err((failure, film));
+                return Err(Box::new(Unsettled { failure, film }));
             }
             let mass_damping = 2.0 * frequency(&film.view(), &positions, &forces);
             film = film.with(|system, settings| (FilmSystem { mass_damping, ..system }, settings));

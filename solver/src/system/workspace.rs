@@ -154,7 +154,9 @@ impl Workspace {
         sums.six_volumes += add_closure(&system.model, positions, &mut self.forces);
         if !system.energy_terms.is_empty() {
             let Field { x, y, z } = &mut self.forces.terms;
-            [x, y, z].into_iter().for_each(|column| column.fill(0.0));
+            for column in [x, y, z] {
+                column.fill(0.0);
+            }
             for term in &system.energy_terms {
                 term.add_forces(positions, &mut self.forces.terms);
             }
@@ -177,7 +179,9 @@ impl Workspace {
         let forces = &mut self.forces.contact;
         if list.contact_active {
             let Field { x, y, z } = &mut *forces;
-            [x, y, z].into_iter().for_each(|column| column.fill(0.0));
+            for column in [x, y, z] {
+                column.fill(0.0);
+            }
         }
         let (mass, last) = (&system.model.mass, &state.contact);
         let path_length = progress.path_length;

@@ -36,9 +36,10 @@ fn equilibrium(rig: &Rig, level: u32, overpressure: f64) -> Result<FilmSimulatio
         rig.start(&FilmScene { filling, ..free_film(sphere(level), Film::PAPER_ELASTIC) })?;
     // The remaining motion must be small against an amplitude of 1e-5 of the radius.
     let relaxation = Relaxation { max_kinetic_fraction: 1e-15, ..Relaxation::default() };
-    relaxation
-        .relax_at(film, overpressure)
-        .map_err(|(failure, _)| format!("no equilibrium: {:?}, {}", failure.kind, failure.place))
+    relaxation.relax_at(film, overpressure).map_err(|unsettled| {
+        let failure = &unsettled.failure;
+        format!("no equilibrium: {:?}, {}", failure.kind, failure.place)
+    })
 }
 
 /// Gas of this pressure (Pa) in this volume (m³).

@@ -201,6 +201,7 @@ fn a_map_shows_each_value_and_each_outcome() {
 fn read(id: &JobId) -> Result<StoredHistory> {
     let deployment = fixture::deployment(u32::from(id.as_str().as_bytes()[0]), 900);
     Ok(StoredHistory {
+        events: Vec::new(),
         job: id.clone(),
         scene: String::new(),
         status: Status::Done,

@@ -150,6 +150,7 @@ mod tests {
             history.push(&row.collect::<Vec<_>>().try_into().unwrap());
         }
         StoredHistory {
+            events: Vec::new(),
             job: JobId::from_digits(&"0".repeat(32)).unwrap(),
             scene: String::new(),
             status: Status::Done,

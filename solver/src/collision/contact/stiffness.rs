@@ -100,7 +100,7 @@ fn free_parameters(kind: PairKind, weights: &[f64; 4]) -> Vec<WeightRate> {
     rates
 }
 
-/// Σ_kl c_ki (A⁻¹)_kl c_ljᵀ of a pair.
+/// The sum over k and l of a pair.
 struct Coupling {
     /// `c_ki`, for k and i.
     columns: Vec<[Vector3<f64>; 4]>,

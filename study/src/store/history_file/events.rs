@@ -55,7 +55,8 @@ pub(super) fn read(file: &File) -> hdf5::Result<Vec<Event>> {
     let words = read_text(location, "flag_meanings")?;
     let words: Vec<&str> = words.split(' ').collect();
     let event = |(time, place): (f64, f64)| {
-        let word = (0_u32..).zip(&words).find(|(index, _)| f64::from(*index) == place);
+        let word =
+            (0_u32..).zip(&words).find(|(index, _)| f64::from(*index).to_bits() == place.to_bits());
         let named =
             word.and_then(|(_, word)| EventKind::ALL.into_iter().find(|k| k.name() == *word));
         named
