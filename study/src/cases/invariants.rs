@@ -69,7 +69,9 @@ pub fn rigid_rotation(rig: &Rig) -> Outcome {
     let force = film.view().forces().films().iter().map(|force| force.norm()).fold(0.0, worse);
     // A large rotation in a single step.
     let mut histories = explicit(&film).histories;
-    let (model, mut creep) = (&film.view().system.model, CreepStep::none());
+    let (model, last) = (&film.view().system.model, &film.view().state.creep);
+    let mut next = last.clone();
+    let mut creep = CreepStep { last, next: &mut next };
     let mut out = NodeForces::new(model);
     let spun = film.view().state.positions.iter().map(|x| turn * x).collect::<Vec<_>>();
     let (spun, instruction_set) = (Field::of(&spun), film.view().system.instruction_set);

@@ -59,6 +59,9 @@ impl LaneSums {
 /// `step` is the time since the previous call, s. Where it is 0 (no previous call, or nothing moved),
 /// creep strain and numerical stress are the stored ones. Replaces `histories` by those of these
 /// positions, and writes the creep strain after the step beside that before it.
+///
+/// # Panics
+/// If film with loss comes without creep strains.
 pub fn assemble_membrane(
     instruction_set: InstructionSet,
     model: &FilmModel,
