@@ -34,3 +34,4 @@ mod shells;
 mod statics;
 mod storeys_capsule;
 mod system;
+mod velocity_verlet;
