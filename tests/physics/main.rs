@@ -31,6 +31,7 @@ mod quiescence;
 mod rig;
 mod rigid_planes;
 mod shells;
+mod spring;
 mod statics;
 mod storeys_capsule;
 mod system;

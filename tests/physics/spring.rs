@@ -1,0 +1,266 @@
+//! A linear spring between two nodes: a further energy of film, kept under tests. It shows that the trait
+//! [`EnergyTerm`] suffices for an energy that is written outside the solver.
+//!
+//! ```text
+//! d = x_b − x_a     n = d/|d|     Π = ½ k (|d| − L)²     f_a = k (|d| − L) n = −f_b
+//! ∂²Π/∂x_a² = k n nᵀ + k (1 − L/|d|)(1 − n nᵀ) = −∂²Π/∂x_a∂x_b
+//! ω² ≤ k (1/m_a + 1/m_b)
+//! ```
+
+use std::sync::Arc;
+
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{grid, joined, moved, nodes_where, pseudo_random};
+use billow_solver::integrators::FilmSimulation;
+use billow_solver::mechanics::energy_term::{Blocks, EnergyTerm};
+use billow_solver::mechanics::gas::GasState;
+use billow_solver::scene::Film;
+use billow_solver::system::PressureLoad;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::film_rig::{free, moving};
+use crate::velocity_verlet::{largest_residual, ledgers, with_velocity_verlet};
+
+/// A linear spring between two different nodes.
+#[derive(Debug, Clone, Copy)]
+struct Spring {
+    nodes: [u32; 2],
+    /// k, N/m.
+    stiffness: f64,
+    /// L, m.
+    rest_length: f64,
+}
+
+impl Spring {
+    /// Vector from the first node to the second (m).
+    fn between(&self, positions: &Field) -> Vector3<f64> {
+        let [a, b] = self.nodes.map(|node| positions.get(node as usize));
+        b - a
+    }
+}
+
+impl EnergyTerm for Spring {
+    fn energy(&self, positions: &Field) -> f64 {
+        let extension = self.between(positions).norm() - self.rest_length;
+        0.5 * self.stiffness * extension * extension
+    }
+
+    fn add_forces(&self, positions: &Field, forces: &mut Field) {
+        let between = self.between(positions);
+        let length = between.norm();
+        let pull = between * (self.stiffness * (length - self.rest_length) / length);
+        for (node, force) in self.nodes.into_iter().zip([pull, -pull]) {
+            let node = node as usize;
+            forces.set(node, forces.get(node) + force);
+        }
+    }
+
+    fn stiffness(&self, positions: &Field, add: Blocks<'_>) {
+        let between = self.between(positions);
+        let length = between.norm();
+        let along = between * between.transpose() / (length * length);
+        let across = (Matrix3::identity() - along) * (1.0 - self.rest_length / length);
+        let block = (along + across) * self.stiffness;
+        let [a, b] = self.nodes;
+        for (nodes, block) in [([a, a], block), ([b, b], block), ([a, b], -block), ([b, a], -block)]
+        {
+            add(nodes, &block);
+        }
+    }
+
+    fn frequency_squared(&self, mass: &[f64]) -> f64 {
+        self.nodes.into_iter().map(|node| self.stiffness / mass[node as usize]).sum()
+    }
+}
+
+fn moved_by(positions: &Field, directions: &[Vector3<f64>], factor: f64) -> Field {
+    let nodes = positions.iter().zip(directions).map(|(x, u)| x + u * factor);
+    Field::of(&nodes.collect::<Vec<_>>())
+}
+
+#[test]
+fn force_and_stiffness_of_a_spring_are_slopes_of_its_energy() {
+    let small = 1e-6;
+    for (seed, rest_length) in [(1, 0.3), (2, 0.7), (3, 2.5)] {
+        let spring = Spring { nodes: [3, 1], stiffness: 40.0, rest_length };
+        let positions = Field::of(&pseudo_random(5, seed));
+        let directions = pseudo_random(5, seed + 10);
+        let forces = |positions: &Field| {
+            // A term adds to what is there.
+            let mut forces = Field::repeat(1.0, 5);
+            spring.add_forces(positions, &mut forces);
+            forces
+        };
+        let [before, after] = [-small, small].map(|h| moved_by(&positions, &directions, h));
+        let slope = (spring.energy(&after) - spring.energy(&before)) / (2.0 * small);
+        let ones = Vector3::repeat(1.0);
+        let now = forces(&positions);
+        let power: f64 = now.iter().zip(&directions).map(|(f, u)| (f - ones).dot(u)).sum();
+        assert!(slope.abs() > 0.1, "{slope}");
+        assert!((slope + power).abs() < 1e-8 * slope.abs(), "{slope} {power}");
+
+        let mut product = vec![Vector3::zeros(); 5];
+        spring.stiffness(&positions, &mut |[a, b], block| {
+            product[a as usize] += block * directions[b as usize];
+        });
+        let (before, after) = (forces(&before), forces(&after));
+        let slopes = after.iter().zip(before.iter()).map(|(a, b)| (b - a) / (2.0 * small));
+        let size = product.iter().map(Vector3::norm).fold(0.0, f64::max);
+        let off = slopes.zip(&product).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        println!("rest length {rest_length} m: off {:e}", off / size);
+        assert!(size > 0.1 && off < 1e-8 * size, "{off} {size}");
+    }
+}
+
+/// The bound is reached by the two nodes against each other along the spring, and by no other motion.
+#[test]
+fn a_spring_bounds_its_frequency() {
+    let spring = Spring { nodes: [0, 1], stiffness: 40.0, rest_length: 0.4 };
+    let mass = [0.2, 0.5];
+    let bound = spring.frequency_squared(&mass);
+    let positions = Field::of(&[Vector3::zeros(), Vector3::new(0.6, 0.0, 0.0)]);
+    let rayleigh = |motion: &[Vector3<f64>]| {
+        let mut energy = 0.0;
+        spring.stiffness(&positions, &mut |[a, b], block| {
+            energy += motion[a as usize].dot(&(block * motion[b as usize]));
+        });
+        energy / motion.iter().zip(mass).map(|(u, m)| m * u.norm_squared()).sum::<f64>()
+    };
+    let along = rayleigh(&[Vector3::x() / mass[0], -Vector3::x() / mass[1]]);
+    assert!((along / bound - 1.0).abs() < 1e-12, "{along} {bound}");
+    for seed in 0..100 {
+        let other = rayleigh(&pseudo_random(2, seed));
+        assert!(other <= bound, "{other} {bound}");
+    }
+}
+
+/// Distance of the middles of the two pieces, m.
+const DISTANCE: f64 = 0.5;
+/// Speed of each piece at time 0, m/s.
+const SPEED: f64 = 0.05;
+/// CFL number of these films.
+const CFL: f64 = 0.4;
+
+/// Two flat pieces of film, 0.1 m × 0.1 m and 0.2 m × 0.1 m, in one plane, with their middles at these nodes.
+/// The spring (N/m) joins the middles without tension. The pieces move apart.
+fn joined_pieces(stiffness: f64) -> (FilmSimulation, [u32; 2]) {
+    let half = Vector3::new(0.05, 0.05, 0.0);
+    let first = moved(grid(4, 4, 0.1, 0.1), |x| x - half);
+    let second = moved(grid(8, 4, 0.2, 0.1), |x| {
+        x + Vector3::new(DISTANCE, 0.0, 0.0) - Vector3::new(2.0 * half.x, half.y, 0.0)
+    });
+    let shell = joined(&[first, second]);
+    let middle = |at: f64| {
+        let nodes = nodes_where(&shell, |x| (x - Vector3::new(at, 0.0, 0.0)).norm() < 1e-9);
+        assert_eq!(nodes.len(), 1);
+        nodes[0]
+    };
+    let nodes = [middle(0.0), middle(DISTANCE)];
+    let speed = |x: &Vector3<f64>| if x.x < 0.5 * DISTANCE { -SPEED } else { SPEED };
+    let velocities: Vec<_> = shell.positions.iter().map(|x| Vector3::x() * speed(x)).collect();
+    let film = Film { compression: 1.0, ..Film::PAPER_ELASTIC };
+    let load = (PressureLoad::Overpressure(0.0), GasState::default());
+    let film = moving(&shell, &film, load, Field::of(&velocities), |system, settings| {
+        let spring = Spring { nodes, stiffness, rest_length: DISTANCE };
+        system.energy_terms.push(Arc::new(spring));
+        settings.cfl = CFL;
+    });
+    (film, nodes)
+}
+
+/// Mass (kg) and centre of mass (m) along x of the two pieces.
+fn bodies(film: &FilmSimulation) -> [[f64; 2]; 2] {
+    let (system, state) = (film.view().system, film.view().state);
+    let mut sums = [[0.0; 2]; 2];
+    for (mass, x) in system.model.mass.iter().zip(state.positions.iter()) {
+        let [sum, moment] = &mut sums[usize::from(x.x > 0.5 * DISTANCE)];
+        *sum += mass;
+        *moment += mass * x.x;
+    }
+    sums.map(|[mass, moment]| [mass, moment / mass])
+}
+
+/// Change of the distance of the two centres, m.
+fn extension(film: &FilmSimulation) -> f64 {
+    let [[_, first], [_, second]] = bodies(film);
+    second - first - DISTANCE
+}
+
+#[test]
+fn two_pieces_on_a_spring_swing_with_the_period_of_two_bodies() {
+    let stiffness = 10.0;
+    let (central, nodes) = joined_pieces(stiffness);
+    let [[m1, _], [m2, _]] = bodies(&central);
+    let reduced = m1 * m2 / (m1 + m2);
+    let frequency = (stiffness / reduced).sqrt();
+    let period = 2.0 * std::f64::consts::PI / frequency;
+    let largest = 2.0 * SPEED / frequency;
+    let verlet = with_velocity_verlet(central.clone(), CFL);
+    let mut ends = Vec::new();
+    for (name, mut film) in [("explicit", central), ("velocity Verlet", verlet)] {
+        let (mut series, mut extensions) = (vec![film.view().ledger()], vec![extension(&film)]);
+        let samples = 48_u32;
+        let (mut crossings, mut peak) = (Vec::new(), 0.0_f64);
+        for sample in 1..=samples {
+            let at = |sample: u32| 2.2 * period * f64::from(sample) / f64::from(samples);
+            film.advance(at(sample), &free()).unwrap();
+            let (last, now) = (extensions[extensions.len() - 1], extension(&film));
+            // The extension at time 0 is 0 but for rounding: that is no crossing.
+            if sample > 1 && (last > 0.0) != (now > 0.0) {
+                let part = last / (last - now);
+                crossings.push(at(sample - 1) + part * (at(sample) - at(sample - 1)));
+            }
+            let spring = Spring { nodes, stiffness, rest_length: DISTANCE };
+            peak = peak.max(spring.energy(&film.view().state.positions));
+            extensions.push(now);
+            series.push(film.view().ledger());
+        }
+        let found = crossings[3] - crossings[1];
+        let residual = largest_residual(&series);
+        let energy = 0.5 * stiffness * largest * largest;
+        println!(
+            "{name}: period {found:e} s of {period:e} s ({:e}), spring energy {peak:e} of {energy:e} J, \
+             ledger {residual:e}, {} steps",
+            found / period - 1.0,
+            film.view().steps(),
+        );
+        assert_eq!(crossings.len(), 4, "{name}: {crossings:?}");
+        assert!((found / period - 1.0).abs() < 1e-3, "{name}: {found} {period}");
+        assert!((peak / energy - 1.0).abs() < 0.01, "{name}: {peak} {energy}");
+        assert!(residual < 1e-8, "{name}: {residual}");
+        // The ledger holds the energy of the spring: film alone stores far less.
+        let stored = series.iter().map(|ledger| ledger.strain).fold(0.0, f64::max);
+        assert!(stored >= peak && stored < 1.05 * peak, "{name}: {stored} {peak}");
+        ends.push(film.view().state.positions.clone());
+    }
+    let off = ends[0].largest_displacement(&ends[1]);
+    println!("explicit and velocity Verlet differ by {off:e} m of {largest:e} m");
+    assert!(off < 1e-6 * largest, "{off}");
+}
+
+#[test]
+fn a_stiff_spring_shortens_the_step() {
+    let (soft, nodes) = joined_pieces(10.0);
+    let (stiff, _) = joined_pieces(3e6);
+    let model = &stiff.view().system.model;
+    let film = model.largest_frequency();
+    for (name, soft, mut stiff) in [
+        ("explicit", soft.clone(), stiff.clone()),
+        ("velocity Verlet", with_velocity_verlet(soft.clone(), CFL), {
+            with_velocity_verlet(stiff.clone(), CFL)
+        }),
+    ] {
+        let (long, short) = (soft.view().next_step(), stiff.view().next_step());
+        let added: f64 = nodes.iter().map(|node| 3e6 / model.mass[*node as usize]).sum();
+        let expected = CFL * 2.0 / (film * film + added).sqrt();
+        let series = ledgers(&mut stiff, 200.0 * short, 10, &free());
+        let (residual, steps) = (largest_residual(&series), stiff.view().steps());
+        println!("{name}: step {long:e} s, {short:e} s; {steps} steps, ledger {residual:e}");
+        assert!(short < 0.5 * long, "{name}: {short} {long}");
+        assert!((short / expected - 1.0).abs() < 1e-12, "{name}: {short} {expected}");
+        assert!((200..=210).contains(&steps), "{name}: {steps}");
+        assert!(residual < 1e-8, "{name}: {residual}");
+        // Without the bound the step would be unstable.
+        assert!(CFL * 2.0 / film * added.sqrt() > 2.0, "{name}");
+    }
+}
