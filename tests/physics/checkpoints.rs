@@ -1,5 +1,6 @@
 //! Pauses and checkpoints of whole runs: the same bits as without them, at any step.
 
+use billow_solver::collision::contact::BroadPhaseFault;
 use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::integrators::{FilmSimulation, StoredFilm};
 use billow_solver::models::film::FilmRun;
@@ -153,7 +154,8 @@ fn a_passage_is_found_at_the_same_step_with_and_without_pauses() {
         let set = InstructionSet::detect();
         let mut run = FilmRun::from_scene(set, &scene, DEFAULT_CFL, Some(contact.clone())).unwrap();
         let (mut system, start, settings) = run.film.into_parts();
-        system.contact.as_mut().unwrap().edge_contacts = false;
+        let fault = Some(BroadPhaseFault::NoEdgeContacts);
+        system.contact.as_mut().unwrap().broad_phase_fault = fault;
         run.film = match stored {
             None => {
                 let (positions, velocities) = (start.positions, start.velocities);

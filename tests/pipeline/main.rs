@@ -22,6 +22,7 @@ mod invalid_studies;
 mod keys;
 mod memory;
 mod mistakes;
+mod monitor_and_blind_contact;
 mod monitor_detects_faults;
 mod old_results;
 mod pareto;

@@ -1,6 +1,6 @@
 //! The tunnelling monitor detects passages of film through film when contact is faulty.
 
-use billow_solver::collision::contact::ContactModel;
+use billow_solver::collision::contact::{BroadPhaseFault, ContactModel};
 use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::audit::Audit;
@@ -36,11 +36,15 @@ fn deploy(end_time: f64, fault: Fault) -> (Stop, Audit, f64) {
 #[test]
 fn faults_of_contact_cause_counted_passages() {
     let faults: [(&str, Fault); 3] = [
-        ("edges have no contact", |model| model.edge_contacts = false),
-        ("motion bounds are ten times too wide", |model| model.bound_factor = 10.0),
+        ("edges have no contact", |model| {
+            model.broad_phase_fault = Some(BroadPhaseFault::NoEdgeContacts);
+        }),
+        ("motion bounds are ten times too wide", |model| {
+            model.broad_phase_fault = Some(BroadPhaseFault::ScaledBounds(10.0));
+        }),
         ("contact attracts film and no impulse stops it", |model| {
             model.stiffness_per_mass = -model.stiffness_per_mass;
-            model.bound_factor = f64::INFINITY;
+            model.broad_phase_fault = Some(BroadPhaseFault::ScaledBounds(f64::INFINITY));
         }),
     ];
     for (name, fault) in faults {

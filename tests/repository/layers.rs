@@ -249,6 +249,26 @@ fn layers_rooms_import_only_from_rooms_below() {
     }
 }
 
+/// What the monitor must not use, because it checks contact.
+const UNSHARED_WITH_MONITOR: [&str; 2] = ["broad_phase", "contact"];
+
+#[test]
+fn layers_the_monitor_shares_no_code_with_contact() {
+    let modules = crate_modules("solver");
+    let is_in = |module: &[String], folder: &str| {
+        module.len() > 1 && module[0] == "collision" && module[1] == folder
+    };
+    let of_monitor: Vec<_> =
+        modules.iter().filter(|(module, _)| is_in(module, "monitor")).collect();
+    assert!(of_monitor.len() > 5, "the monitor's files are read");
+    for (module, imports) in of_monitor {
+        for import in imports {
+            let shared = UNSHARED_WITH_MONITOR.iter().any(|folder| is_in(import, folder));
+            assert!(!shared, "{} imports {}", module.join("::"), import.join("::"));
+        }
+    }
+}
+
 #[test]
 fn layers_no_files_import_each_other_in_a_loop() {
     for (name, _) in ROOMS {

@@ -24,8 +24,8 @@ impl PassageAudit {
         steps: u64,
     ) -> Option<Self> {
         let contact_model = system.contact.as_ref()?;
-        let (mesh, set) = (&contact_model.mesh, system.instruction_set);
-        let monitor = TunnellingMonitor::new(settings, mesh, &state.positions, steps, set);
+        let (topology, set) = (&contact_model.mesh.topology, system.instruction_set);
+        let monitor = TunnellingMonitor::new(settings, topology, &state.positions, steps, set);
         Some(Self { monitor, time: state.time })
     }
 
@@ -59,7 +59,7 @@ impl PassageAudit {
 impl StepAudit for PassageAudit {
     fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
-            self.monitor.record_step(&contact_model.mesh, &state.positions);
+            self.monitor.record_step(&contact_model.mesh.topology, &state.positions);
         }
         // A failed step is not accepted: the run ended at the time before it.
         let before = core::mem::replace(&mut self.time, state.time);
@@ -68,8 +68,9 @@ impl StepAudit for PassageAudit {
 
     fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
-            self.monitor.test_block(&contact_model.mesh);
-            self.monitor.intersection_counter.update(&contact_model.mesh, &state.positions);
+            let topology = &contact_model.mesh.topology;
+            self.monitor.test_block(topology);
+            self.monitor.intersection_counter.update(topology, &state.positions);
         }
         self.time = state.time;
         self.check(self.time)

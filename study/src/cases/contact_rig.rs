@@ -5,7 +5,7 @@
 //!               / largest kinetic energy
 //! ```
 
-use billow_solver::collision::contact::intersections::intersections;
+use billow_solver::collision::monitor::intersections::intersections;
 use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::output::ledger::{Ledger, residuals};
 use billow_solver::scene::film_scene::FilmContact;
@@ -83,7 +83,7 @@ pub fn run_recorded(
 /// Number of intersections of the whole film in its present state.
 pub fn intersection_count(film: &FilmView<'_>) -> usize {
     let model = film.system.contact.as_ref();
-    model.map_or(0, |model| intersections(&model.mesh, &film.state.positions).len())
+    model.map_or(0, |model| intersections(&model.mesh.topology, &film.state.positions).len())
 }
 
 /// Work into contact that is neither stored in contact nor accounted for by impulses, J.

@@ -24,9 +24,9 @@
 //!
 //! [`FailureKind`]: billow_solver::output::outcome::FailureKind
 
-use billow_solver::collision::broad_phase::collision_mesh::CollisionMesh;
-use billow_solver::collision::contact::intersections::intersections;
+use billow_solver::collision::monitor::intersections::intersections;
 use billow_solver::geometry::field::Field;
+use billow_solver::geometry::topology::Topology;
 use billow_solver::mechanics::film_model::FilmModel;
 use billow_solver::mechanics::material::Regime;
 use billow_solver::mechanics::resultants::{resultants, thickness};
@@ -218,7 +218,7 @@ fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
         let forces = resultants(&solution.model, &solution.positions, element);
         largest.max(forces.principal[0] / thickness(&solution.model, element))
     });
-    let mesh = CollisionMesh::new(solution.model.nodes(), &solution.model.triangles);
+    let topology = Topology::new(solution.model.nodes(), &solution.model.triangles);
     if scene.film.shell.is_closed() && solution.volume <= 0.0 {
         let location = format!("the film is turned inside out: V {:.6} m3", solution.volume);
         summary["stop"] = json!({"kind": "inverted_volume", "time": null, "location": location});
@@ -231,7 +231,7 @@ fn in_equilibrium(scene: &SceneFile, solution: &StaticSolution) -> Json {
         "gas_mass": 0.0,
         "reactions": reactions,
         "passages": null,
-        "intersections": intersections(&mesh, &solution.positions).len(),
+        "intersections": intersections(&topology, &solution.positions).len(),
         "energies": {
             "kinetic": 0.0, "strain": solution.strain_energy, "potential": solution.potential_energy,
         },

@@ -74,22 +74,15 @@ impl MotionClusters {
     }
 
     /// Adds to `approach_bounds` (m), one entry per pair of clusters, the bound b of the motion
-    /// between two positions of all nodes. Returns an upper bound of the displacement of any node, m.
-    pub fn add_approach_bounds(
-        &self,
-        from: &Field,
-        to: &Field,
-        approach_bounds: &mut [f64],
-    ) -> f64 {
+    /// between two positions of all nodes.
+    pub fn add_approach_bounds(&self, from: &Field, to: &Field, approach_bounds: &mut [f64]) {
         let mut motions = Vec::with_capacity(self.count);
-        let mut max_displacement = 0.0_f64;
         for nodes in &self.nodes {
             let displacement = |node: &u32| to.get(*node as usize) - from.get(*node as usize);
             let sum: Vector3<f64> = nodes.iter().map(displacement).sum();
             let mean = if nodes.is_empty() { sum } else { sum / nodes.len() as f64 };
             let squares = nodes.iter().map(|node| (displacement(node) - mean).norm_squared());
             let deviation = squares.fold(0.0, f64::max).sqrt();
-            max_displacement = max_displacement.max(mean.norm() + deviation);
             motions.push((mean, deviation));
         }
         for (a, (mean_a, deviation_a)) in motions.iter().enumerate() {
@@ -98,7 +91,6 @@ impl MotionClusters {
                 approach_bounds[self.pair_index(a, b)] += bound * ROUNDING_FACTOR;
             }
         }
-        max_displacement
     }
 }
 

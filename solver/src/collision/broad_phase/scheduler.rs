@@ -67,11 +67,6 @@ pub struct ProximityQuery {
 /// 32 bins is looked at early, which costs little.
 const QUEUE_BINS: usize = 32;
 
-/// Displacement, in bin widths, after which all pairs start again from the root. Chosen: pairs of
-/// leaves that were close once and are now far apart are then merged into pairs of large tree nodes
-/// again; without it their number would only grow.
-const RESTART_BINS: f64 = 128.0;
-
 /// Number of candidates after which they are measured, before others are collected. Chosen: large against
 /// the cost of a batch, small against the memory of a film.
 const MAX_BATCH: usize = 16_384;
@@ -82,16 +77,14 @@ pub struct CandidateScheduler {
     kind: QueryKind,
     instruction_set: InstructionSet,
     clusters: MotionClusters,
+    /// Tree node of a motion cluster without pairs; only in tests that inject a fault.
+    skipped_cluster: Option<usize>,
     /// b of each pair of motion clusters since the last restart, m.
     approach_bounds: Vec<f64>,
     /// Pending pairs of tree nodes, one queue per pair of motion clusters.
     queues: Vec<PairQueue>,
     /// Pending pairs of elements that share a node.
     adjacent: PendingAdjacentPairs,
-    /// Width of the bins of the queues, m.
-    bin_width: f64,
-    /// Sum of the largest displacements since the last restart, m.
-    path_length: f64,
     kdops: KDops,
     // Scratch memory: pairs of tree nodes that are due, their children, and their separations.
     due_nodes: Vec<[u32; 2]>,
@@ -118,11 +111,10 @@ impl CandidateScheduler {
             kind,
             instruction_set,
             clusters,
+            skipped_cluster: None,
             approach_bounds: vec![0.0; pairs],
             queues: vec![PairQueue::new(bin_width, QUEUE_BINS, 0.0); pairs],
             adjacent: PendingAdjacentPairs::new(mesh.adjacent_pairs(kind)),
-            bin_width,
-            path_length: 0.0,
             kdops: KDops::default(),
             due_nodes: Vec::new(),
             children: Vec::new(),
@@ -135,6 +127,14 @@ impl CandidateScheduler {
         scheduler
     }
 
+    /// Leaves out all pairs of one motion cluster, its number taken modulo the number of clusters, except
+    /// of elements that share a node. Only for tests that inject a fault.
+    pub fn skip_cluster(&mut self, cluster: usize) {
+        let clusters = self.clusters.tree_nodes();
+        self.skipped_cluster = Some(clusters.start + cluster % clusters.len());
+        self.reset();
+    }
+
     /// Makes every pair due at once, as in a new scheduler.
     pub fn reset(&mut self) {
         self.restart();
@@ -144,66 +144,25 @@ impl CandidateScheduler {
     /// Starts again from the pairs of motion clusters; each is due at once. Pairs of elements that
     /// share a node stay pending.
     fn restart(&mut self) {
-        self.path_length = 0.0;
         self.approach_bounds.fill(0.0);
         self.queues.iter_mut().for_each(|queue| queue.restart(0.0));
         let clusters = self.clusters.tree_nodes();
         for a in clusters.clone() {
             for b in a..clusters.end {
+                if self.skipped_cluster.is_some_and(|skipped| skipped == a || skipped == b) {
+                    continue;
+                }
                 let pair = [a, b].map(|index| u32::try_from(index).expect("few clusters"));
                 self.queues[self.clusters.pair_of(a, b)].push(0.0, pair);
             }
         }
     }
 
-    /// Restarts when the film has moved far since the last restart.
-    fn restart_if_due(&mut self) {
-        if self.path_length > RESTART_BINS * self.bin_width {
-            self.restart();
-        }
-    }
-
     /// Takes account of a motion of all nodes, without a query.
     pub fn advance(&mut self, mesh: &CollisionMesh, from: &Field, to: &Field) {
-        self.path_length += self.clusters.add_approach_bounds(from, to, &mut self.approach_bounds);
+        self.clusters.add_approach_bounds(from, to, &mut self.approach_bounds);
         self.adjacent.bound_motion(&mesh.topology.edges, from, to);
         self.adjacent.commit_motion();
-    }
-
-    /// Calls `visit` with every candidate that can meet on the straight motion of all nodes from one
-    /// position to another, then takes account of that motion. `distances` appends the distances (m)
-    /// of candidates of one kind at the first position.
-    pub fn query_swept(
-        &mut self,
-        mesh: &CollisionMesh,
-        [from, to]: [&Field; 2],
-        distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        visit: impl FnMut(CandidateKind, [u32; 2]),
-    ) {
-        self.restart_if_due();
-        let mut reach = self.uniform_reach(0.0);
-        let max_displacement = self.clusters.add_approach_bounds(from, to, &mut reach.clusters);
-        reach.nodes.copy_from_slice(self.adjacent.bound_motion(&mesh.topology.edges, from, to));
-        self.collect(mesh, from, &reach, distances, visit);
-        self.path_length += max_displacement;
-        for (total, motion) in self.approach_bounds.iter_mut().zip(reach.clusters) {
-            *total += motion;
-        }
-        self.adjacent.commit_motion();
-    }
-
-    /// Calls `visit` with every candidate whose distance (m), as `distances` gives it, is not above
-    /// zero at these positions (m).
-    pub fn query_now(
-        &mut self,
-        mesh: &CollisionMesh,
-        positions: &Field,
-        distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        visit: impl FnMut(CandidateKind, [u32; 2]),
-    ) {
-        self.restart_if_due();
-        let reach = self.uniform_reach(0.0);
-        self.collect(mesh, positions, &reach, distances, visit);
     }
 
     /// Calls `take` with every candidate that can come within `query.radius` of each other until the
@@ -283,49 +242,6 @@ impl CandidateScheduler {
             }
             PendingPair::Adjacent { pair, node } => self.adjacent.push(node, pair, length),
         }
-    }
-
-    /// Calls `visit` with the candidates that are no farther apart than their reach. All pairs stay
-    /// pending.
-    fn collect(
-        &mut self,
-        mesh: &CollisionMesh,
-        positions: &Field,
-        reach: &Reach,
-        mut distances: impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>),
-        mut visit: impl FnMut(CandidateKind, [u32; 2]),
-    ) {
-        self.refine(mesh, positions, reach, 0.0, 1.0, |scheduler| {
-            scheduler.measure(&mut distances);
-            scheduler.visit_due(reach, &mut visit);
-        });
-    }
-
-    /// Gives the due candidates that are no farther apart than their reach to `visit`, and makes all pairs
-    /// pending again.
-    fn visit_due(&mut self, reach: &Reach, visit: &mut impl FnMut(CandidateKind, [u32; 2])) {
-        let kinds = self.kind.candidate_kinds();
-        let mut start = [0; 2];
-        let due_pairs = core::mem::take(&mut self.due_pairs);
-        for (pair, end) in &due_pairs {
-            let (mut smallest, reach) = (f64::INFINITY, reach.of(*pair));
-            for kind in 0..2 {
-                for index in start[kind]..end[kind] {
-                    let distance = self.distances[kind][index];
-                    smallest = smallest.min(distance);
-                    if distance <= reach
-                        && let Some(candidate_kind) = kinds[kind]
-                    {
-                        visit(candidate_kind, self.candidates[kind][index]);
-                    }
-                }
-            }
-            if smallest < f64::INFINITY {
-                self.push(*pair, smallest);
-            }
-            start = *end;
-        }
-        self.due_pairs = due_pairs;
     }
 
     /// Measures the distances of the due candidates. NaN counts as touching.

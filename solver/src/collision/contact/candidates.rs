@@ -14,6 +14,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::broad_phase_fault::BroadPhaseFault;
 use super::model::{ContactModel, pair_kind};
 use super::pair::{CandidatePair, Pair, PairKind};
 use crate::collision::broad_phase::query::QueryKind;
@@ -119,7 +120,7 @@ impl ContactModel {
             PairKind::NodeElement => self.adhesion.range,
             PairKind::EdgeEdge => 0.0,
         };
-        0.5 * self.bound_factor * (gap - self.distance_of(kind) - adhesion_range)
+        0.5 * self.bound_factor() * (gap - self.distance_of(kind) - adhesion_range)
     }
 }
 
@@ -146,6 +147,9 @@ impl CandidateList {
             gaps: Vec::new(),
             hits: Vec::new(),
         };
+        if let Some(BroadPhaseFault::SkippedCluster(cluster)) = model.broad_phase_fault {
+            list.scheduler.skip_cluster(cluster);
+        }
         list.collect(model, positions, [path_length, path_length]);
         list
     }
@@ -181,6 +185,9 @@ impl CandidateList {
 
     /// Adds the pairs that can matter while the path length grows from one value to another (m).
     fn collect(&mut self, model: &ContactModel, positions: &Field, [from, to]: [f64; 2]) {
+        if model.queues_stopped(to) {
+            return;
+        }
         let before = self.candidates.len();
         let admission_limit = to + ADMISSION_PATH * model.distance;
         let Self { scheduler, pending, candidates, due, gaps, .. } = self;
@@ -213,7 +220,7 @@ impl CandidateList {
                 ProximityQuery {
                     max_displacement,
                     radius: model.distance + model.adhesion.range,
-                    bound_factor: model.bound_factor,
+                    bound_factor: model.bound_factor(),
                 },
                 |kind, pairs, gaps| model.append_gaps(positions, pair_kind(kind), pairs, gaps),
                 |kind, pair, gap| admit_or_defer(pending, pair_kind(kind), pair, gap),

@@ -25,22 +25,22 @@
 //!   How an integrator keeps its steps safe is its choice; explicit central differences give colliding
 //!   pairs impulses ([`crate::integrators::explicit`]).
 
+pub mod broad_phase_fault;
 pub mod candidates;
 pub mod ccd;
 pub mod contacts;
 pub mod distance;
 pub mod distance_batch;
 pub mod force_law;
-pub mod intersections;
 pub mod model;
 pub mod pair;
 pub mod plates;
 pub mod pressure;
 pub mod safe_step;
-pub mod separating_planes;
 pub mod state;
 pub mod stiffness;
 
+pub use broad_phase_fault::BroadPhaseFault;
 pub use candidates::SearchProgress;
 pub use force_law::Contact;
 pub use model::{Adhesion, ContactModel, DISTANCE_PER_GAP, default_distance};

@@ -1,5 +1,6 @@
 //! The parameters of contact, and the distances that they lead to.
 
+use super::broad_phase_fault::BroadPhaseFault;
 use super::distance_batch::{edge_edge_distances, node_element_distances};
 use super::pair::{Pair, PairKind, vectors_of};
 use crate::collision::broad_phase::collision_mesh::CollisionMesh;
@@ -30,10 +31,8 @@ pub struct ContactModel {
     pub adhesion: Adhesion,
     /// Mass of the film per area, kg/m².
     pub area_density: f64,
-    /// Whether edges can be in contact with edges. It is `false` only in tests of the monitor.
-    pub edge_contacts: bool,
-    /// Factor on all bounds of how far a pair is from contact. It is 1 except in tests of the monitor.
-    pub bound_factor: f64,
+    /// A fault in the search for pairs; `None` except in tests of the monitor.
+    pub broad_phase_fault: Option<BroadPhaseFault>,
     /// Instruction set of the distance kernels. Results are the same bits with each.
     pub instruction_set: InstructionSet,
 }
@@ -106,8 +105,7 @@ impl ContactModel {
             friction: 0.0,
             adhesion: Adhesion::default(),
             area_density: 1.0,
-            edge_contacts: true,
-            bound_factor: 1.0,
+            broad_phase_fault: None,
             instruction_set,
         }
     }
@@ -136,7 +134,7 @@ impl ContactModel {
     /// Calls `visit` with every pair closer than `radius` (m) at these positions (m), and its gap (m).
     pub fn pairs_within(&self, positions: &Field, radius: f64, mut visit: impl FnMut(Pair, f64)) {
         pairs_within(&self.mesh, positions, radius, |pair, gap| {
-            if self.edge_contacts || pair.kind == PairKind::NodeElement {
+            if self.has_edge_contacts() || pair.kind == PairKind::NodeElement {
                 visit(pair, gap);
             }
         });
@@ -156,7 +154,7 @@ impl ContactModel {
             PairKind::NodeElement => {
                 node_element_distances(instruction_set, topology, positions, pairs, gaps);
             }
-            PairKind::EdgeEdge if self.edge_contacts => {
+            PairKind::EdgeEdge if self.has_edge_contacts() => {
                 edge_edge_distances(instruction_set, topology, positions, pairs, gaps);
             }
             PairKind::EdgeEdge => gaps.resize(gaps.len() + pairs.len(), f64::INFINITY),

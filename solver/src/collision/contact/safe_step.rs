@@ -34,7 +34,7 @@ impl ContactModel {
     ) -> f64 {
         let nodes_of_first = pair.nodes_of_first();
         let (_, max_approach) = relative_motion(displacements, nodes_of_first);
-        if max_approach < MAX_UNTESTED_APPROACH * gap * self.bound_factor {
+        if max_approach < MAX_UNTESTED_APPROACH * gap * self.bound_factor() {
             return 1.0;
         }
         let min_gap = MIN_KEPT_SHARE * gap;

@@ -1,31 +1,42 @@
 //! Monitors a run for passages of film through film, step by step or from frame to frame.
 //!
-//! A block is a number of steps between two frames. On the straight motion from one frame to the next
-//! only pairs that may have met are tested ([`crate::collision::broad_phase::scheduler`]); a pair that
-//! seems to pass is then tested in each step. Some blocks, or all where every step is asked for, are
-//! tested step by step from their positions alone, without the history of the scheduler. So an error
-//! in that history is found.
+//! ```text
+//! |x − x₀ − mean(x − x₀)| ≤ r for every node        then the near list of x₀ has every pair that can pass
+//! ```
 //!
-//! The monitor does not use the contact model, its bounds or its decisions. It does use the same code
-//! for the mesh, the broad phase and the distances as contact, with data of its own. An error in that
-//! code could affect both.
+//! Symbols: x position of a node, x₀ that in the reference frame, m; r reach of the list, m.
+//!
+//! A block is a number of steps between two frames. On the straight motion from one frame to the next
+//! only pairs that may pass are tested; a pair that passes on it is then tested in each step. In film
+//! that hardly moves these pairs come from a near list, found once around a reference frame
+//! ([`near_list`]); else from a search of the two frames ([`search`]). Some blocks, or all where every
+//! step is asked for, are tested step by step from their positions alone, without the near list. So an
+//! error in that list is found.
+//!
+//! The monitor shares nothing with contact but the mesh connectivity, the fields and the vector types:
+//! no broad phase, no distance, no bound, no decision.
 
+pub mod boxes;
+pub mod intersections;
+pub mod motion;
+pub mod near_list;
 pub mod passages;
+pub mod primitives;
+pub mod search;
+pub mod separation;
 
 use nalgebra::Vector3;
 
-use crate::collision::broad_phase::collision_mesh::CollisionMesh;
-use crate::collision::broad_phase::kdop::KDops;
-use crate::collision::broad_phase::query::{CandidateKind, QueryKind};
-use crate::collision::broad_phase::scheduler::CandidateScheduler;
-use crate::collision::broad_phase::traversal::pairs_within_bounds;
-use crate::collision::contact::distance_batch::{edge_edge_distances, node_element_distances};
-use crate::collision::contact::intersections::IntersectionCounter;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
 use crate::scene::monitor_settings::MonitorSettings;
-use passages::{Passage, candidate_passage, passages};
+use intersections::IntersectionCounter;
+use motion::largest_deviation;
+use near_list::NearList;
+use passages::{Passage, each_passage};
+use primitives::PassagePairs;
+use search::{PassageSearch, filter_passages};
 
 /// Counts the passages of film through film in a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +49,14 @@ pub struct TunnellingMonitor {
     frames: Vec<Field>,
     /// Number of frames recorded in the block.
     recorded: usize,
-    /// Candidates, pending until they may have met.
-    scheduler: CandidateScheduler,
+    search: PassageSearch,
+    /// Pairs that may pass near a reference frame.
+    near: NearList,
+    // Scratch memory: pairs that may pass in a block, and those that no plane separates.
+    pairs: PassagePairs,
+    close: PassagePairs,
+    /// Scratch memory: the passages of a block, with their steps.
+    found: Vec<(usize, Passage)>,
     /// Intersections of the mesh.
     pub intersection_counter: IntersectionCounter,
     /// Number of passages so far.
@@ -52,26 +69,28 @@ impl TunnellingMonitor {
     /// Starts at these positions (m), after `steps` steps of the run.
     pub fn new(
         settings: MonitorSettings,
-        mesh: &CollisionMesh,
+        topology: &Topology,
         positions: &Field,
         steps: u64,
         instruction_set: InstructionSet,
     ) -> Self {
         let frames = vec![positions.clone(); settings.block as usize + 1];
-        let bin_width = mesh.bin_width(positions);
-        let kind = QueryKind::Collision;
-        let mut scheduler = CandidateScheduler::new(kind, mesh, bin_width, instruction_set);
-        // A first query of all pairs here, so that the first block costs no more than the others.
-        let distances = distances_at(&mesh.topology, positions, instruction_set);
-        scheduler.query_now(mesh, positions, distances, |_, _| {});
+        let mut search = PassageSearch::new(topology, instruction_set);
+        let mut near = NearList::new(topology, positions);
+        // A list here, so that the first block costs no more than the others.
+        let _ = near.pairs_of(topology, &mut search, [positions; 2]);
         Self {
             settings,
             instruction_set,
             block_start: steps,
             frames,
             recorded: 1,
-            scheduler,
-            intersection_counter: IntersectionCounter::new(mesh, positions, instruction_set),
+            search,
+            near,
+            pairs: PassagePairs::default(),
+            close: PassagePairs::default(),
+            found: Vec::new(),
+            intersection_counter: IntersectionCounter::new(topology, positions, instruction_set),
             passages: 0,
             first_passage: None,
         }
@@ -83,33 +102,36 @@ impl TunnellingMonitor {
     }
 
     /// Records the positions (m) after a step. Tests the block if this was its last step.
-    pub fn record_step(&mut self, mesh: &CollisionMesh, positions: &Field) {
+    pub fn record_step(&mut self, topology: &Topology, positions: &Field) {
         self.frames[self.recorded].copy_from(positions);
         self.recorded += 1;
         if self.recorded == self.frames.len() {
-            self.test_block(mesh);
+            self.test_block(topology);
         }
     }
 
     /// Tests the steps recorded since the last test, and starts a new block.
-    pub fn test_block(&mut self, mesh: &CollisionMesh) {
+    pub fn test_block(&mut self, topology: &Topology) {
         let steps = self.recorded - 1;
         if steps == 0 {
             return;
         }
-        let found = if self.settings.is_dense_block(self.block_start) {
-            self.scheduler.advance(mesh, &self.frames[0], &self.frames[steps]);
-            passages_step_by_step(mesh, &self.frames[..=steps])
+        self.found.clear();
+        if self.settings.is_dense_block(self.block_start) {
+            self.test_each_step(topology, steps);
+            // By step, then by passage.
+            self.found.sort_unstable();
         } else {
-            self.passages_of_block(mesh, steps)
-        };
+            self.test_motion(topology, steps);
+            self.found.sort_unstable_by_key(|(step, passage)| (*passage, *step));
+        }
         if self.first_passage.is_none() {
-            self.first_passage = found.first().map(|passage| {
-                let [node, ..] = passage.nodes(&mesh.topology);
+            self.first_passage = self.found.first().map(|(_, passage)| {
+                let [node, ..] = passage.nodes(topology);
                 (*passage, self.frames[steps].get(node as usize))
             });
         }
-        self.passages += found.len() as u64;
+        self.passages += self.found.len() as u64;
         self.block_start += steps as u64;
         self.frames.swap(0, steps);
         self.recorded = 1;
@@ -117,82 +139,55 @@ impl TunnellingMonitor {
 
     /// Passages in a block: tests the straight motion from its first to its last frame, and each step
     /// for the pairs that pass on it.
-    fn passages_of_block(&mut self, mesh: &CollisionMesh, steps: usize) -> Vec<Passage> {
-        let (frames, mut found) = (&self.frames, Vec::new());
-        let (from, to) = (&frames[0], &frames[steps]);
-        let topology = &mesh.topology;
-        let distances = distances_at(topology, from, self.instruction_set);
-        self.scheduler.query_swept(mesh, [from, to], distances, |kind, pair| {
-            let passage = candidate_passage(kind, pair);
-            let closest = passage.closest(topology, from);
-            let normal = passage.separating_normal(topology, from, &closest);
-            if !passage.is_separated(topology, to, &normal) && passage.occurs(topology, from, to) {
+    fn test_motion(&mut self, topology: &Topology, steps: usize) {
+        let Self { instruction_set, frames, search, near, pairs, close, found, .. } = self;
+        let ends = [&frames[0], &frames[steps]];
+        if let Some(near) = near.pairs_of(topology, search, ends) {
+            filter_passages(*instruction_set, topology, near, ends, close);
+        } else {
+            search.find(topology, ends, 0.0, pairs);
+            core::mem::swap(pairs, close);
+        }
+        each_passage(close, |passage| {
+            if passage.occurs(topology, ends[0], ends[1]) {
                 let occurs =
                     |step: &usize| passage.occurs(topology, &frames[*step], &frames[step + 1]);
-                found.extend((0..steps).filter(occurs).map(|_| passage));
+                found.extend((0..steps).filter(occurs).map(|step| (step, passage)));
             }
         });
-        found.sort_unstable();
-        found
     }
-}
 
-/// A function that appends the distances (m) of candidates of one kind at these positions (m).
-fn distances_at<'a>(
-    topology: &'a Topology,
-    positions: &'a Field,
-    instruction_set: InstructionSet,
-) -> impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>) + 'a {
-    move |kind, pairs, distances| match kind {
-        CandidateKind::EdgeEdge => {
-            edge_edge_distances(instruction_set, topology, positions, pairs, distances);
+    /// Passages in a block, from all its frames alone. Pairs that may pass come from one search: every
+    /// node stays within the largest deviation from the straight motion of the block.
+    fn test_each_step(&mut self, topology: &Topology, steps: usize) {
+        let Self { instruction_set, frames, search, pairs, close, found, .. } = self;
+        let frames = &frames[..=steps];
+        let ends = [&frames[0], &frames[steps]];
+        let mut deviation = 0.0_f64;
+        for (step, frame) in frames.iter().enumerate().take(steps).skip(1) {
+            let t = step as f64 / steps as f64;
+            let of_frame = largest_deviation(frame, t, ends[0], ends[1]);
+            // NaN has no bound.
+            deviation = if of_frame.is_nan() { f64::INFINITY } else { deviation.max(of_frame) };
         }
-        _ => node_element_distances(instruction_set, topology, positions, pairs, distances),
-    }
-}
-
-/// All passages in the steps between these frames, from the frames alone, in the order of steps.
-fn passages_step_by_step(mesh: &CollisionMesh, frames: &[Field]) -> Vec<Passage> {
-    if let [from, to] = frames {
-        return passages(mesh, from, to);
-    }
-    let topology = &mesh.topology;
-    let (first, mut max_displacement) = (&frames[0], 0.0_f64);
-    let mut kdops = KDops::new(&mesh.hierarchy, first);
-    for frame in &frames[1..] {
-        kdops.extend(&mesh.hierarchy, frame);
-        max_displacement = max_displacement.max(first.largest_displacement(frame));
-    }
-    let mut found = Vec::new();
-    pairs_within_bounds(QueryKind::Collision, mesh, &kdops, 0.0, |kind, pair| {
-        let passage = candidate_passage(kind, pair);
-        let closest = passage.closest(topology, first);
-        // Both primitives together move by at most twice the largest displacement.
-        if closest.squared > 4.0 * max_displacement * max_displacement {
-            return;
+        search.find(topology, ends, deviation, pairs);
+        for (step, ends) in frames.windows(2).enumerate() {
+            let ends = [&ends[0], &ends[1]];
+            filter_passages(*instruction_set, topology, pairs, ends, close);
+            each_passage(close, |passage| {
+                if passage.occurs(topology, ends[0], ends[1]) {
+                    found.push((step, passage));
+                }
+            });
         }
-        // Keep one separating plane for as many steps as possible.
-        let mut normal = passage.separating_normal(topology, first, &closest);
-        for (step, pair) in frames.windows(2).enumerate() {
-            if passage.is_separated(topology, &pair[1], &normal) {
-                continue;
-            }
-            if passage.occurs(topology, &pair[0], &pair[1]) {
-                found.push((step, passage));
-            }
-            let closest = passage.closest(topology, &pair[1]);
-            normal = passage.separating_normal(topology, &pair[1], &closest);
-        }
-    });
-    found.sort_unstable();
-    found.into_iter().map(|(_, passage)| passage).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::passages::tests::{scene, v};
+    use super::intersections::tests::all_intersections;
+    use super::passages::tests::{all_passages, scene, v};
     use super::*;
-    use crate::collision::contact::intersections::intersections;
     use proptest::prelude::*;
 
     proptest! {
@@ -203,7 +198,7 @@ mod tests {
             shares in prop::array::uniform2(0.01..1.0_f64),
             parallel in prop::sample::select(vec![None, Some(0.0), Some(1e-7)]),
         ) {
-            let mesh = CollisionMesh::new(6, &[[0, 1, 2], [3, 4, 5]]);
+            let topology = Topology::new(6, &[[0, 1, 2], [3, 4, 5]]);
             // Large and small steps, and nearly parallel edges.
             let first: Vec<Vector3<f64>> = positions[0].iter().map(|x| Vector3::from(*x)).collect();
             let frame = |points: &Vec<[f64; 3]>| {
@@ -218,32 +213,44 @@ mod tests {
                 Field::of(&x)
             };
             let frames: Vec<Field> = positions.iter().map(frame).collect();
-            let each: Vec<Passage> =
-                frames.windows(2).flat_map(|pair| passages(&mesh, &pair[0], &pair[1])).collect();
-            prop_assert_eq!(passages_step_by_step(&mesh, &frames), each);
+            let each = |(step, pair): (usize, &[Field])| {
+                all_passages(&topology, &pair[0], &pair[1]).into_iter().map(move |found| (step, found))
+            };
+            let each: Vec<(usize, Passage)> = frames.windows(2).enumerate().flat_map(each).collect();
+            let block = u32::try_from(frames.len()).unwrap();
+            let settings = MonitorSettings { block, ..MonitorSettings::EVERY_STEP };
+            let mut monitor =
+                TunnellingMonitor::new(settings, &topology, &frames[0], 0, InstructionSet::detect());
+            for frame in &frames[1..] {
+                monitor.record_step(&topology, frame);
+            }
+            monitor.test_block(&topology);
+            prop_assert_eq!(monitor.passages, each.len() as u64);
+            prop_assert_eq!(&monitor.found, &each);
+            prop_assert_eq!(monitor.first_passage.map(|first| first.0), each.first().map(|first| first.1));
         }
     }
 
     #[test]
     fn a_passage_there_and_back_is_found_step_by_step_only() {
         let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
-        let (mesh, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
+        let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
         let start = |settings: MonitorSettings| {
-            TunnellingMonitor::new(settings, &mesh, &from, 0, InstructionSet::detect())
+            TunnellingMonitor::new(settings, &topology, &from, 0, InstructionSet::detect())
         };
         let count = |settings: MonitorSettings| {
             let mut monitor = start(settings);
-            monitor.record_step(&mesh, &to);
-            monitor.record_step(&mesh, &from);
-            monitor.test_block(&mesh);
+            monitor.record_step(&topology, &to);
+            monitor.record_step(&topology, &from);
+            monitor.test_block(&topology);
             monitor.passages
         };
         assert_eq!(count(MonitorSettings::EVERY_STEP), 2);
         assert_eq!(count(MonitorSettings { dense_block_period: 1, ..MonitorSettings::FRAMES }), 2);
         let mut monitor = start(MonitorSettings::FRAMES);
         assert!(!MonitorSettings::FRAMES.is_dense_block(0));
-        monitor.record_step(&mesh, &to);
-        monitor.test_block(&mesh);
+        monitor.record_step(&topology, &to);
+        monitor.test_block(&topology);
         assert_eq!(monitor.passages, 1);
         assert!(monitor.first_passage.is_some());
     }
@@ -256,38 +263,65 @@ mod tests {
     }
 
     proptest! {
-        /// The scheduler misses no passage and no intersection, whatever the motion.
+        /// Neither the near list nor the search misses a passage or an intersection, whatever the motion.
         #[test]
-        fn pending_pairs_miss_no_passage_and_no_intersection(
+        fn a_run_misses_no_passage_and_no_intersection(
             positions in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18),
             motions in prop::collection::vec(
-                prop::collection::vec(prop::array::uniform3(-0.2..0.2_f64), 18),
-                1..12,
+                (prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 18), 0_usize..4),
+                1..20,
             ),
         ) {
-            let triangles = [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12], [13, 14, 15]];
-            let mut triangles = triangles.to_vec();
-            triangles.push([13, 16, 17]);
-            let mesh = CollisionMesh::new(18, &triangles);
+            let triangles =
+                [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12], [13, 14, 15], [13, 16, 17]];
+            let topology = Topology::new(18, &triangles);
             let mut x: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
             // No block is tested step by step.
             let settings = MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
             let start = Field::of(&x);
             let mut monitor =
-                TunnellingMonitor::new(settings, &mesh, &start, 0, InstructionSet::detect());
+                TunnellingMonitor::new(settings, &topology, &start, 0, InstructionSet::detect());
             let mut expected = 0;
-            for motion in motions {
+            for (motion, size) in motions {
                 let from = Field::of(&x);
+                // From film that hardly moves, which has a near list, to film that moves far; with drift.
+                let size = [0.2, 0.02, 0.004, 0.001][size];
                 for (x, u) in x.iter_mut().zip(motion) {
-                    *x += Vector3::from(u);
+                    *x += Vector3::from(u) * size + v(0.3, 0.0, -0.1);
                 }
                 let to = Field::of(&x);
-                expected += passages(&mesh, &from, &to).len() as u64;
-                monitor.record_step(&mesh, &to);
+                expected += all_passages(&topology, &from, &to).len() as u64;
+                monitor.record_step(&topology, &to);
                 prop_assert_eq!(monitor.passages, expected);
-                monitor.intersection_counter.update(&mesh, &to);
-                let all = intersections(&mesh, &to).len() as u64;
+                monitor.intersection_counter.update(&topology, &to);
+                let all = all_intersections(&topology, &to).len() as u64;
                 prop_assert_eq!(monitor.intersection_counter.count, all);
+            }
+        }
+    }
+
+    #[test]
+    fn positions_that_are_not_numbers_end_in_no_panic_and_no_loop() {
+        let corner = [v(0.3, 0.3, 0.1), v(0.3, 0.8, 3.0), v(0.8, 0.3, 3.0)];
+        let (topology, from, to) = scene(&corner, v(0.0, 0.0, -0.2));
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+            for settings in [MonitorSettings::EVERY_STEP, MonitorSettings::FRAMES] {
+                let mut broken = to.clone();
+                broken.set(5, v(value, 0.1, 0.2));
+                let set = InstructionSet::detect();
+                let mut monitor = TunnellingMonitor::new(settings, &topology, &broken, 0, set);
+                for frame in [&from, &broken, &from, &broken, &broken] {
+                    monitor.record_step(&topology, frame);
+                }
+                monitor.test_block(&topology);
+                monitor.intersection_counter.update(&topology, &broken);
+                // Film with numbers is tested again.
+                let before = monitor.passages;
+                for frame in [&from, &from, &to] {
+                    monitor.record_step(&topology, frame);
+                    monitor.test_block(&topology);
+                }
+                assert!(monitor.passages > before);
             }
         }
     }

@@ -9,29 +9,22 @@
 //! t. Their roots are bracketed by the roots of their derivatives.
 //!
 //! [`passages`] tests one straight motion of the whole mesh; the tunnelling monitor tests a run. The
-//! tests use positions only, no bound or decision of the contact model. The candidates come from the
-//! mesh, the hierarchy and the k-DOP code that contact uses too, but from k-DOPs fitted here.
+//! tests use positions only, no bound or decision of the contact model.
 
 use core::fmt;
 
 use nalgebra::Vector3;
 
-use crate::collision::broad_phase::collision_mesh::CollisionMesh;
-use crate::collision::broad_phase::kdop::KDops;
-use crate::collision::broad_phase::query::{CandidateKind, QueryKind};
-use crate::collision::broad_phase::traversal::pairs_within_bounds;
-use crate::collision::contact::distance::{Closest, point_triangle, segment_segment};
+use super::primitives::{EDGES, NODES, PassagePairs};
+use super::search::PassageSearch;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
-
-/// Smallest separation along a normal that counts as separated, as a share of the distance that the
-/// normal stands for. Chosen: far above rounding.
-const MIN_SEPARATION_SHARE: f64 = 1e-3;
+use crate::platform::simd::InstructionSet;
 
 /// Largest distance of the crossing points of two edges, as a share of the sum of their lengths, at
 /// which edges in one plane count as crossing. Chosen: it excludes edges on one line, whose crossing
 /// points have no meaning, and covers rounding.
-const MAX_CROSSING_DISTANCE: f64 = 1e-6;
+pub(super) const MAX_CROSSING_DISTANCE: f64 = 1e-6;
 
 /// Number of bisections of a root's bracket. It shrinks to 2⁻⁶⁰ of its width, below the rounding error
 /// of t.
@@ -84,48 +77,8 @@ impl Passage {
         self.nodes(topology).map(|node| positions.get(node as usize))
     }
 
-    /// Closest points of the pair.
-    pub(super) fn closest(self, topology: &Topology, positions: &Field) -> Closest {
-        let x = self.positions(topology, positions);
-        match self {
-            Self::Node { .. } => point_triangle(&x),
-            Self::Edge { .. } => segment_segment(&x),
-        }
-    }
-
-    /// The vector between the closest points, if a plane normal to it separates the pair; else the
-    /// zero vector, along which nothing is separated. The plane is tested because closest points have
-    /// rounding errors, large ones for nearly parallel edges.
-    pub(super) fn separating_normal(
-        self,
-        topology: &Topology,
-        positions: &Field,
-        closest: &Closest,
-    ) -> Vector3<f64> {
-        let between = closest.between;
-        if self.is_separated(topology, positions, &between) { between } else { Vector3::zeros() }
-    }
-
-    /// Whether a plane with this normal separates the pair. If one normal separates a pair at both ends
-    /// of a straight motion, it separates the pair throughout.
-    pub(super) fn is_separated(
-        self,
-        topology: &Topology,
-        positions: &Field,
-        normal: &Vector3<f64>,
-    ) -> bool {
-        let heights = self.positions(topology, positions).map(|x| normal.dot(&x));
-        let (first, second) = heights.split_at(match self {
-            Self::Node { .. } => 1,
-            Self::Edge { .. } => 2,
-        });
-        let lowest = first.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = second.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        lowest - highest > MIN_SEPARATION_SHARE * normal.norm_squared()
-    }
-
     /// Whether this passage occurs on the straight motion between two positions of all nodes.
-    pub(super) fn occurs(self, topology: &Topology, from: &Field, to: &Field) -> bool {
+    pub fn occurs(self, topology: &Topology, from: &Field, to: &Field) -> bool {
         let (x, y) = (self.positions(topology, from), self.positions(topology, to));
         match self {
             Self::Node { .. } => {
@@ -221,24 +174,24 @@ fn edges_cross([a, b, c, d]: &FourPoints) -> bool {
         && between.norm() <= MAX_CROSSING_DISTANCE * length
 }
 
-/// The passage that a candidate of a collision query may make.
-pub(super) fn candidate_passage(kind: CandidateKind, [first, second]: [u32; 2]) -> Passage {
-    match kind {
-        CandidateKind::NodeElement | CandidateKind::EdgeElement => {
-            Passage::Node { node: first, element: second }
-        }
-        CandidateKind::EdgeEdge => Passage::Edge { edge: first, other: second },
+/// Calls `visit` with the passage that each pair may make.
+pub(super) fn each_passage(pairs: &PassagePairs, mut visit: impl FnMut(Passage)) {
+    for [node, element] in &pairs[NODES] {
+        visit(Passage::Node { node: *node, element: *element });
+    }
+    for [edge, other] in &pairs[EDGES] {
+        visit(Passage::Edge { edge: *edge, other: *other });
     }
 }
 
 /// All passages on the straight motion between two positions of all nodes, in order.
-pub fn passages(mesh: &CollisionMesh, from: &Field, to: &Field) -> Vec<Passage> {
-    let mut kdops = KDops::new(&mesh.hierarchy, from);
-    kdops.extend(&mesh.hierarchy, to);
+pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
+    let mut pairs = PassagePairs::default();
+    let mut search = PassageSearch::new(topology, InstructionSet::detect());
+    search.find(topology, [from, to], 0.0, &mut pairs);
     let mut found = Vec::new();
-    pairs_within_bounds(QueryKind::Collision, mesh, &kdops, 0.0, |kind, pair| {
-        let passage = candidate_passage(kind, pair);
-        if passage.occurs(&mesh.topology, from, to) {
+    each_passage(&pairs, |passage| {
+        if passage.occurs(topology, from, to) {
             found.push(passage);
         }
     });
@@ -255,15 +208,12 @@ pub(super) mod tests {
         Vector3::new(x, y, z)
     }
 
-    /// A fixed triangle and one that moves: mesh, and positions before and after.
-    pub fn scene(
-        moving: &[Vector3<f64>],
-        displacement: Vector3<f64>,
-    ) -> (CollisionMesh, Field, Field) {
+    /// A fixed triangle and one that moves: topology, and positions before and after.
+    pub fn scene(moving: &[Vector3<f64>], displacement: Vector3<f64>) -> (Topology, Field, Field) {
         let mut positions = vec![v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)];
         let fixed = positions.len();
         positions.extend(moving);
-        let mesh = CollisionMesh::new(positions.len(), &[[0, 1, 2], [3, 4, 5]]);
+        let mesh = Topology::new(positions.len(), &[[0, 1, 2], [3, 4, 5]]);
         let moved =
             |(node, x): (usize, &Vector3<f64>)| if node < fixed { *x } else { x + displacement };
         let after: Vec<_> = positions.iter().enumerate().map(moved).collect();
@@ -286,39 +236,48 @@ pub(super) mod tests {
         assert!(found.iter().any(|p| matches!(p, Passage::Edge { .. })), "{found:?}");
     }
 
+    /// All passages on a straight motion, without a search.
+    pub fn all_passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
+        let mut all = Vec::new();
+        for node in 0..u32::try_from(topology.nodes()).unwrap() {
+            for (element, corners) in (0..).zip(&topology.triangles) {
+                if !corners.contains(&node) {
+                    all.push(Passage::Node { node, element });
+                }
+            }
+        }
+        for (edge, ends) in (0_u32..).zip(&topology.edges) {
+            for (other, other_ends) in (0_u32..).zip(&topology.edges).skip(edge as usize + 1) {
+                if !other_ends.iter().any(|node| ends.contains(node)) {
+                    all.push(Passage::Edge { edge, other });
+                }
+            }
+        }
+        all.retain(|passage| passage.occurs(topology, from, to));
+        all
+    }
+
     proptest! {
-        /// The traversal with k-DOPs finds the same passages as a test of all pairs.
+        /// The search finds the same passages as a test of all pairs.
         #[test]
         fn no_passage_is_missed(
-            positions in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
-            displacements in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 12),
+            positions in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 14),
+            displacements in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 14),
+            motion in prop::sample::select(vec![1.0, 0.1, 1e-3]),
+            flat in prop::sample::select(vec![1.0, 1e-2, 0.0]),
         ) {
-            let mesh = CollisionMesh::new(12, &[[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]]);
-            let topology = &mesh.topology;
-            let from: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
-            let to: Vec<Vector3<f64>> =
-                from.iter().zip(displacements).map(|(x, u)| x + Vector3::from(u)).collect();
+            let triangles = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11], [11, 12, 13], [2, 1, 3]];
+            let topology = Topology::new(14, &triangles);
+            let from: Vec<Vector3<f64>> =
+                positions.into_iter().map(|[x, y, z]| v(x, y, flat * z)).collect();
+            let to: Vec<Vector3<f64>> = from
+                .iter()
+                .zip(displacements)
+                .map(|(x, u)| x + Vector3::from(u) * motion + v(5.0, 0.0, 0.0))
+                .collect();
             let (from, to) = (Field::of(&from), Field::of(&to));
-            let mut all = Vec::new();
-            for node in 0..12 {
-                for element in 0..4 {
-                    let shared = topology.triangles[element as usize].contains(&node);
-                    if !shared {
-                        all.push(Passage::Node { node, element });
-                    }
-                }
-            }
-            let edges = u32::try_from(topology.edges.len()).unwrap();
-            for edge in 0..edges {
-                for other in edge + 1..edges {
-                    let ends = topology.edges[edge as usize];
-                    if !topology.edges[other as usize].iter().any(|node| ends.contains(node)) {
-                        all.push(Passage::Edge { edge, other });
-                    }
-                }
-            }
-            all.retain(|passage| passage.occurs(topology, &from, &to));
-            prop_assert_eq!(passages(&mesh, &from, &to), all);
+            let all = all_passages(&topology, &from, &to);
+            prop_assert_eq!(passages(&topology, &from, &to), all);
         }
     }
 }

@@ -113,7 +113,7 @@ pub(in crate::integrators::explicit) fn resolve_pairs(
     impulses: &mut u64,
 ) -> Result<(), Pair> {
     let safe_share =
-        MAX_UNTESTED_APPROACH * contact_model.bound_factor / MAX_APPROACH_PER_DISPLACEMENT;
+        MAX_UNTESTED_APPROACH * contact_model.bound_factor() / MAX_APPROACH_PER_DISPLACEMENT;
     let mut collided = None;
     for iteration in 0..MAX_ITERATIONS {
         collided = None;

@@ -1,0 +1,254 @@
+//! Planes that separate two primitives on straight motions, eight pairs at a time.
+//!
+//! ```text
+//! min n·(p − q) > |n| d at every frame        p nodes of one primitive, q of the other
+//! ```
+//!
+//! Symbols: n normal of a plane; d a distance, m. On a straight motion n·(p − q) is linear in time for a
+//! fixed n, so what holds at both ends holds in between. Tried as n, from the positions of the first
+//! frame: the normals of the elements, or the common normal of two edges, in both directions; the vector
+//! between the centroids; of an edge, also the part of that vector normal to it.
+//!
+//! A pair that no plane separates may still be apart. NaN counts as not separated.
+
+#![allow(clippy::inline_always, reason = "inside the loop over pairs")]
+
+use crate::geometry::field::Field;
+use crate::geometry::topology::Topology;
+use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
+
+/// One or two frames, and the distance d at which a pair counts as separated, m.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    /// The first frame.
+    pub from: &'a Field,
+    /// The last frame; it may be the first.
+    pub to: &'a Field,
+    /// d, m.
+    pub distance: f64,
+}
+
+/// Positions of the nodes of one primitive in both frames; unused entries repeat a node.
+type Corners<L> = [[Vectors<L>; 3]; 2];
+
+#[inline(always)]
+fn min<L: Wide>(a: L, b: L) -> L {
+    -((-a).max(-b))
+}
+
+/// The smallest n·p over the first `COUNT` points.
+#[inline(always)]
+fn lowest<L: Wide, const COUNT: usize>(normal: Vectors<L>, points: &[Vectors<L>; 3]) -> L {
+    let mut lowest = normal.dot(points[0]);
+    for k in 1..COUNT {
+        lowest = min(lowest, normal.dot(points[k]));
+    }
+    lowest
+}
+
+/// The smallest n·(p − q) over both frames, less |n| d.
+#[inline(always)]
+fn margin<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+    normal: Vectors<L>,
+    first: &Corners<L>,
+    second: &Corners<L>,
+    distance: L,
+) -> L {
+    let mut least =
+        lowest::<L, FIRST>(normal, &first[0]) + lowest::<L, SECOND>(-normal, &second[0]);
+    if FRAMES == 2 {
+        let last = lowest::<L, FIRST>(normal, &first[1]) + lowest::<L, SECOND>(-normal, &second[1]);
+        least = min(least, last);
+    }
+    least - distance * normal.dot(normal).sqrt()
+}
+
+/// Sum of the first `COUNT` points.
+#[inline(always)]
+fn sum<L: Wide, const COUNT: usize>(points: &[Vectors<L>; 3]) -> Vectors<L> {
+    let mut sum = points[0];
+    for k in 1..COUNT {
+        sum = sum + points[k];
+    }
+    sum
+}
+
+/// The largest margin of all normals tried: positive if a plane separates the pair.
+#[inline(always)]
+fn largest_margin<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+    first: &Corners<L>,
+    second: &Corners<L>,
+    distance: L,
+) -> L {
+    let ([a, b, c], [d, e, f]) = (first[0], second[0]);
+    // Centroids times the product of the numbers of nodes.
+    let between = sum::<L, FIRST>(&first[0]).scale(L::splat(SECOND as f64))
+        - sum::<L, SECOND>(&second[0]).scale(L::splat(FIRST as f64));
+    let mut largest = margin::<L, FIRST, SECOND, FRAMES>(between, first, second, distance);
+    if SECOND == 3 {
+        let normal = (e - d).cross(f - d);
+        largest = largest
+            .max(margin::<L, FIRST, SECOND, FRAMES>(normal, first, second, distance))
+            .max(margin::<L, FIRST, SECOND, FRAMES>(-normal, first, second, distance));
+    }
+    if FIRST == 3 {
+        let normal = (b - a).cross(c - a);
+        largest = largest
+            .max(margin::<L, FIRST, SECOND, FRAMES>(normal, first, second, distance))
+            .max(margin::<L, FIRST, SECOND, FRAMES>(-normal, first, second, distance));
+    }
+    if FIRST == 2 {
+        let edge = b - a;
+        let along = edge.dot(between).over(edge.dot(edge));
+        let across = between - edge.scale(along);
+        largest = largest.max(margin::<L, FIRST, SECOND, FRAMES>(across, first, second, distance));
+        if SECOND == 2 {
+            let normal = edge.cross(e - d);
+            largest = largest
+                .max(margin::<L, FIRST, SECOND, FRAMES>(normal, first, second, distance))
+                .max(margin::<L, FIRST, SECOND, FRAMES>(-normal, first, second, distance));
+        }
+    }
+    largest
+}
+
+/// Positions of the nodes of eight primitives.
+#[inline(always)]
+fn corners_at<L: Wide, const COUNT: usize, const FRAMES: usize>(
+    motion: &Motion<'_>,
+    nodes: &[[u32; WIDTH]; 3],
+) -> Corners<L> {
+    let from: [&[f64]; 3] = [&motion.from.x, &motion.from.y, &motion.from.z];
+    let first = vectors_at::<L>(from, &nodes[0]);
+    let mut corners = [[first; 3]; 2];
+    for k in 1..COUNT {
+        corners[0][k] = vectors_at(from, &nodes[k]);
+    }
+    if FRAMES == 2 {
+        let to: [&[f64]; 3] = [&motion.to.x, &motion.to.y, &motion.to.z];
+        for k in 0..COUNT {
+            corners[1][k] = vectors_at(to, &nodes[k]);
+        }
+    }
+    corners
+}
+
+/// Nodes of the primitive with this number that has `COUNT` nodes.
+#[inline(always)]
+fn nodes_of<const COUNT: usize>(topology: &Topology, index: u32) -> [u32; 3] {
+    if COUNT == 1 {
+        [index; 3]
+    } else if COUNT == 2 {
+        let [a, b] = topology.edges[index as usize];
+        [a, b, b]
+    } else {
+        topology.triangles[index as usize]
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
+fn kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+    topology: &Topology,
+    pairs: &[[u32; 2]],
+    motion: &Motion<'_>,
+    close: &mut Vec<[u32; 2]>,
+) {
+    let distance = L::splat(motion.distance);
+    let mut start = 0;
+    while start < pairs.len() {
+        let count = if pairs.len() - start < WIDTH { pairs.len() - start } else { WIDTH };
+        let (mut first, mut second) = ([[0; WIDTH]; 3], [[0; WIDTH]; 3]);
+        for lane in 0..WIDTH {
+            let [a, b] = pairs[start + if lane < count { lane } else { 0 }];
+            let (a, b) = (nodes_of::<FIRST>(topology, a), nodes_of::<SECOND>(topology, b));
+            for k in 0..3 {
+                first[k][lane] = a[k];
+                second[k][lane] = b[k];
+            }
+        }
+        let first = corners_at::<L, FIRST, FRAMES>(motion, &first);
+        let second = corners_at::<L, SECOND, FRAMES>(motion, &second);
+        let margins = largest_margin::<L, FIRST, SECOND, FRAMES>(&first, &second, distance).lanes();
+        for lane in 0..count {
+            // Written so that NaN counts as not separated.
+            let separated = margins.0[lane] > 0.0;
+            if !separated {
+                close.push(pairs[start + lane]);
+            }
+        }
+        start += WIDTH;
+    }
+}
+
+macro_rules! kernels {
+    ($(#[$meta:meta])* $name:ident, $one:ident, $one_kernel:ident, $two:ident, $two_kernel:ident, $first:literal, $second:literal) => {
+        #[inline(always)]
+        fn $one_kernel<L: Wide>(
+            topology: &Topology,
+            pairs: &[[u32; 2]],
+            motion: &Motion<'_>,
+            close: &mut Vec<[u32; 2]>,
+        ) {
+            kernel::<L, $first, $second, 1>(topology, pairs, motion, close);
+        }
+        #[inline(always)]
+        fn $two_kernel<L: Wide>(
+            topology: &Topology,
+            pairs: &[[u32; 2]],
+            motion: &Motion<'_>,
+            close: &mut Vec<[u32; 2]>,
+        ) {
+            kernel::<L, $first, $second, 2>(topology, pairs, motion, close);
+        }
+        dispatch_wide! {
+            fn $one / $one_kernel(
+                topology: &Topology,
+                pairs: &[[u32; 2]],
+                motion: &Motion<'_>,
+                close: &mut Vec<[u32; 2]>,
+            )
+        }
+        dispatch_wide! {
+            fn $two / $two_kernel(
+                topology: &Topology,
+                pairs: &[[u32; 2]],
+                motion: &Motion<'_>,
+                close: &mut Vec<[u32; 2]>,
+            )
+        }
+        $(#[$meta])*
+        pub fn $name(
+            instruction_set: InstructionSet,
+            topology: &Topology,
+            pairs: &[[u32; 2]],
+            motion: &Motion<'_>,
+            close: &mut Vec<[u32; 2]>,
+        ) {
+            if core::ptr::eq(motion.from, motion.to) {
+                $one(instruction_set, topology, pairs, motion, close);
+            } else {
+                $two(instruction_set, topology, pairs, motion, close);
+            }
+        }
+    };
+}
+
+kernels! {
+    /// Adds the pairs of a node and an element that no plane separates to `close`.
+    close_nodes, nodes_once, nodes_once_kernel, nodes_moving, nodes_moving_kernel, 1, 3
+}
+kernels! {
+    /// Adds the pairs of two edges that no plane separates to `close`.
+    close_edges, edges_once, edges_once_kernel, edges_moving, edges_moving_kernel, 2, 2
+}
+kernels! {
+    /// Adds the pairs of an edge and an element that no plane separates to `close`.
+    close_edge_elements, edge_element_once, edge_element_once_kernel,
+    edge_element_moving, edge_element_moving_kernel, 2, 3
+}
+kernels! {
+    /// Adds the pairs of two elements that no plane separates to `close`.
+    close_elements, elements_once, elements_once_kernel,
+    elements_moving, elements_moving_kernel, 3, 3
+}
