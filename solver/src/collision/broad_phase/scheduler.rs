@@ -43,15 +43,6 @@ struct Reach {
     nodes: Vec<f64>,
 }
 
-impl Reach {
-    fn of(&self, pair: PendingPair) -> f64 {
-        match pair {
-            PendingPair::Leaves { clusters, .. } => self.clusters[clusters],
-            PendingPair::Adjacent { node, .. } => self.nodes[node],
-        }
-    }
-}
-
 /// What [`CandidateScheduler::query_within`] looks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProximityQuery {
