@@ -14,6 +14,7 @@
 //! Ends are rounded to `f32`. Rounding is monotonic, so boxes that overlap still overlap.
 
 #![allow(clippy::inline_always, reason = "inside the loop over candidates")]
+#![allow(clippy::needless_bitwise_bool, reason = "no branches: the compiler makes masks of them")]
 
 use super::motion::mean_displacement;
 use crate::geometry::field::Field;
@@ -278,7 +279,6 @@ fn group(column: &[f32], first: usize) -> [f32; LANES] {
 }
 
 #[inline(always)]
-#[expect(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
 fn sweep_kernel(cell: &Cell, triangles: &[[u32; 3]], pairs: &mut Vec<[u32; 2]>) {
     let [[low, high], [low_x, high_x], [low_y, high_y]] = &cell.ends;
     let count = cell.elements.len();

@@ -12,6 +12,7 @@
 //! A pair that no plane separates may still be apart. NaN counts as not separated.
 
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
+#![allow(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
 
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
@@ -147,7 +148,6 @@ fn nodes_of<const COUNT: usize>(topology: &Topology, index: u32) -> [u32; 3] {
 }
 
 #[inline(always)]
-#[expect(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
 fn kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
     topology: &Topology,
     pairs: &[[u32; 2]],
