@@ -140,6 +140,27 @@ impl ContactModel {
         });
     }
 
+    /// Factor on all bounds of how far a pair is from contact: 1 without a fault.
+    pub fn bound_factor(&self) -> f64 {
+        match self.broad_phase_fault {
+            Some(BroadPhaseFault::ScaledBounds(factor)) => factor,
+            _ => 1.0,
+        }
+    }
+
+    /// Whether edges can be in contact with edges.
+    pub(super) fn has_edge_contacts(&self) -> bool {
+        self.broad_phase_fault != Some(BroadPhaseFault::NoEdgeContacts)
+    }
+
+    /// Whether pending pairs never come due at this path length (m).
+    pub(super) fn queues_stopped(&self, path_length: f64) -> bool {
+        match self.broad_phase_fault {
+            Some(BroadPhaseFault::StoppedQueues(length)) => path_length > length,
+            _ => false,
+        }
+    }
+
     /// Appends the gaps (m) of pairs of one kind at these positions (m) to `gaps`. If edges cannot be
     /// in contact, their gaps are infinite.
     pub(super) fn append_gaps(
