@@ -15,16 +15,11 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
-use super::primitives::{EDGES, NODES, PassagePairs};
+use super::primitives::{EDGES, MAX_CROSSING_DISTANCE, NODES, PassagePairs};
 use super::search::PassageSearch;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
-
-/// Largest distance of the crossing points of two edges, as a share of the sum of their lengths, at
-/// which edges in one plane count as crossing. Chosen: it excludes edges on one line, whose crossing
-/// points have no meaning, and covers rounding.
-pub(super) const MAX_CROSSING_DISTANCE: f64 = 1e-6;
 
 /// Number of bisections of a root's bracket. It shrinks to 2⁻⁶⁰ of its width, below the rounding error
 /// of t.

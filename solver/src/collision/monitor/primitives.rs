@@ -12,6 +12,11 @@
 
 use crate::geometry::topology::Topology;
 
+/// Largest distance of the crossing points of two edges, as a share of the sum of their lengths, at
+/// which edges in one plane count as crossing. Chosen: it excludes edges on one line, whose crossing
+/// points have no meaning, and covers rounding.
+pub const MAX_CROSSING_DISTANCE: f64 = 1e-6;
+
 /// Pairs of a node and an element.
 pub const NODES: usize = 0;
 /// Pairs of two edges, the lower number first.

@@ -8,8 +8,9 @@
 //! frames give the same pairs. It shares no code with the broad phase and the distances of contact.
 
 use super::boxes::BoxPairs;
-use super::passages::MAX_CROSSING_DISTANCE;
-use super::primitives::{EDGES, NODES, PassagePairs, Primitives, adjacent_elements};
+use super::primitives::{
+    EDGES, MAX_CROSSING_DISTANCE, NODES, PassagePairs, Primitives, adjacent_elements,
+};
 use super::separation::{Motion, close_edge_elements, close_edges, close_elements, close_nodes};
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
