@@ -5,10 +5,10 @@ use std::cell::Cell;
 
 use billow_solver::geometry::shapes::{joined, moved, sheet};
 use billow_solver::integrators::FilmSimulation;
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::models::run::Model;
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{FilmContact, FilmScene};
 use billow_solver::scene::inflow::Inflow;

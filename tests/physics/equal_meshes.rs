@@ -2,11 +2,11 @@
 
 use billow_solver::geometry::fold::{Chirality, Fit, FoldDesign};
 use billow_solver::geometry::mesh::Shape;
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::reference_gap::reference_gap;
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::models::run::Model;
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Scene, paper};

@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::{self, static_states};
 use billow_solver::models::run::Unobserved;
 use billow_solver::output::outcome::{Deployment, Stop};
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::error::SceneError;
 use billow_solver::scene::{HeatTransfer, Scene, paper};
 

@@ -1,10 +1,10 @@
 //! Quiescent film takes longer steps without a larger error, until activity is detected.
 
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::integrators::{FilmSimulation, StoredIntegrator};
 use billow_solver::models::film::capsule;
 use billow_solver::output::events::EventKind;
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::film_scene::FilmContact;
 use nalgebra::Vector3;
 

@@ -8,9 +8,9 @@ use billow_solver::collision::monitor::passages::Passage;
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::topology::Topology;
 use billow_solver::integrators::FilmSimulation;
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::FilmRun;
 use billow_solver::platform::simd::InstructionSet;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::monitor_settings::MonitorSettings;
 use billow_solver::scene::timeline::Timeline;
@@ -30,11 +30,12 @@ const DISTANCE: f64 = 1e-3;
 const MONITOR: MonitorSettings =
     MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
 
-/// Faults of contact. The path length after which queues stop, m, is a part of that of a run.
+/// Faults of contact. The number of the motion cluster is chosen: without it, film passes in most scenes. The path
+/// length after which queues stop, m, is a part of that of a run.
 const FAULTS: [BroadPhaseFault; 4] = [
     BroadPhaseFault::NoEdgeContacts,
     BroadPhaseFault::ScaledBounds(10.0),
-    BroadPhaseFault::SkippedCluster(13),
+    BroadPhaseFault::SkippedCluster(8),
     BroadPhaseFault::StoppedQueues(0.05),
 ];
 
@@ -125,11 +126,11 @@ fn run_blind(name: &str, film: FilmRun, timeline: &Timeline, fault: BroadPhaseFa
     0
 }
 
-/// Runs a scene with every fault; at least one must let film through.
-fn every_fault(name: &str, timeline: &Timeline, start: impl Fn() -> FilmRun) {
-    let passages: u64 =
-        FAULTS.into_iter().map(|fault| run_blind(name, start(), timeline, fault)).sum();
-    assert!(passages > 0, "{name}: no fault lets film through");
+/// Runs a scene with every fault; at least this number of them must let film through.
+fn every_fault(name: &str, timeline: &Timeline, start: impl Fn() -> FilmRun, least: usize) {
+    let passes = |fault: &BroadPhaseFault| run_blind(name, start(), timeline, *fault) > 0;
+    let faults = FAULTS.iter().filter(|fault| passes(fault)).count();
+    assert!(faults >= least, "{name}: {faults} faults let film through, not {least}");
 }
 
 fn contact() -> FilmContact {
@@ -153,7 +154,8 @@ fn check_scene(file: &str) {
         ..scene.film.contact.clone().expect("contact")
     });
     let timeline = Timeline::of_film(&scene.film);
-    every_fault(file, &timeline, || FilmRun::of(&scene.film, scene.rings.clone()).expect("valid"));
+    let start = || FilmRun::of(&scene.film, scene.rings.clone()).expect("valid");
+    every_fault(file, &timeline, start, FAULTS.len());
 }
 
 /// The first film capsule of a study that has gas at the start, on a mesh of two subdivisions.
@@ -181,7 +183,7 @@ fn check_study(study: &str) {
     let timeline = Timeline::new(&scene);
     let set = InstructionSet::detect();
     let start = || FilmRun::from_scene(set, &scene, DEFAULT_CFL, Some(contact())).expect("valid");
-    every_fault(study, &timeline, start);
+    every_fault(study, &timeline, start, 2);
 }
 
 #[test]
@@ -190,18 +192,13 @@ fn passages_in_capsule_scenes_with_blind_contact_are_reported() {
     check_scene("scenes/residual_gas.json");
 }
 
-#[test]
-fn passages_in_the_first_study_with_blind_contact_are_reported() {
-    check_study("first");
-}
-
 /// Every study but `designs.json`, which has no film.
 #[test]
-#[ignore = "long: the capsules of all studies"]
 fn passages_in_all_studies_with_blind_contact_are_reported() {
     let studies = [
         "auto",
         "convergence",
+        "first",
         "folds",
         "ground",
         "held-back",

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::explicit::DEFAULT_CFL;
 use super::film_view::FilmView;
 use super::interface::{Advance, Budget, Integrator, Interval, NoAudit, StepAudit};
 use super::passage_audit::PassageAudit;
@@ -12,9 +11,9 @@ use crate::mechanics::gas::GasState;
 use crate::output::events::Event;
 use crate::output::outcome::Failure;
 use crate::platform::stopwatch::{Stopwatch, Untimed};
-use crate::scene::IntegratorKind;
 use crate::scene::monitor_settings::MonitorSettings;
 use crate::scene::timeline::Phase;
+use crate::scene::{DEFAULT_CFL, IntegratorKind};
 use crate::system::{FilmState, FilmSystem};
 
 /// How a system is integrated and audited.

@@ -26,5 +26,5 @@ pub use contact::Contact;
 pub use film::Film;
 pub use gas::{GasSupply, HeatTransfer, InflowWindow, Species};
 pub use outputs::{MAX_SAMPLES, Outputs, Thresholds};
-pub use solver::{IntegratorKind, ModelKind, Solver, Stepping};
+pub use solver::{DEFAULT_CFL, IntegratorKind, ModelKind, Solver, Stepping};
 pub use support::{Support, SupportLocation};

@@ -19,6 +19,10 @@ impl ModelKind {
     pub const ALL: [Self; 3] = [Self::Piston, Self::Storeys, Self::Film];
 }
 
+/// CFL number where the scene gives none. Chosen: the energy ledger of the paper's capsule without
+/// contact stays well inside its bound.
+pub const DEFAULT_CFL: f64 = 0.45;
+
 /// The integrator of film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

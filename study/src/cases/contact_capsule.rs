@@ -7,10 +7,10 @@
 //! It runs as in a study: packed pattern, gas, contact, tunnelling monitor.
 
 use billow_solver::geometry::fold::Chirality;
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::FilmContact;
 use billow_solver::scene::monitor_settings::MonitorSettings;

@@ -9,9 +9,9 @@
 //! strain energy are compared. The reference is the static state, not a stored value.
 
 use billow_solver::geometry::mesh::{Mesh, Shape};
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::integrators::{FilmSimulation, FilmView};
 use billow_solver::models::film::{StaticState, capsule, static_states};
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::Scene;
 use billow_solver::scene::film_scene::{Filling, FilmContact, FilmScene};
 use billow_solver::scene::paper;

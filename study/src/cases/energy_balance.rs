@@ -6,11 +6,11 @@
 //! ```
 
 use billow_solver::geometry::shapes::icosphere;
-use billow_solver::integrators::explicit::DEFAULT_CFL;
 use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{self, Unobserved};
 use billow_solver::output::ledger::{GasBalance, gas_residuals, residuals};
 use billow_solver::output::outcome::Stop;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::inflow::Inflow;
 use billow_solver::scene::paper::{self, free_film, nitrogen_supply};

@@ -74,7 +74,7 @@ fn rows_pass_only_within_their_band() {
 #[test]
 fn the_papers_numbers_are_those_of_the_reference_files() {
     use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
-    use billow_solver::integrators::explicit::DEFAULT_CFL;
+    use billow_solver::scene::DEFAULT_CFL;
     use billow_solver::scene::paper;
     use billow_solver::scene::{Film, Species, Stepping};
 

@@ -15,7 +15,7 @@
 //! a whole cluster.
 
 use super::hierarchy::Hierarchy;
-use super::query::{Candidates, QueryKind, push_candidates};
+use super::query::{Candidates, push_candidates};
 use crate::geometry::field::Field;
 
 /// Factor on a bound that covers rounding. Chosen: far above the relative error of a norm (about
@@ -34,8 +34,8 @@ pub struct AdjacentPairs {
 }
 
 impl AdjacentPairs {
-    /// The pairs of elements that share one of `nodes` nodes and have candidates of this query.
-    pub fn new(kind: QueryKind, nodes: usize, hierarchy: &Hierarchy) -> Self {
+    /// The pairs of elements that share one of `nodes` nodes and have candidates.
+    pub fn new(nodes: usize, hierarchy: &Hierarchy) -> Self {
         let mut leaves_at_node = vec![Vec::new(); nodes];
         for leaf in hierarchy.leaves() {
             for node in hierarchy.corners(leaf) {
@@ -50,7 +50,7 @@ impl AdjacentPairs {
                     let corners_of_a = hierarchy.corners(*a).iter();
                     let shared = corners_of_a.filter(|corner| corners_of_b.contains(corner));
                     if shared.min().is_some_and(|lowest| *lowest as usize == node) {
-                        pairs.push(kind, hierarchy, *a, *b);
+                        pairs.push(hierarchy, *a, *b);
                     }
                 }
             }
@@ -59,9 +59,9 @@ impl AdjacentPairs {
         pairs
     }
 
-    fn push(&mut self, kind: QueryKind, hierarchy: &Hierarchy, a: usize, b: usize) {
+    fn push(&mut self, hierarchy: &Hierarchy, a: usize, b: usize) {
         let before = [self.candidates[0].len(), self.candidates[1].len()];
-        push_candidates(kind, hierarchy, a, b, &mut self.candidates);
+        push_candidates(hierarchy, a, b, &mut self.candidates);
         let ends = [self.candidates[0].len(), self.candidates[1].len()];
         // A pair without candidates is never due.
         if ends != before {
@@ -83,8 +83,8 @@ impl AdjacentPairs {
 pub struct PendingAdjacentPairs {
     /// b of each node: upper bound of the approach around it so far, m.
     approach_bounds: Vec<f64>,
-    /// The same for the motion that [`Self::bound_motion`] was given last, m.
-    motion_bounds: Vec<f64>,
+    /// Scratch memory: largest squared relative displacement around each node, m².
+    squares: Vec<f64>,
     /// Approach bound at which each pair is due, m; infinite if the pair is not in the queue.
     due: Vec<f64>,
     /// Smallest due bound at each node, m.
@@ -97,15 +97,10 @@ impl PendingAdjacentPairs {
         let (nodes, count) = (pairs.starts.len() - 1, pairs.ends.len());
         Self {
             approach_bounds: vec![0.0; nodes],
-            motion_bounds: vec![0.0; nodes],
+            squares: vec![0.0; nodes],
             due: vec![0.0; count],
             first_due: vec![0.0; nodes],
         }
-    }
-
-    /// Number of nodes.
-    pub fn nodes(&self) -> usize {
-        self.approach_bounds.len()
     }
 
     /// Makes every pair due at once.
@@ -115,31 +110,23 @@ impl PendingAdjacentPairs {
         self.approach_bounds.fill(0.0);
     }
 
-    /// Upper bound (m) of the approach around each node between two positions of all nodes; `edges`:
-    /// the nodes of each edge. The motion counts once [`Self::commit_motion`] is called.
-    pub fn bound_motion(&mut self, edges: &[[u32; 2]], from: &Field, to: &Field) -> &[f64] {
-        self.motion_bounds.fill(0.0);
+    /// Adds the motion between two positions of all nodes to the approach so far; `edges`: the nodes of
+    /// each edge.
+    pub fn add_motion(&mut self, edges: &[[u32; 2]], from: &Field, to: &Field) {
+        self.squares.fill(0.0);
         for [a, b] in edges {
             let (a, b) = (*a as usize, *b as usize);
             let relative = (to.get(b) - from.get(b)) - (to.get(a) - from.get(a));
             let square = relative.norm_squared();
             for node in [a, b] {
-                let largest = self.motion_bounds[node];
+                let largest = self.squares[node];
                 // Once NaN, always NaN: pairs at this node are then always due.
-                self.motion_bounds[node] =
+                self.squares[node] =
                     if square <= largest || largest.is_nan() { largest } else { square };
             }
         }
-        for bound in &mut self.motion_bounds {
-            *bound = 2.0 * ROUNDING_FACTOR * bound.sqrt();
-        }
-        &self.motion_bounds
-    }
-
-    /// Adds the motion of the last [`Self::bound_motion`] to the approach so far.
-    pub fn commit_motion(&mut self) {
-        for (total, motion) in self.approach_bounds.iter_mut().zip(&self.motion_bounds) {
-            *total += motion;
+        for (total, square) in self.approach_bounds.iter_mut().zip(&self.squares) {
+            *total += 2.0 * ROUNDING_FACTOR * square.sqrt();
         }
     }
 
@@ -148,10 +135,10 @@ impl PendingAdjacentPairs {
     pub fn pop_due(
         &mut self,
         pairs: &AdjacentPairs,
-        reach: &[f64],
+        reach: f64,
         mut visit: impl FnMut(usize, usize, [&[[u32; 2]]; 2]),
     ) {
-        let limits = self.approach_bounds.iter().zip(reach).map(|(bound, reach)| bound + reach);
+        let limits = self.approach_bounds.iter().map(|bound| bound + reach);
         for (node, (first_due, limit)) in self.first_due.iter_mut().zip(limits).enumerate() {
             if *first_due > limit {
                 continue;
@@ -194,7 +181,7 @@ mod tests {
         for a in hierarchy.leaves() {
             for b in a + 1..hierarchy.end() {
                 if hierarchy.share_mesh_node(a, b) {
-                    push_candidates(QueryKind::Collision, hierarchy, a, b, &mut candidates);
+                    push_candidates(hierarchy, a, b, &mut candidates);
                 }
             }
         }
@@ -214,12 +201,12 @@ mod tests {
             let topology = Topology::new(7, &triangles);
             let hierarchy =
                 Hierarchy::new(7, &triangles, &topology.element_edges, topology.edges.len());
-            let pairs = AdjacentPairs::new(QueryKind::Collision, 7, &hierarchy);
+            let pairs = AdjacentPairs::new(7, &hierarchy);
             let mut pending = PendingAdjacentPairs::new(&pairs);
             let (from, to): (Vec<_>, Vec<_>) =
                 from.into_iter().zip(to).map(|(x, y)| (Vector3::from(x), Vector3::from(y))).unzip();
-            let bounds =
-                pending.bound_motion(&topology.edges, &Field::of(&from), &Field::of(&to)).to_vec();
+            pending.add_motion(&topology.edges, &Field::of(&from), &Field::of(&to));
+            let bounds = pending.approach_bounds.clone();
             for (node, bound) in bounds.iter().enumerate() {
                 let at_node =
                     |corners: &&[u32; 3]| corners.iter().any(|corner| *corner as usize == node);
@@ -233,7 +220,7 @@ mod tests {
                 }
             }
             let mut visited: [BTreeSet<[u32; 2]>; 2] = Default::default();
-            pending.pop_due(&pairs, &bounds, |_, _, candidates| {
+            pending.pop_due(&pairs, 0.0, |_, _, candidates| {
                 for (visited, candidates) in visited.iter_mut().zip(candidates) {
                     for pair in candidates {
                         assert!(visited.insert(*pair), "{pair:?} twice");
@@ -244,9 +231,9 @@ mod tests {
             // A pending pair is not visited before it is due.
             pending.push(0, 0, 1.0);
             let mut visits = 0_u32;
-            pending.pop_due(&pairs, &[0.5; 7], |_, _, _| visits += 1);
+            pending.pop_due(&pairs, 0.5, |_, _, _| visits += 1);
             prop_assert_eq!(visits, 0);
-            pending.pop_due(&pairs, &[1.0; 7], |_, _, _| visits += 1);
+            pending.pop_due(&pairs, 1.0, |_, _, _| visits += 1);
             prop_assert_eq!(visits, 1);
         }
     }

@@ -1,23 +1,13 @@
-//! The pairs of primitives that a query looks for. Primitives of a pair never share a node.
+//! The pairs of primitives that a query looks for: film that would pass through film.
 //!
 //! ```text
-//! collision      node and element, edge and edge      film that would pass through film
-//! intersection   edge and element                     film that lies through film
+//! node and element, edge and edge       primitives of a pair never share a node
 //! ```
 //!
 //! Each node and each edge belongs to one leaf of the hierarchy only, so each pair of primitives
 //! belongs to exactly one pair of leaves.
 
 use super::hierarchy::{Hierarchy, NO_INDEX};
-
-/// The purpose of a query.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum QueryKind {
-    /// Nodes and elements, edges and edges, that share no node.
-    Collision,
-    /// Edges and elements that share no node.
-    Intersection,
-}
 
 /// The kind of a candidate: a pair of primitives that share no node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,26 +16,18 @@ pub enum CandidateKind {
     NodeElement,
     /// Two edges, the lower number first.
     EdgeEdge,
-    /// An edge and an element.
-    EdgeElement,
 }
 
-impl QueryKind {
-    /// The kinds of candidates of this query.
-    pub(super) fn candidate_kinds(self) -> [Option<CandidateKind>; 2] {
-        match self {
-            Self::Collision => [Some(CandidateKind::NodeElement), Some(CandidateKind::EdgeEdge)],
-            Self::Intersection => [Some(CandidateKind::EdgeElement), None],
-        }
-    }
+impl CandidateKind {
+    /// All kinds.
+    pub const ALL: [Self; 2] = [Self::NodeElement, Self::EdgeEdge];
 }
 
-/// Candidates, one list per candidate kind, in the order of [`QueryKind::candidate_kinds`].
+/// Candidates, one list per candidate kind, in the order of [`CandidateKind::ALL`].
 pub(super) type Candidates = [Vec<[u32; 2]>; 2];
 
 /// Adds the candidates of two leaves to `candidates`.
 pub(super) fn push_candidates(
-    kind: QueryKind,
     hierarchy: &Hierarchy,
     first_leaf: usize,
     second_leaf: usize,
@@ -56,38 +38,24 @@ pub(super) fn push_candidates(
         return;
     }
     let (first_leaf, second_leaf) = (hierarchy.leaf(first_leaf), hierarchy.leaf(second_leaf));
-    let [with_element, edge_edge] = candidates;
+    let [node_element, edge_edge] = candidates;
     for (a, b) in [(first_leaf, second_leaf), (second_leaf, first_leaf)] {
         let in_b = |node: u32| b.corners[0] == node || b.corners[1] == node || b.corners[2] == node;
-        match kind {
-            QueryKind::Collision => {
-                for node in a.nodes {
-                    if node != NO_INDEX && !in_b(node) {
-                        with_element.push([node, b.element]);
-                    }
-                }
-            }
-            QueryKind::Intersection => {
-                for (side, edge) in a.edges.into_iter().enumerate() {
-                    let [p, q] = a.edge_nodes(side);
-                    if edge != NO_INDEX && !in_b(p) && !in_b(q) {
-                        with_element.push([edge, b.element]);
-                    }
-                }
+        for node in a.nodes {
+            if node != NO_INDEX && !in_b(node) {
+                node_element.push([node, b.element]);
             }
         }
     }
-    if kind == QueryKind::Collision {
-        for (side, edge) in first_leaf.edges.into_iter().enumerate() {
-            if edge == NO_INDEX {
-                continue;
-            }
-            let [p, q] = first_leaf.edge_nodes(side);
-            for (side, other) in second_leaf.edges.into_iter().enumerate() {
-                let [r, s] = second_leaf.edge_nodes(side);
-                if other != NO_INDEX && p != r && p != s && q != r && q != s {
-                    edge_edge.push([edge.min(other), edge.max(other)]);
-                }
+    for (side, edge) in first_leaf.edges.into_iter().enumerate() {
+        if edge == NO_INDEX {
+            continue;
+        }
+        let [p, q] = first_leaf.edge_nodes(side);
+        for (side, other) in second_leaf.edges.into_iter().enumerate() {
+            let [r, s] = second_leaf.edge_nodes(side);
+            if other != NO_INDEX && p != r && p != s && q != r && q != s {
+                edge_edge.push([edge.min(other), edge.max(other)]);
             }
         }
     }

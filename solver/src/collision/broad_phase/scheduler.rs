@@ -17,7 +17,7 @@ use super::clusters::MotionClusters;
 use super::collision_mesh::CollisionMesh;
 use super::hierarchy::push_child_pairs;
 use super::kdop::KDops;
-use super::query::{CandidateKind, Candidates, QueryKind, push_candidates};
+use super::query::{CandidateKind, Candidates, push_candidates};
 use super::queue::PairQueue;
 use crate::geometry::field::Field;
 use crate::platform::simd::InstructionSet;
@@ -34,14 +34,6 @@ enum PendingPair {
 /// Two elements that are due, and the end of their candidates of each kind in the list of all due
 /// candidates.
 type DuePair = (PendingPair, [usize; 2]);
-
-/// How far the film may approach in a query, m.
-struct Reach {
-    /// Of each pair of motion clusters.
-    clusters: Vec<f64>,
-    /// Around each node.
-    nodes: Vec<f64>,
-}
 
 /// What [`CandidateScheduler::query_within`] looks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +57,6 @@ const MAX_BATCH: usize = 16_384;
 /// All candidates of a film, pending until they may have met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CandidateScheduler {
-    kind: QueryKind,
     instruction_set: InstructionSet,
     clusters: MotionClusters,
     /// Tree node of a motion cluster without pairs; only in tests that inject a fault.
@@ -90,22 +81,16 @@ pub struct CandidateScheduler {
 impl CandidateScheduler {
     /// A scheduler in which every pair is due. No pair of tree nodes is looked at twice while the
     /// film approaches by less than `bin_width` (m).
-    pub fn new(
-        kind: QueryKind,
-        mesh: &CollisionMesh,
-        bin_width: f64,
-        instruction_set: InstructionSet,
-    ) -> Self {
+    pub fn new(mesh: &CollisionMesh, bin_width: f64, instruction_set: InstructionSet) -> Self {
         let clusters = MotionClusters::new(&mesh.hierarchy);
         let pairs = clusters.pairs();
         let mut scheduler = Self {
-            kind,
             instruction_set,
             clusters,
             skipped_cluster: None,
             approach_bounds: vec![0.0; pairs],
             queues: vec![PairQueue::new(bin_width, QUEUE_BINS, 0.0); pairs],
-            adjacent: PendingAdjacentPairs::new(mesh.adjacent_pairs(kind)),
+            adjacent: PendingAdjacentPairs::new(&mesh.adjacent_pairs),
             kdops: KDops::default(),
             due_nodes: Vec::new(),
             children: Vec::new(),
@@ -152,8 +137,7 @@ impl CandidateScheduler {
     /// Takes account of a motion of all nodes, without a query.
     pub fn advance(&mut self, mesh: &CollisionMesh, from: &Field, to: &Field) {
         self.clusters.add_approach_bounds(from, to, &mut self.approach_bounds);
-        self.adjacent.bound_motion(&mesh.topology.edges, from, to);
-        self.adjacent.commit_motion();
+        self.adjacent.add_motion(&mesh.topology.edges, from, to);
     }
 
     /// Calls `take` with every candidate that can come within `query.radius` of each other until the
@@ -169,8 +153,7 @@ impl CandidateScheduler {
     ) {
         let ProximityQuery { max_displacement, radius, bound_factor } = query;
         let reach = 2.0 * max_displacement;
-        let uniform = self.uniform_reach(reach);
-        self.refine(mesh, positions, &uniform, radius, bound_factor, |scheduler| {
+        self.refine(mesh, positions, reach, radius, bound_factor, |scheduler| {
             scheduler.measure(&mut distances);
             scheduler.take_due(reach, radius, bound_factor, &mut take);
         });
@@ -185,7 +168,6 @@ impl CandidateScheduler {
         bound_factor: f64,
         take: &mut impl FnMut(CandidateKind, [u32; 2], f64),
     ) {
-        let kinds = self.kind.candidate_kinds();
         let mut start = [0; 2];
         let due_pairs = core::mem::take(&mut self.due_pairs);
         for (pair, end) in &due_pairs {
@@ -201,8 +183,7 @@ impl CandidateScheduler {
                 }
                 self.push(*pair, slack);
             } else {
-                for kind in 0..2 {
-                    let Some(candidate_kind) = kinds[kind] else { continue };
+                for (kind, candidate_kind) in CandidateKind::ALL.into_iter().enumerate() {
                     for index in start[kind]..end[kind] {
                         take(
                             candidate_kind,
@@ -217,14 +198,6 @@ impl CandidateScheduler {
         self.due_pairs = due_pairs;
     }
 
-    /// The same reach (m) everywhere.
-    fn uniform_reach(&self, reach: f64) -> Reach {
-        Reach {
-            clusters: vec![reach; self.approach_bounds.len()],
-            nodes: vec![reach; self.adjacent.nodes()],
-        }
-    }
-
     /// Makes two elements due after they have approached by `length` (m) more.
     fn push(&mut self, pair: PendingPair, length: f64) {
         match pair {
@@ -237,14 +210,12 @@ impl CandidateScheduler {
 
     /// Measures the distances of the due candidates. NaN counts as touching.
     fn measure(&mut self, distances: &mut impl FnMut(CandidateKind, &[[u32; 2]], &mut Vec<f64>)) {
-        for (kind, candidate_kind) in self.kind.candidate_kinds().into_iter().enumerate() {
-            self.distances[kind].clear();
-            if let Some(candidate_kind) = candidate_kind {
-                distances(candidate_kind, &self.candidates[kind], &mut self.distances[kind]);
-                for distance in self.distances[kind].iter_mut().filter(|distance| distance.is_nan())
-                {
-                    *distance = f64::NEG_INFINITY;
-                }
+        for (kind, candidate_kind) in CandidateKind::ALL.into_iter().enumerate() {
+            let of_kind = &mut self.distances[kind];
+            of_kind.clear();
+            distances(candidate_kind, &self.candidates[kind], of_kind);
+            for distance in of_kind.iter_mut().filter(|distance| distance.is_nan()) {
+                *distance = f64::NEG_INFINITY;
             }
         }
     }
@@ -259,7 +230,7 @@ impl CandidateScheduler {
         &mut self,
         mesh: &CollisionMesh,
         positions: &Field,
-        reach: &Reach,
+        reach: f64,
         radius: f64,
         bound_factor: f64,
         mut resolve: impl FnMut(&mut Self),
@@ -267,14 +238,14 @@ impl CandidateScheduler {
         self.clear_due();
         self.kdops.fit(&mesh.hierarchy, positions);
         for clusters in 0..self.queues.len() {
-            self.refine_clusters(mesh, clusters, reach.clusters[clusters], radius, bound_factor);
+            self.refine_clusters(mesh, clusters, reach, radius, bound_factor);
             if self.candidates.iter().map(Vec::len).sum::<usize>() > MAX_BATCH {
                 resolve(self);
                 self.clear_due();
             }
         }
-        let Self { kind, adjacent, due_pairs, candidates, .. } = self;
-        adjacent.pop_due(mesh.adjacent_pairs(*kind), &reach.nodes, |node, pair, adjacent| {
+        let Self { adjacent, due_pairs, candidates, .. } = self;
+        adjacent.pop_due(&mesh.adjacent_pairs, reach, |node, pair, adjacent| {
             for (candidates, adjacent) in candidates.iter_mut().zip(adjacent) {
                 candidates.extend_from_slice(adjacent);
             }
@@ -299,8 +270,7 @@ impl CandidateScheduler {
         radius: f64,
         bound_factor: f64,
     ) {
-        let Self { kind, kdops, due_nodes, children, separations, due_pairs, candidates, .. } =
-            self;
+        let Self { kdops, due_nodes, children, separations, due_pairs, candidates, .. } = self;
         let (approach, queue) = (self.approach_bounds[clusters], &mut self.queues[clusters]);
         let first_leaf = mesh.hierarchy.first_leaf();
         queue.pop_until(approach + reach, due_nodes);
@@ -323,7 +293,7 @@ impl CandidateScheduler {
                 if a < first_leaf {
                     push_child_pairs(pair, children);
                 } else if !mesh.hierarchy.share_mesh_node(a, b) {
-                    push_candidates(*kind, &mesh.hierarchy, a, b, candidates);
+                    push_candidates(&mesh.hierarchy, a, b, candidates);
                     let ends = [candidates[0].len(), candidates[1].len()];
                     due_pairs.push((PendingPair::Leaves { leaves: pair, clusters }, ends));
                 }

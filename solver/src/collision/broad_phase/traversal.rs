@@ -3,12 +3,11 @@
 use super::collision_mesh::CollisionMesh;
 use super::hierarchy::push_child_pairs;
 use super::kdop::KDops;
-use super::query::{CandidateKind, Candidates, QueryKind, push_candidates};
+use super::query::{CandidateKind, Candidates, push_candidates};
 
 /// Calls `visit` with every candidate whose leaves have k-DOPs no farther apart than `radius` (m).
 /// Candidates that are farther apart than `radius` may be among them; none within it is missing.
 pub fn pairs_within_bounds(
-    kind: QueryKind,
     mesh: &CollisionMesh,
     kdops: &KDops,
     radius: f64,
@@ -26,9 +25,8 @@ pub fn pairs_within_bounds(
             push_child_pairs(pair, &mut stack);
             continue;
         }
-        push_candidates(kind, &mesh.hierarchy, a, b, &mut candidates);
-        for (kind, pairs) in kind.candidate_kinds().into_iter().zip(&mut candidates) {
-            let Some(kind) = kind else { continue };
+        push_candidates(&mesh.hierarchy, a, b, &mut candidates);
+        for (kind, pairs) in CandidateKind::ALL.into_iter().zip(&mut candidates) {
             for pair in pairs.drain(..) {
                 visit(kind, pair);
             }

@@ -17,7 +17,6 @@ use serde::{Deserialize, Serialize};
 use super::broad_phase_fault::BroadPhaseFault;
 use super::model::{ContactModel, pair_kind};
 use super::pair::{CandidatePair, Pair, PairKind};
-use crate::collision::broad_phase::query::QueryKind;
 use crate::collision::broad_phase::queue::PairQueue;
 use crate::collision::broad_phase::scheduler::{CandidateScheduler, ProximityQuery};
 use crate::geometry::field::Field;
@@ -131,12 +130,7 @@ impl CandidateList {
         let queue =
             || PairQueue::new(PENDING_BIN_WIDTH * model.distance, PENDING_BINS, path_length);
         let mut list = Self {
-            scheduler: CandidateScheduler::new(
-                QueryKind::Collision,
-                &model.mesh,
-                bin_width,
-                model.instruction_set,
-            ),
+            scheduler: CandidateScheduler::new(&model.mesh, bin_width, model.instruction_set),
             query_positions: positions.clone(),
             query_valid_until: f64::NEG_INFINITY,
             pending: [queue(), queue()],

@@ -5,7 +5,7 @@ use super::distance_batch::{edge_edge_distances, node_element_distances};
 use super::pair::{Pair, PairKind, vectors_of};
 use crate::collision::broad_phase::collision_mesh::CollisionMesh;
 use crate::collision::broad_phase::kdop::KDops;
-use crate::collision::broad_phase::query::{CandidateKind, QueryKind};
+use crate::collision::broad_phase::query::CandidateKind;
 use crate::collision::broad_phase::traversal::pairs_within_bounds;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
@@ -212,7 +212,7 @@ fn pairs_within(
     mut visit: impl FnMut(Pair, f64),
 ) {
     let kdops = KDops::new(&mesh.hierarchy, positions);
-    pairs_within_bounds(QueryKind::Collision, mesh, &kdops, radius, |kind, [first, second]| {
+    pairs_within_bounds(mesh, &kdops, radius, |kind, [first, second]| {
         let pair = Pair { kind: pair_kind(kind), first, second };
         let gap = pair.closest(&vectors_of(positions, pair.nodes(&mesh.topology))).squared.sqrt();
         if gap < radius {

@@ -145,7 +145,7 @@ impl TunnellingMonitor {
         if let Some(near) = near.pairs_of(topology, search, ends) {
             filter_passages(*instruction_set, topology, near, ends, close);
         } else {
-            search.find(topology, ends, 0.0, pairs);
+            search.find(topology, ends, 0.0, usize::MAX, pairs);
             core::mem::swap(pairs, close);
         }
         each_passage(close, |passage| {
@@ -170,7 +170,7 @@ impl TunnellingMonitor {
             // NaN has no bound.
             deviation = if of_frame.is_nan() { f64::INFINITY } else { deviation.max(of_frame) };
         }
-        search.find(topology, ends, deviation, pairs);
+        search.find(topology, ends, deviation, usize::MAX, pairs);
         for (step, ends) in frames.windows(2).enumerate() {
             let ends = [&ends[0], &ends[1]];
             filter_passages(*instruction_set, topology, pairs, ends, close);

@@ -183,7 +183,7 @@ pub(super) fn each_passage(pairs: &PassagePairs, mut visit: impl FnMut(Passage))
 pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
     let mut pairs = PassagePairs::default();
     let mut search = PassageSearch::new(topology, InstructionSet::detect());
-    search.find(topology, [from, to], 0.0, &mut pairs);
+    search.find(topology, [from, to], 0.0, usize::MAX, &mut pairs);
     let mut found = Vec::new();
     each_passage(&pairs, |passage| {
         if passage.occurs(topology, from, to) {

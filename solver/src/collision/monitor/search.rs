@@ -20,6 +20,10 @@ use crate::platform::simd::InstructionSet;
 /// tolerance of crossing edges, times the sum of their lengths. It also covers rounding.
 const APART_PER_SIZE: f64 = 4.0 * MAX_CROSSING_DISTANCE;
 
+/// Pairs of elements whose primitives are tested together. Chosen: their memory is small against that of
+/// a film.
+const BATCH: usize = 4096;
+
 /// Finds pairs of elements that may meet; holds scratch memory.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct ElementSearch {
@@ -28,20 +32,24 @@ struct ElementSearch {
 }
 
 impl ElementSearch {
-    /// The pairs of elements without a common node that may meet.
+    /// The pairs of elements without a common node that may meet; `None` if the boxes of more than `most`
+    /// pairs overlap.
     fn find(
         &mut self,
         instruction_set: InstructionSet,
         topology: &Topology,
         motion: &Motion<'_>,
-    ) -> &[[u32; 2]] {
+        most: usize,
+    ) -> Option<&[[u32; 2]]> {
         let reach = 0.5 * motion.distance;
         let frames = [motion.from, motion.to];
         let frames = if core::ptr::eq(motion.from, motion.to) { &frames[..1] } else { &frames };
-        self.boxes.find(instruction_set, &topology.triangles, frames, reach);
         self.close.clear();
+        if !self.boxes.find(instruction_set, &topology.triangles, frames, reach, most) {
+            return None;
+        }
         close_elements(instruction_set, topology, &self.boxes.pairs, motion, &mut self.close);
-        &self.close
+        Some(&self.close)
     }
 }
 
@@ -110,22 +118,30 @@ impl PassageSearch {
 
     /// Replaces `found` by the pairs that may pass on the straight motion between two frames, if every
     /// node may deviate from it by `reach` (m). For the motion around one frame, give it twice.
+    ///
+    /// Returns the number of pairs of elements whose boxes overlap; finds nothing and returns `None` if
+    /// they are more than `most`.
     pub fn find(
         &mut self,
         topology: &Topology,
         [from, to]: [&Field; 2],
         reach: f64,
+        most: usize,
         found: &mut PassagePairs,
-    ) {
+    ) -> Option<usize> {
         let Self { instruction_set, primitives, adjacent, elements, distant } = self;
         let motion = motion_between(from, to, reach);
-        clear(distant);
-        for pair in elements.find(*instruction_set, topology, &motion) {
-            primitives.push_passages(topology, *pair, distant);
-        }
         clear(found);
+        let close = elements.find(*instruction_set, topology, &motion, most)?;
         keep_close(*instruction_set, topology, adjacent, &motion, found);
-        keep_close(*instruction_set, topology, distant, &motion, found);
+        for batch in close.chunks(BATCH) {
+            clear(distant);
+            for pair in batch {
+                primitives.push_passages(topology, *pair, distant);
+            }
+            keep_close(*instruction_set, topology, distant, &motion, found);
+        }
+        Some(elements.boxes.pairs.len())
     }
 }
 
@@ -164,7 +180,10 @@ impl IntersectionSearch {
         let Self { instruction_set, primitives, adjacent, elements, distant } = self;
         let motion = motion_between(positions, positions, 0.0);
         distant.clear();
-        for pair in elements.find(*instruction_set, topology, &motion) {
+        // Without a bound the search finds all pairs.
+        for pair in
+            elements.find(*instruction_set, topology, &motion, usize::MAX).unwrap_or_default()
+        {
             primitives.push_intersections(topology, *pair, distant);
         }
         found.clear();

@@ -55,10 +55,6 @@ pub mod update;
 pub use motion::StoredExplicit;
 pub use quiescence::Quiescence;
 
-/// CFL number where the scene gives none. Chosen: the energy ledger of the paper's capsule without
-/// contact stays well inside its bound.
-pub const DEFAULT_CFL: f64 = 0.45;
-
 /// The row in the table of integrators.
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     name: "explicit",

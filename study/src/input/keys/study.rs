@@ -5,7 +5,7 @@
 //! chosen, generous. A value outside is used, with a warning that a unit may be missing.
 
 use billow_solver::integrators::dormand_prince::DEFAULT_TOLERANCE;
-use billow_solver::integrators::explicit::DEFAULT_CFL;
+use billow_solver::scene::DEFAULT_CFL;
 use billow_solver::scene::paper::{LOSS_FACTOR, LOSS_FREQUENCY, NUMERICAL_DAMPING};
 
 use super::draft::{HEAT_TRANSFER_WORDS, choose, heat_transfer, number, optional, unsigned, whole};

@@ -5,7 +5,7 @@
 //! after    static equilibria + history file
 //! job      the larger of the two, and of the mesh that gives the default contact distance
 //!
-//! contact  8 MB + (5.4 + 1.75 log2(1 + M/4) + 0.13 (N - 6)) kB e
+//! contact  5 MB + (1.6 + 1.95 log2(1 + M/4) + 0.13 (N - 6)) kB e
 //! statics  (2.8 + 0.19 log2(e/48)) kB e
 //! ```
 //!
@@ -21,11 +21,11 @@ const MESH: f64 = 800.0;
 /// Checkpoint of a run as text, bytes per element and per sample.
 const CHECKPOINT: [f64; 2] = [300.0, 900.0];
 /// Queues of contact, whatever the mesh, bytes.
-const CONTACT_QUEUES: f64 = 8e6;
+const CONTACT_QUEUES: f64 = 5e6;
 /// Contact of a film that is not folded, bytes per element.
-const CONTACT: f64 = 5400.0;
+const CONTACT: f64 = 1600.0;
 /// Contact for each doubling of the number of layers, bytes per element.
-const CONTACT_LAYERS: f64 = 1750.0;
+const CONTACT_LAYERS: f64 = 1950.0;
 /// The mesh of 4 subdivisions that gives the default contact distance, bytes per element of it.
 const REFERENCE_GAP: f64 = 1100.0;
 /// Contact and static equilibria for each panel beyond 6, bytes per element.
