@@ -22,6 +22,7 @@
 //! | [`integrators`] | time integration: explicit central differences, Dormand-Prince |
 //! | [`system`] | film as a system: constants, state, forces and energies of any state |
 //! | [`output`] | history, frames, measures, ledger, audit, events, checkpoint |
+//! | [`factorisation`] | sparse factorisation of the film's stiffness |
 //! | [`collision`] | broad phase, distances, contact, intersections, tunnelling monitor |
 //! | [`mechanics`] | material, membrane, pressure, gas, supports |
 //! | [`scene`] | everything one run needs: plain data |
@@ -32,6 +33,7 @@
 //! Capsule Structures", unless a comment names another source.
 
 pub mod collision;
+pub mod factorisation;
 pub mod geometry;
 pub mod integrators;
 pub mod mechanics;

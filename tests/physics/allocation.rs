@@ -76,7 +76,7 @@ fn a_step_without_contact_allocates_nothing() {
     for packed in [true, false] {
         let before = allocations();
         let until = run.film.view().state.time + 2e-3;
-        run.advance(until, &Phase { packed, inflow }).unwrap();
+        run.advance(until, &Phase { packed, inflow, ..Phase::default() }).unwrap();
         assert_eq!(allocations(), before, "packed {packed}");
     }
     assert!(run.steps() > 100);

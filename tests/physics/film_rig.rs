@@ -26,6 +26,7 @@ use nalgebra::Vector3;
 pub const INFLOW: Phase = Phase {
     packed: false,
     inflow: Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 },
+    end: 0.0,
 };
 
 /// The film of a capsule's scene in its stowed shape.
@@ -102,7 +103,9 @@ pub fn text(film: &FilmSimulation) -> String {
 
 /// What central differences keep beside the state.
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
-    let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator;
+    let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator else {
+        panic!("another integrator");
+    };
     explicit
 }
 

@@ -19,7 +19,7 @@ fn tank(gas: Gas, volume: f64, mass: f64, temperature: f64, control: Control) ->
 }
 
 fn packed(inflow: Inflow) -> Phase {
-    Phase { packed: true, inflow }
+    Phase { packed: true, inflow, ..Phase::default() }
 }
 
 fn near(value: f64, expected: f64, band: f64, what: &str) {

@@ -24,6 +24,7 @@ mod fold_numbers;
 mod fold_properties;
 mod gas_cases;
 mod geometry;
+mod implicit;
 mod membrane_cases;
 mod piston_capsule;
 mod piston_cases;

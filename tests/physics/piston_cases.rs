@@ -16,8 +16,8 @@ fn injection() -> Phase {
     let rate = number("injected_piston/rate");
     let temperature = number("injected_piston/inflow_temperature");
     Phase {
-        packed: false,
         inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * temperature },
+        ..Phase::default()
     }
 }
 

@@ -27,7 +27,10 @@ fn scene(end_time: f64) -> Scene {
 }
 
 fn inflow(rate: f64) -> Phase {
-    Phase { packed: false, inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * 293.0 } }
+    Phase {
+        inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * 293.0 },
+        ..Phase::default()
+    }
 }
 
 fn after(scene: &Scene, set: InstructionSet, time: f64, steps: u64) -> Sample {

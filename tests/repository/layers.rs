@@ -17,6 +17,7 @@ const ROOMS: [(&str, &[&str]); 2] = [
             "geometry",
             "scene",
             "mechanics",
+            "factorisation",
             "collision",
             "output",
             "system",

@@ -66,6 +66,32 @@ impl EnergyAccounting {
         Self { start_moment: system.first_moment(state).into(), ..Self::default() }
     }
 
+    /// The accounting this share of the way from `self` to a later one.
+    #[must_use]
+    pub fn between(&self, later: &Self, share: f64) -> Self {
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        let (a, b, c, d) = (&self.works, &later.works, &self.gas_balance, &later.gas_balance);
+        Self {
+            works: Works {
+                gas: mix(a.gas, b.gas),
+                ambient: mix(a.ambient, b.ambient),
+                support: mix(a.support, b.support),
+                contact: mix(a.contact, b.contact),
+                material_loss: mix(a.material_loss, b.material_loss),
+                numerical_dissipation: mix(a.numerical_dissipation, b.numerical_dissipation),
+                damping: mix(a.damping, b.damping),
+            },
+            gas_balance: GasBalance {
+                mass_out: mix(c.mass_out, d.mass_out),
+                enthalpy_in: mix(c.enthalpy_in, d.enthalpy_in),
+                enthalpy_out: mix(c.enthalpy_out, d.enthalpy_out),
+                heat: mix(c.heat, d.heat),
+                ..*d
+            },
+            ..*later
+        }
+    }
+
     /// The ledger with this kinetic energy and this energy stored in the film (J), as the method conserves
     /// them. Further energies of the system are added to the stored one.
     pub fn ledger(

@@ -43,6 +43,19 @@ pub struct Budget<'a> {
     pub events: &'a mut Vec<Event>,
 }
 
+impl Budget<'_> {
+    /// The same budget, lent to a call.
+    pub fn reborrow(&mut self) -> Budget<'_> {
+        Budget {
+            steps: &mut *self.steps,
+            step_limit: self.step_limit,
+            audit: &mut *self.audit,
+            stopwatch: &mut *self.stopwatch,
+            events: &mut *self.events,
+        }
+    }
+}
+
 /// Checks accepted steps, whatever the integrator.
 pub trait StepAudit: fmt::Debug {
     /// Records the state after a step.

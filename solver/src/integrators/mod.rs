@@ -15,6 +15,8 @@ pub mod energy_accounting;
 pub mod explicit;
 pub mod film_simulation;
 pub mod film_view;
+pub mod hybrid;
+pub mod implicit;
 pub mod interface;
 pub mod passage_audit;
 
@@ -38,6 +40,8 @@ pub struct IntegratorEntry {
 pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
     match kind {
         IntegratorKind::Explicit => &explicit::ENTRY,
+        IntegratorKind::Implicit => &implicit::ENTRY,
+        IntegratorKind::Hybrid => &hybrid::ENTRY,
     }
 }
 
@@ -47,6 +51,10 @@ pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
 pub enum StoredIntegrator {
     /// Of [`explicit`].
     Explicit(explicit::StoredExplicit),
+    /// Of [`implicit`].
+    Implicit(Box<implicit::StoredImplicit>),
+    /// Of [`hybrid`].
+    Hybrid(Box<hybrid::StoredHybrid>),
 }
 
 impl StoredIntegrator {
@@ -54,6 +62,8 @@ impl StoredIntegrator {
     pub fn kind(&self) -> IntegratorKind {
         match self {
             Self::Explicit(_) => IntegratorKind::Explicit,
+            Self::Implicit(_) => IntegratorKind::Implicit,
+            Self::Hybrid(_) => IntegratorKind::Hybrid,
         }
     }
 
@@ -63,6 +73,8 @@ impl StoredIntegrator {
             Self::Explicit(stored) => {
                 Box::new(explicit::Explicit::resume(system, state, stored, cfl))
             }
+            Self::Implicit(stored) => Box::new(implicit::Implicit::resume(system, state, *stored)),
+            Self::Hybrid(stored) => Box::new(hybrid::Hybrid::resume(system, state, *stored, cfl)),
         }
     }
 
@@ -70,6 +82,8 @@ impl StoredIntegrator {
     fn fits(&self, system: &FilmSystem) -> bool {
         match self {
             Self::Explicit(stored) => stored.fits(system),
+            Self::Implicit(stored) => stored.fits(system),
+            Self::Hybrid(stored) => stored.fits(system),
         }
     }
 }

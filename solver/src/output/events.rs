@@ -10,17 +10,23 @@ pub enum EventKind {
     Quiescent,
     /// The film moves or touches again: the usual steps.
     Active,
+    /// The implicit integrator takes over.
+    Implicit,
+    /// The explicit integrator takes over.
+    Explicit,
 }
 
 impl EventKind {
     /// Every kind.
-    pub const ALL: [Self; 2] = [Self::Quiescent, Self::Active];
+    pub const ALL: [Self; 4] = [Self::Quiescent, Self::Active, Self::Implicit, Self::Explicit];
 
     /// Name, as in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quiescent => "quiescent",
             Self::Active => "active",
+            Self::Implicit => "implicit",
+            Self::Explicit => "explicit",
         }
     }
 
@@ -29,6 +35,8 @@ impl EventKind {
         match self {
             Self::Quiescent => "the film hardly moves: longer steps from here on",
             Self::Active => "the film moves or touches again: the usual steps from here on",
+            Self::Implicit => "the film moves little: implicit steps from here on",
+            Self::Explicit => "the film moves: explicit steps from here on",
         }
     }
 }

@@ -30,11 +30,15 @@ pub enum IntegratorKind {
     /// Central differences: [`crate::integrators::explicit`].
     #[default]
     Explicit,
+    /// BDF2 with Newton's method: [`crate::integrators::implicit`].
+    Implicit,
+    /// Explicit while film moves, implicit while it hardly does: [`crate::integrators::hybrid`].
+    Hybrid,
 }
 
 impl IntegratorKind {
     /// Every kind.
-    pub const ALL: [Self; 1] = [Self::Explicit];
+    pub const ALL: [Self; 3] = [Self::Explicit, Self::Implicit, Self::Hybrid];
 
     /// Whether it is the one of a scene that names none. Job ids depend on this: a scene that names none
     /// keeps its id.

@@ -11,6 +11,8 @@ pub struct Phase {
     pub packed: bool,
     /// Inflow.
     pub inflow: Inflow,
+    /// Time until which the phase holds, s, for steps that go beyond a sample; 0 where nobody knows it.
+    pub end: f64,
 }
 
 /// Shortest last interval over the sample interval: a sample closer to the end time becomes the last.
@@ -81,7 +83,10 @@ impl Timeline {
     /// The phase between two times (s) without a breakpoint between them.
     pub fn phase(&self, from: f64, to: f64) -> Phase {
         let packed = 0.5 * (from + to) < self.release_time;
-        Phase { packed, inflow: self.schedule.between(from, to) }
+        let breakpoints = self.breakpoints();
+        let later = breakpoints.iter().copied().find(|time| *time >= to);
+        let end = later.map_or(self.end_time, |time| time.min(self.end_time));
+        Phase { packed, inflow: self.schedule.between(from, to), end }
     }
 
     /// Time of sample `index`, s; the last sample is at the end time.

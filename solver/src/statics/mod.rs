@@ -23,14 +23,9 @@ use crate::scene::film_scene::{Filling, FilmScene};
 use crate::scene::film_support::FilmSupport;
 
 mod approach;
-pub mod dense;
-pub mod factor;
 mod newton;
-pub mod order;
-pub mod plan;
 mod relaxation;
 mod system;
-pub mod unknowns;
 
 pub use approach::settle;
 pub use newton::{

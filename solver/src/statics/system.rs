@@ -7,8 +7,8 @@
 //! Symbols: K tangent stiffness; M lumped mass; ω largest frequency of an element; μ a shift; d and r
 //! displacements and forces along the unknowns.
 
-use super::factor::{Elimination, Factor};
-use super::unknowns::Unknowns;
+use crate::factorisation::factor::{Elimination, Factor};
+use crate::factorisation::unknowns::Unknowns;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::tangent::{self, Stiffness};

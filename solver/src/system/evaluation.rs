@@ -91,18 +91,12 @@ impl FilmSystem {
         match self.pressure_load {
             PressureLoad::Overpressure(pressure) => (pressure, -pressure * volume),
             PressureLoad::Gas(gas) => {
-                let ratio = state.volume / volume;
-                let before = gas.pressure(state.gas, state.volume);
-                let (pressure, stored) = match gas.heat_transfer {
-                    HeatTransfer::Isothermal => {
-                        (before * ratio, before * state.volume * libm::log(ratio))
-                    }
-                    HeatTransfer::Coefficient(_) => {
-                        let compression = libm::pow(ratio, gas.gamma() - 1.0);
-                        (before * ratio * compression, state.gas.internal_energy * compression)
-                    }
+                let after = gas.expansion(state.gas, state.volume, volume);
+                let stored = match gas.heat_transfer {
+                    HeatTransfer::Isothermal => -after.work,
+                    HeatTransfer::Coefficient(_) => after.state.internal_energy,
                 };
-                (pressure, stored + gas.ambient_pressure * volume)
+                (after.pressure, stored + gas.ambient_pressure * volume)
             }
         }
     }
@@ -118,20 +112,21 @@ impl FilmSystem {
         pairs.sum::<f64>() + plates.sum::<f64>()
     }
 
-    /// Share of these displacements (m), 0 to 1, that brings no film into film or a plate from the positions
-    /// (m) of a state: each pair keeps a tenth of its distance. 1 without contact.
+    /// Share of these displacements (m), 0 to 1, that brings no film into film or a plate from these positions
+    /// (m) at this time (s): each pair keeps a tenth of its distance. 1 without contact.
     pub fn safe_step(
         &self,
-        state: &FilmState,
+        (positions, time): (&Field, f64),
         displacements: &Field,
         workspace: &mut Workspace,
     ) -> f64 {
+        workspace.prepare_search(self, positions);
         let (Some(model), Some(contact)) = (&self.contact, &mut workspace.contact) else {
             return 1.0;
         };
         let largest = displacements.iter().map(|u| u.norm()).fold(0.0, f64::max);
-        contact.list.prepare_step(model, &state.positions, &mut contact.progress, largest);
+        contact.list.prepare_step(model, positions, &mut contact.progress, largest);
         let candidates = &contact.list.candidates;
-        model.safe_step(candidates, &state.positions, displacements, state.time)
+        model.safe_step(candidates, positions, displacements, time)
     }
 }

@@ -67,6 +67,20 @@ impl FilmSystem {
         }
     }
 
+    /// Whether gas fills the film.
+    pub fn is_gas(&self) -> bool {
+        matches!(self.pressure_load, PressureLoad::Gas(_))
+    }
+
+    /// Kinetic energy of nodes and rigid planes of a state, J.
+    pub fn kinetic_energy(&self, state: &FilmState) -> f64 {
+        let nodes = self.model.mass.iter().zip(state.velocities.iter());
+        let film: f64 = nodes.map(|(mass, velocity)| mass * velocity.norm_squared()).sum();
+        let planes = self.supports.bodies.iter().zip(&state.planes);
+        let planes: f64 = planes.map(|(body, speed)| body.plane.mass * speed * speed).sum();
+        0.5 * (film + planes)
+    }
+
     /// The factor a deliberate fault puts on this term; 1 without a fault.
     pub fn fault_factor(&self, term: Term) -> f64 {
         self.fault.filter(|fault| fault.term == term).map_or(1.0, |fault| fault.factor)
@@ -127,6 +141,17 @@ impl FilmSystem {
         let mut step = gas.step(state.gas, state.volume, volume, length, inflow);
         if let Some(fault) = self.fault {
             step.inject_fault(&gas, volume, inflow.mass_flow_rate * length, fault);
+        }
+        Some(step)
+    }
+
+    /// What an expansion to a volume (m³) makes of the gas while none enters, leaves or is heated; `None` under a
+    /// fixed overpressure.
+    pub fn expansion(&self, state: &FilmState, volume: f64) -> Option<GasStep> {
+        let PressureLoad::Gas(gas) = self.pressure_load else { return None };
+        let mut step = gas.expansion(state.gas, state.volume, volume);
+        if let Some(fault) = self.fault {
+            step.inject_fault(&gas, volume, 0.0, fault);
         }
         Some(step)
     }

@@ -26,6 +26,57 @@ pub struct GasStiffness {
 }
 
 impl FilmSystem {
+    /// Nodes and stiffness of every element with its pressure, then those of the closing faces; at these positions
+    /// (m), which `evaluation` is of.
+    pub fn face_stiffness<'a>(
+        &'a self,
+        state: &'a FilmState,
+        positions: &'a Field,
+        evaluation: &Evaluation,
+    ) -> impl Iterator<Item = ([u32; 3], Stiffness)> + 'a {
+        let overpressure = self.overpressure_at(evaluation.gas_pressure);
+        let elements = tangent::elements(&self.model, &state.creep, positions);
+        let loaded = elements.map(move |(nodes, mut stiffness)| {
+            tangent::add_pressure(&mut stiffness, nodes, positions, overpressure);
+            (nodes, stiffness)
+        });
+        let closure = self.model.closure.iter();
+        loaded.chain(
+            closure.map(move |face| (*face, tangent::pressure(*face, positions, overpressure))),
+        )
+    }
+
+    /// Gives the blocks of contact, plates and further terms, as [`Self::stiffness`].
+    pub fn pair_stiffness(
+        &self,
+        (positions, time): (&Field, f64),
+        workspace: &Workspace,
+        add: Blocks<'_>,
+    ) {
+        if let (Some(model), Some(contact)) = (&self.contact, &workspace.contact) {
+            model.stiffness(&self.model, &contact.trial, positions, time, add);
+        }
+        for term in &self.energy_terms {
+            term.stiffness(positions, add);
+        }
+    }
+
+    /// The stiffness of the gas at the positions that `evaluation` and the workspace are of; `None` under a fixed
+    /// overpressure.
+    pub fn gas_stiffness(
+        &self,
+        evaluation: &Evaluation,
+        workspace: &Workspace,
+    ) -> Option<GasStiffness> {
+        let PressureLoad::Gas(gas) = self.pressure_load else { return None };
+        let exponent = match gas.heat_transfer {
+            HeatTransfer::Isothermal => 1.0,
+            HeatTransfer::Coefficient(_) => gas.gamma(),
+        };
+        let factor = exponent * evaluation.gas_pressure / evaluation.volume;
+        Some(GasStiffness { factor, gradient: workspace.forces.areas() })
+    }
+
     /// Gives the blocks of the stiffness at these positions (m) and this time (s), which `evaluation` and the
     /// workspace are of; returns that of the gas, `None` under a fixed overpressure.
     pub fn stiffness(
@@ -36,34 +87,15 @@ impl FilmSystem {
         workspace: &Workspace,
         add: Blocks<'_>,
     ) -> Option<GasStiffness> {
-        let overpressure = self.overpressure_at(evaluation.gas_pressure);
-        let give = |nodes: [u32; 3], stiffness: &Stiffness, add: Blocks<'_>| {
+        for (nodes, stiffness) in self.face_stiffness(state, positions, evaluation) {
             for i in 0..3 {
                 for j in 0..3 {
                     let block: Matrix3<f64> = stiffness.fixed_view::<3, 3>(3 * i, 3 * j).into();
                     add([nodes[i], nodes[j]], &block);
                 }
             }
-        };
-        for (nodes, mut stiffness) in tangent::elements(&self.model, &state.creep, positions) {
-            tangent::add_pressure(&mut stiffness, nodes, positions, overpressure);
-            give(nodes, &stiffness, add);
         }
-        for face in &self.model.closure {
-            give(*face, &tangent::pressure(*face, positions, overpressure), add);
-        }
-        if let (Some(model), Some(contact)) = (&self.contact, &workspace.contact) {
-            model.stiffness(&self.model, &contact.trial, positions, time, add);
-        }
-        for term in &self.energy_terms {
-            term.stiffness(positions, add);
-        }
-        let PressureLoad::Gas(gas) = self.pressure_load else { return None };
-        let exponent = match gas.heat_transfer {
-            HeatTransfer::Isothermal => 1.0,
-            HeatTransfer::Coefficient(_) => gas.gamma(),
-        };
-        let factor = exponent * evaluation.gas_pressure / evaluation.volume;
-        Some(GasStiffness { factor, gradient: workspace.forces.areas() })
+        self.pair_stiffness((positions, time), workspace, add);
+        self.gas_stiffness(evaluation, workspace)
     }
 }

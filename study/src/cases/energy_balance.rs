@@ -71,7 +71,7 @@ pub(super) fn sphere_ledger(rig: &Rig) -> Outcome {
     scene.solver.cfl = 0.2;
     let mut film = rig.start(&scene)?;
     let inflow = Inflow { mass_flow_rate: 1.0, temperature_flow: 400.0 };
-    let phase = Phase { packed: false, inflow };
+    let phase = Phase { inflow, ..Phase::default() };
     let (mut ledgers, mut balances) = (vec![film.view().ledger()], vec![film.view().gas_balance()]);
     for sample in 1..=40 {
         let time = f64::from(sample) * 1e-3;

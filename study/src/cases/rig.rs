@@ -64,8 +64,8 @@ pub fn held(nodes: Vec<u32>, fix: &str) -> FilmSupport {
 /// Film in motion while gas enters at this rate (kg/s) and temperature (K).
 pub fn inflow(rate: f64, temperature: f64) -> Phase {
     Phase {
-        packed: false,
         inflow: Inflow { mass_flow_rate: rate, temperature_flow: rate * temperature },
+        ..Phase::default()
     }
 }
 

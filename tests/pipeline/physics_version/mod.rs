@@ -102,7 +102,7 @@ fn capsule() -> String {
     scene.film.numerical_damping = 0.1;
     let mut run = stowed(&Rig::default(), &scene, contact).expect("a capsule");
     let inflow = Inflow { mass_flow_rate: 5e-3, temperature_flow: 5e-3 * 293.0 };
-    let phase = Phase { packed: false, inflow };
+    let phase = Phase { inflow, ..Phase::default() };
     run.advance(0.02, &phase).expect("it runs");
     let first = explicit(&run.film);
     assert!(first.path_length > 0.1 && run.view().accounting().works.contact != 0.0);

@@ -92,6 +92,23 @@ impl Explicit {
         explicit
     }
 
+    /// Continues a run at a state, with the accounting so far and the largest kinetic energy (J) of the run.
+    pub(super) fn continue_run(
+        system: &FilmSystem,
+        state: &FilmState,
+        accounting: EnergyAccounting,
+        largest_kinetic_energy: f64,
+        cfl: f64,
+    ) -> Self {
+        let mut motion = Motion::start(state, accounting);
+        motion.quiescence = Quiescence::continued(largest_kinetic_energy, state.time);
+        Self::with(system, state, Workspace::new(system, state), motion, cfl)
+    }
+
+    pub(super) fn add_numerical_dissipation(&mut self, energy: f64) {
+        self.motion.accounting.works.numerical_dissipation += energy;
+    }
+
     /// Resumes at a state with what was stored there. The run continues with the same bits.
     pub fn resume(
         system: &FilmSystem,

@@ -56,6 +56,13 @@ pub struct Quiescence {
     quiescent: bool,
 }
 
+impl Quiescence {
+    /// Of a run that continues at a time (s) after film moved with this largest kinetic energy (J).
+    pub(super) fn continued(largest_kinetic_energy: f64, time: f64) -> Self {
+        Self { largest_kinetic_energy, last_active: time, ..Self::default() }
+    }
+}
+
 impl Explicit {
     /// Plans equal steps from now to `target` (s) under a phase, as long as the stable step allows.
     /// `None` if a step would not advance time.
@@ -271,7 +278,7 @@ mod tests {
         assert!(with(&|film| plates(film, 0.04)));
         assert!(!with(&|film| film.system.contact = None));
         let inflow = Inflow { mass_flow_rate: 1e-3, temperature_flow: 0.3 };
-        assert!(!is_quiescent(quiescent_film(), &Phase { packed: false, inflow }));
+        assert!(!is_quiescent(quiescent_film(), &Phase { inflow, ..still }));
         assert!(!is_quiescent(quiescent_film(), &Phase { packed: true, ..still }));
     }
 

@@ -29,6 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::inflow::Inflow;
 use crate::scene::{GasSupply, HeatTransfer};
 
+mod expansion;
 mod leak;
 mod step;
 

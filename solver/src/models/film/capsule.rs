@@ -8,7 +8,7 @@ use crate::geometry::field::Field;
 use crate::geometry::fold::{FoldDesign, FoldPattern};
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::geometry::shell::Shell;
-use crate::integrators::{FilmSimulation, SimulationSettings};
+use crate::integrators::{self, FilmSimulation, SimulationSettings, implicit};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::gas::{Gas, GasState};
 use crate::mechanics::supports::{PrescribedNodes, Supports};
@@ -17,7 +17,7 @@ use crate::scene::error::SceneError;
 use crate::scene::film_scene::{Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver};
 use crate::scene::film_support::{FilmSupport, Hold};
 use crate::scene::plate::Plate;
-use crate::scene::{Scene, Support, SupportLocation};
+use crate::scene::{IntegratorKind, Scene, Support, SupportLocation};
 use crate::system::{FilmSystem, PressureLoad};
 
 /// Subdivisions of the mesh on which the largest displacement of the imperfection is its amplitude.
@@ -198,6 +198,7 @@ pub fn constants(
         contact: scene.contact.as_ref().map(|_| contact_model(scene, &model, &positions)),
         ..FilmSystem::free(model, pressure_load)
     };
+    check_integrator(solver.integrator, &system)?;
     let settings = SimulationSettings {
         integrator: solver.integrator,
         cfl: solver.cfl,
@@ -235,6 +236,18 @@ fn contact_model(scene: &FilmScene, model: &FilmModel, positions: &Field) -> Con
         contact_model.plates.push(plate(LID, high + contact_model.distance, -Vector3::z()));
     }
     contact_model
+}
+
+/// Checks that an integrator can move a system.
+fn check_integrator(kind: IntegratorKind, system: &FilmSystem) -> Result<(), SceneError> {
+    match (kind, implicit::refusal(system)) {
+        (IntegratorKind::Explicit, _) | (_, None) => Ok(()),
+        (IntegratorKind::Implicit | IntegratorKind::Hybrid, Some(problem)) => {
+            let name = integrators::entry(kind).name;
+            let problem = format!("`{name}` does not know {problem}; allowed here: explicit");
+            Err(SceneError::Invalid { key: "solver.integrator".to_owned(), problem })
+        }
+    }
 }
 
 fn check_cfl(cfl: f64) -> Result<(), SceneError> {

@@ -11,7 +11,13 @@ use serde::{Deserialize, Serialize};
 use super::strain;
 use crate::geometry::field::Field;
 use crate::mechanics::film_model::FilmModel;
+use crate::mechanics::material::PlaneTensor;
 use crate::platform::simd::{Lanes, WIDTH};
+
+/// Relaxation times after which film at rest has crept. Chosen: e⁻¹² is below the tolerances of a step.
+const MAX_TIMES: f64 = 12.0;
+/// Longest step of creep at rest, in relaxation times. Chosen: its error is of third order.
+const MAX_SUBSTEP: f64 = 1.0;
 
 /// Creep strain P of eight elements, each in its own axes ([`crate::mechanics::film_model::ElementBlock`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -38,6 +44,58 @@ impl CreepStrain {
             }
         }
         all
+    }
+
+    /// Lets the film creep for `length` (s) at these positions (m): Ṗ = (C⁻¹:S − P)/τ by the midpoint rule with the
+    /// exact decay of a constant stress. After [`MAX_TIMES`] τ creep is over.
+    pub fn relax(model: &FilmModel, positions: &Field, length: f64, all: &mut [[Self; 2]]) {
+        let creep = &model.creep;
+        let times = (length / creep.time).min(MAX_TIMES);
+        if all.is_empty() || times <= 0.0 {
+            return;
+        }
+        let count = (times / MAX_SUBSTEP).ceil();
+        let shares = [0.5, 1.0].map(|part| creep.share(part * times / count * creep.time));
+        for (index, kite) in model.kites.iter().enumerate() {
+            let (block, lane) = (index / WIDTH, index % WIDTH);
+            for (half, edges) in strain::edges_of_kite(positions, kite).into_iter().enumerate() {
+                let inverse_shape = &model.constants[block][half].inverse_shape;
+                let [a, b, d] = inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
+                let strain = strain::of_edges(edges, [[a, b], [0.0, d]]);
+                let towards = |from: [f64; 3], at: [f64; 3], share: f64| -> [f64; 3] {
+                    let [sum, difference, shear] = at;
+                    let elastic = PlaneTensor {
+                        xx: strain.xx + creep.ratio * (strain.xx - 0.5 * (sum + difference)),
+                        yy: strain.yy + creep.ratio * (strain.yy - 0.5 * (sum - difference)),
+                        xy: strain.xy + creep.ratio * (strain.xy - 0.5 * shear),
+                    };
+                    let rest = creep.at_rest(&model.material, elastic);
+                    core::array::from_fn(|k| from[k] + share * (rest[k] - from[k]))
+                };
+                let mut value = all[block][half].lane(lane);
+                let mut done = 0.0;
+                while done < count {
+                    let middle = towards(value, value, shares[0]);
+                    value = towards(value, middle, shares[1]);
+                    done += 1.0;
+                }
+                for (stored, value) in all[block][half].0.iter_mut().zip(value) {
+                    stored.0[lane] = value;
+                }
+            }
+        }
+    }
+
+    /// The creep strain this share of the way from `self` to another one.
+    #[must_use]
+    pub fn between(&self, other: &Self, share: f64) -> Self {
+        let mut mean = *self;
+        for (lanes, other) in mean.0.iter_mut().zip(&other.0) {
+            for (value, other) in lanes.0.iter_mut().zip(&other.0) {
+                *value += share * (other - *value);
+            }
+        }
+        mean
     }
 
     /// P of one lane.

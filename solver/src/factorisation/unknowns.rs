@@ -1,4 +1,4 @@
-//! The unknowns of a static equilibrium: displacements of nodes along their free directions, and the travel
+//! The unknowns of supported film: displacements of nodes along their free directions, and the travel
 //! of rigid planes.
 //!
 //! ```text
@@ -97,16 +97,21 @@ impl Unknowns {
         self.mass.is_empty()
     }
 
-    /// Forces along the unknowns, N, from forces on the nodes (N).
+    /// Forces along the unknowns, N, from forces on the nodes (N) and the constant forces.
     pub fn gather(&self, forces: &Field) -> Vec<f64> {
         let mut along = self.force.clone();
+        self.add(forces, &mut along);
+        along
+    }
+
+    /// Adds forces on the nodes (N) along the unknowns.
+    pub fn add(&self, forces: &Field, along: &mut [f64]) {
         for (node, moves) in self.of_node.iter().enumerate() {
             let force = forces.get(node);
             for (unknown, direction) in moves {
                 along[*unknown as usize] += direction.dot(&force);
             }
         }
-        along
     }
 
     /// Moves the nodes by `fraction` times these displacements along the unknowns (m).

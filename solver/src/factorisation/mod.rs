@@ -1,0 +1,15 @@
+//! Sparse Cholesky factorisation of a film's stiffness, front by front.
+//!
+//! ```text
+//! K + diag(shift) = L Lᵀ
+//! ```
+//!
+//! [`unknowns`]: displacements along the free directions of the supports. [`order`]: nested dissection of the
+//! nodes. [`plan`]: the fronts of a film. [`dense`]: the elimination of one front. [`factor`]: the whole.
+//! Statics and implicit integrators share it.
+
+pub mod dense;
+pub mod factor;
+pub mod order;
+pub mod plan;
+pub mod unknowns;

@@ -1,0 +1,292 @@
+//! Explicit steps while film moves, implicit ones while it hardly does: packed, holding, filling.
+//!
+//! ```text
+//! explicit → implicit    kinetic energy < 1 % of its largest, and a first step of 2000 stable steps has a solution
+//! implicit → explicit    kinetic energy > 3 %, or the steps would be shorter than 1000 stable steps
+//! ```
+//!
+//! The decisions are taken at the end of an interval or of an implicit step; each is an event of the history. An
+//! implicit step that leaves these bounds is discarded, and explicit steps begin at its start. What film still does
+//! faster than an implicit step (small vibrations) is damped then: its energy is numerical dissipation, at most 1 % of
+//! the largest kinetic energy a change. After an attempt without success the next one waits, at first 0.1 s.
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::field::Field;
+use crate::integrators::energy_accounting::EnergyAccounting;
+use crate::integrators::explicit::{Explicit, StoredExplicit};
+use crate::integrators::implicit::{
+    Implicit, Newton, Patience, Progress, StepControl, StoredImplicit,
+};
+use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
+use crate::integrators::{IntegratorEntry, StoredIntegrator};
+use crate::mechanics::forces::membrane::NodeForces;
+use crate::output::events::{Event, EventKind};
+use crate::output::ledger::Ledger;
+use crate::output::outcome::Failure;
+use crate::system::{FilmState, FilmSystem, Workspace};
+
+/// The row in the table of integrators.
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    name: "hybrid",
+    meaning: "explicit while film moves, implicit while it hardly does",
+    start: |system, state, workspace, cfl| Box::new(Hybrid::start(system, state, workspace, cfl)),
+};
+
+/// Upper bound of the kinetic energy over its largest value at which film hardly moves. Chosen.
+const REST: f64 = 0.01;
+/// Kinetic energy over its largest value above which film moves. Chosen above [`REST`], so that the integrators do not
+/// alternate.
+const MOTION: f64 = 0.03;
+/// First implicit step, and the smallest that pays, in stable steps. Measured: an implicit step costs about a
+/// thousand explicit ones.
+const FIRST_STEPS: f64 = 2000.0;
+const PAYING_STEPS: f64 = 1000.0;
+/// Factor on the allowed error of an implicit step. Chosen: 1 mm of a capsule of 1 m.
+const ERROR_FACTOR: f64 = 10.0;
+/// Time to the next attempt, s, its growth after an attempt without success, and its bound. Chosen.
+const FIRST_PAUSE: f64 = 0.1;
+const PAUSE_GROWTH: f64 = 1.5;
+const LONGEST_PAUSE: f64 = 0.5;
+
+/// Which integrator is at work.
+#[derive(Debug, Clone)]
+enum Active {
+    Explicit(Box<Explicit>),
+    Implicit(Box<Implicit>),
+}
+
+/// When the hybrid changes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Policy {
+    /// Largest kinetic energy so far, J.
+    pub largest_kinetic_energy: f64,
+    /// Time of the next attempt, s.
+    pub next_attempt: f64,
+    /// Pause before it, s.
+    pub pause: f64,
+    /// Stable step of explicit film at the last change, s.
+    pub stable_step: f64,
+}
+
+/// The integrator at work, for a checkpoint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StoredActive {
+    /// Explicit.
+    Explicit(StoredExplicit),
+    /// Implicit.
+    Implicit(Box<StoredImplicit>),
+}
+
+/// Everything of the hybrid that a checkpoint stores.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredHybrid {
+    /// When it changes.
+    pub policy: Policy,
+    /// The integrator at work.
+    pub active: StoredActive,
+    /// Positions that the order of elimination is of, m.
+    pub ordered_at: Field,
+}
+
+impl StoredHybrid {
+    /// Whether it can be of this system.
+    pub(in crate::integrators) fn fits(&self, system: &FilmSystem) -> bool {
+        match &self.active {
+            StoredActive::Explicit(stored) => stored.fits(system),
+            StoredActive::Implicit(stored) => stored.fits(system),
+        }
+    }
+}
+
+/// Explicit and implicit steps.
+#[derive(Debug, Clone)]
+pub struct Hybrid {
+    cfl: f64,
+    policy: Policy,
+    active: Active,
+    /// Positions that the order of elimination is of, m.
+    ordered_at: Field,
+    /// Scratch of the next implicit steps.
+    newton: Option<Box<Newton>>,
+}
+
+impl Hybrid {
+    /// Starts at a state, explicitly.
+    pub fn start(system: &FilmSystem, state: &FilmState, workspace: Workspace, cfl: f64) -> Self {
+        let policy = Policy {
+            largest_kinetic_energy: system.kinetic_energy(state),
+            next_attempt: state.time,
+            pause: FIRST_PAUSE,
+            stable_step: 0.0,
+        };
+        let explicit = Explicit::start(system, state, workspace, cfl);
+        let (active, ordered_at) = (Active::Explicit(Box::new(explicit)), state.positions.clone());
+        Self { cfl, policy, active, ordered_at, newton: None }
+    }
+
+    /// Resumes at a state with what was stored there. The run continues with the same bits.
+    pub fn resume(system: &FilmSystem, state: &FilmState, stored: StoredHybrid, cfl: f64) -> Self {
+        let active = match stored.active {
+            StoredActive::Explicit(stored) => {
+                Active::Explicit(Box::new(Explicit::resume(system, state, stored, cfl)))
+            }
+            StoredActive::Implicit(stored) => {
+                Active::Implicit(Box::new(Implicit::resume(system, state, *stored)))
+            }
+        };
+        let StoredHybrid { policy, ordered_at, .. } = stored;
+        Self { cfl, policy, active, ordered_at, newton: None }
+    }
+
+    fn active(&self) -> &dyn Integrator {
+        match &self.active {
+            Active::Explicit(explicit) => &**explicit,
+            Active::Implicit(implicit) => &**implicit,
+        }
+    }
+
+    /// Tries implicit steps from here on, if the film hardly moves and a step could go beyond the interval.
+    fn attempt(
+        &mut self,
+        state: &FilmState,
+        system: &FilmSystem,
+        interval: Interval<'_>,
+        events: &mut Vec<Event>,
+    ) {
+        let Active::Explicit(explicit) = &self.active else { return };
+        let kinetic = system.kinetic_energy(state);
+        self.policy.largest_kinetic_energy = self.policy.largest_kinetic_energy.max(kinetic);
+        let stable = explicit.next_step(system, state);
+        let (first, phase) = (FIRST_STEPS * stable, interval.phase);
+        let waits = phase.packed && system.contact.is_none();
+        let slow = kinetic < REST * self.policy.largest_kinetic_energy;
+        let due = state.time >= self.policy.next_attempt;
+        if waits || !slow || !due || phase.end < state.time + first {
+            return;
+        }
+        self.policy.stable_step = stable;
+        let control = StepControl::error(self.cfl, system.model.size(), ERROR_FACTOR);
+        let workspace = Workspace::new(system, state);
+        let accounting = *explicit.accounting();
+        let before = explicit.ledger(system, state).stored();
+        let newton = match self.newton.take() {
+            Some(newton) => *newton,
+            None => Newton::new(system, state, self.ordered_at.clone()),
+        };
+        let scratch = (workspace, newton);
+        let mut implicit = Implicit::from(system, state, scratch, (control, first), accounting);
+        let after = implicit.ledger(system, state).stored();
+        implicit.add_numerical_dissipation(before - after);
+        if implicit.begin(system, state, phase, self.patience()) {
+            self.policy.pause = FIRST_PAUSE;
+            self.active = Active::Implicit(Box::new(implicit));
+            events.push(Event { time: state.time, kind: EventKind::Implicit });
+        } else {
+            self.newton = Some(Box::new(implicit.into_newton()));
+            self.policy.next_attempt = state.time + self.policy.pause;
+            self.policy.pause = (PAUSE_GROWTH * self.policy.pause).min(LONGEST_PAUSE);
+        }
+    }
+
+    /// Explicit steps from here on.
+    fn give_up(&mut self, state: &FilmState, system: &FilmSystem, events: &mut Vec<Event>) {
+        let Active::Implicit(implicit) = &self.active else { return };
+        let accounting = *implicit.accounting();
+        let before = implicit.ledger(system, state).stored();
+        let largest = self.policy.largest_kinetic_energy;
+        let mut explicit = Explicit::continue_run(system, state, accounting, largest, self.cfl);
+        let after = explicit.ledger(system, state).stored();
+        explicit.add_numerical_dissipation(before - after);
+        self.policy.next_attempt = state.time + self.policy.pause;
+        let active = Active::Explicit(Box::new(explicit));
+        if let Active::Implicit(implicit) = core::mem::replace(&mut self.active, active) {
+            self.newton = Some(Box::new(implicit.into_newton()));
+        }
+        events.push(Event { time: state.time, kind: EventKind::Explicit });
+    }
+
+    fn patience(&self) -> Patience {
+        Patience {
+            step: PAYING_STEPS * self.policy.stable_step,
+            kinetic: MOTION * self.policy.largest_kinetic_energy,
+        }
+    }
+}
+
+impl Integrator for Hybrid {
+    fn advance(
+        &mut self,
+        state: &mut FilmState,
+        system: &FilmSystem,
+        interval: Interval<'_>,
+        mut budget: Budget<'_>,
+    ) -> Result<Advance, Failure> {
+        loop {
+            let patience = self.patience();
+            match &mut self.active {
+                Active::Explicit(explicit) => {
+                    let advance = explicit.advance(state, system, interval, budget.reborrow())?;
+                    if advance == Advance::Reached {
+                        self.attempt(state, system, interval, budget.events);
+                    }
+                    return Ok(advance);
+                }
+                Active::Implicit(implicit) => {
+                    let progress = implicit.advance_within(
+                        state,
+                        system,
+                        interval,
+                        &mut budget,
+                        Some(patience),
+                    )?;
+                    match progress {
+                        Progress::Advanced(advance) => return Ok(advance),
+                        Progress::GaveUp => self.give_up(state, system, budget.events),
+                    }
+                }
+            }
+        }
+    }
+
+    fn next_step(&self, system: &FilmSystem, state: &FilmState) -> f64 {
+        self.active().next_step(system, state)
+    }
+
+    fn forces(&self) -> &NodeForces {
+        self.active().forces()
+    }
+
+    fn accounting(&self) -> &EnergyAccounting {
+        self.active().accounting()
+    }
+
+    fn ledger(&self, system: &FilmSystem, state: &FilmState) -> Ledger {
+        self.active().ledger(system, state)
+    }
+
+    fn stress_on_fraction(&self, system: &FilmSystem, fraction: f64) -> f64 {
+        self.active().stress_on_fraction(system, fraction)
+    }
+
+    fn smallest_gap(&self) -> f64 {
+        self.active().smallest_gap()
+    }
+
+    fn stored(&self) -> Option<StoredIntegrator> {
+        let active = match self.active().stored()? {
+            StoredIntegrator::Explicit(stored) => StoredActive::Explicit(stored),
+            StoredIntegrator::Implicit(stored) => StoredActive::Implicit(stored),
+            StoredIntegrator::Hybrid(_) => return None,
+        };
+        let (policy, ordered_at) = (self.policy, self.ordered_at.clone());
+        Some(StoredIntegrator::Hybrid(Box::new(StoredHybrid { policy, active, ordered_at })))
+    }
+
+    fn boxed(&self) -> Box<dyn Integrator> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,179 @@
+//! The implicit integrator and the hybrid: order, agreement with central differences, bits, refusals.
+
+use billow_solver::geometry::field::Field;
+use billow_solver::geometry::shapes::{crossed_grid, icosphere, nodes_where};
+use billow_solver::integrators::implicit::{Implicit, StepControl};
+use billow_solver::integrators::{FilmSimulation, SimulationSettings};
+use billow_solver::mechanics::gas::GasState;
+use billow_solver::mechanics::supports::Supports;
+use billow_solver::output::ledger::{Ledger, residuals};
+use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::timeline::Phase;
+use billow_solver::scene::{Film, IntegratorKind};
+use billow_solver::system::{PressureLoad, Workspace};
+use nalgebra::Vector3;
+
+use crate::film_rig::{INFLOW, free, moving, nitrogen_gas, orders, resumed, text};
+
+/// The same film at its state, with fixed implicit steps of this length (s).
+fn with_implicit_steps(film: FilmSimulation, step: f64) -> FilmSimulation {
+    let (system, state, settings) = film.into_parts();
+    let workspace = Workspace::new(&system, &state);
+    let control = StepControl::Fixed(step);
+    let integrator = Implicit::start(&system, &state, workspace, control);
+    let settings = SimulationSettings { integrator: IntegratorKind::Implicit, ..settings };
+    FilmSimulation::of(system, state, settings, Box::new(integrator))
+}
+
+fn with_error_control(film: FilmSimulation, cfl: f64) -> FilmSimulation {
+    let (system, state, settings) = film.into_parts();
+    let workspace = Workspace::new(&system, &state);
+    let control = StepControl::error(cfl, system.model.size(), 1.0);
+    let integrator = Implicit::start(&system, &state, workspace, control);
+    let settings = SimulationSettings { integrator: IntegratorKind::Implicit, ..settings };
+    FilmSimulation::of(system, state, settings, Box::new(integrator))
+}
+
+const SIDE: f64 = 0.3;
+
+/// A square sheet under tension, held at its edge, that starts with the speeds of its first mode: it stays taut.
+fn sheet() -> FilmSimulation {
+    let strain = 5e-3;
+    let flat = crossed_grid(4, 4, SIDE, SIDE);
+    let edge = nodes_where(&flat, |x| [x.x, x.y].iter().any(|x| *x < 1e-9 || *x > SIDE - 1e-9));
+    let reference: Vec<_> = flat.positions.iter().map(|x| x / (1.0 + strain)).collect();
+    let shell = flat.with_reference(&reference);
+    let film = Film { numerical_damping: 0.0, ..Film::PAPER_ELASTIC };
+    let mode = |x: f64| libm::sin(core::f64::consts::PI * x / SIDE);
+    let speeds: Vec<_> =
+        shell.positions.iter().map(|x| Vector3::z() * (2.0 * mode(x.x) * mode(x.y))).collect();
+    let load = (PressureLoad::Overpressure(0.0), GasState::default());
+    moving(&shell, &film, load, Field::of(&speeds), |system, _| {
+        system.supports.hold(&edge, "xyz");
+    })
+}
+
+/// A sphere of film with the full stiffness and nitrogen of 1 kPa, released without stress.
+fn sphere() -> FilmSimulation {
+    let shell = icosphere(2, 0.5);
+    let gas = nitrogen_gas();
+    let film = Film { compression: 1.0, numerical_damping: 0.0, ..Film::PAPER_ELASTIC };
+    let mass = 1000.0 * 0.5 / (296.8 * 293.0);
+    let load = (PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0));
+    let still = Field::zeros(shell.positions.len());
+    moving(&shell, &film, load, still, |_, _| ())
+}
+
+fn end_of(mut film: FilmSimulation, time: f64, phase: &Phase) -> Field {
+    film.advance(time, phase).unwrap();
+    film.view().state.positions.clone()
+}
+
+/// Errors against a reference, of implicit steps halved each time.
+fn errors(film: &FilmSimulation, time: f64, phase: &Phase, first: f64) -> Vec<f64> {
+    let mut exact = film.clone();
+    exact = {
+        let (system, state, settings) = exact.into_parts();
+        let settings = SimulationSettings { cfl: 0.05, ..settings };
+        FilmSimulation::new(system, settings, state.positions, state.velocities, state.gas)
+    };
+    let reference = end_of(exact, time, phase);
+    (0..4)
+        .map(|halvings| {
+            let step = first / f64::from(1 << halvings);
+            let end = end_of(with_implicit_steps(film.clone(), step), time, phase);
+            end.largest_displacement(&reference)
+        })
+        .collect()
+}
+
+#[test]
+fn a_taut_sheet_converges_with_order_two() {
+    let errors = errors(&sheet(), 4e-3, &free(), 1e-4);
+    let orders = orders(&errors);
+    println!("{errors:?} {orders:?}");
+    assert!(orders[1..].iter().all(|order| (1.8..2.3).contains(order)), "{orders:?}");
+}
+
+#[test]
+fn a_breathing_sphere_with_inflow_converges_with_order_two() {
+    let errors = errors(&sphere(), 4e-3, &INFLOW, 1e-4);
+    let orders = orders(&errors);
+    println!("{errors:?} {orders:?}");
+    assert!(orders[1..].iter().all(|order| (1.7..2.3).contains(order)), "{orders:?}");
+}
+
+/// Sphere with loss, mass damping and a rigid plane on top: positions, gas and works against central differences.
+#[test]
+fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
+    let build = || {
+        let shell = icosphere(2, 0.5);
+        let top = nodes_where(&shell, |x| x.z > 0.4);
+        let gas = nitrogen_gas();
+        let film = Film { compression: 1.0, numerical_damping: 0.0, ..Film::PAPER };
+        let mass = 1000.0 * 0.5 / (296.8 * 293.0);
+        let load = (PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0));
+        let still = Field::zeros(shell.positions.len());
+        let body = PlaneBody { normal: Vector3::z(), mass: 0.05, velocity: 0.0, force: -2.0 };
+        let support =
+            FilmSupport { name: "top".into(), nodes: top, hold: Hold::Body(body), motion: None };
+        let positions = Field::of(&shell.positions);
+        moving(&shell, &film, load, still, |system, settings| {
+            system.supports = Supports::new(&[support], &positions);
+            system.mass_damping = 20.0;
+            settings.cfl = 0.1;
+        })
+    };
+    let run = |mut film: FilmSimulation| {
+        let mut series = vec![film.view().ledger()];
+        for sample in 1..=10 {
+            film.advance(1e-3 * f64::from(sample), &INFLOW).unwrap();
+            series.push(film.view().ledger());
+        }
+        (film.view().state.clone(), film.view().gas_balance(), series)
+    };
+    let (state, gas, series) = run(build());
+    let (other, other_gas, other_series) = run(with_implicit_steps(build(), 5e-6));
+    let distance = state.positions.largest_displacement(&other.positions);
+    println!("{distance:e} {series:?} {other_series:?}");
+    assert!(distance < 2e-5, "{distance:e}");
+    assert!((state.planes[0] - other.planes[0]).abs() < 0.01 * state.planes[0].abs());
+    let close = |a: f64, b: f64| (a / b - 1.0).abs() < 5e-3;
+    assert!(close(gas.gas_work, other_gas.gas_work) && close(gas.heat, other_gas.heat));
+    assert!(close(state.pressure, other.pressure));
+    let (a, b): (&Ledger, &Ledger) = (&series[10], &other_series[10]);
+    assert!(close(a.material_loss, b.material_loss), "{} {}", a.material_loss, b.material_loss);
+    assert!(close(a.damping_work, b.damping_work), "{} {}", a.damping_work, b.damping_work);
+    assert!(close(a.support_work, b.support_work), "{} {}", a.support_work, b.support_work);
+    let largest = residuals(&other_series).into_iter().fold(0.0, f64::max);
+    println!("ledger residual {largest:e}");
+    assert!(largest < 1e-3, "{largest:e}");
+}
+
+/// Errors follow the tolerance, and steps beyond a sample change no bit of the steps.
+#[test]
+fn steps_follow_their_error_and_pauses_change_no_bit() {
+    let mut coarse = with_error_control(sphere(), 0.45);
+    let mut fine = with_error_control(sphere(), 0.1);
+    let phase = Phase { end: 0.02, ..INFLOW };
+    for film in [&mut coarse, &mut fine] {
+        film.advance(0.02, &phase).unwrap();
+    }
+    let (coarse, fine) = (coarse.view(), fine.view());
+    assert!(fine.steps() > 2 * coarse.steps(), "{} {}", fine.steps(), coarse.steps());
+    let mut paused = with_error_control(sphere(), 0.45);
+    while !paused.advance_at_most(0.02, &phase, &mut 3).unwrap() {
+        paused = resumed(paused);
+    }
+    assert_eq!(paused.view().state, coarse.state);
+    let (mut one, mut many) =
+        (with_error_control(sphere(), 0.45), with_error_control(sphere(), 0.45));
+    one.advance(0.0102, &phase).unwrap();
+    for sample in 1..=51 {
+        many.advance(2e-4 * f64::from(sample), &phase).unwrap();
+        if sample == 20 {
+            many = resumed(many);
+        }
+    }
+    assert_eq!(text(&one), text(&many));
+}
