@@ -13,16 +13,11 @@ use nalgebra::Vector3;
 use super::motion::Ahead;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::mechanics::gas::GasState;
-use crate::system::{FilmState, FilmSystem, Workspace};
+use crate::system::{FilmState, FilmSystem};
 
 impl Ahead {
-    /// State and accounting at a time (s) within the step. The workspace has the forces of the state.
-    pub(super) fn at(
-        &self,
-        system: &FilmSystem,
-        time: f64,
-        workspace: &mut Workspace,
-    ) -> (FilmState, EnergyAccounting) {
+    /// State and accounting at a time (s) within the step; volume, pressure and contacts are those of its start.
+    pub(super) fn at(&self, system: &FilmSystem, time: f64) -> (FilmState, EnergyAccounting) {
         let ((from, before), (to, after)) = (&self.from, &self.to);
         let length = to.time - from.time;
         let s = (time - from.time) / length;
@@ -31,7 +26,7 @@ impl Ahead {
         state.time = time;
         for node in 0..state.positions.len() {
             let ends = [from, to].map(|end| (end.positions.get(node), end.velocities.get(node)));
-            let (x, v) = if touches { straight(ends, length, s) } else { hermite(ends, length, s) };
+            let (x, v) = if touches { straight(ends, s) } else { hermite(ends, length, s) };
             state.positions.set(node, x);
             state.velocities.set(node, v);
         }
@@ -49,8 +44,6 @@ impl Ahead {
             internal_energy: mix(from.gas.internal_energy, to.gas.internal_energy),
         };
         system.place_closing_nodes(&mut state.positions);
-        state.volume = workspace.forces_at(system, &state, None).six_volumes / 6.0;
-        state.pressure = system.pressure(state.gas, state.volume);
         (state, before.between(after, s))
     }
 }
@@ -69,7 +62,7 @@ fn hermite([(x, v), (y, w)]: [End; 2], length: f64, s: f64) -> End {
 }
 
 /// Position (m) and velocity (m/s) on the straight way; at its ends the velocity is that of the end.
-fn straight([(x, v), (y, w)]: [End; 2], _length: f64, s: f64) -> End {
+fn straight([(x, v), (y, w)]: [End; 2], s: f64) -> End {
     (x + (y - x) * s, v + (w - v) * s)
 }
 

@@ -50,8 +50,9 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
 
 /// First step over the stable step of explicit film: 2/ω. Chosen: its error is far below any tolerance.
 const FIRST_STEP: f64 = 5.0;
-/// Most Newton steps. Chosen: a shorter step costs less.
+/// Most Newton steps, and those of a run that can be given up. Chosen: a shorter step, or explicit ones, cost less.
 const MAX_ITERATIONS: u32 = 25;
+const PATIENT_ITERATIONS: u32 = 12;
 /// Smallest step over 1/ω: shorter ones need no implicit method. Chosen.
 const MIN_STEP: f64 = 0.02;
 
@@ -173,9 +174,10 @@ impl Implicit {
         while state.time < target {
             if let Some(ahead) = self.motion.ahead.take() {
                 if ahead.to.0.time > target {
-                    let (between, accounting) = ahead.at(system, target, &mut self.workspace);
-                    *state = between;
-                    self.motion.accounting = accounting;
+                    (*state, self.motion.accounting) = ahead.at(system, target);
+                    self.evaluate(system, state);
+                    state.volume = self.evaluation.volume;
+                    state.pressure = system.pressure(state.gas, state.volume);
                     self.workspace.commit_contact(state);
                     self.motion.ahead = Some(ahead);
                 } else {
@@ -250,7 +252,8 @@ impl Implicit {
         patience: Option<Patience>,
     ) -> Option<Stepped> {
         let control = self.motion.control;
-        let mut length = self.motion.next_step;
+        let mut length = self.motion.next_step.min(control.longest());
+        let iterations = if patience.is_some() { PATIENT_ITERATIONS } else { MAX_ITERATIONS };
         let smallest =
             patience.map_or(MIN_STEP / system.model.largest_frequency(), |patience| patience.step);
         loop {
@@ -260,7 +263,7 @@ impl Implicit {
             if !advances {
                 return None;
             }
-            let stepped = self.try_step(system, state, end, inflow, MAX_ITERATIONS);
+            let stepped = self.try_step(system, state, end, inflow, iterations);
             let (accepted, next) = match &stepped {
                 None => (false, control.shorter(planned)?),
                 Some(Stepped { error: (error, order), .. }) => {

@@ -44,6 +44,9 @@ pub(super) struct Increment<'a> {
 pub(super) struct Limits {
     /// Largest mean displacement (m) of the next Newton step at which the positions are those after the step.
     pub(super) displacement: f64,
+    /// Largest mean displacement (m) of the first Newton step from the guess: a larger one says that the error of
+    /// the step will be too large.
+    pub(super) first: f64,
     /// Most Newton steps.
     pub(super) iterations: u32,
 }
@@ -130,11 +133,10 @@ impl Newton {
     ) -> Option<(Evaluation, u32)> {
         let Increment { system, state, end, weight, .. } = *increment;
         self.positions.copy_from(&state.positions);
-        let (mut evaluation, mut potential) = increment.evaluate(&mut self.positions, workspace);
+        let (_, before) = increment.evaluate(&mut self.positions, workspace);
         self.moves.copy_from(guess);
-        if let Some((there, lower)) = self.guess(increment, potential, workspace) {
-            (evaluation, potential) = (there, lower);
-        }
+        let (mut evaluation, mut potential) = self.guess(increment, before, workspace);
+        let at_guess = potential < before;
         for iteration in 1..=limits.iterations {
             let at = (&self.positions, end);
             let here = (&evaluation, &*workspace);
@@ -152,13 +154,16 @@ impl Newton {
             for node in 0..self.moves.len() {
                 self.moves.set(node, self.system.unknowns.displacement(node, &step));
             }
+            let mean = self.mean(&step);
+            if iteration == 1 && at_guess && mean > limits.first {
+                return None;
+            }
             let largest = self.system.unknowns.largest(&step);
             let most = (MAX_DISPLACEMENT * system.model.size() / largest).min(1.0);
             let share = most * self.safe_share(increment, most, workspace);
             if share < MIN_SHARE {
                 return None;
             }
-            let mean = self.mean(&step);
             let last = mean <= limits.displacement && share >= 1.0;
             let found = self.line_search(increment, (potential, slope, share), &step, workspace)?;
             (evaluation, potential) = found;
@@ -176,16 +181,16 @@ impl Newton {
         increment: &Increment<'_>,
         potential: f64,
         workspace: &mut Workspace,
-    ) -> Option<(Evaluation, f64)> {
+    ) -> (Evaluation, f64) {
         let share = self.safe_share(increment, 1.0, workspace);
         self.shift(share);
         let (evaluation, there) = increment.evaluate(&mut self.trial, workspace);
         if there < potential {
             core::mem::swap(&mut self.positions, &mut self.trial);
-            return Some((evaluation, there));
+            return (evaluation, there);
         }
         // The workspace has to hold the forces of the positions.
-        Some(increment.evaluate(&mut self.positions, workspace))
+        increment.evaluate(&mut self.positions, workspace)
     }
 
     /// Share of `most` times the displacements that brings no film into film.

@@ -56,7 +56,8 @@ impl Implicit {
         method.predict(&mut self.predicted);
         let size = system.model.size();
         let displacement = self.motion.control.newton_displacement(size);
-        let limits = Limits { displacement, iterations };
+        let first = self.motion.control.first_displacement();
+        let limits = Limits { displacement, first, iterations };
         let increment = Increment { system, state: &state, end, weight, target: &self.target };
         let workspace = &mut self.workspace;
         let (after, count) = self.newton.solve(&increment, &self.predicted, limits, workspace)?;

@@ -22,6 +22,12 @@ const SAFETY: f64 = 0.9;
 const AFTER_FAILURE: f64 = 0.4;
 /// Mean displacement that ends Newton's method over the allowed error. Chosen: the step after it is much smaller.
 const NEWTON_SHARE: f64 = 0.1;
+/// Mean displacement of the first Newton step over the allowed error at which a step has no prospect: four times the
+/// one whose error is the allowed one. Chosen.
+const FIRST_SHARE: f64 = 12.0;
+/// Longest step of error control, s. Chosen: energies between the ends of a step are interpolated, and the ledger of a
+/// filling capsule then closes to 1e-3; a filling takes seconds.
+const LONGEST: f64 = 0.1;
 
 /// How the length of steps is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -38,6 +44,22 @@ impl StepControl {
     pub fn error(cfl: f64, size: f64, factor: f64) -> Self {
         let ratio = cfl / DEFAULT_CFL;
         Self::Error(TOLERANCE * ratio * ratio * ratio * size * factor)
+    }
+
+    /// Mean displacement (m) of the first Newton step from the prediction above which the step is shortened.
+    pub(super) fn first_displacement(self) -> f64 {
+        match self {
+            Self::Error(allowed) => FIRST_SHARE * allowed,
+            Self::Fixed(_) => f64::INFINITY,
+        }
+    }
+
+    /// Longest step, s.
+    pub(super) fn longest(self) -> f64 {
+        match self {
+            Self::Error(_) => LONGEST,
+            Self::Fixed(step) => step,
+        }
     }
 
     /// Mean displacement (m) that ends Newton's method.
