@@ -64,6 +64,13 @@ pub trait StepAudit: fmt::Debug {
     /// A [`Failure`] ends the run.
     fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
 
+    /// Looks at the state at the end of an interval that lies within a step: the checks of the recorded steps can
+    /// wait for the end of that step.
+    ///
+    /// # Errors
+    /// A [`Failure`] ends the run.
+    fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure>;
+
     /// Completes the checks of all recorded steps, at the end of an interval.
     ///
     /// # Errors
@@ -77,6 +84,10 @@ pub struct NoAudit;
 
 impl StepAudit for NoAudit {
     fn record(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn look(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
         Ok(())
     }
 

@@ -66,12 +66,19 @@ impl StepAudit for PassageAudit {
         self.check(before)
     }
 
-    fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+    fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             let topology = &contact_model.mesh.topology;
-            self.monitor.test_block(topology);
             self.monitor.intersection_counter.update(topology, &state.positions);
         }
+        Ok(())
+    }
+
+    fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+        if let Some(contact_model) = &system.contact {
+            self.monitor.test_block(&contact_model.mesh.topology);
+        }
+        self.look(system, state)?;
         self.time = state.time;
         self.check(self.time)
     }

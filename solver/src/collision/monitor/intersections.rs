@@ -9,16 +9,25 @@
 
 use nalgebra::Vector3;
 
+use super::motion::largest_motion;
 use super::search::IntersectionSearch;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
 
+/// How far nodes may move until the next search, over their motion since the last update. Chosen.
+const REACH_PER_MOTION: f64 = 8.0;
+/// Largest such reach over the mean edge length: film that moves more is searched at every update. Chosen.
+const MAX_REACH: f64 = 0.1;
+/// Pairs of elements with overlapping boxes for each element, at most, in a search with a reach. Chosen, as for the
+/// near list.
+const MAX_PAIRS: usize = 64;
+
 /// Every edge and element that intersect at these positions (m) and share no node, in order.
 pub fn intersections(topology: &Topology, positions: &Field) -> Vec<(u32, u32)> {
     let mut pairs = Vec::new();
     let mut search = IntersectionSearch::new(topology, InstructionSet::detect());
-    search.find(topology, positions, &mut pairs);
+    search.find(topology, positions, 0.0, usize::MAX, &mut pairs);
     let pairs = pairs.into_iter().filter(|pair| intersects(topology, positions, *pair));
     let mut found: Vec<(u32, u32)> = pairs.map(|[edge, element]| (edge, element)).collect();
     found.sort_unstable();
@@ -29,7 +38,15 @@ pub fn intersections(topology: &Topology, positions: &Field) -> Vec<(u32, u32)> 
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntersectionCounter {
     search: IntersectionSearch,
-    /// Scratch memory: pairs that may intersect.
+    /// Mean edge length, m.
+    edge_length: f64,
+    /// Positions at the last search, m.
+    reference: Field,
+    /// How far every node may be from there for the pairs to be all that can intersect, m.
+    reach: f64,
+    /// Positions at the last update, m.
+    last: Field,
+    /// Pairs that may intersect.
     pairs: Vec<[u32; 2]>,
     /// Number of intersections at the last update.
     pub count: u64,
@@ -39,14 +56,35 @@ impl IntersectionCounter {
     /// Counts the intersections at these positions (m).
     pub fn new(topology: &Topology, positions: &Field, instruction_set: InstructionSet) -> Self {
         let search = IntersectionSearch::new(topology, instruction_set);
-        let mut counter = Self { search, pairs: Vec::new(), count: 0 };
+        let length =
+            |[a, b]: &[u32; 2]| (positions.get(*a as usize) - positions.get(*b as usize)).norm();
+        let sum: f64 = topology.edges.iter().map(length).sum();
+        let edge_length = sum / topology.edges.len() as f64;
+        let (reference, last, pairs) = (positions.clone(), positions.clone(), Vec::new());
+        let mut counter =
+            Self { search, edge_length, reference, reach: -1.0, last, pairs, count: 0 };
         counter.update(topology, positions);
         counter
     }
 
     /// Counts the intersections at these positions (m).
     pub fn update(&mut self, topology: &Topology, positions: &Field) {
-        self.search.find(topology, positions, &mut self.pairs);
+        let moved = largest_motion(&self.last, positions);
+        self.last.copy_from(positions);
+        // Written so that NaN searches.
+        let covered = largest_motion(&self.reference, positions) <= self.reach;
+        if !covered {
+            let wanted = REACH_PER_MOTION * moved;
+            let near = wanted <= MAX_REACH * self.edge_length;
+            let reach = if near { wanted } else { 0.0 };
+            let most = MAX_PAIRS * topology.triangles.len();
+            let found = self.search.find(topology, positions, reach, most, &mut self.pairs);
+            self.reach = if found { reach } else { 0.0 };
+            if !found {
+                self.search.find(topology, positions, 0.0, usize::MAX, &mut self.pairs);
+            }
+            self.reference.copy_from(positions);
+        }
         let found = self.pairs.iter().filter(|pair| intersects(topology, positions, **pair));
         self.count = found.count() as u64;
     }

@@ -175,20 +175,29 @@ impl IntersectionSearch {
         }
     }
 
-    /// Replaces `found` by the pairs that may intersect at these positions (m).
-    pub fn find(&mut self, topology: &Topology, positions: &Field, found: &mut Vec<[u32; 2]>) {
+    /// Replaces `found` by the pairs that may intersect while every node is within `reach` (m) of these positions (m).
+    /// `false`, and nothing found, if the boxes of more than `most` pairs of elements overlap.
+    pub fn find(
+        &mut self,
+        topology: &Topology,
+        positions: &Field,
+        reach: f64,
+        most: usize,
+        found: &mut Vec<[u32; 2]>,
+    ) -> bool {
         let Self { instruction_set, primitives, adjacent, elements, distant } = self;
-        let motion = motion_between(positions, positions, 0.0);
+        let motion = motion_between(positions, positions, reach);
         distant.clear();
-        // Without a bound the search finds all pairs.
-        for pair in
-            elements.find(*instruction_set, topology, &motion, usize::MAX).unwrap_or_default()
-        {
+        found.clear();
+        let Some(close) = elements.find(*instruction_set, topology, &motion, most) else {
+            return false;
+        };
+        for pair in close {
             primitives.push_intersections(topology, *pair, distant);
         }
-        found.clear();
         for pairs in [&*adjacent, &*distant] {
             close_edge_elements(*instruction_set, topology, pairs, &motion, found);
         }
+        true
     }
 }

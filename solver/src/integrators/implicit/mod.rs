@@ -215,9 +215,13 @@ impl Implicit {
             self.motion.ahead =
                 Some(Box::new(Ahead { from, to: (stepped.state, stepped.accounting) }));
         }
-        self.evaluate(system, state);
         budget.stopwatch.begins(Stage::Audit);
-        budget.audit.complete(system, state)?;
+        if self.motion.ahead.is_some() {
+            budget.audit.look(system, state)?;
+        } else {
+            self.evaluate(system, state);
+            budget.audit.complete(system, state)?;
+        }
         Ok(Progress::Advanced(Advance::Reached))
     }
 
