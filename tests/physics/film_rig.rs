@@ -102,8 +102,10 @@ pub fn text(film: &FilmSimulation) -> String {
 
 /// What central differences keep beside the state.
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
-    let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator;
-    explicit
+    match film.stored().expect("a film").integrator {
+        StoredIntegrator::Explicit(explicit) => explicit,
+        other => panic!("{:?} instead of central differences", other.kind()),
+    }
 }
 
 pub fn free() -> Phase {

@@ -17,6 +17,7 @@ pub mod film_simulation;
 pub mod film_view;
 pub mod interface;
 pub mod passage_audit;
+pub mod xpbd;
 
 pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
 pub use film_view::FilmView;
@@ -38,6 +39,7 @@ pub struct IntegratorEntry {
 pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
     match kind {
         IntegratorKind::Explicit => &explicit::ENTRY,
+        IntegratorKind::Xpbd => &xpbd::ENTRY,
     }
 }
 
@@ -47,6 +49,8 @@ pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
 pub enum StoredIntegrator {
     /// Of [`explicit`].
     Explicit(explicit::StoredExplicit),
+    /// Of [`xpbd`].
+    Xpbd(xpbd::StoredXpbd),
 }
 
 impl StoredIntegrator {
@@ -54,6 +58,7 @@ impl StoredIntegrator {
     pub fn kind(&self) -> IntegratorKind {
         match self {
             Self::Explicit(_) => IntegratorKind::Explicit,
+            Self::Xpbd(_) => IntegratorKind::Xpbd,
         }
     }
 
@@ -63,6 +68,7 @@ impl StoredIntegrator {
             Self::Explicit(stored) => {
                 Box::new(explicit::Explicit::resume(system, state, stored, cfl))
             }
+            Self::Xpbd(stored) => Box::new(xpbd::Xpbd::resume(system, state, &stored, cfl)),
         }
     }
 
@@ -70,6 +76,8 @@ impl StoredIntegrator {
     fn fits(&self, system: &FilmSystem) -> bool {
         match self {
             Self::Explicit(stored) => stored.fits(system),
+            // It holds no field of the film.
+            Self::Xpbd(_) => true,
         }
     }
 }

@@ -30,11 +30,13 @@ pub enum IntegratorKind {
     /// Central differences: [`crate::integrators::explicit`].
     #[default]
     Explicit,
+    /// Extended position-based dynamics: [`crate::integrators::xpbd`].
+    Xpbd,
 }
 
 impl IntegratorKind {
     /// Every kind.
-    pub const ALL: [Self; 1] = [Self::Explicit];
+    pub const ALL: [Self; 2] = [Self::Explicit, Self::Xpbd];
 
     /// Whether it is the one of a scene that names none. Job ids depend on this: a scene that names none
     /// keeps its id.

@@ -8,7 +8,7 @@ use crate::geometry::field::Field;
 use crate::geometry::fold::{FoldDesign, FoldPattern};
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::geometry::shell::Shell;
-use crate::integrators::{FilmSimulation, SimulationSettings};
+use crate::integrators::{FilmSimulation, SimulationSettings, xpbd};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::gas::{Gas, GasState};
 use crate::mechanics::supports::{PrescribedNodes, Supports};
@@ -17,7 +17,7 @@ use crate::scene::error::SceneError;
 use crate::scene::film_scene::{Filling, FilmContact, FilmOutputs, FilmScene, FilmSolver};
 use crate::scene::film_support::{FilmSupport, Hold};
 use crate::scene::plate::Plate;
-use crate::scene::{Scene, Support, SupportLocation};
+use crate::scene::{IntegratorKind, Scene, Support, SupportLocation};
 use crate::system::{FilmSystem, PressureLoad};
 
 /// Subdivisions of the mesh on which the largest displacement of the imperfection is its amplitude.
@@ -198,6 +198,9 @@ pub fn constants(
         contact: scene.contact.as_ref().map(|_| contact_model(scene, &model, &positions)),
         ..FilmSystem::free(model, pressure_load)
     };
+    if solver.integrator == IntegratorKind::Xpbd {
+        xpbd::check(&system)?;
+    }
     let settings = SimulationSettings {
         integrator: solver.integrator,
         cfl: solver.cfl,
