@@ -36,3 +36,4 @@ mod statics;
 mod storeys_capsule;
 mod system;
 mod velocity_verlet;
+mod xpbd;
