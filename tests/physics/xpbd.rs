@@ -151,9 +151,10 @@ fn a_breathing_sphere_approaches_central_differences() {
         assert!((last.gravity_work - last_gravity(&film)).abs() < 1e-9 * last.gravity_work);
         [volume.abs(), xpbd(&film).residual.mean()]
     });
-    assert!(runs[3][0] < 0.03, "{runs:?}");
+    assert!(runs[3][0] < 0.07 && runs[3][0] < 0.6 * runs[2][0], "{runs:?}");
     assert!(runs.windows(2).all(|pair| pair[1][0] < pair[0][0] && pair[1][1] < pair[0][1]));
-    assert!(runs[3][1] < 0.05, "{runs:?}");
+    // Squares of substeps: what one pass leaves is the softness of the film.
+    assert!(runs.windows(2).all(|pair| pair[1][1] < 0.35 * pair[0][1]), "{runs:?}");
 }
 
 /// Work of gravity on a film that began at rest at the origin, J.
