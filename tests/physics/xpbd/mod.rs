@@ -5,24 +5,22 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{crossed_grid, grid, icosphere, moved, nodes_where};
-use billow_solver::integrators::xpbd::{SUBSTEP_FACTOR, StoredXpbd, check};
-use billow_solver::integrators::{FilmSimulation, StoredIntegrator};
+use billow_solver::integrators::xpbd::{SUBSTEP_FACTOR, StoredXpbd};
+use billow_solver::integrators::{FilmSimulation, SimulationSettings, StoredIntegrator};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
-use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::output::outcome::FailureKind;
-use billow_solver::platform::simd::InstructionSet;
-use billow_solver::scene::error::SceneError;
-use billow_solver::scene::film_scene::FilmContact;
-use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
+use billow_solver::scene::film_support::{FilmSupport, Hold};
 use billow_solver::scene::motion::{Motion, Profile};
 use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, IntegratorKind, ModelKind, Scene, Stepping, paper};
+use billow_solver::scene::{Film, IntegratorKind};
 use billow_solver::system::PressureLoad;
 use nalgebra::{Rotation3, Vector3};
 
-use crate::film_rig::{INFLOW, free, moving, nitrogen_gas, resumed, stowed, text};
+use crate::film_rig::{INFLOW, free, moving, nitrogen_gas};
 use crate::velocity_verlet::{largest_residual, ledgers};
+
+mod contact;
 
 /// What the method keeps.
 fn xpbd(film: &FilmSimulation) -> StoredXpbd {
@@ -272,86 +270,6 @@ fn material_loss_is_that_of_central_differences() {
     assert!(errors[2].abs() < 0.02 && errors[2].abs() < errors[0].abs(), "{errors:?}");
 }
 
-/// The paper's capsule at n 2 with contact, packed until 2 ms.
-fn stowed_scene(release_time: f64) -> Scene {
-    let mut scene = paper::capsule(2, 0.03);
-    scene.solver.model = ModelKind::Film;
-    scene.solver.integrator = IntegratorKind::Xpbd;
-    scene.solver.stepping = Stepping::Stable(0.45);
-    scene.release_time = release_time;
-    scene
-}
-
-fn capsule_film(set: InstructionSet) -> FilmSimulation {
-    let mut film = stowed(set, &stowed_scene(2e-3), 0.45);
-    film.contact = Some(FilmContact::default());
-    capsule::start(&film, &[]).unwrap()
-}
-
-fn to_end(film: &mut FilmSimulation) {
-    let packed = Phase { packed: true, ..INFLOW };
-    for (target, phase) in [(2e-3, packed), (1e-2, INFLOW), (2.5e-2, INFLOW)] {
-        film.advance(target, &phase).unwrap();
-    }
-}
-
-#[test]
-fn a_pause_a_checkpoint_and_the_instruction_set_change_no_bit() {
-    let mut whole = capsule_film(InstructionSet::detect());
-    to_end(&mut whole);
-    let end = text(&whole);
-    let view = whole.view();
-    assert_eq!((view.passages(), view.intersections()), (Some(0), Some(0)));
-    assert!(view.ledger().contact_dissipation >= 0.0 && view.accounting().film_stress > 0.0);
-    assert!(view.state.contact.plates.iter().all(|plate| plate.offsets.is_empty()));
-
-    let packed = Phase { packed: true, ..INFLOW };
-    let mut paused = capsule_film(InstructionSet::detect());
-    let mut pauses = 0;
-    for (target, phase) in [(2e-3, packed), (1e-2, INFLOW), (2.5e-2, INFLOW)] {
-        let mut steps = 7;
-        while !paused.advance_at_most(target, &phase, &mut steps).unwrap() {
-            paused = resumed(paused);
-            (steps, pauses) = (7, pauses + 1);
-        }
-    }
-    assert!(pauses > 10, "{pauses}");
-    assert_eq!(text(&paused), end);
-
-    for set in InstructionSet::ALL {
-        let mut film = capsule_film(set);
-        to_end(&mut film);
-        assert_eq!(text(&film), end, "{}", set.name());
-    }
-}
-
-/// Film between base and lid presses on the lid about as with central differences, and does not pass it.
-#[test]
-fn packed_film_presses_on_its_lid() {
-    let force = |kind| {
-        let mut scene = stowed_scene(0.02);
-        scene.solver.integrator = kind;
-        let contact = Some(FilmContact::default());
-        let mut run = FilmRun::from_scene(InstructionSet::detect(), &scene, 0.45, contact).unwrap();
-        let packed = Phase { packed: true, ..INFLOW };
-        let mut mean = 0.0;
-        for sample in 1..=200 {
-            run.film.advance(1e-4 * f64::from(sample), &packed).unwrap();
-            let plates = run.view().state.contact.plates.iter();
-            mean += plates.map(|plate| plate.force).sum::<f64>() / 200.0;
-        }
-        let (system, state) = (run.view().system, run.view().state);
-        for plate in &system.contact.as_ref().unwrap().plates {
-            assert!(plate.smallest_gap(&state.positions, 0.02) > 0.0, "{}", plate.name);
-        }
-        assert_eq!(run.view().passages(), Some(0));
-        mean
-    };
-    let (explicit, found) = (force(IntegratorKind::Explicit), force(IntegratorKind::Xpbd));
-    println!("mean force on both plates {found} N, explicit {explicit} N");
-    assert!(explicit > 10.0 && (found / explicit - 1.0).abs() < 0.2, "{found} {explicit}");
-}
-
 #[test]
 fn a_substep_is_a_multiple_of_the_stable_step_and_bound_by_the_step_limit() {
     let (mut film, _) = sheet(IntegratorKind::Xpbd, 0.1, 1e-3);
@@ -360,86 +278,9 @@ fn a_substep_is_a_multiple_of_the_stable_step_and_bound_by_the_step_limit() {
     film.advance(10.5 * expected, &free()).unwrap();
     assert_eq!(film.view().steps(), 11);
     let mut limited = film.with(|system, settings| {
-        let settings =
-            billow_solver::integrators::SimulationSettings { step_limit: 20, ..settings };
+        let settings = SimulationSettings { step_limit: 20, ..settings };
         (system, settings)
     });
     let failure = limited.advance(1.0, &free()).unwrap_err();
     assert_eq!((failure.kind, limited.view().steps()), (FailureKind::StepLimit, 20));
-}
-
-/// Substeps far too long: the film is so soft that its energy has no source, and the run says so.
-#[test]
-fn film_that_is_far_too_soft_is_a_failure() {
-    let mut scene = paper::capsule(4, 0.03);
-    scene.solver.model = ModelKind::Film;
-    scene.solver.integrator = IntegratorKind::Xpbd;
-    let contact = Some(FilmContact::default());
-    let mut run = FilmRun::from_scene(InstructionSet::detect(), &scene, 1.0, contact).unwrap();
-    let failure = (1..=30)
-        .find_map(|sample| run.film.advance(1e-3 * f64::from(sample), &INFLOW).err())
-        .expect("a failure");
-    println!("{failure:?}, residual {:?}", xpbd(&run.film).residual);
-    assert_eq!(failure.kind, FailureKind::Unstable);
-    assert!(xpbd(&run.film).residual.last > 0.3);
-}
-
-#[test]
-fn what_the_method_does_not_have_is_refused() {
-    let refusal = |contact: FilmContact| {
-        let mut film = stowed(InstructionSet::detect(), &stowed_scene(0.0), 0.45);
-        film.contact = Some(contact);
-        capsule::start(&film, &[]).map(|_| ())
-    };
-    assert_eq!(refusal(FilmContact::default()), Ok(()));
-    let named = |refused: Result<(), SceneError>, what: &str| {
-        let Err(SceneError::Invalid { key, problem }) = refused else { panic!("{what}") };
-        assert_eq!(key, "solver.integrator");
-        assert!(problem.contains(what) && problem.contains("allowed: "), "{problem}");
-    };
-    named(refusal(FilmContact { friction: 0.3, ..FilmContact::default() }), "friction");
-    named(refusal(FilmContact { adhesion: 5.0, ..FilmContact::default() }), "adhesion");
-    let (film, _) = sheet(IntegratorKind::Xpbd, 0.3, 1e-3);
-    let mut system = film.into_parts().0;
-    let plane = PlaneBody { normal: Vector3::z(), mass: 1.0, velocity: 0.0, force: 0.0 };
-    let support =
-        FilmSupport { name: String::new(), nodes: vec![0], hold: Hold::Body(plane), motion: None };
-    system.supports = Supports::new(&[support], &Field::zeros(system.model.nodes()));
-    named(check(&system), "rigid planes");
-}
-
-/// The paper's capsule with contact: what the studies measure, with the residual beside it.
-#[test]
-#[ignore = "a measurement: a minute"]
-fn the_papers_capsule_over_substeps() {
-    for subdivisions in [4, 8] {
-        for (kind, cfl) in [
-            (IntegratorKind::Explicit, 0.45),
-            (IntegratorKind::Xpbd, 0.45),
-            (IntegratorKind::Xpbd, 0.225),
-            (IntegratorKind::Xpbd, 0.1),
-        ] {
-            let mut scene = paper::capsule(subdivisions, 0.1);
-            scene.solver.model = ModelKind::Film;
-            scene.solver.integrator = kind;
-            let contact = Some(FilmContact::default());
-            let set = InstructionSet::detect();
-            let mut run = FilmRun::from_scene(set, &scene, cfl, contact).unwrap();
-            let end = (1..=100)
-                .try_for_each(|sample| run.film.advance(1e-3 * f64::from(sample), &INFLOW));
-            let (view, state) = (run.view(), run.view().state);
-            let residual = match run.film.stored().unwrap().integrator {
-                StoredIntegrator::Xpbd(stored) => (stored.residual.mean(), stored.residual.largest),
-                _ => (0.0, 0.0),
-            };
-            println!(
-                "n {subdivisions} {kind:?} cfl {cfl}: {:?} t {} steps {} volume {:.5} {:?} residual {residual:?}",
-                end.map_err(|failure| failure.kind),
-                state.time,
-                view.steps(),
-                state.volume,
-                view.ledger()
-            );
-        }
-    }
 }
