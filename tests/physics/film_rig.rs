@@ -102,10 +102,10 @@ pub fn text(film: &FilmSimulation) -> String {
 
 /// What central differences keep beside the state.
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
-    match film.stored().expect("a film").integrator {
-        StoredIntegrator::Explicit(explicit) => explicit,
-        other => panic!("{:?} instead of central differences", other.kind()),
-    }
+    let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator else {
+        panic!("not central differences")
+    };
+    explicit
 }
 
 pub fn free() -> Phase {

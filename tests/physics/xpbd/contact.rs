@@ -2,8 +2,8 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{grid, joined, moved};
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::integrators::xpbd::check;
-use billow_solver::integrators::{FilmSimulation, StoredIntegrator};
 use billow_solver::mechanics::supports::Supports;
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::output::outcome::FailureKind;
@@ -113,50 +113,47 @@ fn thrown(height: f64, speed: f64, plates: Vec<Plate>) -> FilmSimulation {
     capsule::start(&scene, &[]).unwrap()
 }
 
-/// Mean height (m) and momentum along z (kg m/s) of each half of the nodes.
-fn halves(film: &FilmSimulation) -> [[f64; 2]; 2] {
+/// Momentum along z of each half of the nodes, kg m/s.
+fn momenta(film: &FilmSimulation) -> [f64; 2] {
     let (system, state) = (film.view().system, film.view().state);
     let count = system.model.nodes() / 2;
     [0, count].map(|first| {
         let nodes = first..first + count;
-        let height = nodes.clone().map(|node| state.positions.z[node]).sum::<f64>() / count as f64;
-        let momentum = nodes.map(|node| system.model.mass[node] * state.velocities.z[node]).sum();
-        [height, momentum]
+        nodes.map(|node| system.model.mass[node] * state.velocities.z[node]).sum()
     })
 }
 
 /// In a substep each sheet would move by the whole gap. The pairs of their safe motion keep them apart.
 #[test]
 fn two_sheets_thrown_at_each_other_do_not_pass() {
-    let mut film = thrown(1e-3, 30.0, Vec::new());
+    let speed = 45.0;
+    let mut film = thrown(1e-3, speed, Vec::new());
     let step = film.view().next_step();
-    let [[_, before], [_, opposite]] = halves(&film);
+    let [before, opposite] = momenta(&film);
     let start = film.view().ledger();
     let mut series = vec![start];
     for sample in 1..=20 {
         film.advance(10.0 * step * f64::from(sample), &free()).unwrap();
         series.push(film.view().ledger());
     }
-    let ([low, high], view) = (halves(&film), film.view());
+    let ([low, high], view) = (momenta(&film), film.view());
     let end = series[20];
     println!(
-        "moved by {:e} m a substep; heights {:e} and {:e} m, momenta {:e} and {:e} of {before:e} kg m/s, kinetic {:e} \
+        "moved by {:e} m a substep; momenta {:e} and {:e} of {before:e} kg m/s, kinetic {:e} \
          of {:e} J, dissipated by contact {:e}, numerically {:e} J, {} pairs",
-        30.0 * step,
-        low[0],
-        high[0],
-        low[1],
-        high[1],
+        speed * step,
+        low,
+        high,
         end.kinetic,
         start.kinetic,
         end.contact_dissipation,
         end.numerical_dissipation,
         view.accounting().collision_impulses,
     );
-    assert!(60.0 * step > 0.9e-3 && before > 0.0);
+    assert!(2.0 * speed * step > 1e-3 && before > 0.0);
     assert_eq!((view.passages(), view.intersections()), (Some(0), Some(0)));
-    assert!(low[0] < high[0]);
-    assert!((low[1] + high[1] - before - opposite).abs() < 1e-9 * before);
+    assert!(low < 0.1 * before && high > -0.1 * before);
+    assert!((low + high - before - opposite).abs() < 1e-9 * before);
     assert!(end.contact_dissipation > 0.0 && view.accounting().collision_impulses > 0);
     assert!(end.kinetic + end.strain < start.kinetic);
 }
@@ -182,18 +179,18 @@ fn a_moving_plate_pushes_film_and_gives_it_energy() {
     };
     let mut film = thrown(0.5, 0.0, vec![plate.clone()]);
     film.advance(end, &free()).unwrap();
-    let ([low, _], ledger) = (halves(&film), film.view().ledger());
+    let ([low, _], ledger) = (momenta(&film), film.view().ledger());
     let mass = film.view().system.model.mass.iter().sum::<f64>() / 2.0;
     let gap = plate.smallest_gap(&film.view().state.positions, end);
     println!(
         "gap {gap:e} m, momentum {:e} of {:e} kg m/s, support work {:e} J, kinetic {:e} J, numerical {:e} J",
-        low[1],
+        low,
         mass * speed,
         ledger.support_work,
         ledger.kinetic,
         ledger.numerical_dissipation
     );
-    assert!(gap > 0.0 && low[1] > 0.9 * mass * speed);
+    assert!(gap > 0.0 && low > 0.9 * mass * speed);
     assert!(ledger.support_work > 0.0);
 }
 
@@ -257,10 +254,7 @@ fn the_papers_capsule_over_substeps() {
             let end = (1..=100)
                 .try_for_each(|sample| run.film.advance(1e-3 * f64::from(sample), &INFLOW));
             let (view, state) = (run.view(), run.view().state);
-            let residual = match run.film.stored().unwrap().integrator {
-                StoredIntegrator::Xpbd(stored) => (stored.residual.mean(), stored.residual.largest),
-                _ => (0.0, 0.0),
-            };
+            let residual = (kind == IntegratorKind::Xpbd).then(|| xpbd(&run.film).residual);
             println!(
                 "n {subdivisions} {kind:?} cfl {cfl}: {:?} t {} steps {} volume {:.5} {:?} residual {residual:?}",
                 end.map_err(|failure| failure.kind),

@@ -24,10 +24,10 @@ mod contact;
 
 /// What the method keeps.
 fn xpbd(film: &FilmSimulation) -> StoredXpbd {
-    match film.stored().unwrap().integrator {
-        StoredIntegrator::Xpbd(stored) => stored,
-        other => panic!("{:?}", other.kind()),
-    }
+    let StoredIntegrator::Xpbd(stored) = film.stored().unwrap().integrator else {
+        panic!("not xpbd")
+    };
+    stored
 }
 
 const SIDE: f64 = 0.3;

@@ -223,7 +223,9 @@ mod tests {
         }
         triangles.sort_unstable();
         let mut all = system.model.triangles.clone();
-        all.iter_mut().for_each(|triangle| triangle.sort_unstable());
+        for triangle in &mut all {
+            triangle.sort_unstable();
+        }
         all.sort_unstable();
         assert_eq!(triangles, all);
         // Few batches are filled in part: one a colour.
