@@ -104,7 +104,7 @@ pub fn text(film: &FilmSimulation) -> String {
 /// What central differences keep beside the state.
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
     let StoredIntegrator::Explicit(explicit) = film.stored().expect("a film").integrator else {
-        panic!("another integrator");
+        panic!("not central differences")
     };
     explicit
 }

@@ -6,10 +6,15 @@ use billow_solver::integrators::implicit::{Implicit, StepControl};
 use billow_solver::integrators::{FilmSimulation, SimulationSettings};
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
+use billow_solver::models::run::{Answer, Observer, Pause, Progress, Unobserved};
+use billow_solver::models::{self, Stored};
+use billow_solver::output::events::{Event, EventKind};
 use billow_solver::output::ledger::{Ledger, residuals};
+use billow_solver::output::outcome::{Deployment, Stop};
+use billow_solver::platform::simd::InstructionSet;
 use billow_solver::scene::film_support::{FilmSupport, Hold, PlaneBody};
 use billow_solver::scene::timeline::Phase;
-use billow_solver::scene::{Film, IntegratorKind};
+use billow_solver::scene::{DEFAULT_CFL, Film, IntegratorKind, ModelKind, Scene, Stepping, paper};
 use billow_solver::system::{PressureLoad, Workspace};
 use nalgebra::Vector3;
 
@@ -148,6 +153,92 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
     let largest = residuals(&other_series).into_iter().fold(0.0, f64::max);
     println!("ledger residual {largest:e}");
     assert!(largest < 1e-3, "{largest:e}");
+}
+
+/// The paper's capsule at n 2 with a burst of residual gas, a pause, and a slow filling; contact on.
+fn slow_filling(kind: IntegratorKind) -> Scene {
+    let mut scene = paper::empty_capsule(2, 4.0);
+    scene.gas.windows = vec![paper::window(0.0, 0.01, 5e-3), paper::window(2.5, 4.0, 1e-3)];
+    scene.solver.model = ModelKind::Film;
+    scene.solver.stepping = Stepping::Stable(DEFAULT_CFL);
+    scene.solver.integrator = kind;
+    scene.outputs.sample_interval = 5e-3;
+    scene
+}
+
+/// Ends after the first implicit steps, with a checkpoint.
+#[derive(Default)]
+struct Storing {
+    steps: u64,
+    stored: Option<String>,
+}
+
+impl Observer for Storing {
+    fn sample(&mut self, _: Progress) -> bool {
+        true
+    }
+
+    fn steps(&mut self) -> u64 {
+        1000
+    }
+
+    fn pause(&mut self, steps: u64) -> Answer {
+        if steps >= self.steps { Answer::Store } else { Answer::Continue }
+    }
+
+    fn store(&mut self, pause: &Pause<'_>) -> bool {
+        self.stored = (pause.text)("scene").map(Result::unwrap);
+        false
+    }
+}
+
+#[test]
+fn a_hybrid_run_ends_as_an_explicit_one_with_fewer_steps_and_resumes_with_the_same_bits() {
+    let set = InstructionSet::detect();
+    let solve = |kind: IntegratorKind, observer: &mut dyn Observer| {
+        models::solve(set, &slow_filling(kind), observer).unwrap()
+    };
+    let explicit = solve(IntegratorKind::Explicit, &mut Unobserved);
+    let hybrid = solve(IntegratorKind::Hybrid, &mut Unobserved);
+    assert_eq!((explicit.stop.clone(), hybrid.stop.clone()), (Stop::Done, Stop::Done));
+    let implicit = |event: &&Event| event.kind == EventKind::Implicit;
+    let change = hybrid.events.iter().find(implicit).expect("a change to implicit steps");
+    println!(
+        "implicit from {} s; {} and {} steps; residuals {:e} and {:e}",
+        change.time,
+        explicit.steps,
+        hybrid.steps,
+        explicit.audit.ledger_residual,
+        hybrid.audit.ledger_residual
+    );
+    assert!(2 * hybrid.steps < explicit.steps, "{} {}", hybrid.steps, explicit.steps);
+    assert!(hybrid.audit.ledger_residual < 5e-3);
+    assert_eq!((hybrid.audit.passages, hybrid.audit.intersections), (Some(0), Some(0)));
+    let last = |run: &Deployment, column: &str| *run.history.column(column).last().unwrap();
+    for (column, tolerance) in [("z_rim", 5e-3), ("volume", 5e-3), ("pressure", 1e-2)] {
+        let (a, b) = (last(&explicit, column), last(&hybrid, column));
+        println!("{column}: {a} {b}");
+        assert!((b / a - 1.0).abs() < tolerance, "{column}: {a} {b}");
+    }
+    let mut storing = Storing { steps: hybrid.steps - 20, stored: None };
+    solve(IntegratorKind::Hybrid, &mut storing);
+    let text = storing.stored.expect("a checkpoint");
+    assert!(text.contains("\"implicit\""), "a checkpoint of implicit steps");
+    let stored = Stored { fingerprint: "scene", text: &text };
+    let scene = slow_filling(IntegratorKind::Hybrid);
+    let resumed = models::resume(set, &scene, &stored, &mut Unobserved).unwrap();
+    assert_eq!(format!("{resumed:?}"), format!("{hybrid:?}"));
+}
+
+#[test]
+fn friction_and_moving_supports_are_refused_by_name() {
+    for kind in [IntegratorKind::Implicit, IntegratorKind::Hybrid] {
+        let mut scene = slow_filling(kind);
+        scene.contact.friction = 0.1;
+        let error = models::solve(InstructionSet::detect(), &scene, &mut Unobserved).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains("solver.integrator") && text.contains("has no friction"), "{text}");
+    }
 }
 
 /// Errors follow the tolerance, and steps beyond a sample change no bit of the steps.

@@ -37,3 +37,4 @@ mod statics;
 mod storeys_capsule;
 mod system;
 mod velocity_verlet;
+mod xpbd;

@@ -28,7 +28,7 @@ fn after(milliseconds: u32, never_quiescent: bool) -> FilmSimulation {
     for target in 1..=milliseconds {
         if never_quiescent {
             film = edited(film, |stored| {
-                let StoredIntegrator::Explicit(explicit) = &mut stored.integrator else { return };
+                let StoredIntegrator::Explicit(explicit) = &mut stored.integrator else { panic!() };
                 explicit.motion.quiescence.last_active = stored.state.time;
             });
         }
@@ -71,7 +71,7 @@ fn activity_shortens_the_steps_of_quiescent_film() {
         let events = film.take_events();
         assert_eq!(events.last().map(|event| event.kind), Some(EventKind::Quiescent));
         edited(film, |stored| {
-            let StoredIntegrator::Explicit(explicit) = &mut stored.integrator else { return };
+            let StoredIntegrator::Explicit(explicit) = &mut stored.integrator else { panic!() };
             for node in 0..stored.state.positions.len() {
                 let position = stored.state.positions.get(node);
                 let down = Vector3::new(0.0, 0.0, -60.0 * position.z.max(0.0));

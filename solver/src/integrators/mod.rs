@@ -19,6 +19,7 @@ pub mod hybrid;
 pub mod implicit;
 pub mod interface;
 pub mod passage_audit;
+pub mod xpbd;
 
 pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
 pub use film_view::FilmView;
@@ -34,6 +35,17 @@ pub struct IntegratorEntry {
     pub meaning: &'static str,
     /// The integrator of a state, with the workspace that evaluated it, at a CFL number.
     pub start: fn(&FilmSystem, &FilmState, Workspace, f64) -> Box<dyn Integrator>,
+    /// Why it cannot move a system; `None` if it can.
+    pub refuses: fn(&FilmSystem) -> Option<Refusal>,
+}
+
+/// Why an integrator cannot move a system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Refusal {
+    /// What it does not know.
+    pub unknown: &'static str,
+    /// What is allowed instead.
+    pub allowed: &'static str,
 }
 
 /// The row of an integrator.
@@ -42,6 +54,7 @@ pub const fn entry(kind: IntegratorKind) -> &'static IntegratorEntry {
         IntegratorKind::Explicit => &explicit::ENTRY,
         IntegratorKind::Implicit => &implicit::ENTRY,
         IntegratorKind::Hybrid => &hybrid::ENTRY,
+        IntegratorKind::Xpbd => &xpbd::ENTRY,
     }
 }
 
@@ -55,6 +68,8 @@ pub enum StoredIntegrator {
     Implicit(Box<implicit::StoredImplicit>),
     /// Of [`hybrid`].
     Hybrid(Box<hybrid::StoredHybrid>),
+    /// Of [`xpbd`].
+    Xpbd(xpbd::StoredXpbd),
 }
 
 impl StoredIntegrator {
@@ -64,6 +79,7 @@ impl StoredIntegrator {
             Self::Explicit(_) => IntegratorKind::Explicit,
             Self::Implicit(_) => IntegratorKind::Implicit,
             Self::Hybrid(_) => IntegratorKind::Hybrid,
+            Self::Xpbd(_) => IntegratorKind::Xpbd,
         }
     }
 
@@ -75,6 +91,7 @@ impl StoredIntegrator {
             }
             Self::Implicit(stored) => Box::new(implicit::Implicit::resume(system, state, *stored)),
             Self::Hybrid(stored) => Box::new(hybrid::Hybrid::resume(system, state, *stored, cfl)),
+            Self::Xpbd(stored) => Box::new(xpbd::Xpbd::resume(system, state, &stored, cfl)),
         }
     }
 
@@ -84,6 +101,8 @@ impl StoredIntegrator {
             Self::Explicit(stored) => stored.fits(system),
             Self::Implicit(stored) => stored.fits(system),
             Self::Hybrid(stored) => stored.fits(system),
+            // It holds no field of the film.
+            Self::Xpbd(_) => true,
         }
     }
 }

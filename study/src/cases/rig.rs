@@ -85,7 +85,7 @@ pub fn advance(film: &mut FilmSimulation, target: f64, phase: &Phase) -> Result<
 pub fn explicit(film: &FilmSimulation) -> StoredExplicit {
     match film.stored().map(|stored| stored.integrator) {
         Some(StoredIntegrator::Explicit(explicit)) => explicit,
-        _ => unreachable!("central differences can be stored"),
+        _ => unreachable!("reference cases use central differences, which can be stored"),
     }
 }
 

@@ -85,7 +85,12 @@ pub struct StepInterval {
 impl StepInterval {
     /// Equal steps from `start` to `target` (s), each at most `max_step` (s). `None` if a step would
     /// not advance time.
-    pub(super) fn new(start: f64, target: f64, max_step: f64, quiescent: bool) -> Option<Self> {
+    pub(in crate::integrators) fn new(
+        start: f64,
+        target: f64,
+        max_step: f64,
+        quiescent: bool,
+    ) -> Option<Self> {
         if target <= start {
             return Some(Self { start, target, length: 0.0, count: 0, index: 0, quiescent });
         }
@@ -100,7 +105,7 @@ impl StepInterval {
     }
 
     /// Time at which the next step ends, s; `None` after the last step.
-    pub(super) fn next_end(&self) -> Option<f64> {
+    pub(in crate::integrators) fn next_end(&self) -> Option<f64> {
         if self.index >= self.count {
             return None;
         }

@@ -19,7 +19,7 @@ use crate::integrators::implicit::{
     Implicit, Newton, Patience, Progress, StepControl, StoredImplicit,
 };
 use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
-use crate::integrators::{IntegratorEntry, StoredIntegrator};
+use crate::integrators::{IntegratorEntry, StoredIntegrator, implicit};
 use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::events::{Event, EventKind};
 use crate::output::ledger::Ledger;
@@ -31,6 +31,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     name: "hybrid",
     meaning: "explicit while film moves, implicit while it hardly does",
     start: |system, state, workspace, cfl| Box::new(Hybrid::start(system, state, workspace, cfl)),
+    refuses: implicit::refusal,
 };
 
 /// Upper bound of the kinetic energy over its largest value at which film hardly moves. Chosen.

@@ -14,12 +14,13 @@ use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
-use crate::integrators::{IntegratorEntry, StoredIntegrator};
+use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{Failure, FailureKind};
 use crate::platform::stopwatch::Stage;
 use crate::scene::inflow::Inflow;
+use crate::scene::plate::Plate;
 use crate::scene::timeline::Phase;
 use crate::system::{Evaluation, FilmState, FilmSystem, Workspace};
 
@@ -46,6 +47,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         let control = StepControl::error(cfl, system.model.size(), 1.0);
         Box::new(Implicit::start(system, state, workspace, control))
     },
+    refuses: refusal,
 };
 
 /// First step over the stable step of explicit film: 2/ω. Chosen: its error is far below any tolerance.
@@ -90,15 +92,16 @@ pub struct Implicit {
 }
 
 /// Why film cannot be integrated implicitly; `None` if it can.
-pub fn refusal(system: &FilmSystem) -> Option<&'static str> {
+pub fn refusal(system: &FilmSystem) -> Option<Refusal> {
     let contact = system.contact.as_ref();
-    if contact.is_some_and(|contact| contact.friction > 0.0) {
-        return Some("friction");
-    }
-    if contact.is_some_and(|contact| contact.plates.iter().any(|plate| plate.motion.is_some())) {
-        return Some("moving plates");
-    }
-    (!system.supports.movers.is_empty()).then_some("moving supports")
+    let moving = |plates: &[Plate]| plates.iter().any(|plate| plate.motion.is_some());
+    let refused = [
+        (contact.is_some_and(|model| model.friction > 0.0), "friction", "contact.friction 0"),
+        (contact.is_some_and(|model| moving(&model.plates)), "moving plates", "plates at rest"),
+        (!system.supports.movers.is_empty(), "moving supports", "supports at rest"),
+    ];
+    let refused = refused.into_iter().find(|(present, ..)| *present);
+    refused.map(|(_, unknown, allowed)| Refusal { unknown, allowed })
 }
 
 impl Implicit {
