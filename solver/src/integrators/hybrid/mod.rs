@@ -281,7 +281,7 @@ impl Integrator for Hybrid {
         let active = match self.active().stored()? {
             StoredIntegrator::Explicit(stored) => StoredActive::Explicit(stored),
             StoredIntegrator::Implicit(stored) => StoredActive::Implicit(stored),
-            StoredIntegrator::Hybrid(_) => return None,
+            StoredIntegrator::Hybrid(_) | StoredIntegrator::Xpbd(_) => return None,
         };
         let (policy, ordered_at) = (self.policy, self.ordered_at.clone());
         Some(StoredIntegrator::Hybrid(Box::new(StoredHybrid { policy, active, ordered_at })))

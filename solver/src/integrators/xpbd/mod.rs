@@ -20,7 +20,7 @@
 //! stores more energy than it was given. The fastest waves lose energy. Further energies are explicit, so they bound h. The
 //! numerical damping ratio is ignored: the method damps by itself. Creep is split off: it advances after each
 //! substep ([`sweep`]). Film is kept apart by [`contacts`]. Friction, adhesion and rigid planes are refused
-//! ([`check`]).
+//! ([`refusal`]).
 //!
 //! Numerical dissipation is what closes the ledger. So no residual of the ledger can fault this method; a
 //! dissipation far below zero does (`unstable`), and so does [`Residual`], which the history file has as a track.
@@ -104,7 +104,7 @@ impl Xpbd {
     /// Starts at a state.
     ///
     /// # Panics
-    /// If [`check`] refuses the system.
+    /// If [`refusal`] refuses the system.
     pub fn start(system: &FilmSystem, state: &FilmState, workspace: Workspace, cfl: f64) -> Self {
         let mut accounting = EnergyAccounting::start(system, state);
         accounting.broad_phase_rebuilds = u64::from(system.contact.is_some());
@@ -118,7 +118,7 @@ impl Xpbd {
     /// Resumes at a state with what was stored there. The run continues with the same bits.
     ///
     /// # Panics
-    /// If [`check`] refuses the system.
+    /// If [`refusal`] refuses the system.
     pub fn resume(system: &FilmSystem, state: &FilmState, stored: &StoredXpbd, cfl: f64) -> Self {
         let rebuilds = stored.accounting.broad_phase_rebuilds;
         let progress = SearchProgress { path_length: stored.path_length, rebuilds };
@@ -133,7 +133,7 @@ impl Xpbd {
         stored: &StoredXpbd,
         cfl: f64,
     ) -> Self {
-        let refused = check(system).err();
+        let refused = refusal(system);
         assert!(refused.is_none(), "{refused:?}");
         workspace.forces_at(system, state, None);
         let mobility = Mobility::new(system);
