@@ -126,7 +126,7 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
         moving(&shell, &film, load, still, |system, settings| {
             system.supports = Supports::new(&[support], &positions);
             system.mass_damping = 20.0;
-            settings.cfl = 0.1;
+            settings.cfl = 0.025;
         })
     };
     let run = |mut film: FilmSimulation| {
@@ -138,7 +138,7 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
         (film.view().state.clone(), film.view().gas_balance(), series)
     };
     let (state, gas, series) = run(build());
-    let (other, other_gas, other_series) = run(with_implicit_steps(build(), 5e-6));
+    let (other, other_gas, other_series) = run(with_implicit_steps(build(), 2.5e-6));
     let distance = state.positions.largest_displacement(&other.positions);
     println!("{distance:e} {series:?} {other_series:?}");
     assert!(distance < 2e-5, "{distance:e}");
@@ -155,10 +155,10 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
     assert!(largest < 1e-3, "{largest:e}");
 }
 
-/// The paper's capsule at n 2 with a burst of residual gas, a pause, and a slow filling; contact on.
+/// The paper's capsule at n 3 with a burst of residual gas, a pause, and a slow filling; contact on.
 fn slow_filling(kind: IntegratorKind) -> Scene {
-    let mut scene = paper::empty_capsule(2, 4.0);
-    scene.gas.windows = vec![paper::window(0.0, 0.01, 5e-3), paper::window(2.5, 4.0, 1e-3)];
+    let mut scene = paper::empty_capsule(3, 6.0);
+    scene.gas.windows = vec![paper::window(0.0, 0.01, 5e-3), paper::window(2.5, 6.0, 1e-3)];
     scene.solver.model = ModelKind::Film;
     scene.solver.stepping = Stepping::Stable(DEFAULT_CFL);
     scene.solver.integrator = kind;
@@ -179,7 +179,7 @@ impl Observer for Storing {
     }
 
     fn steps(&mut self) -> u64 {
-        1000
+        10
     }
 
     fn pause(&mut self, steps: u64) -> Answer {
@@ -211,7 +211,7 @@ fn a_hybrid_run_ends_as_an_explicit_one_with_fewer_steps_and_resumes_with_the_sa
         explicit.audit.ledger_residual,
         hybrid.audit.ledger_residual
     );
-    assert!(2 * hybrid.steps < explicit.steps, "{} {}", hybrid.steps, explicit.steps);
+    assert!(3 * hybrid.steps < 2 * explicit.steps, "{} {}", hybrid.steps, explicit.steps);
     assert!(hybrid.audit.ledger_residual < 5e-3);
     assert_eq!((hybrid.audit.passages, hybrid.audit.intersections), (Some(0), Some(0)));
     let last = |run: &Deployment, column: &str| *run.history.column(column).last().unwrap();

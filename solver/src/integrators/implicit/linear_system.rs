@@ -118,7 +118,7 @@ impl LinearSystem {
         true
     }
 
-    /// |K_pairs| on the diagonal: at least what a pair can add.
+    /// The diagonal of `K_pairs`: at least what a pair can add.
     fn set_pair_diagonal(&mut self) {
         self.pair_diagonal.fill(0.0);
         for ([first, second], block) in &self.pairs {
