@@ -56,8 +56,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     start: |system, state, workspace, cfl| Box::new(Xpbd::start(system, state, workspace, cfl)),
 };
 
-/// Substep over the stable step of central differences without gas and contact, at the same CFL number. Chosen: at
-/// the default CFL number the paper's film is then softer by a quarter at most, and with 8 its energy has no source.
+/// Substep over the stable step of central differences without gas and contact, at the same CFL number. Chosen: with
+/// 8 the default CFL number leaves the paper's film so soft that its energy has no source.
 pub const SUBSTEP_FACTOR: f64 = 4.0;
 /// Bound of a substep over that of stability for the explicit forces. Chosen below 1.
 const MAX_EXPLICIT_SHARE: f64 = 0.8;
