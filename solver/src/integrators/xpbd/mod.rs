@@ -19,7 +19,7 @@
 //! element bears its load only when it is stretched 1 + h² Σ f·W f/(2 U) times as far, so taut film is too soft, and
 //! stores more energy than it was given. The fastest waves lose energy. Further energies are explicit, so they bound h. The
 //! numerical damping ratio is ignored: the method damps by itself. Creep is split off: it advances after each
-//! substep ([`sweep`]). Film is kept apart by [`contacts`]. Friction, adhesion and rigid planes are refused
+//! substep (`sweep`). Film is kept apart by `contacts`. Friction, adhesion and rigid planes are refused
 //! ([`check`]).
 //!
 //! Numerical dissipation is what closes the ledger. So no residual of the ledger can fault this method; a
