@@ -104,7 +104,7 @@ impl<'a> FilmView<'a> {
         self.integrator.smallest_gap()
     }
 
-    /// What the last step left of the method's own equations; `None` for a method without iterations.
+    /// What the last step left of the method's equations; `None` for a method without iterations.
     pub fn residual(&self) -> Option<f64> {
         self.integrator.residual()
     }

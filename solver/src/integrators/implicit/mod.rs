@@ -1,12 +1,12 @@
 //! BDF2 for film and its gas: steps far longer than the stable step of central differences.
 //!
 //! ```text
-//! positions after a step: minimum of Π(x) + ½ w |x − x̂|²_M       [`method`], by Newton's method [`newton`]
+//! positions after a step: minimum of Π(x) + ½ w |x − x̂|²_M       `method`, by Newton's method `newton`
 //! ```
 //!
 //! Pressure, gas (as a stiffness of rank one), contact, plates and further terms are implicit; inflow, leak, heat and
-//! creep are split off ([`step`]). The length of a step follows from its error ([`step_control`]); a step may go beyond
-//! a sample, within its phase, and the state is interpolated ([`dense_output`]). No film passes through film: every
+//! creep are split off (`step`). The length of a step follows from its error ([`step_control`]); a step may go beyond
+//! a sample, within its phase, and the state is interpolated (`dense_output`). No film passes through film: every
 //! Newton step and the whole way of a step are bounded by the safe step of contact. Numerical damping is not needed,
 //! and not used. Friction, moving supports and moving plates are refused ([`refusal`]).
 

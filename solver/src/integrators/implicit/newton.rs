@@ -5,7 +5,7 @@
 //! A d = −∂Φ/∂x        x ← x + α d                 Φ falls by at least 1e-4 of its slope
 //! ```
 //!
-//! Symbols: Π energy of film, gas, contact and loads; w and x̂ from the method ([`super::method`]). α is at most the
+//! Symbols: Π energy of film, gas, contact and loads; w and x̂ from the method (`super::method`). α is at most the
 //! share of d that brings no film into film, from the first positions on.
 
 use super::linear_system::{LinearSystem, dot};

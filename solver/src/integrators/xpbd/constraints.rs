@@ -34,7 +34,8 @@ impl Mobility {
             (0..nodes).map(|node| system.supports.projector(node)).collect();
         for mover in &system.supports.movers {
             let free = Matrix3::identity() - mover.held;
-            for node in &mover.nodes {
+            let nodes = mover.nodes.iter();
+            for node in nodes {
                 let projector = &mut projectors[*node as usize];
                 *projector = free * *projector * free;
             }

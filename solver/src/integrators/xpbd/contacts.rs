@@ -158,7 +158,7 @@ fn slow_down(
     let (mut mass, mut moment) = (0.0, Vector3::zeros());
     let free = nodes.map(|node| mobility.is_free(node as usize));
     for k in 0..4 {
-        // A node that a support holds counts alone: it does not give way.
+        // A node that a support holds counts alone: it does not yield.
         if free[k] == free.iter().all(|free| *free) {
             let weight = if free[k] { system.model.mass[nodes[k] as usize] } else { 1.0 };
             mass += weight;

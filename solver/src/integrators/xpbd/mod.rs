@@ -19,7 +19,7 @@
 //! element bears its load only when it is stretched 1 + h² Σ f·W f/(2 U) times as far, so taut film is too soft, and
 //! stores more energy than it was given. The fastest waves lose energy. Further energies are explicit, so they bound h. The
 //! numerical damping ratio is ignored: the method damps by itself. Creep is split off: it advances after each
-//! substep ([`sweep`]). Film is kept apart by [`contacts`]. Friction, adhesion and rigid planes are refused
+//! substep (`sweep`). Film is kept apart by `contacts`. Friction, adhesion and rigid planes are refused
 //! ([`refusal`]).
 //!
 //! Numerical dissipation is what closes the ledger. So no residual of the ledger can fault this method; a
@@ -57,8 +57,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     refuses: refusal,
 };
 
-/// Substep over the stable step of central differences without gas and contact, at the same CFL number. Chosen: at
-/// the default CFL number the paper's film is then softer by a quarter at most, and with 8 its energy has no source.
+/// Substep over the stable step of central differences without gas and contact, at the same CFL number. Chosen: with
+/// 8 the default CFL number leaves the paper's film so soft that its energy has no source.
 pub const SUBSTEP_FACTOR: f64 = 4.0;
 /// Bound of a substep over that of stability for the explicit forces. Chosen below 1.
 const MAX_EXPLICIT_SHARE: f64 = 0.8;

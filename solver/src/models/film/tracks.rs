@@ -16,7 +16,7 @@ pub const FILM_STRESS_99: (&str, &str, &str) = (
 const RESIDUAL: (&str, &str, &str) = (
     "integrator_residual",
     "1",
-    "what the last step left of the integrator's own equations, relative to their terms",
+    "what the last step left of the integrator's equations, relative to their terms",
 );
 /// Fraction of the area that reaches [`FILM_STRESS_99`].
 const ABOVE_99: f64 = 0.01;

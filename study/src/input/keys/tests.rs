@@ -72,7 +72,7 @@ fn every_quantity_with_a_unit_has_a_plausible_range() {
 #[test]
 fn every_value_arrives_in_the_draft() {
     for key in KEYS.iter().chain(&SCENE.keys.iter().map(|key| **key).collect::<Vec<_>>()) {
-        // The reader of the file uses these by name; the caps of a study and the integrator have one value;
+        // The reader of the file uses these by name; the caps of a study have one value, and the integrator's example is its default;
         // limits of jobs are no part of a scene.
         if key.path.starts_with("job_limits.") {
             continue;
