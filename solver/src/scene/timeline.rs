@@ -11,7 +11,7 @@ pub struct Phase {
     pub packed: bool,
     /// Inflow.
     pub inflow: Inflow,
-    /// Time until which the phase holds, s, for steps that go beyond a sample; 0 where nobody knows it.
+    /// Time until which the phase holds, s, for steps that go beyond a sample; 0 where it is not known.
     pub end: f64,
 }
 

@@ -5,7 +5,7 @@
 //!            = x + s (x' − x)                                                               in contact
 //! ```
 //!
-//! Film in contact takes the straight way, the one that was tested for passages. Gas, creep strain and accounting are
+//! Film in contact moves straight, as it was tested for passages. Gas, creep strain and accounting are
 //! linear in s; volume and pressure follow.
 
 use nalgebra::Vector3;
@@ -61,7 +61,7 @@ fn hermite([(x, v), (y, w)]: [End; 2], length: f64, s: f64) -> End {
     (position, velocity)
 }
 
-/// Position (m) and velocity (m/s) on the straight way; at its ends the velocity is that of the end.
+/// Position (m) and velocity (m/s) of the straight motion; at its ends the velocity is that of the end.
 fn straight([(x, v), (y, w)]: [End; 2], s: f64) -> End {
     (x + (y - x) * s, v + (w - v) * s)
 }

@@ -7,7 +7,7 @@
 //! Pressure, gas (as a stiffness of rank one), contact, plates and further terms are implicit; inflow, leak, heat and
 //! creep are split off (`step`). The length of a step follows from its error ([`step_control`]); a step may go beyond
 //! a sample, within its phase, and the state is interpolated (`dense_output`). No film passes through film: every
-//! Newton step and the whole way of a step are bounded by the safe step of contact. Numerical damping is not needed,
+//! Newton step and the whole motion of a step are bounded by the safe step of contact. Numerical damping is not needed,
 //! and not used. Friction, moving supports and moving plates are refused ([`refusal`]).
 
 use crate::collision::contact::SearchProgress;

@@ -207,7 +207,7 @@ impl Newton {
         system.safe_step(at, &Field::of(&scaled), workspace)
     }
 
-    /// Whether the straight way from the start to the positions brings no film into film. Leaves the workspace with
+    /// Whether the straight motion from the start to the positions brings no film into film. Leaves the workspace with
     /// the forces of the positions.
     fn is_safe(&mut self, increment: &Increment<'_>, workspace: &mut Workspace) -> bool {
         let Increment { system, state, end, .. } = *increment;

@@ -47,7 +47,7 @@ impl CreepStrain {
     }
 
     /// Lets the film creep for `length` (s) at these positions (m): Ṗ = (C⁻¹:S − P)/τ by the midpoint rule with the
-    /// exact decay of a constant stress. After [`MAX_TIMES`] τ creep is over.
+    /// exact decay of a constant stress. After twelve τ creep is over.
     pub fn relax(model: &FilmModel, positions: &Field, length: f64, all: &mut [[Self; 2]]) {
         let creep = &model.creep;
         let times = (length / creep.time).min(MAX_TIMES);
