@@ -76,6 +76,9 @@ impl<'a> Running<'a> {
     }
 
     /// The finished cells.
+    ///
+    /// # Panics
+    /// If a thread panicked while it stored a cell.
     pub fn cells(&self) -> Cells {
         self.cells.lock().expect("no thread panicked").clone()
     }
