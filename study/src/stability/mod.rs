@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A method is an integrator of film (each of [`IntegratorKind::ALL`]) or a model without film. A map file
-//! ([`file`]) names scenes, axes and what is expected of each cell. The runs go to the solver directly: a step
+//! ([`mod@file`]) names scenes, axes and what is expected of each cell. The runs go to the solver directly: a step
 //! beyond the stable one is outside the range of `solver.cfl`, and the map must show what it does.
 
 use billow_solver::integrators;
