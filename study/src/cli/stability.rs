@@ -13,9 +13,10 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Disk, Files, disk_error};
 use crate::platform::nearest::did_you_mean;
 use crate::platform::stop::Stop;
-use crate::stability::file::{self, Map};
+use crate::stability::file::Map;
 use crate::stability::map::{Border, Placed, Running, borders, placed};
 use crate::stability::picture::{border_text, map as map_picture, strip};
+use crate::stability::read;
 use crate::stability::stored::{self, Cells, MAP_FILE};
 
 /// Columns of the table.
@@ -67,7 +68,7 @@ pub struct Args {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let only_read = args.target.is_dir();
     let path = if only_read { args.target.join(MAP_FILE) } else { args.target.clone() };
-    let (bytes, mut maps) = file::read(&path)?;
+    let (bytes, mut maps) = read::read(&path)?;
     choose(&mut maps, &args.maps)?;
     let folder = match &args.results.results {
         Some(folder) if !only_read => folder.clone(),

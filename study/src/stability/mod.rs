@@ -17,6 +17,7 @@ pub mod cell;
 pub mod file;
 pub mod map;
 pub mod picture;
+pub mod read;
 pub mod scenes;
 pub mod stored;
 
