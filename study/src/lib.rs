@@ -15,6 +15,7 @@
 //! |---|---|
 //! | [`cli`] | the command line |
 //! | [`bench`](mod@bench) | speed of billow on this machine |
+//! | [`stability`] | the map of where each method fails |
 //! | [`cases`] | the reference cases of `billow validate` |
 //! | [`chart`] | charts of stored results |
 //! | [`render`] | pictures: SVG and PNG |
@@ -48,5 +49,6 @@ pub mod platform;
 pub mod render;
 pub mod run;
 pub mod scene;
+pub mod stability;
 pub mod store;
 pub mod study;

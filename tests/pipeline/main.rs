@@ -35,6 +35,7 @@ mod run_and_table;
 mod scene_files;
 mod search;
 mod solve;
+mod stability;
 mod status_why_show;
 mod streams;
 mod study_files;

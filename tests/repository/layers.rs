@@ -29,8 +29,21 @@ const ROOMS: [(&str, &[&str]); 2] = [
     (
         "study",
         &[
-            "platform", "input", "job", "accuracy", "study", "store", "run", "scene", "analysis",
-            "render", "chart", "cases", "bench", "cli",
+            "platform",
+            "input",
+            "job",
+            "accuracy",
+            "study",
+            "store",
+            "run",
+            "scene",
+            "analysis",
+            "render",
+            "chart",
+            "cases",
+            "stability",
+            "bench",
+            "cli",
         ],
     ),
 ];

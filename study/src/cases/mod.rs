@@ -52,7 +52,7 @@ mod static_equilibrium;
 mod static_polygon;
 mod static_shells;
 mod static_wrinkling;
-mod step_limit;
+pub(crate) mod step_limit;
 mod storeys_model;
 
 pub mod work_precision;

@@ -31,7 +31,7 @@ fn gradients([a, b, c]: [Vector2<f64>; 3]) -> Matrix2x3<f64> {
 }
 
 /// ω of the fastest mode of flat film at rest, rad/s.
-fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
+pub fn assembled(shell: &Shell, film: &Film, model: &FilmModel) -> f64 {
     let nu = film.poisson_ratio;
     let k = film.youngs_modulus / (1.0 - nu * nu);
     let mut mode = pseudo_random(shell.positions.len(), 1);

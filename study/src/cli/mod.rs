@@ -46,6 +46,7 @@ mod run;
 mod schema;
 mod show;
 mod solve;
+mod stability;
 mod status;
 mod stored;
 mod study_keys;
@@ -111,6 +112,8 @@ pub enum Command {
     Chart(chart::Args),
     /// Draw work-precision diagrams: what each model, mesh and step costs, and how large its error is.
     Pareto(pareto::Args),
+    /// Map where each method of integration fails, by real runs of small scenes.
+    Stability(stability::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
     Keys(keys::Args),
     /// Print the JSON Schema of the study file or the scene file.
@@ -166,6 +169,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Borders(args) => borders::run(args, out),
         Command::Chart(args) => chart::run(args, out),
         Command::Pareto(args) => pareto::run(args, out),
+        Command::Stability(args) => stability::run(args, out),
         Command::Keys(args) => keys::run(args, out),
         Command::Schema(args) => schema::run(args, out),
         Command::Validate(args) => validate::run(args, out),

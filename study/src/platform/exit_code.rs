@@ -41,8 +41,8 @@ pub const EXIT_CODES: [ExitCode; 4] = [
         name: "failure",
         brief: "a job, scene or case failed, or stored results are broken",
         meaning: "A job failed, `rerun` gave different bits, `doctor` found a fault, a scene of \
-                  `solve` has no result, or a case of `validate` is out of tolerance. The output \
-                  names each of them.",
+                  `solve` has no result, a case of `validate` is out of tolerance, or an outcome of \
+                  `stability` is not as expected. The output names each of them.",
     },
     ExitCode {
         number: "2",

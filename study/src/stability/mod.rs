@@ -1,0 +1,55 @@
+//! The map of failure: where each method of integration fails, by real runs of small scenes.
+//!
+//! ```text
+//! cell    one scene, one method, one value of each parameter → status, time of failure, audit, ledger residual
+//! border  the value between two cells of different outcome, by bisection: each trial is a cell too
+//! linear scenes:  largest stable step = 2/ω_max
+//! ```
+//!
+//! A method is an integrator of film (each of [`IntegratorKind::ALL`]) or a model without film. A map file
+//! ([`mod@file`]) names scenes, axes and what is expected of each cell. The runs go to the solver directly: a step
+//! beyond the stable one is outside the range of `solver.cfl`, and the map must show what it does.
+
+use billow_solver::integrators;
+use billow_solver::scene::IntegratorKind;
+
+pub mod cell;
+pub mod file;
+pub mod map;
+pub mod picture;
+pub mod read;
+pub mod scenes;
+pub mod stored;
+
+/// How a scene is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Film with this integrator.
+    Film(IntegratorKind),
+    /// The model piston.
+    Piston,
+    /// The model storeys.
+    Storeys,
+}
+
+impl Method {
+    /// Every method: all integrators, then the models without film.
+    pub fn all() -> Vec<Self> {
+        let film = IntegratorKind::ALL.map(Self::Film);
+        film.into_iter().chain([Self::Piston, Self::Storeys]).collect()
+    }
+
+    /// Name, as in a map file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Film(kind) => integrators::entry(kind).name,
+            Self::Piston => "piston",
+            Self::Storeys => "storeys",
+        }
+    }
+
+    /// The method of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|method| method.name() == name)
+    }
+}

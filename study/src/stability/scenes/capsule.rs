@@ -1,0 +1,103 @@
+//! The paper's stowed capsule with contact, for film and for the models without film.
+
+use billow_solver::geometry::mesh::Shape;
+use billow_solver::models::film::{Rings, capsule};
+use billow_solver::scene::film_scene::{FilmContact, FilmScene};
+use billow_solver::scene::monitor_settings::MonitorSettings;
+use billow_solver::scene::paper::{self, window};
+use billow_solver::scene::{ModelKind, Scene, Stepping};
+
+use super::film::prepared;
+use super::{
+    CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS, Values,
+    compression, real, whole,
+};
+use crate::cases::Rig;
+use crate::stability::Method;
+
+/// Simulated time, s. Chosen: the stack rises and unfolds in it.
+const END: f64 = 0.05;
+/// Time at which a burst begins, s.
+const BURST_START: f64 = 1e-3;
+/// Steps that a model without film may take.
+const MODEL_STEPS: u64 = 2_000_000;
+
+/// Numerical damping as a capsule has it.
+const DAMPING: Parameter = Parameter { default: paper::NUMERICAL_DAMPING, ..super::DAMPING };
+
+/// The capsule.
+pub const SCENE: StabilityScene = StabilityScene {
+    name: "capsule",
+    meaning: "the paper's stowed capsule with contact, 50 ms, every step monitored",
+    parameters: &[
+        STEP,
+        DAMPING,
+        compression(0.0),
+        THICKNESS,
+        MODULUS,
+        CONTACT_STIFFNESS,
+        whole("subdivisions", 2.0, [2.0, 6.0], "design.subdivisions"),
+        real("stowed_height", paper::STOWED_HEIGHT, [1e-6, 0.5], "design.stowed_height, m"),
+        real("mass_flow_rate", paper::MASS_FLOW_RATE, [0.0, 1e3], "inflow from 0 to the end, kg/s"),
+        real("residual_mass", 0.0, [0.0, 10.0], "mass of the gas at the start, kg"),
+        real("burst", 0.0, [0.0, 0.04], "length of a burst, s; 0 for none"),
+        real("burst_mass", 1e-4, [0.0, 1.0], "mass of the burst, kg"),
+        real("fixed_step", 0.0, [0.0, 0.05], "fixed step of the model piston, s; 0: adaptive"),
+    ],
+    models: true,
+    build,
+};
+
+/// The scene as data, without its method.
+fn scene(values: &Values) -> Scene {
+    // A whole number of the range of the parameter.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "2 to 6")]
+    let subdivisions = values.get("subdivisions") as u32;
+    let mut scene = paper::empty_capsule(subdivisions, END);
+    scene.design.stowed_height = values.get("stowed_height");
+    scene.film = values.film();
+    scene.gas.initial_mass = values.get("residual_mass");
+    let rate = values.get("mass_flow_rate");
+    if rate > 0.0 {
+        scene.gas.windows.push(window(0.0, END, rate));
+    }
+    let burst = values.get("burst");
+    if burst > 0.0 {
+        let rate = values.get("burst_mass") / burst;
+        scene.gas.windows.push(window(BURST_START, BURST_START + burst, rate));
+    }
+    scene.outputs.sample_interval = END / 40.0;
+    scene
+}
+
+fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String> {
+    let mut scene = scene(values);
+    let step = values.get("step");
+    let kind = match method {
+        Method::Film(kind) => kind,
+        Method::Piston | Method::Storeys => {
+            let fixed = values.get("fixed_step");
+            (scene.solver.model, scene.solver.stepping) = match method {
+                Method::Storeys => (ModelKind::Storeys, Stepping::Stable(step)),
+                _ if fixed > 0.0 => (ModelKind::Piston, Stepping::Fixed(fixed)),
+                _ => (ModelKind::Piston, scene.solver.stepping),
+            };
+            scene.solver.step_limit = MODEL_STEPS;
+            return Ok(Prepared::Model(Box::new(scene)));
+        }
+    };
+    scene.solver.model = ModelKind::Film;
+    // The step of the values is set later: a scene has a CFL number of its range.
+    let (height, cfl) = (scene.design.stowed_height, step.min(1.0));
+    scene.solver.stepping = Stepping::Stable(cfl);
+    let text = |error: billow_solver::scene::error::SceneError| error.to_string();
+    let stowed = Shape::Stowed(height);
+    let (film, mesh) =
+        capsule::film_scene(rig.instruction_set, &scene, stowed, cfl).map_err(text)?;
+    let monitor = MonitorSettings::EVERY_STEP;
+    let contact = FilmContact { monitor, ..FilmContact::of(&scene.contact) };
+    let contact = capsule::resolved_contact(contact, &scene.design).map_err(text)?;
+    let film = FilmScene { contact: Some(contact), ..film };
+    let (run, timeline) = prepared(rig, film, kind, values, Some(Rings::of(&mesh, height)))?;
+    Ok(Prepared::Film(Box::new(run), timeline, None))
+}

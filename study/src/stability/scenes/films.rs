@@ -1,0 +1,64 @@
+//! Two sheets that collide, every step monitored.
+
+use billow_solver::geometry::shapes::{joined, moved, sheet};
+use billow_solver::geometry::shell::Shell;
+use billow_solver::scene::film_scene::FilmScene;
+use billow_solver::scene::paper::free_film;
+use nalgebra::Vector3;
+
+use super::film::prepared;
+use super::{
+    CONTACT_STIFFNESS, DAMPING, MODULUS, Prepared, STEP, StabilityScene, THICKNESS, Values,
+    compression, real,
+};
+use crate::cases::Rig;
+use crate::cases::contact_rig::monitored_contact;
+use crate::stability::Method;
+
+/// Contact distance, m.
+const DISTANCE: f64 = 2e-3;
+/// Simulated time, s.
+const END: f64 = 4e-3;
+
+/// The sheets.
+pub const SCENE: StabilityScene = StabilityScene {
+    name: "films",
+    meaning: "two free sheets of 24 elements that collide, 4 ms, every step monitored",
+    parameters: &[
+        STEP,
+        DAMPING,
+        compression(0.0),
+        THICKNESS,
+        MODULUS,
+        CONTACT_STIFFNESS,
+        real("speed", 5.0, [0.0, 1e4], "speed of approach, m/s"),
+        real(
+            "gap",
+            2.0,
+            [0.0, 100.0],
+            "gap at the start in contact distances (2 mm); 0: facets coincide",
+        ),
+    ],
+    models: false,
+    build,
+};
+
+fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String> {
+    let Method::Film(kind) = method else { return Err("film only".to_owned()) };
+    let low = sheet(4, 3, 0.2, 0.15);
+    let nodes = low.positions.len();
+    let rise = Vector3::z() * (values.get("gap") * DISTANCE);
+    let high = moved(sheet(4, 3, 0.2, 0.15), |x| x + rise);
+    let high = Shell::relaxed(high.positions, high.triangles);
+    let shell = joined(&[low, high]);
+    let half = 0.5 * values.get("speed");
+    let velocity = |node: usize| Vector3::z() * if node < nodes { half } else { -half };
+    let mut scene = FilmScene {
+        velocities: (0..shell.positions.len()).map(velocity).collect(),
+        contact: Some(monitored_contact(DISTANCE)),
+        ..free_film(shell, values.film())
+    };
+    scene.solver.end_time = END;
+    let (run, timeline) = prepared(rig, scene, kind, values, None)?;
+    Ok(Prepared::Film(Box::new(run), timeline, None))
+}
