@@ -187,16 +187,17 @@ impl IntersectionSearch {
     ) -> bool {
         let Self { instruction_set, primitives, adjacent, elements, distant } = self;
         let motion = motion_between(positions, positions, reach);
-        distant.clear();
         found.clear();
         let Some(close) = elements.find(*instruction_set, topology, &motion, most) else {
             return false;
         };
-        for pair in close {
-            primitives.push_intersections(topology, *pair, distant);
-        }
-        for pairs in [&*adjacent, &*distant] {
-            close_edge_elements(*instruction_set, topology, pairs, &motion, found);
+        close_edge_elements(*instruction_set, topology, adjacent, &motion, found);
+        for batch in close.chunks(BATCH) {
+            distant.clear();
+            for pair in batch {
+                primitives.push_intersections(topology, *pair, distant);
+            }
+            close_edge_elements(*instruction_set, topology, distant, &motion, found);
         }
         true
     }

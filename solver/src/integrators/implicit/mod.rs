@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Pressure, gas (as a stiffness of rank one), contact, plates and further terms are implicit; inflow, leak, heat and
-//! creep are split off (`step`). The length of a step follows from its error ([`step_control`]); a step may go beyond
-//! a sample, within its phase, and the state is interpolated (`dense_output`). No film passes through film: every
+//! creep are split off (`step`). The length of a step follows from its error ([`step_control`]). Steps end at samples;
+//! those of the hybrid may go beyond, within their phase, and the state is interpolated (`dense_output`). No film passes through film: every
 //! Newton step and the whole motion of a step are bounded by the safe step of contact. Numerical damping is not needed,
 //! and not used. Friction, moving supports and moving plates are refused ([`refusal`]).
 
@@ -205,7 +205,7 @@ impl Implicit {
                 budget.audit.record(system, state)?;
                 continue;
             }
-            let limit = if self.may_go_beyond() { phase.end.max(target) } else { target };
+            let limit = if patience.is_some() { phase.end.max(target) } else { target };
             let Some(stepped) = self.step(system, state, (target, limit), phase.inflow, patience)
             else {
                 self.evaluate(system, state);
@@ -226,11 +226,6 @@ impl Implicit {
             budget.audit.complete(system, state)?;
         }
         Ok(Progress::Advanced(Advance::Reached))
-    }
-
-    /// Fixed steps end at every target.
-    fn may_go_beyond(&self) -> bool {
-        matches!(self.motion.control, StepControl::Error(_))
     }
 
     /// Energies and forces of the state.
