@@ -188,7 +188,9 @@ fn shipped_studies_and_scenes_give_no_warning() {
     let mut files: Vec<String> = Vec::new();
     for entry in fs::read_dir(format!("{root}/studies")).unwrap() {
         let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "json") {
+        // The map of failure is no study; it has a test of its own.
+        let study = !path.ends_with("stability.json");
+        if study && path.extension().is_some_and(|extension| extension == "json") {
             files.push(path.display().to_string());
         }
     }
