@@ -22,7 +22,7 @@ use billow_solver::mechanics::forces::pressure::gas_frequency_squared;
 use billow_solver::mechanics::gas::GasState;
 use billow_solver::mechanics::supports::Supports;
 use billow_solver::output::ledger::{Ledger, residuals};
-use billow_solver::output::outcome::{Failure, FailureKind};
+use billow_solver::output::outcome::{AuditKind, Failure, FailureKind};
 use billow_solver::platform::stopwatch::Stage;
 use billow_solver::scene::Film;
 use billow_solver::scene::film_support::{FilmSupport, Hold};
@@ -100,11 +100,15 @@ impl VelocityVerlet {
         self.evaluation = system.evaluate(state, &self.next, end, &mut self.workspace);
         let volume = self.evaluation.volume;
         if largest > system.model.size() || !volume.is_finite() {
-            return Err(failure(state, FailureKind::Unstable, "farther than its size in one step"));
+            return Err(failure(
+                state,
+                AuditKind::FiniteMotion,
+                "farther than its size in one step",
+            ));
         }
         match system.pressure_load {
             PressureLoad::Gas(_) if volume <= 0.0 => {
-                return Err(failure(state, FailureKind::InvertedVolume, "gas volume"));
+                return Err(failure(state, AuditKind::Volume, "gas volume"));
             }
             PressureLoad::Overpressure(pressure) => {
                 self.accounting.works.gas += pressure * (volume - state.volume);
@@ -123,8 +127,8 @@ impl VelocityVerlet {
 }
 
 /// A failure at the time of a state.
-fn failure(state: &FilmState, kind: FailureKind, place: &str) -> Failure {
-    Failure { kind, time: state.time, place: place.to_owned() }
+fn failure(state: &FilmState, audit: AuditKind, place: &str) -> Failure {
+    Failure::new(audit, state.time, place)
 }
 
 impl Integrator for VelocityVerlet {
@@ -145,7 +149,7 @@ impl Integrator for VelocityVerlet {
             let end = if count > 1.0 { state.time + length } else { target };
             let advances = end > state.time;
             if !advances || self.accounting.steps >= budget.step_limit {
-                return Err(failure(state, FailureKind::StepLimit, "the whole film"));
+                return Err(failure(state, AuditKind::StepLimit, "the whole film"));
             }
             *budget.steps -= 1;
             budget.stopwatch.begins(Stage::Update);

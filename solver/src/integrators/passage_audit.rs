@@ -2,7 +2,7 @@
 
 use super::interface::StepAudit;
 use crate::collision::monitor::TunnellingMonitor;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::monitor_settings::MonitorSettings;
 use crate::system::{FilmState, FilmSystem};
 
@@ -50,7 +50,7 @@ impl PassageAudit {
             Some((passage, position)) => {
                 let [x, y, z] = [position.x, position.y, position.z];
                 let place = format!("{passage}, near ({x:.4}, {y:.4}, {z:.4}) m");
-                Err(Failure { kind: FailureKind::Interpenetrated, time, place })
+                Err(Failure::new(AuditKind::Passages, time, place))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The outputs of a run: history, frames, measures, energy ledger, audit, events, checkpoint.
 
 pub mod audit;
+pub mod audit_kind;
 pub mod checkpoint;
 pub mod events;
 pub mod frames;

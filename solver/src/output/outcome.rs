@@ -1,6 +1,7 @@
 //! The result of a run: its history and measures, and how it ended.
 
 use super::audit::Audit;
+pub use super::audit_kind::AuditKind;
 use super::events::Event;
 use super::frames::Frames;
 use super::history::{History, Track};
@@ -77,10 +78,19 @@ pub enum Stop {
 pub struct Failure {
     /// Kind.
     pub kind: FailureKind,
+    /// The audit that ended the run.
+    pub audit: AuditKind,
     /// Simulated time, s.
     pub time: f64,
     /// Where: a node, an element or a part of the model, in words.
     pub place: String,
+}
+
+impl Failure {
+    /// What an audit found at this time (s) and place. The kind is that of the audit.
+    pub fn new(audit: AuditKind, time: f64, place: impl Into<String>) -> Self {
+        Self { kind: audit.failure_kind(), audit, time, place: place.into() }
+    }
 }
 
 /// The kinds of failure a run can end in.

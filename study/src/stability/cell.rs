@@ -12,7 +12,7 @@ use billow_solver::models::film::FilmRun;
 use billow_solver::models::run::{self, Model, Observer, Progress, Run};
 use billow_solver::output::frames::Frame;
 use billow_solver::output::ledger::residuals;
-use billow_solver::output::outcome::{Deployment, Failure, FailureKind, Stop as End};
+use billow_solver::output::outcome::{Deployment, Stop as End};
 use billow_solver::scene::timeline::Timeline;
 use serde::{Deserialize, Serialize};
 
@@ -78,22 +78,6 @@ impl Cell {
     /// Whether it is a failure of the run or a refusal.
     pub fn fails(&self) -> bool {
         Status::from_name(&self.status).is_none_or(Status::is_failure)
-    }
-}
-
-/// The audit that reports a failure.
-fn audit_of(failure: &Failure) -> &'static str {
-    let says = |word: &str| failure.place.contains(word);
-    match failure.kind {
-        FailureKind::Unstable if says("source") => "energy_source",
-        FailureKind::Unstable if says("stretched") => "stretch",
-        FailureKind::Unstable => "finite_motion",
-        FailureKind::Overstretched => "stretch",
-        FailureKind::EnergyDrift => "energy_ledger",
-        FailureKind::InvertedVolume => "volume",
-        FailureKind::StepLimit => "step_limit",
-        FailureKind::Interpenetrated if says("intersections") => "intersections",
-        FailureKind::Interpenetrated => "passages",
     }
 }
 
@@ -171,7 +155,7 @@ fn judged(deployment: &Deployment, last: Option<f64>, blank: Cell) -> Option<Cel
         }
         End::Failed(failure) => Some(Cell {
             status: Status::Failed(failure.kind).name().to_owned(),
-            audit: audit_of(failure).to_owned(),
+            audit: failure.audit.name().to_owned(),
             place: failure.place.clone(),
             time: failure.time,
             ..cell

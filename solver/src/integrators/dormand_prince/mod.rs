@@ -17,7 +17,7 @@
 //! - Sums are compensated (Kahan), so a constant rate integrates exactly up to rounding for any number of
 //!   steps. A step allocates no memory.
 
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::Stepping;
 
 mod step;
@@ -48,7 +48,7 @@ pub trait System<const N: usize> {
     ///
     /// # Errors
     /// Kind and place of the failure.
-    fn check(&self, state: &[f64; N]) -> Result<(), (FailureKind, &'static str)>;
+    fn check(&self, state: &[f64; N]) -> Result<(), (AuditKind, &'static str)>;
 }
 
 /// Choice of the step, and the limit of steps.
@@ -109,9 +109,9 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
     /// Integrates to exactly `target` (s) and calls `accepted` with the state after every step.
     ///
     /// # Errors
-    /// [`Failure`] if [`System::check`] refuses the state ([`FailureKind::InvertedVolume`], …), if it is not
-    /// finite ([`FailureKind::Unstable`]), or if the steps run out or are too small to advance time
-    /// ([`FailureKind::StepLimit`]). Time and state are those of the last accepted step.
+    /// [`Failure`] if [`System::check`] refuses the state ([`AuditKind::Volume`], …), if it is not
+    /// finite ([`AuditKind::FiniteMotion`]), or if the steps run out or are too small to advance time
+    /// ([`AuditKind::StepLimit`]). Time and state are those of the last accepted step.
     pub fn advance<S: System<N, Branch = B>>(
         &mut self,
         system: &S,
@@ -144,7 +144,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
             }
             if self.steps >= control.step_limit {
                 let place = format!("after {} accepted steps", self.steps);
-                return Err(self.failure(FailureKind::StepLimit, place));
+                return Err(self.failure(AuditKind::StepLimit, place));
             }
             *steps -= 1;
             let mut trial = self.trial(system, &rates, target, control)?;
@@ -185,7 +185,7 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                     Ok(trial)
                 } else {
                     Err(self
-                        .failure(FailureKind::Unstable, "state after the fixed step".to_owned()))
+                        .failure(AuditKind::FiniteMotion, "state after the fixed step".to_owned()))
                 }
             }
             Stepping::Stable(_) => unreachable!("no model integrated here has a stable step"),
@@ -201,9 +201,12 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
                     if self.time + length <= self.time || length < MIN_STEP_FRACTION * target.abs()
                     {
                         let (kind, place) = if take(desired).is_finite() {
-                            (FailureKind::StepLimit, "the step is too small to advance time")
+                            (AuditKind::StepLimit, "the step is too small to advance time")
                         } else {
-                            (FailureKind::Unstable, "the state is not finite at the smallest step")
+                            (
+                                AuditKind::FiniteMotion,
+                                "the state is not finite at the smallest step",
+                            )
                         };
                         return Err(self.failure(kind, place.to_owned()));
                     }
@@ -304,8 +307,8 @@ impl<const N: usize, B: Copy> Integrator<N, B> {
         self.steps += 1;
     }
 
-    fn failure(&self, kind: FailureKind, place: String) -> Failure {
-        Failure { kind, time: self.time, place }
+    fn failure(&self, audit: AuditKind, place: String) -> Failure {
+        Failure::new(audit, self.time, place)
     }
 }
 

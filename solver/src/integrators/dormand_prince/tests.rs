@@ -22,8 +22,8 @@ impl System<2> for Bouncer {
         !touching
     }
 
-    fn check(&self, y: &[f64; 2]) -> Result<(), (FailureKind, &'static str)> {
-        if y[0] > -1.0 { Ok(()) } else { Err((FailureKind::InvertedVolume, "the floor")) }
+    fn check(&self, y: &[f64; 2]) -> Result<(), (AuditKind, &'static str)> {
+        if y[0] > -1.0 { Ok(()) } else { Err((AuditKind::Volume, "the floor")) }
     }
 }
 
@@ -108,7 +108,7 @@ impl System<1> for Runaway {
         f64::INFINITY
     }
     fn next_branch(&self, (): (), _: &[f64; 1]) {}
-    fn check(&self, _: &[f64; 1]) -> Result<(), (FailureKind, &'static str)> {
+    fn check(&self, _: &[f64; 1]) -> Result<(), (AuditKind, &'static str)> {
         Ok(())
     }
 }
@@ -135,7 +135,7 @@ impl System<1> for Constant {
         f64::INFINITY
     }
     fn next_branch(&self, (): (), _: &[f64; 1]) {}
-    fn check(&self, _: &[f64; 1]) -> Result<(), (FailureKind, &'static str)> {
+    fn check(&self, _: &[f64; 1]) -> Result<(), (AuditKind, &'static str)> {
         Ok(())
     }
 }

@@ -7,7 +7,7 @@ use super::{Explicit, failure};
 use crate::collision::contact::candidates::CandidateList;
 use crate::collision::contact::{ContactModel, Pair, PairKind, SearchProgress};
 use crate::geometry::field::Field;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::simd::InstructionSet;
 use crate::platform::stopwatch::{Stage, Stopwatch};
 use crate::system::{ContactWorkspace, FilmState, FilmSystem};
@@ -143,7 +143,7 @@ impl Explicit {
         let search = (list, progress);
         let resolved = resolve_all(contact_model, &mut step, search, impulses, bounds, set);
         if let Err(unresolved) = resolved {
-            return Err(failure(state, FailureKind::Interpenetrated, &unresolved.message()));
+            return Err(failure(state, AuditKind::Passages, &unresolved.message()));
         }
         accounting.collision_dissipation += step.dissipation();
         if let Some(contact) = &self.workspace.contact {

@@ -34,7 +34,7 @@ use crate::mechanics::forces::membrane::{
 };
 use crate::mechanics::forces::pressure::gas_frequency_squared;
 use crate::output::ledger::Ledger;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::fault_injection::Term;
 use crate::platform::stopwatch::{Stage, Stopwatch};
 use crate::scene::inflow::Inflow;
@@ -157,7 +157,7 @@ impl Explicit {
             }
             if self.motion.accounting.steps >= budget.step_limit {
                 let place = format!("after {} accepted steps", self.motion.accounting.steps);
-                return Err(failure(state, FailureKind::StepLimit, &place));
+                return Err(failure(state, AuditKind::StepLimit, &place));
             }
             *budget.steps -= 1;
             interval.index += 1;
@@ -303,12 +303,12 @@ impl Explicit {
 }
 
 /// A failure at the time of a state.
-fn failure(state: &FilmState, kind: FailureKind, place: &str) -> Failure {
-    Failure { kind, time: state.time, place: place.to_owned() }
+fn failure(state: &FilmState, audit: AuditKind, place: &str) -> Failure {
+    Failure::new(audit, state.time, place)
 }
 
 fn no_advance(state: &FilmState) -> Failure {
-    failure(state, FailureKind::StepLimit, "the step is too small to advance time")
+    failure(state, AuditKind::StepLimit, "the step is too small to advance time")
 }
 
 impl Integrator for Explicit {

@@ -14,7 +14,7 @@ use super::{Explicit, FilmModel, failure};
 use crate::integrators::interface::Integrator as _;
 use crate::mechanics::forces::membrane::strain;
 use crate::output::audit::MAX_LEDGER_RESIDUAL;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure, FailureKind};
 use crate::system::{FilmState, FilmSystem};
 
 /// Growth of ω² with S1/E. Source: the tangent above.
@@ -77,7 +77,11 @@ impl Explicit {
         if !moves_too_far(&system.model, displacement) && volume.is_finite() {
             return Ok(());
         }
-        Err(self.unstable(state, "farther than the size of the film in one step"))
+        Err(self.unstable(
+            state,
+            AuditKind::FiniteMotion,
+            "farther than the size of the film in one step",
+        ))
     }
 
     /// Checks the energy after a step with this largest speed (m/s), where it is above that of the film's
@@ -91,13 +95,13 @@ impl Explicit {
         if speed <= system.model.wave_speed() || self.energy_has_source(system, state) {
             return Ok(());
         }
-        Err(self.unstable(state, "its energy came without a source"))
+        Err(self.unstable(state, AuditKind::EnergySource, "its energy came without a source"))
     }
 
-    fn unstable(&self, state: &FilmState, problem: &str) -> Failure {
+    fn unstable(&self, state: &FilmState, audit: AuditKind, problem: &str) -> Failure {
         let (node, speed) = self.fastest_node();
         let place = format!("node {node} moves at {speed:.3e} m/s: {problem}");
-        failure(state, FailureKind::Unstable, &place)
+        failure(state, audit, &place)
     }
 
     /// The fastest node and its speed, m/s. NaN counts as the fastest.
@@ -127,13 +131,13 @@ impl Explicit {
     /// The failure of a gas volume that is not above 0: by an unstable step if energy came without a source.
     pub(super) fn inverted_volume(&self, system: &FilmSystem, state: &FilmState) -> Failure {
         if self.energy_balances(system, state, MAX_PARTIAL_DEFECT) {
-            return failure(state, FailureKind::InvertedVolume, "gas volume");
+            return failure(state, AuditKind::Volume, "gas volume");
         }
         let (node, speed) = self.fastest_node();
         let place = format!(
             "node {node} moves at {speed:.3e} m/s: the gas volume is negative, and energy came without a source"
         );
-        failure(state, FailureKind::Unstable, &place)
+        failure(state, AuditKind::EnergySource, &place)
     }
 
     /// Checks the stretch of the film after a step. Film that stretched by itself has a balanced ledger.
@@ -155,6 +159,6 @@ impl Explicit {
         let place =
             format!("node {node}, element {element}: stretched to {stretch:.2} times its length");
         let kind = if balanced { FailureKind::Overstretched } else { FailureKind::Unstable };
-        Err(failure(state, kind, &place))
+        Err(Failure { kind, ..failure(state, AuditKind::Stretch, &place) })
     }
 }

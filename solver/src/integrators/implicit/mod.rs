@@ -17,7 +17,7 @@ use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
 use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::stopwatch::Stage;
 use crate::scene::inflow::Inflow;
 use crate::scene::plate::Plate;
@@ -346,7 +346,7 @@ fn next_end(time: f64, length: f64, target: f64, limit: f64) -> f64 {
 }
 
 fn failure(state: &FilmState, place: &str) -> Failure {
-    Failure { kind: FailureKind::StepLimit, time: state.time, place: place.to_owned() }
+    Failure::new(AuditKind::StepLimit, state.time, place)
 }
 
 impl Integrator for Implicit {

@@ -33,7 +33,7 @@ use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
 use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stored_energy, stress_on_fraction};
 use crate::output::ledger::Ledger;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::simd::Lanes;
 use crate::platform::stopwatch::Stage;
 
@@ -160,7 +160,7 @@ impl Xpbd {
         budget: &mut Budget<'_>,
     ) -> Result<Advance, Failure> {
         let no_advance =
-            |state: &FilmState| failure(state, FailureKind::StepLimit, "the substep is too small");
+            |state: &FilmState| failure(state, AuditKind::StepLimit, "the substep is too small");
         let mut interval = match self.step_interval.take() {
             Some(interval) => interval,
             None => StepInterval::new(state.time, target, self.next_step(system, state), false)
@@ -173,7 +173,7 @@ impl Xpbd {
             }
             if self.accounting.steps >= budget.step_limit {
                 let place = format!("after {} accepted steps", self.accounting.steps);
-                return Err(failure(state, FailureKind::StepLimit, &place));
+                return Err(failure(state, AuditKind::StepLimit, &place));
             }
             *budget.steps -= 1;
             interval.index += 1;
@@ -214,13 +214,13 @@ impl Xpbd {
         if has_source {
             return Ok(());
         }
-        Err(failure(state, FailureKind::Unstable, "the film's energy came without a source"))
+        Err(failure(state, AuditKind::EnergySource, "the film's energy came without a source"))
     }
 }
 
 /// A failure at the time of a state.
-fn failure(state: &FilmState, kind: FailureKind, place: &str) -> Failure {
-    Failure { kind, time: state.time, place: place.to_owned() }
+fn failure(state: &FilmState, audit: AuditKind, place: &str) -> Failure {
+    Failure::new(audit, state.time, place)
 }
 
 impl Integrator for Xpbd {

@@ -13,7 +13,7 @@ use super::contacts::{keep_apart, project_contacts};
 use super::sweep::{Law, settle, sweep};
 use super::{Xpbd, failure};
 use crate::mechanics::forces::damping::kick_factors;
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::fault_injection::Term;
 use crate::platform::stopwatch::{Stage, Stopwatch};
 use crate::scene::inflow::Inflow;
@@ -82,11 +82,11 @@ impl Xpbd {
         }
         let volume = sums.six_volumes / 6.0;
         if !volume.is_finite() {
-            return Err(failure(state, FailureKind::Unstable, "the volume is not finite"));
+            return Err(failure(state, AuditKind::FiniteMotion, "the volume is not finite"));
         }
         match system.pressure_load {
             PressureLoad::Gas(_) if volume <= 0.0 => {
-                return Err(failure(state, FailureKind::InvertedVolume, "gas volume"));
+                return Err(failure(state, AuditKind::Volume, "gas volume"));
             }
             PressureLoad::Overpressure(pressure) => {
                 self.accounting.works.gas += pressure * (volume - state.volume);
@@ -100,7 +100,7 @@ impl Xpbd {
         let ratio = sums.largest_stress / system.model.material.youngs_modulus;
         if ratio > MAX_STRESS_RATIO {
             let place = format!("largest principal stress {ratio:.2} times Young's modulus");
-            return Err(failure(state, FailureKind::Overstretched, &place));
+            return Err(failure(state, AuditKind::Stretch, &place));
         }
         Ok(())
     }
@@ -176,7 +176,7 @@ impl Xpbd {
         let within = largest <= system.model.size();
         if !within {
             let place = "a node moves farther than the size of the film in one substep";
-            return Err(failure(state, FailureKind::Unstable, place));
+            return Err(failure(state, AuditKind::FiniteMotion, place));
         }
         let (Some(model), Some(contact)) = (&system.contact, &mut self.workspace.contact) else {
             return Ok(());

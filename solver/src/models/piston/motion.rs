@@ -7,7 +7,7 @@ use crate::models::run::Model;
 use crate::output::history::Sample;
 use crate::output::ledger::{GasBalance, Ledger};
 use crate::output::measures::{Reference, StaticShape};
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::timeline::Phase;
 
 /// Constants of a piston. Plain data, so that a piston in a tube, a rigid tank and a gas spring use the
@@ -107,12 +107,12 @@ impl System<COMPONENTS> for Motion<'_> {
         self.piston.end.next(branch, state[HEIGHT], state[SPEED])
     }
 
-    fn check(&self, state: &[f64; COMPONENTS]) -> Result<(), (FailureKind, &'static str)> {
+    fn check(&self, state: &[f64; COMPONENTS]) -> Result<(), (AuditKind, &'static str)> {
         if state[HEIGHT] <= 0.0 {
-            return Err((FailureKind::InvertedVolume, "height of the top ring"));
+            return Err((AuditKind::Volume, "height of the top ring"));
         }
         if self.piston.volume.volume(state[HEIGHT]) <= self.min_volume {
-            return Err((FailureKind::InvertedVolume, "gas volume"));
+            return Err((AuditKind::Volume, "gas volume"));
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use crate::output::events::Event;
 use crate::output::frames::{Frame, Frames};
 use crate::output::history::{History, Sample, Track};
 use crate::output::measures::{self, Measures, Reference};
-use crate::output::outcome::{Deployment, Failure, FailureKind, Stop};
+use crate::output::outcome::{AuditKind, Deployment, Failure, Stop};
 use crate::scene::timeline::{Phase, Timeline};
 
 /// A model during a run. [`Run`] uses nothing else of a model, so every model has the same inflow windows,
@@ -113,7 +113,7 @@ pub type CheckpointText = Result<String, CheckpointError>;
 /// Runs a model from time 0 to the end of its timeline.
 ///
 /// A run whose ledger residual is above [`audit::MAX_LEDGER_RESIDUAL`] at any sample fails at that sample
-/// with [`FailureKind::EnergyDrift`]. This is decided at the end, when the divisor of the residual is known;
+/// with [`AuditKind::EnergyLedger`]. This is decided at the end, when the divisor of the residual is known;
 /// so the history is complete, but there is no verdict.
 pub fn run(model: &mut dyn Model, timeline: &Timeline, observer: &mut dyn Observer) -> Deployment {
     Run::default().complete(model, timeline, observer)
@@ -229,8 +229,8 @@ impl Run {
             }
             if sample.intersections > 0 {
                 let place = format!("{} intersections of the mesh", sample.intersections);
-                let kind = FailureKind::Interpenetrated;
-                return Some(Stop::Failed(Failure { kind, time: target, place }));
+                let failure = Failure::new(AuditKind::Intersections, target, place);
+                return Some(Stop::Failed(failure));
             }
             if target >= timeline.end_time {
                 return Some(Stop::Done);
@@ -256,7 +256,7 @@ impl Run {
             && let Some(time) = audit::first_drift(&history)
         {
             let place = format!("energy ledger: residual above {}", audit::MAX_LEDGER_RESIDUAL);
-            stop = Stop::Failed(Failure { kind: FailureKind::EnergyDrift, time, place });
+            stop = Stop::Failed(Failure::new(AuditKind::EnergyLedger, time, place));
         }
         let measures = match stop {
             Stop::Cancelled => Measures::default(),

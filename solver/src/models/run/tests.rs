@@ -26,8 +26,7 @@ impl Model for Recorder {
     fn advance(&mut self, target: f64, phase: &Phase) -> Result<(), Failure> {
         assert!(target > self.time(), "time increases");
         if target > self.fails_after {
-            let (kind, place) = (FailureKind::Unstable, "a test".to_owned());
-            return Err(Failure { kind, time: self.fails_after, place });
+            return Err(Failure::new(AuditKind::FiniteMotion, self.fails_after, "a test"));
         }
         self.calls.push((target, *phase));
         Ok(())

@@ -17,7 +17,7 @@ use crate::models::run::Model;
 use crate::output::history::Sample;
 use crate::output::ledger::{GasBalance, Ledger};
 use crate::output::measures::{NoReference, Reference, StaticShape, design_overpressure};
-use crate::output::outcome::{Failure, FailureKind};
+use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::simd::{InstructionSet, Lanes};
 use crate::scene::Film;
 use crate::scene::timeline::Phase;
@@ -174,10 +174,10 @@ impl StoreysRun {
                 &mut self.velocities,
             );
             if !self.volume.is_finite() {
-                return Err(self.failure(FailureKind::Unstable, "positions of the strips"));
+                return Err(self.failure(AuditKind::FiniteMotion, "positions of the strips"));
             }
             if self.volume <= 0.0 {
-                return Err(self.failure(FailureKind::InvertedVolume, "gas volume"));
+                return Err(self.failure(AuditKind::Volume, "gas volume"));
             }
         }
         let gas = constants.gas.step(self.gas, before, self.volume, length, phase.inflow);
@@ -195,8 +195,8 @@ impl StoreysRun {
         Ok(())
     }
 
-    fn failure(&self, kind: FailureKind, place: &str) -> Failure {
-        Failure { kind, time: self.time, place: place.to_owned() }
+    fn failure(&self, audit: AuditKind, place: &str) -> Failure {
+        Failure::new(audit, self.time, place)
     }
 
     /// The ledger now.
@@ -268,7 +268,7 @@ impl Model for StoreysRun {
                 return Ok(false);
             }
             if self.steps >= self.constants.step_limit {
-                return Err(self.failure(FailureKind::StepLimit, "number of steps"));
+                return Err(self.failure(AuditKind::StepLimit, "number of steps"));
             }
             let remaining = target - self.time;
             if self.steps.is_multiple_of(STEPS_PER_LOOK) {
@@ -276,7 +276,7 @@ impl Model for StoreysRun {
             }
             let count = (remaining / self.longest).ceil().max(1.0);
             if !count.is_finite() || self.time + remaining / count <= self.time {
-                return Err(self.failure(FailureKind::StepLimit, "length of a step"));
+                return Err(self.failure(AuditKind::StepLimit, "length of a step"));
             }
             self.step(remaining / count, phase)?;
             self.time = if count > 1.0 { self.time + remaining / count } else { target };

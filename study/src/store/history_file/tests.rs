@@ -4,7 +4,7 @@
 
 use billow_solver::output::events::{Event, EventKind};
 use billow_solver::output::history::{COLUMNS, History, Track};
-use billow_solver::output::outcome::{Deployment, Failure, FailureKind, Stop};
+use billow_solver::output::outcome::{AuditKind, Deployment, Failure, FailureKind, Stop};
 
 use super::*;
 use crate::job::{Job, Status};
@@ -58,11 +58,7 @@ fn events_are_read_back_and_do_not_enter_the_content_hash() {
 fn a_failed_run_stores_its_history_and_when_and_where_it_stopped() {
     let job = fixture::job(1);
     let mut deployment = fixture::deployment(1, 5);
-    deployment.stop = Stop::Failed(Failure {
-        kind: FailureKind::EnergyDrift,
-        time: 0.25,
-        place: "gas volume".to_owned(),
-    });
+    deployment.stop = Stop::Failed(Failure::new(AuditKind::EnergyLedger, 0.25, "gas volume"));
     let bytes = encode(&job, &deployment, "").unwrap();
     let (_folder, path) = path_with(&bytes);
     assert_eq!(read(&path).unwrap().status, Status::Failed(FailureKind::EnergyDrift));
