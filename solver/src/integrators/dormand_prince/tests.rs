@@ -1,4 +1,5 @@
 use super::*;
+use crate::output::outcome::FailureKind;
 
 /// A mass under gravity above a floor that acts as a stiff spring; state z, v. Branch: whether the mass
 /// touches the floor.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::output::ledger::Ledger;
 use crate::output::measures::StaticShape;
+use crate::output::outcome::FailureKind;
 use crate::scene::InflowWindow;
 use crate::scene::Thresholds;
 use crate::scene::inflow::Schedule;
