@@ -1,6 +1,6 @@
 //! The audits that can end a run, by name.
 
-use super::outcome::FailureKind;
+use super::failure_kind::FailureKind;
 
 /// An audit. Each ends a run when what it checks is out of its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -4,6 +4,7 @@ pub mod audit;
 pub mod audit_kind;
 pub mod checkpoint;
 pub mod events;
+pub mod failure_kind;
 pub mod frames;
 pub mod history;
 pub mod ledger;

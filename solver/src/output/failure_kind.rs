@@ -1,0 +1,64 @@
+//! The kinds of failure a run can end in, by name.
+
+/// The kinds of failure a run can end in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FailureKind {
+    /// A step was unstable: the state is not finite, or its energy grew without a source.
+    Unstable,
+    /// The film is stretched beyond the validity of its material model; its energy balances.
+    Overstretched,
+    /// The energy ledger residual is above its bound
+    /// ([`MAX_LEDGER_RESIDUAL`](super::audit::MAX_LEDGER_RESIDUAL)).
+    EnergyDrift,
+    /// The enclosed volume is zero or negative.
+    InvertedVolume,
+    /// The run needs more steps than allowed, or a step is too small to advance time.
+    StepLimit,
+    /// Film passed through film.
+    Interpenetrated,
+}
+
+impl FailureKind {
+    /// Every kind, in the order of the documentation.
+    pub const ALL: [Self; 6] = [
+        Self::Unstable,
+        Self::Overstretched,
+        Self::EnergyDrift,
+        Self::InvertedVolume,
+        Self::StepLimit,
+        Self::Interpenetrated,
+    ];
+
+    /// Name, as in the `status` column of the table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unstable => "unstable",
+            Self::Overstretched => "overstretched",
+            Self::EnergyDrift => "energy_drift",
+            Self::InvertedVolume => "inverted_volume",
+            Self::StepLimit => "step_limit",
+            Self::Interpenetrated => "interpenetrated",
+        }
+    }
+
+    /// The kind of that name; also accepts `drifted`, the name of [`Self::EnergyDrift`] in results of
+    /// earlier versions.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let name = if name == "drifted" { Self::EnergyDrift.name() } else { name };
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_read_back_and_the_old_one_too() {
+        for kind in FailureKind::ALL {
+            assert_eq!(FailureKind::from_name(kind.name()), Some(kind));
+        }
+        assert_eq!(FailureKind::from_name("drifted"), Some(FailureKind::EnergyDrift));
+        assert_eq!(FailureKind::from_name("done"), None);
+    }
+}
