@@ -174,7 +174,7 @@ fn slow_filling(kind: IntegratorKind) -> Scene {
     scene
 }
 
-/// Ends after the first implicit steps, with a checkpoint.
+/// Ends at the first checkpoint of implicit steps after this number of steps.
 #[derive(Default)]
 struct Storing {
     steps: u64,
@@ -195,8 +195,9 @@ impl Observer for Storing {
     }
 
     fn store(&mut self, pause: &Pause<'_>) -> bool {
-        self.stored = (pause.text)("scene").map(Result::unwrap);
-        false
+        let text = (pause.text)("scene").map(Result::unwrap);
+        self.stored = text.filter(|text| text.contains("\"implicit\""));
+        self.stored.is_none()
     }
 }
 
@@ -220,7 +221,13 @@ fn a_hybrid_run_ends_as_an_explicit_one_with_fewer_steps_and_resumes_with_the_sa
         hybrid.audit.ledger_residual
     );
     assert!(3 * hybrid.steps < 2 * explicit.steps, "{} {}", hybrid.steps, explicit.steps);
-    assert!(hybrid.audit.ledger_residual < 5e-3);
+    assert!(hybrid.audit.ledger_residual < 1e-3, "{:e}", hybrid.audit.ledger_residual);
+    let largest = hybrid.measures.peak_kinetic_energy.expect("film in motion");
+    let dissipated = hybrid.history.column("numerical_dissipation");
+    let at = hybrid.history.column("time").iter().position(|time| *time >= change.time).unwrap();
+    let discarded = dissipated[at] - dissipated[at - 1];
+    println!("discarded at the change: {discarded:e} J of {largest} J");
+    assert!((0.0..0.011 * largest).contains(&discarded), "{discarded} {largest}");
     assert_eq!((hybrid.audit.passages, hybrid.audit.intersections), (Some(0), Some(0)));
     let last = |run: &Deployment, column: &str| *run.history.column(column).last().unwrap();
     for (column, tolerance) in [("z_rim", 5e-3), ("volume", 5e-3), ("pressure", 1e-2)] {
@@ -228,14 +235,54 @@ fn a_hybrid_run_ends_as_an_explicit_one_with_fewer_steps_and_resumes_with_the_sa
         println!("{column}: {a} {b}");
         assert!((b / a - 1.0).abs() < tolerance, "{column}: {a} {b}");
     }
-    let mut storing = Storing { steps: hybrid.steps - 20, stored: None };
+    let mut storing = Storing { steps: hybrid.steps - 200, stored: None };
     solve(IntegratorKind::Hybrid, &mut storing);
     let text = storing.stored.expect("a checkpoint");
-    assert!(text.contains("\"implicit\""), "a checkpoint of implicit steps");
     let stored = Stored { fingerprint: "scene", text: &text };
     let scene = slow_filling(IntegratorKind::Hybrid);
     let resumed = models::resume(set, &scene, &stored, &mut Unobserved).unwrap();
     assert_eq!(format!("{resumed:?}"), format!("{hybrid:?}"));
+}
+
+/// Kinetic energy is zero where a vibration turns: that is no rest.
+#[test]
+fn the_hybrid_takes_no_turning_point_of_a_vibration_for_rest() {
+    let (system, state, settings) = sphere().into_parts();
+    let settings = SimulationSettings { integrator: IntegratorKind::Hybrid, ..settings };
+    let still = state.velocities.clone();
+    let mut film = FilmSimulation::new(system, settings, state.positions, still, state.gas);
+    let phase = Phase { end: 0.5, ..free() };
+    let mut ledgers: Vec<Ledger> = vec![film.view().ledger()];
+    for sample in 1..=200 {
+        film.advance(f64::from(sample) * 1e-4, &phase).unwrap();
+        ledgers.push(film.view().ledger());
+    }
+    let kinetic = || ledgers.iter().map(|ledger| ledger.kinetic);
+    let largest = kinetic().fold(0.0, f64::max);
+    let turns = kinetic().skip(1).filter(|energy| *energy < 0.01 * largest).count();
+    let residual = residuals(&ledgers).into_iter().fold(0.0, f64::max);
+    println!("{turns} samples near rest, ledger residual {residual:e}");
+    assert!(turns > 0, "no sample at a turning point");
+    assert_eq!(film.take_events(), []);
+    assert!(residual < 1e-2, "{residual:e}");
+}
+
+/// Slack film still flutters where the hybrid changes. The shapes of the samples within the first implicit step are
+/// between its ends: with the velocities of one moment they would stretch the film.
+#[test]
+#[ignore = "long: n 8, 1 s"]
+fn samples_within_the_first_implicit_step_of_fluttering_film_keep_the_ledger() {
+    let mut scene = paper::empty_capsule(8, 1.0);
+    scene.gas.initial_mass = 1.5e-4;
+    scene.gas.windows = vec![paper::window(0.0, 0.01, 5e-3)];
+    scene.solver.model = ModelKind::Film;
+    scene.solver.stepping = Stepping::Stable(DEFAULT_CFL);
+    scene.solver.integrator = IntegratorKind::Hybrid;
+    scene.outputs.sample_interval = 2e-3;
+    let run = models::solve(InstructionSet::detect(), &scene, &mut Unobserved).unwrap();
+    assert_eq!(run.stop, Stop::Done);
+    assert!(run.events.iter().any(|event| event.kind == EventKind::Implicit), "{:?}", run.events);
+    assert!(run.audit.ledger_residual < 1e-3, "{:e}", run.audit.ledger_residual);
 }
 
 #[test]

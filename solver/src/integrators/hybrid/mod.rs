@@ -1,13 +1,15 @@
 //! Explicit steps while film moves, implicit ones while it hardly does: packed, holding, filling.
 //!
 //! ```text
-//! explicit → implicit    kinetic energy < 1 % of its largest, and a first step of 1000 stable steps has a solution
+//! explicit → implicit    kinetic energy < 1 % of its largest for T = 1000 stable steps, and a first step has a solution
+//!                        velocities ← (x(t) − x(t − T))/T
 //! implicit → explicit    kinetic energy > 3 %, or the steps would be shorter than 500 stable steps
 //! ```
 //!
 //! The decisions are taken at the end of an interval or of an implicit step; each is an event of the history. An
-//! implicit step that leaves these bounds is discarded, and explicit steps begin at its start. What film still does
-//! faster than an implicit step (small vibrations) is damped then: its energy is numerical dissipation, at most 1 % of
+//! implicit step that leaves these bounds is discarded, and explicit steps begin at its start. Implicit steps start with
+//! the mean velocities of the time T: a vibration that is fast against an implicit step would only be damped by
+//! it, and its velocity at one moment says nothing about the step. Its energy is numerical dissipation, at most 1 % of
 //! the largest kinetic energy a change. After an attempt without success the next one waits, at first 0.1 s.
 
 use serde::{Deserialize, Serialize};
@@ -24,6 +26,7 @@ use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::events::{Event, EventKind};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::Failure;
+use crate::scene::timeline::Phase;
 use crate::system::{FilmState, FilmSystem, Workspace};
 
 /// The row in the table of integrators.
@@ -71,6 +74,16 @@ pub struct Policy {
     pub stable_step: f64,
 }
 
+/// Where film was when it began to move little.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct QuietStart {
+    /// Time, s.
+    pub time: f64,
+    /// Positions, m.
+    pub positions: Field,
+}
+
 /// The integrator at work, for a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -87,6 +100,8 @@ pub enum StoredActive {
 pub struct StoredHybrid {
     /// When it changes.
     pub policy: Policy,
+    /// Where explicit film began to move little; `None` while it moves.
+    pub quiet_start: Option<QuietStart>,
     /// The integrator at work.
     pub active: StoredActive,
     /// Positions that the order of elimination is of, m.
@@ -108,6 +123,7 @@ impl StoredHybrid {
 pub struct Hybrid {
     cfl: f64,
     policy: Policy,
+    quiet_start: Option<QuietStart>,
     active: Active,
     /// Positions that the order of elimination is of, m.
     ordered_at: Field,
@@ -126,7 +142,7 @@ impl Hybrid {
         };
         let explicit = Explicit::start(system, state, workspace, cfl);
         let (active, ordered_at) = (Active::Explicit(Box::new(explicit)), state.positions.clone());
-        Self { cfl, policy, active, ordered_at, newton: None }
+        Self { cfl, policy, quiet_start: None, active, ordered_at, newton: None }
     }
 
     /// Resumes at a state with what was stored there. The run continues with the same bits.
@@ -139,8 +155,8 @@ impl Hybrid {
                 Active::Implicit(Box::new(Implicit::resume(system, state, *stored)))
             }
         };
-        let StoredHybrid { policy, ordered_at, .. } = stored;
-        Self { cfl, policy, active, ordered_at, newton: None }
+        let StoredHybrid { policy, quiet_start, ordered_at, .. } = stored;
+        Self { cfl, policy, quiet_start, active, ordered_at, newton: None }
     }
 
     fn active(&self) -> &dyn Integrator {
@@ -150,41 +166,68 @@ impl Hybrid {
         }
     }
 
-    /// Tries implicit steps from here on, if the film hardly moves and a step could go beyond the interval.
-    fn attempt(
+    /// Whether film has moved little for the time of a first implicit step, so that one can be tried now. `stable`:
+    /// stable step, s.
+    fn is_quiet(
         &mut self,
         state: &FilmState,
+        system: &FilmSystem,
+        phase: &Phase,
+        stable: f64,
+    ) -> bool {
+        let kinetic = system.kinetic_energy(state);
+        let policy = &mut self.policy;
+        policy.largest_kinetic_energy = policy.largest_kinetic_energy.max(kinetic);
+        let waits = phase.packed && system.contact.is_none();
+        let slow = kinetic < REST * policy.largest_kinetic_energy;
+        if waits || !slow {
+            self.quiet_start = None;
+            return false;
+        }
+        let first = FIRST_STEPS * stable;
+        let early = state.time + first < policy.next_attempt;
+        if early || phase.end < state.time + first {
+            return false;
+        }
+        let start = self.quiet_start.get_or_insert_with(|| QuietStart {
+            time: state.time,
+            positions: state.positions.clone(),
+        });
+        let due = state.time >= policy.next_attempt;
+        due && state.time - start.time >= first
+    }
+
+    /// Tries implicit steps from here on, if the film moves little and a step could go beyond the interval.
+    fn attempt(
+        &mut self,
+        state: &mut FilmState,
         system: &FilmSystem,
         interval: Interval<'_>,
         events: &mut Vec<Event>,
     ) {
         let Active::Explicit(explicit) = &self.active else { return };
-        let kinetic = system.kinetic_energy(state);
-        self.policy.largest_kinetic_energy = self.policy.largest_kinetic_energy.max(kinetic);
         let stable = explicit.next_step(system, state);
-        let (first, phase) = (FIRST_STEPS * stable, interval.phase);
-        let waits = phase.packed && system.contact.is_none();
-        let slow = kinetic < REST * self.policy.largest_kinetic_energy;
-        let due = state.time >= self.policy.next_attempt;
-        if waits || !slow || !due || phase.end < state.time + first {
+        let (before, accounting) = (explicit.ledger(system, state), *explicit.accounting());
+        if !self.is_quiet(state, system, interval.phase, stable) {
             return;
         }
+        let Some(start) = self.quiet_start.take() else { return };
         self.policy.stable_step = stable;
+        let slow = with_mean_velocities(system, state, &start);
         let control = StepControl::error(self.cfl, system.model.size(), ERROR_FACTOR);
-        let workspace = Workspace::new(system, state);
-        let accounting = *explicit.accounting();
-        let before = explicit.ledger(system, state).stored();
         let newton = match self.newton.take() {
             Some(newton) => *newton,
             None => Newton::new(system, state, self.ordered_at.clone()),
         };
-        let scratch = (workspace, newton);
-        let mut implicit = Implicit::from(system, state, scratch, (control, first), accounting);
-        let after = implicit.ledger(system, state).stored();
-        implicit.add_numerical_dissipation(before - after);
-        if implicit.begin(system, state, phase, self.patience()) {
+        let scratch = (Workspace::new(system, state), newton);
+        let steps = (control, FIRST_STEPS * stable);
+        let mut implicit = Implicit::from(system, &slow, scratch, steps, accounting);
+        let after = implicit.ledger(system, &slow).stored();
+        implicit.add_numerical_dissipation(before.stored() - after);
+        if implicit.begin(system, &slow, interval.phase, self.patience()) {
             self.policy.pause = FIRST_PAUSE;
             self.active = Active::Implicit(Box::new(implicit));
+            *state = slow;
             events.push(Event { time: state.time, kind: EventKind::Implicit });
         } else {
             self.newton = Some(Box::new(implicit.into_newton()));
@@ -216,6 +259,22 @@ impl Hybrid {
             kinetic: MOTION * self.policy.largest_kinetic_energy,
         }
     }
+}
+
+/// A state with the mean velocities (m/s) since an earlier one.
+fn with_mean_velocities(system: &FilmSystem, state: &FilmState, start: &QuietStart) -> FilmState {
+    let mut slow = state.clone();
+    let length = state.time - start.time;
+    for node in 0..slow.velocities.len() {
+        let moved = state.positions.get(node) - start.positions.get(node);
+        slow.velocities.set(node, moved / length);
+    }
+    for (body, speed) in system.supports.bodies.iter().zip(&mut slow.planes) {
+        if let Some(node) = body.nodes.first() {
+            *speed = body.plane.normal.dot(&slow.velocities.get(*node as usize));
+        }
+    }
+    slow
 }
 
 impl Integrator for Hybrid {
@@ -284,7 +343,9 @@ impl Integrator for Hybrid {
             StoredIntegrator::Hybrid(_) | StoredIntegrator::Xpbd(_) => return None,
         };
         let (policy, ordered_at) = (self.policy, self.ordered_at.clone());
-        Some(StoredIntegrator::Hybrid(Box::new(StoredHybrid { policy, active, ordered_at })))
+        let quiet_start = self.quiet_start.clone();
+        let stored = StoredHybrid { policy, quiet_start, active, ordered_at };
+        Some(StoredIntegrator::Hybrid(Box::new(stored)))
     }
 
     fn boxed(&self) -> Box<dyn Integrator> {
