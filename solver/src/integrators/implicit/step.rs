@@ -1,14 +1,19 @@
-//! One step: gas exchange and creep, motion, creep and gas exchange (G. Strang's splitting, order 2).
+//! One step: gas and creep at the positions of its start, motion, then gas and creep along the motion.
 //!
 //! ```text
-//! ½ h: inflow, leak, heat at fixed volume       creep at fixed positions
-//!   h: motion with closed gas and fixed creep   work of a force: Simpson's rule on four parts
-//! ½ h: creep; inflow, leak, heat
+//! p(V) = p* (V₀/V)^γ      p* after inflow, leak and heat of the step at the volume V₀ of its start       while film moves
+//! P  = P*                 creep of the step at the positions x of its start                              while film moves
+//! then gas and creep of the step again from its start, along x → x'
 //!
+//! work of a force = ∫ f·dx along the straight motion, by Simpson's rule on four parts
+//! material loss   = Σ ψ(x, P) − ψ(x, P + ΔP) in the middle of each part
 //! numerical dissipation = work of all forces − Δ(kinetic energy)
 //! ```
 //!
-//! Works are integrals of forces, and stored energies are functions of the state: the ledger compares the two.
+//! So a step that is long against inflow, heat and creep ends nearly in balance with them: p and P miss only what the
+//! motion of the step itself changes in heat and creep, which is of second order in the step. Works are integrals of
+//! forces, with a pressure that is linear in time, and stored energies are functions of the state: the ledger compares
+//! the two.
 
 use super::Implicit;
 use super::method::Method;
@@ -17,7 +22,7 @@ use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::mechanics::forces::membrane::CreepStrain;
 use crate::scene::inflow::Inflow;
-use crate::system::{Evaluation, FilmState, FilmSystem, PressureLoad};
+use crate::system::{FilmState, FilmSystem, PressureLoad};
 
 /// Parts of a step on which works are integrated by Simpson's rule. Chosen: forces of film bend where it gets taut or
 /// slack, and an evaluation costs far less than a Newton step.
@@ -38,6 +43,13 @@ struct Power {
     contact: f64,
 }
 
+impl Power {
+    fn add(&mut self, weight: f64, other: Self) {
+        self.all += weight * other.all;
+        self.contact += weight * other.contact;
+    }
+}
+
 impl Implicit {
     /// The step from a state to the time `end` (s); `None` if Newton's method finds no solution.
     pub(super) fn try_step(
@@ -51,13 +63,12 @@ impl Implicit {
         let length = end - from.time;
         let mut state = from.clone();
         let mut accounting = self.motion.accounting;
-        exchange(system, &mut state, &mut accounting, 0.5 * length, inflow);
-        self.creep(system, &mut state, &mut accounting, 0.5 * length);
         state.time = end;
 
         let method = Method::new(from, self.motion.last.as_ref(), length);
         let weight = method.inertia(system.mass_damping, &mut self.target);
         method.predict(&mut self.predicted);
+        load_at_start(system, &mut state, length, inflow);
         let size = system.model.size();
         let displacement = self.motion.control.newton_displacement(size);
         let first = self.motion.control.first_displacement();
@@ -74,12 +85,20 @@ impl Implicit {
         self.hold(system, from, &mut state);
         let error = method.error(&system.model.mass, &positions, &self.predicted);
         let order = method.error_order();
-        self.add_works(system, (from, &mut state), &positions, &after, &mut accounting);
+        let contacts = self.workspace.contact.as_ref().map(|contact| contact.trial.clone());
+        let step = (length, inflow);
+        self.add_works(
+            system,
+            (from, &mut state),
+            (&positions, step),
+            after.volume,
+            &mut accounting,
+        );
+        if let Some(contacts) = contacts {
+            state.contact = contacts;
+        }
         accounting.film_stress = accounting.film_stress.max(after.largest_stress);
         self.newton.positions = positions;
-
-        self.creep(system, &mut state, &mut accounting, 0.5 * length);
-        exchange(system, &mut state, &mut accounting, 0.5 * length, inflow);
         accounting.steps += 1;
         if let Some(contact) = &self.workspace.contact {
             accounting.broad_phase_rebuilds = contact.progress.rebuilds;
@@ -101,38 +120,57 @@ impl Implicit {
         }
     }
 
-    /// Adds the works of a step to these positions (m), evaluated as `after`, and makes them those of the state.
+    /// Adds the works of a step to these positions (m) with this volume (m³), and makes positions, creep strain and gas
+    /// those of the state.
     fn add_works(
         &mut self,
         system: &FilmSystem,
         (from, state): (&FilmState, &mut FilmState),
-        positions: &Field,
-        after: &Evaluation,
+        (positions, (length, inflow)): (&Field, (f64, Inflow)),
+        volume: f64,
         accounting: &mut EnergyAccounting,
     ) {
         let start = &from.positions;
-        // At the end first: the workspace has its forces, and the contacts to be committed.
-        let last = self.power(system, after, (start, positions));
-        let contacts = self.workspace.contact.as_ref().map(|contact| contact.trial.clone());
+        (state.gas, state.volume, state.pressure) = (from.gas, from.volume, from.pressure);
+        let gas = system.gas_step(from, volume, length, inflow);
+        let pressures = (from.pressure, gas.map_or(from.pressure, |gas| gas.pressure));
+        let mut creep = from.creep.clone();
+        CreepStrain::relax(&system.model, (start, positions), length, &mut creep);
         let mut between = start.clone();
-        let mut at = |implicit: &mut Self, share: f64| {
+        // Power and stored energy at a share of the way, with the creep strain of another one.
+        let mut at = |implicit: &mut Self, share: f64, of_creep: f64| {
             for node in 0..between.len() {
                 let (x, y) = (start.get(node), positions.get(node));
                 between.set(node, x + (y - x) * share);
             }
+            for ((now, from), to) in state.creep.iter_mut().zip(&from.creep).zip(&creep) {
+                *now = [0, 1].map(|half| from[half].between(&to[half], of_creep));
+            }
             let workspace = &mut implicit.workspace;
             let evaluation = system.evaluate(state, &between, state.time, workspace);
-            implicit.power(system, &evaluation, (start, positions))
+            let pressure = pressures.0 + share * (pressures.1 - pressures.0);
+            (implicit.power(system, pressure, (start, positions)), evaluation.strain)
         };
-        // Simpson's rule on each part: the ends of the parts count twice, but for the first and the last.
-        let (mut work, mut contact) = (last.all, last.contact);
-        for point in 0..2 * PARTS {
-            let power = at(self, f64::from(point) / f64::from(2 * PARTS));
-            let weight = if point == 0 { 1.0 } else { f64::from(2 + 2 * (point % 2)) };
-            work += weight * power.all;
-            contact += weight * power.contact;
+        let mut work = Power::default();
+        let mut loss = 0.0;
+        for point in 0..=2 * PARTS {
+            let share = |point: u32| f64::from(point) / f64::from(2 * PARTS);
+            if point % 2 == 0 {
+                let end = point == 0 || point == 2 * PARTS;
+                let (power, _) = at(self, share(point), share(point));
+                work.add(if end { 1.0 } else { 2.0 }, power);
+            } else if creep.is_empty() {
+                let (power, _) = at(self, share(point), share(point));
+                work.add(4.0, power);
+            } else {
+                let (before, stored) = at(self, share(point), share(point - 1));
+                let (after, remaining) = at(self, share(point), share(point + 1));
+                work.add(2.0, before);
+                work.add(2.0, after);
+                loss += stored - remaining;
+            }
         }
-        let (work, contact) = (work / f64::from(6 * PARTS), contact / f64::from(6 * PARTS));
+        let [all, contact] = [work.all, work.contact].map(|sum| sum / f64::from(6 * PARTS));
         let (mut damped, mut planes) = (0.0, 0.0);
         for (node, mass) in system.model.mass.iter().enumerate() {
             let moved = positions.get(node) - start.get(node);
@@ -150,26 +188,19 @@ impl Implicit {
         works.contact += contact;
         works.support += planes;
         works.damping += damped;
-        works.numerical_dissipation += work + planes - damped - kinetic;
+        works.material_loss += loss;
+        works.numerical_dissipation += all + planes - damped - kinetic;
         if let PressureLoad::Overpressure(pressure) = system.pressure_load {
-            works.gas += pressure * (after.volume - state.volume);
+            works.gas += pressure * (volume - state.volume);
         }
-        let gas = system.expansion(state, after.volume);
-        accounting.commit_gas(system, state, gas, after.volume);
+        accounting.commit_gas(system, state, gas, volume);
         state.positions.copy_from(positions);
-        if let Some(contacts) = contacts {
-            state.contact = contacts;
-        }
+        state.creep = creep;
     }
 
-    /// Work of the forces in the workspace along the way between two fields of positions, J.
-    fn power(
-        &self,
-        system: &FilmSystem,
-        evaluation: &Evaluation,
-        (from, to): (&Field, &Field),
-    ) -> Power {
-        let overpressure = system.overpressure_at(evaluation.gas_pressure);
+    /// Work of the forces in the workspace under a pressure (Pa) along the way between two fields of positions, J.
+    fn power(&self, system: &FilmSystem, pressure: f64, (from, to): (&Field, &Field)) -> Power {
+        let overpressure = system.overpressure_at(pressure);
         let forces = &self.workspace.forces;
         let mut power = Power::default();
         for node in 0..from.len() {
@@ -179,38 +210,14 @@ impl Implicit {
         }
         power
     }
-
-    /// Lets the film creep at its positions for `length` (s): what its stored energy loses is the material loss.
-    fn creep(
-        &mut self,
-        system: &FilmSystem,
-        state: &mut FilmState,
-        accounting: &mut EnergyAccounting,
-        length: f64,
-    ) {
-        if state.creep.is_empty() {
-            return;
-        }
-        let mut stored = |state: &FilmState| {
-            system.evaluate(state, &state.positions, state.time, &mut self.workspace).strain
-        };
-        let before = stored(state);
-        let mut creep = core::mem::take(&mut state.creep);
-        CreepStrain::relax(&system.model, &state.positions, length, &mut creep);
-        state.creep = creep;
-        accounting.works.material_loss += before - stored(state);
-    }
 }
 
-/// Inflow, leak and heat for `length` (s) at a fixed volume.
-fn exchange(
-    system: &FilmSystem,
-    state: &mut FilmState,
-    accounting: &mut EnergyAccounting,
-    length: f64,
-    inflow: Inflow,
-) {
-    let volume = state.volume;
-    let gas = system.gas_step(state, volume, length, inflow);
-    accounting.commit_gas(system, state, gas, volume);
+/// Gives the state at the start of a step the gas and the creep strain that it would have at the end of the step if
+/// the film did not move.
+fn load_at_start(system: &FilmSystem, state: &mut FilmState, length: f64, inflow: Inflow) {
+    let path = (&state.positions, &state.positions);
+    CreepStrain::relax(&system.model, path, length, &mut state.creep);
+    if let Some(gas) = system.gas_step(state, state.volume, length, inflow) {
+        state.gas = gas.state;
+    }
 }

@@ -46,9 +46,15 @@ impl CreepStrain {
         all
     }
 
-    /// Lets the film creep for `length` (s) at these positions (m): Ṗ = (C⁻¹:S − P)/τ by the midpoint rule with the
-    /// exact decay of a constant stress. After twelve τ creep is over.
-    pub fn relax(model: &FilmModel, positions: &Field, length: f64, all: &mut [[Self; 2]]) {
+    /// Lets the film creep for `length` (s) while its strain goes evenly from that at the first positions (m) to that
+    /// at the second ones: Ṗ = (C⁻¹:S − P)/τ by the midpoint rule with the exact decay of a constant stress. Of a longer
+    /// time the last twelve τ count.
+    pub fn relax(
+        model: &FilmModel,
+        (from, to): (&Field, &Field),
+        length: f64,
+        all: &mut [[Self; 2]],
+    ) {
         let creep = &model.creep;
         let times = (length / creep.time).min(MAX_TIMES);
         if all.is_empty() || times <= 0.0 {
@@ -56,14 +62,25 @@ impl CreepStrain {
         }
         let count = (times / MAX_SUBSTEP).ceil();
         let shares = [0.5, 1.0].map(|part| creep.share(part * times / count * creep.time));
+        // Share of the way at the start of the time that counts, and of a substep.
+        let first = 1.0 - times * creep.time / length;
+        let part = (1.0 - first) / count;
         for (index, kite) in model.kites.iter().enumerate() {
             let (block, lane) = (index / WIDTH, index % WIDTH);
-            for (half, edges) in strain::edges_of_kite(positions, kite).into_iter().enumerate() {
+            let ends = [from, to].map(|positions| strain::edges_of_kite(positions, kite));
+            for half in [0, 1] {
                 let inverse_shape = &model.constants[block][half].inverse_shape;
                 let [a, b, d] = inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
-                let strain = strain::of_edges(edges, [[a, b], [0.0, d]]);
-                let towards = |from: [f64; 3], at: [f64; 3], share: f64| -> [f64; 3] {
+                let [start, end] =
+                    ends.map(|edges| strain::of_edges(edges[half], [[a, b], [0.0, d]]));
+                let towards = |from: [f64; 3], at: [f64; 3], way: f64, share: f64| -> [f64; 3] {
                     let [sum, difference, shear] = at;
+                    let mix = |from: f64, to: f64| from + way * (to - from);
+                    let strain = PlaneTensor {
+                        xx: mix(start.xx, end.xx),
+                        yy: mix(start.yy, end.yy),
+                        xy: mix(start.xy, end.xy),
+                    };
                     let elastic = PlaneTensor {
                         xx: strain.xx + creep.ratio * (strain.xx - 0.5 * (sum + difference)),
                         yy: strain.yy + creep.ratio * (strain.yy - 0.5 * (sum - difference)),
@@ -75,8 +92,9 @@ impl CreepStrain {
                 let mut value = all[block][half].lane(lane);
                 let mut done = 0.0;
                 while done < count {
-                    let middle = towards(value, value, shares[0]);
-                    value = towards(value, middle, shares[1]);
+                    let [start, middle] = [0.0, 0.5].map(|half| first + (done + half) * part);
+                    let halfway = towards(value, value, start, shares[0]);
+                    value = towards(value, halfway, middle, shares[1]);
                     done += 1.0;
                 }
                 for (stored, value) in all[block][half].0.iter_mut().zip(value) {
