@@ -29,6 +29,7 @@ mod pareto;
 mod physics_version;
 mod plan;
 mod rank_and_borders;
+mod remedies;
 mod replicate_tables;
 mod results_folder;
 mod run_and_table;

@@ -41,6 +41,7 @@ pub mod print;
 mod range;
 mod rank;
 pub mod reference;
+mod remedies;
 mod rerun;
 mod run;
 mod schema;

@@ -1,6 +1,6 @@
 //! `billow run`: runs the jobs of a study that are not finished.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -13,6 +13,7 @@ use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
 use super::print::{count, points_of_runs};
+use super::remedies::Applicable;
 use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
@@ -25,7 +26,7 @@ use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::progress;
-use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
+use crate::run::runner::{self, CHECKPOINT_INTERVAL, Rerun, Run, Summary};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -109,14 +110,14 @@ fn study_of_results(path: &Path) -> Result<(PathBuf, Option<PathBuf>)> {
     Ok((results.study_path(), Some(folder.to_owned())))
 }
 
-/// Runs the unfinished jobs of a study, or the jobs `again`, and prints the result.
+/// Runs the unfinished jobs of a study, or those to run `again`, and prints the result.
 ///
 /// # Errors
 /// As [`run`], and jobs that gave different bits than before.
 pub(super) fn run_study(
     study: &Study,
     root: &Path,
-    again: Option<&BTreeSet<JobId>>,
+    again: Option<Rerun<'_>>,
     options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
@@ -167,7 +168,7 @@ pub(super) fn run_study(
     let answer = Answer::of(&stored);
     let ended = Ended { study, root, summary: &summary, points: stored.planned_runs() };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
-    result(&summary, &limits, root)
+    result(&summary, &limits, root, &Applicable::of(&stored))
 }
 
 /// The error of a run that a signal stopped. A signal after the last job has stopped nothing.
@@ -188,7 +189,7 @@ fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
 }
 
 /// The error of a run, if it has one.
-fn result(summary: &Summary, limits: &JobLimits, root: &Path) -> Result<()> {
+fn result(summary: &Summary, limits: &JobLimits, root: &Path, remedies: &Applicable) -> Result<()> {
     if !summary.different.is_empty() {
         return Err(Error::JobsFailed(format!(
             "{} gave different bits than before: {}\n  next: billow show JOB; compare \
@@ -200,10 +201,11 @@ fn result(summary: &Summary, limits: &JobLimits, root: &Path) -> Result<()> {
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed{}\n  next: billow table {} --columns job,status,reason,stop_time,stop_location{}",
+            "{} failed{}\n  next: billow table {} --columns job,status,reason,stop_time,stop_location{}{}",
             count(failed, "job"),
             limited(&summary.counts.failures()),
             root.display(),
+            next_with_remedy(remedies, root),
             next_of_limited(summary, limits, root),
         ))),
     }
@@ -223,6 +225,14 @@ fn limited(failures: &BTreeMap<String, usize>) -> String {
     let names = RERUN.iter().filter(|(status, _)| *status != step_limit);
     let any = names.map(|(status, _)| status.name()).any(|name| failures.contains_key(name));
     if any { format!(" ({})", listed(failures)) } else { String::new() }
+}
+
+/// The command that runs failed jobs with remedies, and what it would change.
+fn next_with_remedy(remedies: &Applicable, root: &Path) -> String {
+    match remedies.jobs() {
+        0 => String::new(),
+        _ => format!("; billow rerun {} --remedy: {}", root.display(), remedies.named()),
+    }
 }
 
 /// The commands that run such jobs again.
@@ -266,6 +276,7 @@ impl Ended<'_> {
                 "status": counts.status,
                 "verdict": counts.verdict,
                 "same_bits": summary.same,
+                "with_remedy": counts.remedied,
                 "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
             });
             if let (Some(keys), serde_json::Value::Object(more)) =
@@ -287,6 +298,14 @@ impl Ended<'_> {
         writeln!(out, "  status   {}", listed(&counts.status))?;
         if !counts.verdict.is_empty() {
             writeln!(out, "  verdict  {}", listed(&counts.verdict))?;
+        }
+        if counts.remedied > 0 {
+            let jobs = count(counts.remedied, "job");
+            let new = match summary.remedied {
+                0 => String::new(),
+                new => format!(", {new} of them now"),
+            };
+            writeln!(out, "  remedy   {jobs} with other numerical settings (column remedy){new}")?;
         }
         if summary.same > 0 {
             writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;

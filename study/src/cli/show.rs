@@ -7,6 +7,7 @@ use billow_solver::output::history::COLUMNS;
 
 use super::options::{OutputOptions, QuietOption, UnitsOption};
 use super::print::{Heading, print_quantities, print_rows};
+use super::remedies;
 use super::target::{StudyArgs, current_name, folder_of_job};
 use super::{Format, output_error};
 use crate::accuracy::{NO_ERROR_REASON, is_error_column};
@@ -14,8 +15,8 @@ use crate::input::keys::{self, KEYS};
 use crate::input::renamed;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
-use crate::job::row::{Cells, ColumnGroup};
-use crate::job::{JobId, Status};
+use crate::job::JobId;
+use crate::job::row::ColumnGroup;
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
 use crate::scene::summary;
@@ -129,7 +130,9 @@ fn scene(stored: &Stored<'_>, id: &JobId) -> Result<serde_json::Value> {
         problem: format!("its scene is not valid JSON: {error}"),
     };
     match stored.point(id) {
-        Some(point) if !is_stored => serde_json::to_value(&point.job.scene).map_err(broken),
+        Some(point) if !is_stored && point.job.id == *id => {
+            serde_json::to_value(&point.job.scene).map_err(broken)
+        }
         _ => serde_json::from_str(&history_of(stored, id)?.scene).map_err(broken),
     }
 }
@@ -144,11 +147,7 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
         let meaning = keys::find(name).map_or("", |index| KEYS[index].doc);
         rows.push(vec![text("parameters"), text(name), value.clone(), unit, text(meaning)]);
     }
-    let recorded = stored.record(id).map(|record| record.cells.clone());
-    let cells = match point {
-        Some(point) => stored.cells(point),
-        None => recorded.unwrap_or_else(|| Cells::new(Status::Pending)),
-    };
+    let cells = stored.cells_of_job(id);
     for group in ColumnGroup::ALL {
         let group_cells =
             cells.iter().filter(|(column, value)| column.group == group && **value != Value::Null);
@@ -158,6 +157,8 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
             vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
+    let about = remedies::lines(stored, id, &cells).into_iter();
+    rows.extend(about.map(|(topic, about)| vec![text("remedies"), text(topic), text(&about)]));
     rows.extend(mesh_errors(stored, id));
     rows.extend(events(stored, id));
     // The row is shown even if its file cannot be read: the error is then one of the rows.

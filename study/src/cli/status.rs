@@ -9,6 +9,7 @@ use serde_json::json;
 use super::answer::{auto, judged};
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, points_of_runs, print_rows};
+use super::remedies::{Applicable, Line};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
 use super::{Format, changes, output_error};
@@ -40,6 +41,8 @@ struct Status<'a> {
     stored: &'a Stored<'a>,
     health: &'a Health,
     counts: Counts,
+    /// The failed jobs that can run with a remedy.
+    remedies: Applicable,
     /// Sum of the wall times of the jobs, s.
     seconds: f64,
     /// Number of jobs with a wall time.
@@ -49,9 +52,6 @@ struct Status<'a> {
     /// Jobs with a checkpoint, and its simulated time, s.
     checkpoints: Vec<(JobId, Option<f64>)>,
 }
-
-/// One line: its topic and its text.
-type Line = (&'static str, String);
 
 /// Runs `billow status`. It only reads, and takes no lock.
 ///
@@ -92,7 +92,8 @@ impl<'a> Status<'a> {
         let with_checkpoint = results.checkpoints().unwrap_or_default().into_iter();
         let checkpoints = with_checkpoint.map(|id| (id.clone(), results.checkpoint_time(&id)));
         let checkpoints = checkpoints.collect();
-        Self { stored, health, counts, seconds, timed, threads, checkpoints }
+        let remedies = Applicable::of(stored);
+        Self { stored, health, counts, remedies, seconds, timed, threads, checkpoints }
     }
 
     /// Numbers of finished jobs of other versions of the physics, by version.
@@ -128,6 +129,8 @@ impl<'a> Status<'a> {
             "infeasible": counts.of(JobStatus::Infeasible),
             "other_physics": self.other_physics(),
             "invalidated": stored.journal.invalidated.len(),
+            "with_remedy": counts.remedied,
+            "can_run_with_remedy": self.remedies.jobs(),
             "status": counts.status,
             "verdict": counts.verdict,
             "near_threshold": counts.near_threshold,
@@ -193,13 +196,22 @@ impl<'a> Status<'a> {
             number => format!(" ({number} invalidated)"),
         };
         let (done, failed) = (counts.of(JobStatus::Done), counts.failed());
+        let remedied = match counts.remedied {
+            0 => String::new(),
+            number => format!(" ({number} with a remedy)"),
+        };
         lines.push((
             "jobs",
-            format!("{done} done, {failed} failed, {pending} pending{invalidated}"),
+            format!("{done} done{remedied}, {failed} failed, {pending} pending{invalidated}"),
         ));
         let failures = counts.failures();
         if !failures.is_empty() {
             lines.push(("failed", format!("{}; billow why JOB explains one", listed(&failures))));
+        }
+        if self.remedies.jobs() > 0 {
+            let root = self.stored.results.root().display();
+            let text = format!("{}: billow rerun {root} --remedy", self.remedies.named());
+            lines.push(("remedy", text));
         }
         if !counts.verdict.is_empty() {
             let near = match counts.near_threshold {

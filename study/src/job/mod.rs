@@ -10,6 +10,7 @@ pub mod pace;
 pub mod point;
 pub mod proportion;
 pub mod references;
+pub mod remedy;
 pub mod result_limit;
 pub mod row;
 pub mod status;

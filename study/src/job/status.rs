@@ -86,6 +86,13 @@ impl Status {
         !matches!(self, Self::Infeasible | Self::Cancelled | Self::Paused | Self::NoEquilibrium)
     }
 
+    /// Whether a job with this status and without a history was ended by a limit of the study, or crashed: it can
+    /// resume from its checkpoint, or run again.
+    pub fn is_limit(self) -> bool {
+        let step_limit = Self::Failed(FailureKind::StepLimit);
+        [Self::Timeout, Self::OutOfMemory, Self::Crashed, step_limit].contains(&self)
+    }
+
     /// Whether a job with this status failed: it will not give a result, though its point has a
     /// pattern.
     pub fn is_failure(self) -> bool {

@@ -17,12 +17,12 @@ pub fn rows(
     points.iter().filter_map(|point| row(point, records, limits)).collect()
 }
 
-/// The row of a point; `None` while its job has not ended.
+/// The row of a point, under the id of its planned job; `None` while its job has not ended.
 pub fn row(
     point: &Point,
     records: &BTreeMap<JobId, Record>,
     limits: &[ResultLimit],
 ) -> Option<FinishedRow> {
     let cells = journal::cells_of(point, records)?;
-    Some(FinishedRow::of(&point.job.id, &cells, limits))
+    Some(FinishedRow::of(point.planned_id(), &cells, limits))
 }

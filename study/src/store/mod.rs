@@ -10,6 +10,7 @@ pub mod finished;
 pub mod history_file;
 pub mod journal;
 pub mod reference_file;
+pub mod remedied;
 pub mod results;
 pub mod stored;
 pub mod table;

@@ -14,6 +14,7 @@ use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::finished;
 use crate::store::journal::{self, Journal, Record};
+use crate::store::remedied::{self, Attempt};
 use crate::store::results::Results;
 use crate::store::table::Table;
 use crate::study::auto::Outcome;
@@ -58,7 +59,7 @@ impl<'a> Stored<'a> {
         }
         let study = Study::load(&results.study_path(), &[])?;
         let journal = results.journal()?;
-        let points = planned(&study, &journal.records);
+        let points = planned(&study, &journal);
         let units = study.display_units().clone();
         Ok(Self { results, study, units, journal, points })
     }
@@ -66,7 +67,7 @@ impl<'a> Stored<'a> {
     /// The same results, read as those of another study: one that differs in its limits.
     #[must_use]
     pub fn asked(mut self, study: Study) -> Self {
-        self.points = planned(&study, &self.journal.records);
+        self.points = planned(&study, &self.journal);
         self.units = study.display_units().clone();
         self.study = study;
         self
@@ -76,6 +77,21 @@ impl<'a> Stored<'a> {
     pub fn cells(&self, point: &Point) -> Cells {
         journal::cells_of(point, &self.journal.records)
             .unwrap_or_else(|| Cells::new(Status::Pending))
+    }
+
+    /// The row of a job: that of its point, or for a job whose point shows another one its record.
+    pub fn cells_of_job(&self, id: &JobId) -> Cells {
+        if let Some(point) = self.point(id).filter(|point| point.job.id == *id) {
+            return self.cells(point);
+        }
+        let record = self.record(id).map(|record| record.cells.clone());
+        record.unwrap_or_else(|| Cells::new(Status::Pending))
+    }
+
+    /// The next run of a point with a remedy; `None` for a point that has not failed, and where none remains.
+    pub fn remedy(&self, point: &Point) -> Option<Attempt> {
+        let has_failed = self.cells(point).status().is_failure();
+        has_failed.then(|| remedied::next(point, &|id| self.record(id))).flatten()
     }
 
     /// The table, built from plan and journal: one row per point, also for points that share a job.
@@ -88,9 +104,10 @@ impl<'a> Stored<'a> {
         self.built(&self.points)
     }
 
-    /// The table of one job: a row for each of its points.
+    /// The table of one job: a row for each of its points. `None` for a job that no row shows.
     pub fn table_of(&self, id: &JobId) -> Option<Table> {
-        Some(self.built(std::slice::from_ref(self.point(id)?)))
+        let point = self.point(id).filter(|point| point.job.id == *id)?;
+        Some(self.built(std::slice::from_ref(point)))
     }
 
     /// The table of these points, shown in the study's units.
@@ -124,14 +141,16 @@ impl<'a> Stored<'a> {
         plan::borders(&self.study, &finished)
     }
 
-    /// The planned point of a job.
+    /// The point of a job: the one whose row shows it, else the one that it was planned for or ran for with a remedy.
     pub fn point(&self, id: &JobId) -> Option<&Point> {
-        self.points.iter().find(|point| point.job.id == *id)
+        let shown = self.points.iter().find(|point| point.job.id == *id);
+        let mut points = self.points.iter();
+        shown.or_else(|| points.find(|point| point.jobs().any(|job| job == id)))
     }
 
     /// The last record of a job, also of an invalidated one.
     pub fn record(&self, id: &JobId) -> Option<&Record> {
-        self.journal.records.get(id).or_else(|| self.journal.invalidated.get(id))
+        self.journal.record(id)
     }
 
     /// Path of the history file of a job, after a check that it is the file that its record names.
@@ -166,7 +185,7 @@ impl<'a> Stored<'a> {
     /// [`Error::Input`] when no id or several ids begin so. The message lists the nearest ids.
     pub fn job(&self, prefix: &str) -> Result<JobId> {
         let wanted = prefix.trim().to_ascii_lowercase();
-        let planned = self.points.iter().map(|point| &point.job.id);
+        let planned = self.points.iter().flat_map(Point::jobs);
         let recorded = self.journal.records.keys().chain(self.journal.invalidated.keys());
         let known: BTreeSet<&JobId> = planned.chain(recorded).collect();
         let begins_so = |id: &&&JobId| !wanted.is_empty() && id.as_str().starts_with(&wanted);
@@ -220,7 +239,7 @@ impl<'a> Stored<'a> {
 /// Numbers of finished jobs of other versions of the physics, by version. A planned job does not count,
 /// whatever version its record has.
 pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTreeMap<i64, usize> {
-    let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
+    let planned: BTreeSet<&JobId> = points.iter().flat_map(Point::jobs).collect();
     let mut versions = BTreeMap::new();
     for record in records.values().filter(|record| !planned.contains(&record.job)) {
         if let Value::Integer(version) = record.cells.get(ColumnId::PhysicsVersion)
@@ -233,17 +252,19 @@ pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTr
 }
 
 /// Every point that the study plans with these finished jobs: generation after generation, as in a
-/// run.
-pub fn planned(study: &Study, records: &BTreeMap<JobId, Record>) -> Vec<Point> {
+/// run. A point whose planned job failed shows the result of a remedy, where the journal has one.
+pub fn planned(study: &Study, journal: &Journal) -> Vec<Point> {
+    let record_of = |id: &JobId| journal.record(id);
     let mut points: Vec<Point> = Vec::new();
     let mut last = None;
     let mut finished = Vec::new();
-    while let Some(generation) = plan::next_jobs(study, &finished)
+    while let Some(mut generation) = plan::next_jobs(study, &finished)
         && last.is_none_or(|last| generation.number > last)
     {
         last = Some(generation.number);
+        remedied::apply(&mut generation.points, &journal.remedies, &record_of);
         plan::add_generation(&mut points, generation);
-        finished = finished::rows(&points, records, study.result_limits());
+        finished = finished::rows(&points, &journal.records, study.result_limits());
     }
     points
 }

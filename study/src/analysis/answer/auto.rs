@@ -7,8 +7,8 @@
 
 use crate::accuracy::PROMISED;
 use crate::input::value::Value;
-use crate::job::Status;
 use crate::job::row::ColumnId;
+use crate::job::{JobId, Status};
 use crate::store::stored::Stored;
 use crate::study::auto::{Auto, Check, Outcome, estimated_cost};
 
@@ -118,7 +118,7 @@ fn cost(stored: &Stored<'_>, auto: &Auto) -> Option<f64> {
     let all: f64 = stored.points.iter().map(element_steps).sum();
     let on_reference = |point: &&crate::job::point::Point| {
         let pilots = auto.pilots.iter().map(|pilot| &points[*pilot]);
-        pilots.map(|pilot| &pilot.scene).any(|scene| *scene == point.job.scene)
+        pilots.map(|pilot| JobId::of(&pilot.scene)).any(|id| id == *point.planned_id())
     };
     let pilots: f64 = stored.points.iter().filter(on_reference).map(element_steps).sum();
     let feasible = points.iter().filter(|point| point.infeasible.is_none());

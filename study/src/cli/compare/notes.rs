@@ -8,7 +8,7 @@ use crate::analysis::replicates::is_mesh;
 use crate::cli::print::count;
 use crate::cli::{best, legend};
 use crate::input::value::Value;
-use crate::job::row::BetterSide;
+use crate::job::row::{BetterSide, ColumnId};
 
 /// What a cell of a point holds.
 const MEDIANS: &str = "median [least to largest]";
@@ -57,6 +57,16 @@ impl Comparison<'_> {
         }
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");
+        }
+        let remedied = self
+            .table
+            .column(ColumnId::Remedy.name())
+            .map_or(0, |column| column.cells.iter().filter(|cell| **cell != Value::Null).count());
+        if remedied > 0 {
+            eprintln!(
+                "note: {} with other numerical settings than planned (column remedy)",
+                count(remedied, "row")
+            );
         }
         let jobs = pairs_of_jobs(self.table, &self.pairs).len();
         if jobs < self.pairs.len() {

@@ -21,6 +21,7 @@ pub fn main_names(table: &Table) -> Vec<&str> {
         ColumnId::Status.name(),
         RUN_MESH,
         ColumnId::Verdict.name(),
+        ColumnId::Remedy.name(),
         DerivedColumn::Safe.name(),
         DerivedColumn::SmallestMargin.name(),
         DerivedColumn::SmallestMarginOf.name(),
@@ -124,11 +125,12 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     columns
 }
 
-/// Whether a column is shown even if it makes the line too long: the status, and what the limits say.
+/// Whether a column is shown even if it makes the line too long: the status, remedies, and what the limits say.
 fn is_always_shown(name: &str, has_values: bool) -> bool {
     let judged =
         [DerivedColumn::Safe, DerivedColumn::SmallestMargin, DerivedColumn::VerdictDependsOn];
     name == ColumnId::Status.name()
+        || (has_values && name == ColumnId::Remedy.name())
         || (has_values && judged.iter().any(|column| column.name() == name))
 }
 

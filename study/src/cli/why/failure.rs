@@ -5,11 +5,8 @@ use billow_solver::output::outcome::FailureKind;
 use super::Line;
 use crate::input::value::brief_number;
 use crate::job::Status;
+use crate::job::remedy::Failure;
 use crate::job::row::{Cells, ColumnId};
-
-/// Peak kinetic energy below which nothing deployed, J. Chosen: a thousandth of the slowest run of the
-/// paper.
-const MIN_DEPLOYMENT_ENERGY: f64 = 5e-3;
 
 /// Lines of a failed or infeasible job, and the next step.
 pub(super) fn explanation(
@@ -24,6 +21,7 @@ pub(super) fn explanation(
     }
     for (topic, column) in [
         ("location", ColumnId::StopLocation),
+        ("audit", ColumnId::StopAudit),
         ("reason", ColumnId::Reason),
         ("nearest", ColumnId::Nearest),
     ] {
@@ -36,17 +34,15 @@ pub(super) fn explanation(
             lines.push((topic, format!("{}{scope}", cells.text(column))));
         }
     }
-    let energy = cells.number(ColumnId::PeakKineticEnergy).unwrap_or(f64::INFINITY);
-    if status == Status::Failed(FailureKind::EnergyDrift) && energy < MIN_DEPLOYMENT_ENERGY {
+    if let Some(energy) = cells.number(ColumnId::PeakKineticEnergy)
+        && Failure::of(cells).is_without_motion()
+    {
         let text = format!(
             "the film hardly moved (peak kinetic energy {} J): the strain energy of the folded mesh is \
              as large, so the energy balance has no meaning",
             brief_number(energy)
         );
         lines.push(("energy", text));
-        let next = "check that gas flows in before solver.end_time: gas.mass_flow_rate and the inflow \
-                    windows of the strategy; their times count from the start of the run";
-        return (lines, next.to_owned());
     }
     let has_history = !cells.text(ColumnId::ContentHash).is_empty();
     (lines, next_step(status, has_history, short_id, root))
@@ -71,7 +67,8 @@ fn meaning(status: Status) -> &'static str {
             "the enclosed volume became zero or negative"
         }
         Status::Failed(FailureKind::StepLimit) => {
-            "the run used all steps that solver.step_limit or job_limits.steps allows before its end time"
+            "the run used all steps that solver.step_limit or job_limits.steps allows before its end time, or no step \
+             advances it"
         }
         Status::Failed(FailureKind::Interpenetrated) => {
             "film passed through film, or intersects film"
@@ -100,19 +97,11 @@ fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> S
         Status::Panicked => format!("report the reason with {root}/study.json and the job id"),
         Status::Failed(FailureKind::StepLimit) => {
             if has_history {
-                format!("{show}: see how the time advanced; then raise solver.step_limit")
+                format!("{show}: see how the time advanced")
             } else {
                 let rerun = format!("billow rerun {short_id} {root} --job-limit steps=…");
                 format!("{rerun}: the job resumes from its checkpoint")
             }
-        }
-        Status::Failed(FailureKind::Unstable | FailureKind::EnergyDrift) => {
-            format!("{show}; then a smaller step: billow keys cfl")
-        }
-        Status::Failed(FailureKind::Overstretched) => {
-            "check film.youngs_modulus, film.thickness and the gas (gas.mass_flow_rate, solver.end_time): \
-             pressure times radius over E t is the strain"
-                .to_owned()
         }
         Status::Timeout => format!(
             "billow rerun {short_id} {root} --job-limit wall_time=…: the job resumes from its checkpoint, if \

@@ -8,6 +8,7 @@ use serde_json::{Map, json};
 
 use super::options::OutputOptions;
 use super::print::print_rows;
+use super::remedies::{self, Line};
 use super::target::{StudyArgs, folder_of_job};
 use super::{Format, output_error};
 use crate::input::value::{Value, brief_number, json_value};
@@ -32,9 +33,6 @@ pub struct Args {
     output: OutputOptions,
 }
 
-/// One line of the explanation: its topic and its text.
-type Line = (&'static str, String);
-
 /// Runs `billow why`.
 ///
 /// # Errors
@@ -43,11 +41,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(&args.job, &args.study)?;
     let stored = super::stored::read(&root)?;
     let id = stored.job(&args.job)?;
-    let cells = match (stored.point(&id), stored.record(&id)) {
-        (Some(point), _) => stored.cells(point),
-        (None, Some(record)) => record.cells.clone(),
-        (None, None) => Cells::new(Status::Pending),
-    };
+    let cells = stored.cells_of_job(&id);
     let lines = explanation(&stored, &id, &cells)?;
     match args.output.format() {
         Format::Table => {
@@ -80,13 +74,20 @@ fn headline(cells: &Cells) -> String {
 /// Every line of the explanation; the last one is the next step.
 fn explanation(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Line>> {
     let root = stored.results.root().display();
-    let (mut lines, next) = match cells.status() {
+    let (mut lines, mut next) = match cells.status() {
         Status::Done => done(stored, id, cells),
         Status::Pending => pending(stored, id),
         status => failure::explanation(cells, status, id.short(), &root.to_string()),
     };
     lines.extend(audit(cells));
     lines.extend(damping(cells));
+    lines.extend(remedies::lines(stored, id, cells));
+    let shown = stored.point(id).map(|point| &point.job.id);
+    if let Some(shown) = shown.filter(|shown| *shown != id) {
+        next = format!("billow why {} {root}", shown.short());
+    } else if remedies::next(stored, id).is_some() {
+        next = format!("billow rerun {} {root} --remedy", id.short());
+    }
     if stored.point(id).is_none() {
         lines.push(("study", "this job is no longer in the study".to_owned()));
     }
@@ -165,7 +166,7 @@ fn damping(cells: &Cells) -> Vec<Line> {
             "damping",
             format!(
                 "the method {verb} {} of the work of the gas until the first peak (numerical_fraction): kinetic \
-                 energies and rebounds are wrong by about as much; a smaller solver.cfl, a finer mesh",
+                 energies and rebounds are wrong by about as much",
                 percent(fraction)
             ),
         ));
@@ -192,6 +193,10 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
         "checks": verdict::checks(cells),
         "why": texts.collect::<Vec<_>>(),
     });
+    let attempt = remedies::next(stored, id);
+    keys["next_remedy"] = attempt.as_ref().map(|next| next.text.as_str()).into();
+    let point = stored.point(id).filter(|point| point.job.id == *id);
+    keys["proposed"] = point.map(|point| remedies::proposed(cells, point)).into();
     for column in [
         ColumnId::Status,
         ColumnId::Verdict,
@@ -201,6 +206,9 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
         ColumnId::Nearest,
         ColumnId::StopTime,
         ColumnId::StopLocation,
+        ColumnId::StopAudit,
+        ColumnId::Remedy,
+        ColumnId::FailedRemedies,
         ColumnId::LedgerResidual,
         ColumnId::GasResidual,
         ColumnId::Passages,

@@ -326,6 +326,15 @@ columns! {
     StopLocation "stop_location" Text [""] Outcome Neither
         "element, node or part of the model at which a failed run stopped"
         end => end.failure().map(|failure| failure.place.as_str());
+    StopAudit "stop_audit" Text [""] Outcome Neither
+        "audit that ended a failed run: finite_motion, energy_source, energy_ledger, …"
+        end => end.failure().map(|failure| failure.audit.name());
+    Remedy "remedy" Text [""] Outcome Neither
+        "numerical settings with which the result was computed after the planned job failed: key, planned and new value; null for the planned job"
+        _end => None::<String>;
+    FailedRemedies "failed_remedies" Text [""] Outcome Neither
+        "remedies that did not help, each with the status of its run; null without one"
+        _end => None::<String>;
     Steps "steps" Integer ["1"] Cost Neither
         "accepted steps"
         end => end.deployment().map(|run| integer(run.steps));

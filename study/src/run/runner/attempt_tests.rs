@@ -89,7 +89,7 @@ fn run_with(
         limits: JobLimits::default(),
         checkpoint_interval: interval,
         stop: stop.clone(),
-        rerun: ids.as_ref(),
+        rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: false }),
     };
     let mut notes = Notes(Vec::new());
     let summary = run(&study, &mut notes).unwrap();

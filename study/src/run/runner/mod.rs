@@ -7,7 +7,8 @@
 //! (`attempt_log`).
 //!
 //! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
-//! compared with the hash of the old one.
+//! compared with the hash of the old one. A failed job that is run again with a remedy keeps its record without end: the run
+//! with the remedy is another job, and the journal links both (`remedies`).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
@@ -68,7 +69,16 @@ pub struct Run<'a> {
     /// Requests an early stop.
     pub stop: Stop,
     /// Runs only these jobs, also finished ones; `None` runs every job that is not finished.
-    pub rerun: Option<&'a BTreeSet<JobId>>,
+    pub rerun: Option<Rerun<'a>>,
+}
+
+/// Jobs to run again.
+#[derive(Debug, Clone, Copy)]
+pub struct Rerun<'a> {
+    /// Their ids, those that rows show.
+    pub jobs: &'a BTreeSet<JobId>,
+    /// Whether the failed ones of them run with remedies ([`crate::job::remedy`]), instead of as they are.
+    pub remedy: bool,
 }
 
 /// Result of a run.
@@ -84,6 +94,8 @@ pub struct Summary {
     pub same: usize,
     /// Jobs that had ended before and gave another status or history.
     pub different: Vec<JobId>,
+    /// Number of failed jobs that have a result with a remedy since this run.
+    pub remedied: usize,
 }
 
 /// Runs the jobs of a study that are not finished.
@@ -115,6 +127,7 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
         last = Some(generation.number);
         let missing = state.begin_generation(generation, reporter)?;
         state.run_jobs(missing, reporter)?;
+        state.run_remedies(reporter)?;
         finished = state.finished();
     }
     state.write_table()?;
@@ -124,6 +137,8 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
 
 #[cfg(test)]
 mod attempt_tests;
+#[cfg(test)]
+mod remedy_tests;
 #[cfg(test)]
 mod rerun_tests;
 #[cfg(test)]

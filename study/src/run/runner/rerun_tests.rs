@@ -47,7 +47,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         limits: JobLimits::default(),
         checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
-        rerun: ids.as_ref(),
+        rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: false }),
     };
     let ended = run(&study, &mut Silent);
     (ended, executor.executed.load(Ordering::SeqCst))

@@ -3,8 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
-use billow_solver::output::outcome::FailureKind;
-
 use super::attempt_log::AttemptLog;
 use super::quarantine::{self, Deaths};
 use super::workers::Ended;
@@ -16,7 +14,8 @@ use crate::platform::error::{Error, Result};
 use crate::run::event::{Event, Reporter};
 use crate::store::finished;
 use crate::store::history_file;
-use crate::store::journal::{self, Journal, Record};
+use crate::store::journal::{self, Journal, Record, RemedyLink};
+use crate::store::remedied::{self, Links};
 use crate::study::finished::FinishedRow;
 use crate::study::plan::{self, Generation};
 
@@ -27,6 +26,7 @@ const MIN_TABLE_INTERVAL: Duration = Duration::from_secs(10);
 const MIN_TABLE_RATIO: u32 = 20;
 
 mod dispatch;
+mod remedies;
 
 /// State of a run.
 pub(super) struct State<'a, 'w> {
@@ -42,6 +42,10 @@ pub(super) struct State<'a, 'w> {
     records: BTreeMap<JobId, Record>,
     /// Deaths of earlier processes.
     deaths: Deaths,
+    /// The jobs that ran with a remedy, by planned job.
+    links: Links,
+    /// Links of the jobs with a remedy that run now, by the job that runs.
+    open_links: BTreeMap<JobId, Vec<RemedyLink>>,
     /// Every point planned so far.
     points: Vec<Point>,
     summary: Summary,
@@ -60,6 +64,8 @@ impl<'a, 'w> State<'a, 'w> {
             recorded: journal.records,
             records: BTreeMap::new(),
             deaths: Deaths::new(journal.deaths),
+            links: journal.remedies,
+            open_links: BTreeMap::new(),
             points: Vec::new(),
             summary: Summary::default(),
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
@@ -80,7 +86,7 @@ impl<'a, 'w> State<'a, 'w> {
     /// Removes the checkpoints of jobs that have ended: those of a process that died in between.
     pub(super) fn remove_checkpoints(&self) -> Result<()> {
         for id in self.log.stored() {
-            if self.recorded.get(&id).is_some_and(|record| !reached_limit(record)) {
+            if self.recorded.get(&id).is_some_and(|record| !record.reached_limit()) {
                 self.log.remove(&id)?;
             }
         }
@@ -90,9 +96,10 @@ impl<'a, 'w> State<'a, 'w> {
     /// Adds a generation and returns its missing jobs, in plan order.
     pub(super) fn begin_generation(
         &mut self,
-        generation: Generation,
+        mut generation: Generation,
         reporter: &mut dyn Reporter,
     ) -> Result<Vec<Job>> {
+        self.show_remedies(&mut generation.points);
         let mut missing = Vec::new();
         let mut seen = BTreeSet::new();
         for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
@@ -100,32 +107,15 @@ impl<'a, 'w> State<'a, 'w> {
             if !seen.insert(id.clone()) || self.records.contains_key(id) {
                 continue;
             }
-            match self.recorded.remove(id) {
-                None => missing.push(point.job.clone()),
-                Some(record) => match self.run.results.damage(&record)? {
-                    None => {
-                        // The record of a job to run again counts until its new one is there.
-                        if self.run.rerun.is_some_and(|rerun| rerun.contains(id)) {
-                            self.old_records.insert(id.clone(), record.clone());
-                            missing.push(point.job.clone());
-                        }
-                        self.records.insert(id.clone(), record);
-                    }
-                    Some(note) => {
-                        reporter.event(&Event::Note(note));
-                        let path = self.run.results.job_path(id);
-                        if path.is_dir() {
-                            self.run.results.set_aside(&path)?;
-                        }
-                        self.old_records.insert(id.clone(), record);
-                        missing.push(point.job.clone());
-                    }
-                },
+            let again =
+                self.run.rerun.is_some_and(|rerun| !rerun.remedy && rerun.jobs.contains(id));
+            if self.must_run(id, again, reporter)? {
+                missing.push(point.job.clone());
             }
         }
         match self.run.rerun {
             Some(rerun) => {
-                missing.retain(|job| rerun.contains(&job.id));
+                missing.retain(|job| !rerun.remedy && rerun.jobs.contains(&job.id));
                 for job in &missing {
                     self.deaths.forget(&job.id);
                 }
@@ -144,6 +134,41 @@ impl<'a, 'w> State<'a, 'w> {
         plan::add_generation(&mut self.points, generation);
         self.table_outdated = true;
         Ok(missing)
+    }
+
+    /// Whether a job has no record with an undamaged file, or must run `again`.
+    fn must_run(&mut self, id: &JobId, again: bool, reporter: &mut dyn Reporter) -> Result<bool> {
+        let Some(record) = self.recorded.remove(id) else { return Ok(true) };
+        match self.run.results.damage(&record)? {
+            None => {
+                // The record of a job to run again counts until its new one is there.
+                if again {
+                    self.old_records.insert(id.clone(), record.clone());
+                }
+                self.records.insert(id.clone(), record);
+                Ok(again)
+            }
+            Some(note) => {
+                reporter.event(&Event::Note(note));
+                let path = self.run.results.job_path(id);
+                if path.is_dir() {
+                    self.run.results.set_aside(&path)?;
+                }
+                self.old_records.insert(id.clone(), record);
+                Ok(true)
+            }
+        }
+    }
+
+    /// Gives points the runs with remedies that their rows show.
+    fn show_remedies(&self, points: &mut [Point]) {
+        remedied::apply(points, &self.links, &|id| self.record(id));
+    }
+
+    /// The last record of a job, also of one that must run again.
+    fn record(&self, id: &JobId) -> Option<&Record> {
+        let maps = [&self.records, &self.recorded, &self.old_records];
+        maps.into_iter().find_map(|records| records.get(id))
     }
 
     /// Stores jobs that ended: history files first, then their records with one sync.
@@ -190,14 +215,17 @@ impl<'a, 'w> State<'a, 'w> {
             self.run.results.write_reference(&id, &reference)?;
         }
         if !records.is_empty() {
-            self.log.writer().append(&records)?;
+            let links = records.iter().filter_map(|record| self.open_links.remove(&record.job));
+            let links: Vec<RemedyLink> = links.flatten().collect();
+            self.log.writer().append_remedies(&records, &links)?;
+            self.add_links(links);
             self.summary.ran += records.len();
             self.table_outdated = true;
             for record in &records {
                 self.compare_with_old(record);
             }
             for record in &records {
-                if !reached_limit(record) {
+                if !record.reached_limit() {
                     self.log.remove(&record.job)?;
                 }
             }
@@ -222,9 +250,9 @@ impl<'a, 'w> State<'a, 'w> {
     ) -> Vec<Ended> {
         ended.retain(|ended| {
             let id = &jobs[ended.index].id;
-            let old = self.records.get(id).filter(|old| !reached_limit(old));
+            let old = self.records.get(id).filter(|old| !old.reached_limit());
             let kept =
-                old.is_some() && ended.deployment.is_none() && is_limit(ended.cells.status());
+                old.is_some() && ended.deployment.is_none() && ended.cells.status().is_limit();
             if kept {
                 let reason = ended.cells.text(ColumnId::Reason);
                 let id = id.short();
@@ -238,7 +266,7 @@ impl<'a, 'w> State<'a, 'w> {
     /// Compares status and content hash of a job that ran again with its old record.
     fn compare_with_old(&mut self, record: &Record) {
         let Some(old) = self.old_records.remove(&record.job) else { return };
-        if reached_limit(&old) || reached_limit(record) {
+        if old.reached_limit() || record.reached_limit() {
             // There are no bits to compare.
             return;
         }
@@ -282,16 +310,4 @@ impl<'a, 'w> State<'a, 'w> {
         }
         summary
     }
-}
-
-/// Whether a job was ended by a limit, or crashed. Its checkpoint is kept, so that it can go on.
-fn reached_limit(record: &Record) -> bool {
-    // A run that used up solver.step_limit has a history.
-    record.file_hash.is_none() && is_limit(record.cells.status())
-}
-
-/// Whether a job of this status, without a history, was ended by a limit, or crashed.
-fn is_limit(status: Status) -> bool {
-    let step_limit = Status::Failed(FailureKind::StepLimit);
-    [Status::Timeout, Status::OutOfMemory, Status::Crashed, step_limit].contains(&status)
 }

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::job::JobId;
+use crate::job::point::Point;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
 use crate::store::journal::Journal;
@@ -139,9 +140,9 @@ fn examined(results: &Results<'_>, depth: Depth) -> Health {
     }
     let study = check_study(results, &mut health);
     let journal = check_journal(results, &mut health);
-    let points = study.as_ref().map(|study| stored::planned(study, &journal.records));
+    let points = study.as_ref().map(|study| stored::planned(study, &journal));
     if let Some(points) = &points {
-        let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
+        let planned: BTreeSet<&JobId> = points.iter().flat_map(Point::jobs).collect();
         let unplanned = journal.records.keys().filter(|id| !planned.contains(id)).count();
         if unplanned > 0 {
             let problem = format!("{unplanned} finished jobs are not in the study as it is now");

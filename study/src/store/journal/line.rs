@@ -1,11 +1,12 @@
-//! The lines of a journal: header, ended job, invalidated job, what is known of attempts, study.
+//! The lines of a journal: header, ended job, invalidated job, what is known of attempts, study, remedy.
 
 use billow_solver::platform::seal;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 
-use super::{Death, Record};
+use super::{Death, Record, RemedyLink};
 use crate::input::value::Value;
+use crate::job::remedy::Change;
 use crate::job::row::{CellType, Cells, ColumnId, current_column_name};
 use crate::job::{JobId, Status};
 use crate::platform::files::Stamp;
@@ -14,7 +15,7 @@ use crate::platform::provenance;
 /// Name of the format, in the header.
 pub const FORMAT: &str = "billow-journal";
 /// Version of the format that this program writes, and the newest that it reads.
-pub const VERSION: u64 = 4;
+pub const VERSION: u64 = 5;
 /// First version whose lines have checksums.
 const FIRST_SEALED_VERSION: u64 = 4;
 
@@ -28,6 +29,8 @@ const DIED: &str = "died";
 const PROGRESSED: &str = "progressed";
 /// The text of study.json.
 const STUDY: &str = "study";
+/// A job ran for another one that had failed.
+const REMEDY: &str = "remedy";
 
 /// One line after the header.
 pub enum Entry {
@@ -41,6 +44,8 @@ pub enum Entry {
     Progressed(JobId),
     /// The study of the folder: the text of study.json.
     Study(String),
+    /// A job ran for another one that had failed.
+    Remedy(RemedyLink),
 }
 
 /// Why a header is refused.
@@ -82,6 +87,10 @@ struct Line {
     alone: bool,
     #[serde(default)]
     text: String,
+    #[serde(default)]
+    by: String,
+    #[serde(default)]
+    changes: Vec<Change>,
 }
 
 /// A value as the text of a line, sealed.
@@ -179,6 +188,13 @@ pub fn study_text(text: &str) -> serde_json::Result<String> {
     line_text(&json!({ "kind": STUDY, "text": text }))
 }
 
+/// Text of the line of a job that ran for another one.
+pub fn remedy_text(link: &RemedyLink) -> serde_json::Result<String> {
+    let RemedyLink { planned, by, changes } = link;
+    let (planned, by) = (planned.as_str(), by.as_str());
+    line_text(&json!({ "kind": REMEDY, "job": planned, "by": by, "changes": changes }))
+}
+
 /// Reads a line after the header.
 ///
 /// # Errors
@@ -189,10 +205,11 @@ pub fn parse(line: &[u8], must_be_sealed: bool) -> Result<Entry, String> {
         let error = error.to_string();
         format!("not a journal record: {}", error.split(" at line ").next().unwrap_or_default())
     })?;
-    let job = || {
-        JobId::from_digits(&line.job)
-            .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))
+    let id = |digits: &str| {
+        JobId::from_digits(digits)
+            .ok_or_else(|| format!("{digits:?} is not a job id (32 hexadecimal digits)"))
     };
+    let job = || id(&line.job);
     match line.kind.as_deref() {
         None => {}
         Some(INVALIDATED | OLD_INVALIDATED) => return Ok(Entry::Invalidated(job()?)),
@@ -202,6 +219,10 @@ pub fn parse(line: &[u8], must_be_sealed: bool) -> Result<Entry, String> {
             return Ok(Entry::Died(death));
         }
         Some(STUDY) => return Ok(Entry::Study(line.text)),
+        Some(REMEDY) => {
+            let link = RemedyLink { planned: job()?, by: id(&line.by)?, changes: line.changes };
+            return Ok(Entry::Remedy(link));
+        }
         Some(other) => return Err(format!("not a journal record: unknown kind {other:?}")),
     }
     let cells = parse_cells(&line.cells)?;

@@ -6,17 +6,19 @@
 //! When a job has several lines, the last line of the last file counts.
 //!
 //! ```text
-//! {"checksum":"…","format":"billow-journal","version":4,…}
+//! {"checksum":"…","format":"billow-journal","version":5,…}
 //! {"checksum":"…","job":"<id>","cells":{…},                       a job that ended
 //!     "file_hash":"<SHA-256 of its history file>","file_size":…,"file_time":"…"}
 //! {"checksum":"…","kind":"invalidated","job":"<id>"}              a job to run again
 //! {"checksum":"…","kind":"died","job":"<id>",…}                   its process died while it ran
 //! {"checksum":"…","kind":"progressed","job":"<id>"}               it stored a checkpoint
 //! {"checksum":"…","kind":"study","text":"…"}                      study.json, to restore it
+//! {"checksum":"…","kind":"remedy","job":"<id>","by":"<id>",       the job `by` ran for this planned job, which
+//!     "changes":[{"solver.cfl":0.225}]}                           failed: its scene with these changes
 //! ```
 //!
 //! `checksum` is that of [`billow_solver::platform::seal`]. A line that is not valid costs its own record
-//! only. Older versions are read: version 3 has no checksums, version 2 says `withdrawn` for `invalidated`
+//! only. Older versions are read: version 4 has no remedies, version 3 has no checksums, version 2 says `withdrawn` for `invalidated`
 //! and has old names of columns and statuses, version 1 has no `kind`.
 
 use std::collections::BTreeMap;
@@ -24,7 +26,8 @@ use std::path::{Path, PathBuf};
 
 use crate::job::JobId;
 use crate::job::point::Point;
-use crate::job::row::Cells;
+use crate::job::remedy::Change;
+use crate::job::row::{Cells, ColumnId};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Files, Stamp, disk_error};
 
@@ -48,6 +51,25 @@ pub struct Record {
     pub file_hash: Option<String>,
     /// Size and time of that file when it was written; `None` in older journals.
     pub file_stamp: Option<Stamp>,
+}
+
+impl Record {
+    /// Whether the job was ended by a limit, or crashed. Its checkpoint is kept, so that it can resume.
+    pub fn reached_limit(&self) -> bool {
+        // A run that used up solver.step_limit has a history.
+        self.file_hash.is_none() && self.cells.status().is_limit()
+    }
+}
+
+/// A job that ran for another one, which had failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RemedyLink {
+    /// Id of the planned job.
+    pub planned: JobId,
+    /// Id of the job that ran.
+    pub by: JobId,
+    /// In what its scene differs.
+    pub changes: Vec<Change>,
 }
 
 /// The death of a process while a job ran.
@@ -84,10 +106,15 @@ impl std::fmt::Display for Fault {
 
 /// The row of a point; `None` while its job has not ended.
 pub fn cells_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<Cells> {
-    match &point.infeasible {
-        Some(infeasible) => Some(Cells::infeasible(infeasible)),
-        None => records.get(&point.job.id).map(|record| record.cells.clone()),
+    if let Some(infeasible) = &point.infeasible {
+        return Some(Cells::infeasible(infeasible));
     }
+    let mut cells = records.get(&point.job.id)?.cells.clone();
+    if let Some(remedied) = &point.remedied {
+        cells.set(ColumnId::Remedy, remedied.remedy());
+        cells.set(ColumnId::FailedRemedies, remedied.failed());
+    }
+    Some(cells)
 }
 
 /// What the journals of a study hold.
@@ -101,6 +128,8 @@ pub struct Journal {
     pub deaths: BTreeMap<JobId, Vec<Death>>,
     /// The text of study.json at the start of the last run.
     pub study: Option<String>,
+    /// The jobs that ran with a remedy, by the planned job that failed, in the order in which they were tried.
+    pub remedies: BTreeMap<JobId, Vec<RemedyLink>>,
     /// Number of the records without checksum, from journals of older versions.
     pub unsealed: usize,
     /// Lines that are not valid, in the order of the files.
@@ -121,17 +150,24 @@ impl Journal {
                 self.deaths.remove(&job);
             }
             Entry::Study(text) => self.study = Some(text),
+            Entry::Remedy(link) => add_link(&mut self.remedies, link),
         }
     }
 
     /// Whether there is no line at all.
     pub fn is_empty(&self) -> bool {
-        let Self { records, invalidated, deaths, study, faults, unsealed: _ } = self;
+        let Self { records, invalidated, deaths, study, remedies, faults, unsealed: _ } = self;
         records.is_empty()
             && invalidated.is_empty()
             && deaths.is_empty()
             && study.is_none()
+            && remedies.is_empty()
             && faults.is_empty()
+    }
+
+    /// The last record of a job, also of an invalidated one.
+    pub fn record(&self, id: &JobId) -> Option<&Record> {
+        self.records.get(id).or_else(|| self.invalidated.get(id))
     }
 
     /// Counts a job as not ended. Its record is kept in [`Self::invalidated`], for comparison.
@@ -148,6 +184,14 @@ impl Journal {
         if deaths.iter().all(|known| known.process != death.process) {
             deaths.push(death);
         }
+    }
+}
+
+/// Adds the link of a remedy. The same job counts once.
+pub fn add_link(remedies: &mut BTreeMap<JobId, Vec<RemedyLink>>, link: RemedyLink) {
+    let links = remedies.entry(link.planned.clone()).or_default();
+    if links.iter().all(|known| known.by != link.by) {
+        links.push(link);
     }
 }
 

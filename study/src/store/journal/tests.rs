@@ -5,6 +5,7 @@
 use std::io;
 
 use billow_solver::platform::seal;
+use billow_solver::scene::IntegratorKind;
 
 use super::line::FORMAT;
 use super::*;
@@ -182,10 +183,10 @@ fn old_journals_are_checked_for_their_meaning() {
 fn a_newer_journal_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("000001.jsonl");
-    let header = seal::seal("{\"format\":\"billow-journal\",\"version\":5}");
+    let header = seal::seal("{\"format\":\"billow-journal\",\"version\":6}");
     std::fs::write(&path, header + "\n").unwrap();
     let problem = read(&Disk, folder.path()).unwrap_err().to_string();
-    assert!(problem.contains("version 5, this program reads up to 4"), "{problem}");
+    assert!(problem.contains("version 6, this program reads up to 5"), "{problem}");
 }
 
 #[test]
@@ -252,4 +253,41 @@ fn version_2_is_read_with_its_old_names() {
     assert_eq!(drifting.text(ColumnId::StopLocation), "gas");
     let invalidated = &journal.invalidated[&record(6, 0.0).job].cells;
     assert_eq!(*invalidated.get(ColumnId::NearThreshold), Value::Bool(true));
+}
+
+#[test]
+fn version_4_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, lines) = lines_of_two(folder.path());
+    let header = seal::seal("{\"format\":\"billow-journal\",\"version\":4}");
+    std::fs::write(&path, format!("{header}\n{}", lines[1..].concat())).unwrap();
+    let journal = read_back(folder.path());
+    assert_eq!((journal.records.len(), journal.faults.len()), (2, 0));
+    assert!(journal.remedies.is_empty());
+}
+
+#[test]
+fn links_of_remedies_are_read_back_in_order_and_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal");
+    let id = |number| record(number, 0.0).job;
+    let link = |by, changes| RemedyLink { planned: id(1), by: id(by), changes };
+    let first = link(2, vec![Change::Cfl(0.1 + 0.2)]);
+    let second = link(3, vec![Change::Integrator(IntegratorKind::Hybrid), Change::Adaptive(1e-9)]);
+    Writer::new(&Disk, path.clone()).append(&[record(1, 1.0)]).unwrap();
+    let mut writer = Writer::new(&Disk, path.clone());
+    writer.append_remedies(&[record(2, 2.0)], std::slice::from_ref(&first)).unwrap();
+    let both = [second.clone(), first.clone()];
+    writer.append_remedies(&[], &both).unwrap();
+    let journal = read_back(&path);
+    assert_eq!(journal.remedies, [(id(1), vec![first, second])].into());
+    assert_eq!(journal.records.len(), 2, "the failed record stays");
+
+    // A line that is not valid costs its link only.
+    let file = Disk.list(&path).unwrap().pop().unwrap();
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replacen("solver.cfl", "solver.cfm", 1)).unwrap();
+    let journal = read_back(&path);
+    assert_eq!((journal.faults.len(), journal.records.len()), (1, 2));
+    assert_eq!(journal.remedies[&id(1)].len(), 2, "the second line of the link counts");
 }

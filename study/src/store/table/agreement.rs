@@ -8,7 +8,7 @@ use super::{Column, Table};
 use crate::accuracy::promised::promise;
 use crate::accuracy::{NO_ERROR_REASON, is_error_column};
 use crate::input::value::Value;
-use crate::job::row::{COLUMNS, ColumnId};
+use crate::job::row::{COLUMNS, ColumnId, RowColumn};
 use crate::job::{JobId, Status};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::journal::Record;
@@ -23,7 +23,12 @@ pub fn agrees(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
         match (table.status(row), record) {
             (Some(Status::Infeasible | Status::Pending), None) => true,
             (Some(_), Some(record)) => {
-                COLUMNS.iter().filter(|column| !is_corrected(table, column.name)).all(|column| {
+                let of_record = |column: &&RowColumn| {
+                    let of_point =
+                        [ColumnId::Remedy, ColumnId::FailedRemedies].contains(&column.id);
+                    !of_point && !is_corrected(table, column.name)
+                };
+                COLUMNS.iter().filter(of_record).all(|column| {
                     let stored = table.value(column.id, row);
                     stored.is_none_or(|stored| same(stored, record.cells.get(column.id)))
                 })

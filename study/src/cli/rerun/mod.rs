@@ -1,4 +1,5 @@
-//! `billow rerun`: runs finished jobs again and checks that they give the same bits.
+//! `billow rerun`: runs finished jobs again and checks that they give the same bits, or runs failed jobs again with
+//! a remedy.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -10,10 +11,14 @@ use super::print::{count, print_rows};
 use super::run::{RunOptions, run_study};
 use super::target::{StudyArgs, filtered, folder};
 use crate::input::value::Value;
+use crate::job::point::Point;
 use crate::job::row::ColumnId;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
+use crate::run::runner::Rerun;
 use crate::store::stored::Stored;
+
+mod remedy;
 
 /// Arguments of `billow rerun`.
 #[derive(Debug, clap::Args)]
@@ -29,6 +34,10 @@ pub struct Args {
     /// Run the jobs with this status, as in --status timeout, instead of ids; can be repeated.
     #[arg(long, value_name = "STATUS")]
     pub status: Vec<String>,
+    /// Run failed jobs with a remedy that leaves the physics alone (a smaller step, another integrator), one after
+    /// another until one has a result; without jobs every failed one.
+    #[arg(long)]
+    pub remedy: bool,
     /// List the jobs; run nothing.
     #[arg(long)]
     pub dry_run: bool,
@@ -52,6 +61,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         (Some(condition), [], []) => matching(&stored, condition)?,
         (None, [_, ..], []) => with_status(&stored, &args.status)?,
         (None, [], [_, ..]) => named(&stored, ids)?,
+        (None, [], []) if args.remedy => remedy::failed(&stored),
         (None, [], []) => return Err(refused("", "no job is named")),
         (Some(_), [], _) => return Err(refused("", "jobs are named both by id and by --where")),
         (_, [_, ..], _) => {
@@ -59,13 +69,17 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             return Err(refused("", problem));
         }
     };
+    if args.remedy {
+        return remedy::run(&stored, &root, &jobs, args, out);
+    }
     if args.dry_run || jobs.is_empty() {
         return list(&stored, &jobs, &args.options, out);
     }
     if !args.options.progress.quiet {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
-    run_study(&stored.study, &root, Some(&jobs), &args.options, out)
+    let again = Rerun { jobs: &jobs, remedy: false };
+    run_study(&stored.study, &root, Some(again), &args.options, out)
 }
 
 /// Job ids, and the results: a last argument that cannot be an id. A folder whose name could be an id is
@@ -87,7 +101,7 @@ fn refused(value: &str, problem: &str) -> Error {
         "billow rerun",
         value,
         problem,
-        "billow rerun JOB… [RESULTS], or billow rerun [RESULTS] with --where CONDITION or --status STATUS",
+        "billow rerun JOB… [RESULTS], or billow rerun [RESULTS] with --where CONDITION, --status STATUS or --remedy",
         "billow rerun … --dry-run lists the jobs",
     )
 }
@@ -104,6 +118,13 @@ fn named(stored: &Stored<'_>, ids: &[String]) -> Result<BTreeSet<JobId>> {
             Some(point) if point.infeasible.is_some() => {
                 let problem = "this point is infeasible: it has no job to run";
                 return Err(refused(prefix, problem));
+            }
+            Some(point) if point.job.id != id => {
+                let problem = format!(
+                    "the result of its point is not that of this job; it is that of {}",
+                    point.job.id.short()
+                );
+                return Err(refused(prefix, &problem));
             }
             Some(_) => jobs.insert(id),
         };
@@ -148,33 +169,51 @@ fn list(
     options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
-    let format = options.output.format();
-    let parameters = stored.study.run_parameter_names();
-    let points = stored.points.iter().filter(|point| jobs.contains(&point.job.id));
-    let rows: Vec<Vec<Value>> = points
-        .map(|point| {
-            let id = &point.job.id;
-            let shown = if format == Format::Table { id.short() } else { id.as_str() };
-            let mut row = vec![Value::Text(shown.to_owned())];
-            row.extend(parameters.iter().map(|name| {
-                let parameter = point.job.parameters.iter().find(|(known, _)| known == name);
-                parameter.map_or(Value::Null, |(_, value)| value.clone())
-            }));
-            let cells = stored.cells(point);
-            row.push(Value::Text(cells.status().name().to_owned()));
-            row.push(cells.get(ColumnId::Verdict).clone());
-            row
-        })
-        .collect();
-    let last = ["status", "verdict"].map(str::to_owned);
-    let columns: Vec<String> =
-        ["job".to_owned()].into_iter().chain(parameters).chain(last).collect();
-    print_rows(&columns, &rows, format, out)?;
+    let points: Vec<&Point> =
+        stored.points.iter().filter(|point| jobs.contains(&point.job.id)).collect();
+    let verdict = |point: &Point| vec![stored.cells(point).get(ColumnId::Verdict).clone()];
+    let last = Last { columns: &["verdict"], cells: &verdict };
+    print_points(stored, &points, &last, options.output.format(), out)?;
     if !options.progress.quiet {
         let finished = number_finished(stored, jobs);
-        eprintln!("{} would run, {finished} of them finished", count(rows.len(), "job"));
+        eprintln!("{} would run, {finished} of them finished", count(points.len(), "job"));
     }
     Ok(())
+}
+
+/// The last columns of a list of points.
+struct Last<'a> {
+    columns: &'a [&'a str],
+    /// Their cells.
+    cells: &'a dyn Fn(&Point) -> Vec<Value>,
+}
+
+/// Prints points as rows: job, parameters, status, and the last columns.
+fn print_points(
+    stored: &Stored<'_>,
+    points: &[&Point],
+    last: &Last<'_>,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let parameters = stored.study.run_parameter_names();
+    let row = |point: &&Point| {
+        let id = &point.job.id;
+        let shown = if format == Format::Table { id.short() } else { id.as_str() };
+        let mut row = vec![Value::Text(shown.to_owned())];
+        row.extend(parameters.iter().map(|name| {
+            let parameter = point.job.parameters.iter().find(|(known, _)| known == name);
+            parameter.map_or(Value::Null, |(_, value)| value.clone())
+        }));
+        row.push(Value::Text(stored.cells(point).status().name().to_owned()));
+        row.extend((last.cells)(point));
+        row
+    };
+    let rows: Vec<Vec<Value>> = points.iter().map(row).collect();
+    let last = std::iter::once("status").chain(last.columns.iter().copied()).map(str::to_owned);
+    let columns: Vec<String> =
+        std::iter::once("job".to_owned()).chain(parameters.iter().cloned()).chain(last).collect();
+    print_rows(&columns, &rows, format, out)
 }
 
 fn number_finished(stored: &Stored<'_>, jobs: &BTreeSet<JobId>) -> usize {
