@@ -156,9 +156,9 @@ impl Hybrid {
         state: &FilmState,
         system: &FilmSystem,
         interval: Interval<'_>,
-        events: &mut Vec<Event>,
-    ) {
-        let Active::Explicit(explicit) = &self.active else { return };
+        budget: &mut Budget<'_>,
+    ) -> Result<(), Failure> {
+        let Active::Explicit(explicit) = &self.active else { return Ok(()) };
         let kinetic = system.kinetic_energy(state);
         self.policy.largest_kinetic_energy = self.policy.largest_kinetic_energy.max(kinetic);
         let stable = explicit.next_step(system, state);
@@ -167,7 +167,7 @@ impl Hybrid {
         let slow = kinetic < REST * self.policy.largest_kinetic_energy;
         let due = state.time >= self.policy.next_attempt;
         if waits || !slow || !due || phase.end < state.time + first {
-            return;
+            return Ok(());
         }
         self.policy.stable_step = stable;
         let control = StepControl::error(self.cfl, system.model.size(), ERROR_FACTOR);
@@ -182,15 +182,16 @@ impl Hybrid {
         let mut implicit = Implicit::from(system, state, scratch, (control, first), accounting);
         let after = implicit.ledger(system, state).stored();
         implicit.add_numerical_dissipation(before - after);
-        if implicit.begin(system, state, phase, self.patience()) {
+        if implicit.begin(system, state, phase, self.patience(), budget.audit)? {
             self.policy.pause = FIRST_PAUSE;
             self.active = Active::Implicit(Box::new(implicit));
-            events.push(Event { time: state.time, kind: EventKind::Implicit });
+            budget.events.push(Event { time: state.time, kind: EventKind::Implicit });
         } else {
             self.newton = Some(Box::new(implicit.into_newton()));
             self.policy.next_attempt = state.time + self.policy.pause;
             self.policy.pause = (PAUSE_GROWTH * self.policy.pause).min(LONGEST_PAUSE);
         }
+        Ok(())
     }
 
     /// Explicit steps from here on.
@@ -232,7 +233,7 @@ impl Integrator for Hybrid {
                 Active::Explicit(explicit) => {
                     let advance = explicit.advance(state, system, interval, budget.reborrow())?;
                     if advance == Advance::Reached {
-                        self.attempt(state, system, interval, budget.events);
+                        self.attempt(state, system, interval, &mut budget)?;
                     }
                     return Ok(advance);
                 }
