@@ -240,9 +240,9 @@ fn files_of_a_newer_version_are_refused() {
     for (path, from, to, expected) in [
         (
             &journal,
-            "\"version\":4",
             "\"version\":5",
-            "journal of version 5, this program reads up to 4",
+            "\"version\":6",
+            "journal of version 6, this program reads up to 5",
         ),
         (&study, "\"version\": 1", "\"version\": 2", "version 2, this program reads up to 1"),
     ] {
