@@ -4,7 +4,7 @@
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
-# make pareto   work-precision diagrams: studies/pareto.json (half an hour on two cores), its tables and pictures
+# make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
 # make bench    what billow costs on this machine, a few minutes
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs

@@ -52,7 +52,7 @@ fn the_front_is_printed_drawn_and_read_again() {
     assert_eq!(of("late", "volume").count(), 0);
     // The explicit step is of second order, the exact value known.
     let orders: Vec<f64> = of("injected_piston", "x")
-        .filter(|row| row["configuration"].as_str().unwrap().starts_with("film"))
+        .filter(|row| row["configuration"].as_str().unwrap().starts_with("film, explicit"))
         .filter_map(|row| row["order"].as_f64())
         .collect();
     assert!(

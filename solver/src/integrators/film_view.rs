@@ -115,6 +115,11 @@ impl<'a> FilmView<'a> {
         self.audit.passages().map(PassageAudit::passages)
     }
 
+    /// Number of steps of the run that are tested for passages; `None` without an audit.
+    pub fn tested_steps(&self) -> Option<u64> {
+        self.audit.map(PassageAudit::tested_steps)
+    }
+
     /// Intersections of the mesh at the end of the last interval; `None` without an audit.
     pub fn intersections(&self) -> Option<u64> {
         self.audit.passages().map(PassageAudit::intersections)

@@ -38,6 +38,11 @@ impl PassageAudit {
         self.monitor.intersection_counter.count
     }
 
+    /// Number of steps of the run that are tested.
+    pub fn tested_steps(&self) -> u64 {
+        self.monitor.tested_steps()
+    }
+
     /// Whether every recorded step is tested.
     pub fn is_complete(&self) -> bool {
         self.monitor.is_block_start()

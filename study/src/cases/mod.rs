@@ -39,6 +39,8 @@ mod friction_adhesion;
 mod gas_column;
 mod gas_piston;
 mod gas_vessel;
+mod integrators;
+mod integrators_contact;
 mod invariants;
 mod moving_fold;
 mod oscillation;

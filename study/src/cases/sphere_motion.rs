@@ -8,10 +8,9 @@ use billow_solver::geometry::shapes::icosphere;
 use billow_solver::geometry::shell::Shell;
 use billow_solver::integrators::FilmSimulation;
 use billow_solver::models::film::Relaxation;
-use billow_solver::scene::Film;
-use billow_solver::scene::GasSupply;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{free_film, nitrogen_supply};
+use billow_solver::scene::{Film, GasSupply, IntegratorKind};
 use billow_solver::system::PressureLoad;
 
 use super::oscillation::{extrema, frequency};
@@ -24,6 +23,8 @@ const TEMPERATURE: f64 = 293.0;
 /// CFL number of the released sphere. Chosen: small, because the step error of the period has the
 /// opposite sign of the mesh error and would hide it.
 const CFL: f64 = 0.1;
+/// Half periods over which a frequency is measured.
+const HALF_PERIODS: usize = 12;
 
 fn sphere(level: u32) -> Shell {
     icosphere(level, number("breathing_sphere/radius"))
@@ -52,7 +53,8 @@ fn filled(pressure: f64, volume: f64) -> Filling {
     }
 }
 
-/// A sphere that starts to breathe about its equilibrium at this pressure (Pa), and its volume at rest (m³).
+/// A sphere that starts to breathe about its equilibrium at this pressure (Pa), and its volume at rest (m³), with an
+/// integrator at a CFL number; `None` for its usual one.
 ///
 /// # Errors
 /// A failure of the relaxation.
@@ -60,7 +62,7 @@ pub fn breathing_start(
     rig: &Rig,
     level: u32,
     pressure: f64,
-    cfl: Option<f64>,
+    (integrator, cfl): (IntegratorKind, Option<f64>),
 ) -> Result<(FilmSimulation, f64), String> {
     let rest = equilibrium(rig, level, pressure)?;
     let mut shell = sphere(level);
@@ -71,22 +73,35 @@ pub fn breathing_start(
     let filling = filled(pressure, rest.view().state.volume);
     let mut scene = FilmScene { velocities, filling, ..free_film(shell, Film::PAPER_ELASTIC) };
     scene.solver.cfl = cfl.unwrap_or(scene.solver.cfl);
+    scene.solver.integrator = integrator;
     Ok((rig.start(&scene)?, rest.view().state.volume))
 }
 
-/// Frequency of the radial mode of a breathing sphere with this volume at rest (m³), Hz.
+/// Frequency of the radial mode of a breathing sphere with this volume at rest (m³), Hz, over six periods sampled at
+/// an interval (s); without one, at each step.
 ///
 /// # Errors
 /// A failure of the run.
-pub fn breathing_frequency(film: &mut FilmSimulation, volume: f64) -> Result<f64, String> {
-    let interval = film.view().next_step();
-    frequency(film, interval, 13, |film| film.state.volume - volume)
+pub fn breathing_frequency(
+    film: &mut FilmSimulation,
+    volume: f64,
+    interval: Option<f64>,
+) -> Result<f64, String> {
+    let interval = interval.unwrap_or(film.view().next_step());
+    if film.settings().integrator == IntegratorKind::Xpbd {
+        // Its film is softer, so the sphere breathes about another volume.
+        let found = extrema(film, interval, HALF_PERIODS + 1, |film| film.state.volume)?;
+        let time = found[HALF_PERIODS].time - found[0].time;
+        return Ok(0.5 * HALF_PERIODS as f64 / time);
+    }
+    frequency(film, interval, HALF_PERIODS + 1, |film| film.state.volume - volume)
 }
 
 /// Frequency of the radial mode, Hz.
 fn radial_frequency(rig: &Rig, level: u32, pressure: f64) -> Result<f64, String> {
-    let (mut film, volume) = breathing_start(rig, level, pressure, None)?;
-    breathing_frequency(&mut film, volume)
+    let explicit = (IntegratorKind::Explicit, None);
+    let (mut film, volume) = breathing_start(rig, level, pressure, explicit)?;
+    breathing_frequency(&mut film, volume, None)
 }
 
 /// The radial mode about equilibrium, at two pressures.

@@ -5,16 +5,20 @@
 //! found, and lower is better.
 
 use billow_solver::geometry::shapes::{grid, nodes_where};
+use billow_solver::integrators::FilmSimulation;
 use billow_solver::mechanics::resultants::resultants;
-use billow_solver::scene::Film;
 use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::free_film;
-use billow_solver::statics::StaticSolution;
+use billow_solver::scene::{Film, IntegratorKind};
+use billow_solver::statics::{Relaxation, StaticSolution, Unsettled};
 
 use super::reference::{number, rows};
 use super::rig::held;
 use super::static_equilibrium::equilibrium;
 use super::{Outcome, Rig, Row};
+
+/// Most steps of a damped motion. Chosen: ten times what the finest mesh needs that is brought to rest by motion.
+const MAX_STEPS: u64 = 100_000;
 
 /// The static equilibrium of a quarter of the upper sheet with this number of cells along its side, and a note on its
 /// cost.
@@ -22,6 +26,34 @@ use super::{Outcome, Rig, Row};
 /// # Errors
 /// Why no equilibrium was found.
 pub fn inflated(rig: &Rig, cells: u32) -> Result<(StaticSolution, String), String> {
+    equilibrium(rig, &quarter(cells))
+}
+
+/// The same sheet brought to rest by damped motion with an integrator at a CFL number: the film, and its potential energy
+/// (J); or the film as far as it came, with the failure.
+///
+/// # Errors
+/// What is invalid in the scene.
+pub fn relaxed(
+    rig: &Rig,
+    cells: u32,
+    (integrator, cfl): (IntegratorKind, f64),
+) -> Result<Result<(FilmSimulation, f64), Box<Unsettled>>, String> {
+    let mut scene = quarter(cells);
+    let Filling::Pressure(pressure) = scene.filling else {
+        unreachable!("the sheet is under a fixed overpressure")
+    };
+    (scene.solver.integrator, scene.solver.cfl) = (integrator, cfl);
+    let relaxation = Relaxation { step_limit: MAX_STEPS, ..Relaxation::default() };
+    let settled = relaxation.relax_at(rig.start(&scene)?, pressure).map(|film| {
+        let energy = film.view().ledger().strain - pressure * film.view().state.volume;
+        (film, energy)
+    });
+    Ok(settled)
+}
+
+/// A quarter of the upper sheet.
+fn quarter(cells: u32) -> FilmScene {
     let [youngs_modulus, poisson_ratio, thickness, pressure] =
         ["youngs_modulus", "poisson_ratio", "thickness", "overpressure"]
             .map(|key| number(&format!("square_airbag/{key}")));
@@ -35,7 +67,7 @@ pub fn inflated(rig: &Rig, cells: u32) -> Result<(StaticSolution, String), Strin
         held(seam, "z"),
     ];
     let filling = Filling::Pressure(pressure);
-    equilibrium(rig, &FilmScene { filling, supports, ..free_film(shell, film) })
+    FilmScene { filling, supports, ..free_film(shell, film) }
 }
 
 /// Side of the quarter, m.

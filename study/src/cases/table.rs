@@ -3,9 +3,9 @@
 use super::{
     Case, Outcome, Rig, Tier, contact_capsule, contact_impacts, contact_relaxed, contact_stack,
     contact_tube, damping, drum, energy_balance, forces, friction_adhesion, gas_piston, gas_vessel,
-    invariants, moving_fold, piston_model, sphere_motion, static_airbag, static_compliant,
-    static_discs, static_end_state, static_polygon, static_shells, static_wrinkling, step_limit,
-    storeys_model,
+    integrators, integrators_contact, invariants, moving_fold, piston_model, sphere_motion,
+    static_airbag, static_compliant, static_discs, static_end_state, static_polygon, static_shells,
+    static_wrinkling, step_limit, storeys_model,
 };
 
 const fn quick(name: &'static str, compares: &'static str, body: fn(&Rig) -> Outcome) -> Case {
@@ -95,6 +95,21 @@ pub const CASES: &[Case] = &[
         "breathing_sphere_fine",
         "breathing_sphere on meshes twice as fine",
         sphere_motion::breathing_sphere_fine,
+    ),
+    quick(
+        "integrators_piston",
+        "injected_piston with every integrator, within the error of its step",
+        integrators::piston,
+    ),
+    quick(
+        "integrators_sphere",
+        "breathing_sphere with every integrator, within the error of its step",
+        integrators::sphere,
+    ),
+    quick(
+        "integrators_disc",
+        "stretched_disc with every integrator, within the error of its step",
+        integrators::disc,
     ),
     long(
         "released_sphere",
@@ -289,6 +304,12 @@ pub const CASES: &[Case] = &[
         "the coarsest capsule deployed with contact, every step monitored: no passage",
         contact_capsule::capsule_every_step,
     ),
+    quick(
+        "integrators_every_step",
+        "the coarsest capsule with explicit, implicit and hybrid, every step monitored: no passage",
+        integrators_contact::coarse,
+    ),
+    long("integrators_every_step_fine", "the same at n 4", integrators_contact::fine),
     quick(
         "capsule_deployed",
         "the paper's capsule deployed with contact, with the ranges of other codes",

@@ -13,6 +13,7 @@ use billow_solver::PHYSICS_VERSION;
 use billow_solver::platform::seal;
 use serde::{Deserialize, Serialize};
 
+use crate::job::Status;
 use crate::platform::error::Result;
 use crate::platform::files::{self, disk_error};
 use crate::store::results::Results;
@@ -20,7 +21,7 @@ use crate::store::results::Results;
 /// Name of the format.
 const FORMAT: &str = "billow-exact-scenes";
 /// Version of the format and of the list of runs. Another one is not read.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A scene and its runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -64,9 +65,13 @@ pub struct ExactRun {
     pub elements: f64,
     /// Steps, or Newton steps.
     pub steps: f64,
+    /// Whether its steps, or some of them, solve equations for all nodes.
+    pub implicit: bool,
     /// Wall time on one thread, s.
     pub seconds: f64,
-    /// The value of each quantity, SI.
+    /// Status: done, or how it failed.
+    pub status: String,
+    /// The value of each quantity, SI; none of a run that failed.
     pub values: Vec<f64>,
 }
 
@@ -87,7 +92,10 @@ fn decode(bytes: &[u8]) -> Option<Vec<ExactScene>> {
     let fits = |scene: &ExactScene| {
         scene.runs.iter().all(|run| {
             run.configuration.len() == scene.parameters.len()
-                && run.values.len() == scene.quantities.len()
+                && Status::from_name(&run.status).is_some_and(|status| {
+                    let expected = if status == Status::Done { scene.quantities.len() } else { 0 };
+                    run.values.len() == expected
+                })
         })
     };
     ((stored.format.as_str(), stored.version, stored.physics_version) == current)
@@ -143,7 +151,9 @@ mod tests {
                 configuration: vec![8.into()],
                 elements: 384.0,
                 steps: 0.1 + 0.2,
+                implicit: false,
                 seconds: 1e-3,
+                status: "done".to_owned(),
                 values: Vec::new(),
             }],
         };

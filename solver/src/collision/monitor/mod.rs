@@ -96,6 +96,11 @@ impl TunnellingMonitor {
         }
     }
 
+    /// Number of steps of the run that are tested, or were taken before the monitor started.
+    pub fn tested_steps(&self) -> u64 {
+        self.block_start
+    }
+
     /// Whether every step so far is tested.
     pub fn is_block_start(&self) -> bool {
         self.recorded == 1

@@ -2,6 +2,7 @@
 
 use super::{Configuration, Member, Point};
 use crate::analysis::values::canonical;
+use crate::input::keys::default_integrator;
 use crate::input::value::Value;
 
 /// Least ratio of steps that counts as a refinement of the step. Chosen: numerical damping shortens the stable step
@@ -91,7 +92,7 @@ fn resolved(
 ) -> Vec<(usize, [f64; 2])> {
     let trusted = chain.members.iter().zip(&chain.resolution);
     trusted
-        .filter(|(index, _)| members[**index].trusted)
+        .filter(|(index, _)| members[**index].ending.is_trusted())
         .filter_map(|(index, resolution)| {
             let point = points[*index].as_ref()?;
             let error = point.error.median;
@@ -157,7 +158,7 @@ pub fn label(configuration: &Configuration, without: &[(String, Value)]) -> Stri
 
 impl super::Diagram {
     /// The value of each parameter that most configurations have, where most have one. Models and meshes are always
-    /// named.
+    /// named; an integrator is where it is not the one of a study that names none.
     pub fn usual(&self) -> Configuration {
         let Some(first) = self.members.first() else { return Vec::new() };
         let is_mesh =
@@ -172,8 +173,11 @@ impl super::Diagram {
             let count =
                 |pair: &(String, Value)| set.iter().filter(|known| ***known == pair).count();
             let most = set.iter().rev().max_by_key(|pair| count(pair))?;
-            let is_text = matches!(most.1, Value::Text(_));
-            (!is_text && 2 * count(most) > set.len()).then(|| (**most).clone())
+            let named = match &most.1 {
+                Value::Text(text) => text.as_str() != default_integrator(),
+                _ => false,
+            };
+            (!named && 2 * count(most) > set.len()).then(|| (**most).clone())
         };
         (0..first.configuration.len()).filter_map(usual).collect()
     }

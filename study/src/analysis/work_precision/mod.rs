@@ -4,9 +4,10 @@
 //! error of a run   number: e = |q/q_ref − 1|      course: e = √(∫ (f − f_ref)² dt / ∫ f_ref² dt), common time
 //! work             elements × steps; steps for a model without elements
 //! reference        the exact value; else the median (course: mean) over the runs of the trusted configuration
-//!                  with the most element-steps, with the relative uncertainty u = √(s² + m²):
+//!                  with the finest mesh and of these the most steps, with the relative uncertainty u = √(s² + m²):
 //!                  s half the range over its runs (of one run: over those of the next coarser mesh with several)
-//!                  m half its difference from the next coarser mesh, all else equal; at least its mesh error, if known
+//!                  m half its difference from the next coarser mesh, all else equal; at least its mesh error, if known;
+//!                  where every run has the same mesh, from the next coarser step: then errors are of integration alone
 //! front            no other configuration has less or equal work and less or equal max(e, u), one of them less
 //! order            p = ln(e₁/e₂)/ln r,  r = √(elements₂/elements₁); of equal meshes r = steps₂/steps₁
 //! ```
@@ -19,6 +20,7 @@ use std::sync::Arc;
 
 use super::statistics::Spread;
 use crate::input::value::Value;
+use crate::job::Status;
 
 mod chains;
 mod course;
@@ -46,9 +48,9 @@ pub struct SceneRuns {
     pub quantities: Vec<Quantity>,
     /// Whether the seconds are those of a simulated second; otherwise those of a whole run.
     pub per_simulated_second: bool,
-    /// Runs that have ended.
+    /// Runs that have ended; failed ones too.
     pub runs: Vec<Run>,
-    /// Number of runs that failed, or have not ended.
+    /// Number of runs that have not ended.
     pub without_result: usize,
 }
 
@@ -70,17 +72,61 @@ pub struct Quantity {
 /// A numerical choice: parameters and their values; null for one that the model ignores.
 pub type Configuration = Vec<(String, Value)>;
 
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// Its audit found nothing.
+    Trusted,
+    /// It has a result, but its audit found what this column of the table says.
+    Marked(&'static str),
+    /// It failed: there is no result.
+    Failed(Status),
+}
+
+impl Ending {
+    /// Whether the audit found nothing.
+    pub fn is_trusted(self) -> bool {
+        self == Self::Trusted
+    }
+
+    /// Whether there is no result.
+    pub fn is_failure(self) -> bool {
+        matches!(self, Self::Failed(_))
+    }
+
+    /// `done`, what the audit found, or how it failed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Trusted => Status::Done.name(),
+            Self::Marked(audit) => audit,
+            Self::Failed(status) => status.name(),
+        }
+    }
+
+    /// Of the endings of a configuration's runs the one that counts is the least.
+    fn rank(self) -> u8 {
+        match self {
+            Self::Trusted => 0,
+            Self::Marked(_) => 1,
+            Self::Failed(_) => 2,
+        }
+    }
+}
+
 /// One run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// Its numerical choices; the same parameters in every run of a scene.
     pub configuration: Configuration,
-    /// Whether its audit found nothing.
-    pub trusted: bool,
+    /// How it ended.
+    pub ending: Ending,
     /// Elements of its mesh; 0 for a model without one.
     pub elements: f64,
-    /// Steps.
+    /// Steps; of a failed run, until it failed.
     pub steps: f64,
+    /// Whether its steps, or some of them, solve equations for all nodes: the number of steps is then no measure of the
+    /// cost beside explicit ones.
+    pub implicit: bool,
     /// Wall time, s; see [`SceneRuns::per_simulated_second`].
     pub seconds: Option<f64>,
     /// Its result for each quantity.
@@ -107,7 +153,7 @@ pub struct Diagram {
     pub meaning: String,
     /// As in [`SceneRuns`].
     pub per_simulated_second: bool,
-    /// As in [`SceneRuns`].
+    /// Number of runs that have not ended, or failed beside others of the same configuration.
     pub without_result: usize,
     /// Its configurations, in the order of their first runs.
     pub members: Vec<Member>,
@@ -122,14 +168,16 @@ pub struct Diagram {
 pub struct Member {
     /// Its numerical choices.
     pub configuration: Configuration,
-    /// Number of runs that count: the trusted ones, or all where none is.
+    /// Number of runs that count: the trusted ones; where there is none, those with a result; else the failed ones.
     pub runs: usize,
-    /// Whether they are trusted.
-    pub trusted: bool,
+    /// How they ended: as the first of them.
+    pub ending: Ending,
     /// Elements of its mesh.
     pub elements: f64,
     /// Steps, median over the runs.
     pub steps: f64,
+    /// As in [`Run`].
+    pub implicit: bool,
     /// Wall time, s, median over the runs.
     pub seconds: Option<f64>,
 }
@@ -208,6 +256,10 @@ impl Diagram {
     /// The diagram of the runs of a scene.
     pub fn of(scene: SceneRuns) -> Self {
         let groups = groups(&scene.runs);
+        // A failed run counts where no other one of its configuration has a result.
+        let counted: usize =
+            groups.iter().flatten().filter(|run| scene.runs[**run].ending.is_failure()).count();
+        let failed = scene.runs.iter().filter(|run| run.ending.is_failure()).count();
         let members: Vec<Member> = groups.iter().map(|runs| member(&scene.runs, runs)).collect();
         let chains = chains::of(&members);
         let quantities = scene.quantities.iter().enumerate().map(|(index, quantity)| {
@@ -227,7 +279,7 @@ impl Diagram {
             name: scene.name,
             meaning: scene.meaning,
             per_simulated_second: scene.per_simulated_second,
-            without_result: scene.without_result,
+            without_result: scene.without_result + failed - counted,
             members,
             chains,
             quantities,
@@ -305,9 +357,9 @@ fn groups(runs: &[Run]) -> Vec<Vec<usize>> {
         }
     }
     for group in &mut found {
-        if group.iter().any(|run| runs[*run].trusted) {
-            group.retain(|run| runs[*run].trusted);
-        }
+        let rank = |run: &usize| runs[*run].ending.rank();
+        let best = group.iter().map(rank).min();
+        group.retain(|run| Some(rank(run)) == best);
     }
     found
 }
@@ -321,9 +373,10 @@ fn member(runs: &[Run], group: &[usize]) -> Member {
     Member {
         configuration: first.configuration.clone(),
         runs: group.len(),
-        trusted: first.trusted,
+        ending: first.ending,
         elements: first.elements,
         steps: median(&|run| Some(run.steps)).unwrap_or(0.0),
+        implicit: group.iter().any(|run| runs[*run].implicit),
         seconds: median(&|run| run.seconds),
     }
 }

@@ -3,7 +3,8 @@
 use serde::Deserialize;
 
 use super::{Cost, Diagram};
-use crate::input::keys::numerical::{self, MESH, MODEL};
+use crate::input::keys::default_integrator;
+use crate::input::keys::numerical::{self, INTEGRATOR, MESH, MODEL};
 use crate::input::value::Value;
 
 /// What is known of a peer: `results/pareto/published/peer.json`.
@@ -99,6 +100,7 @@ impl Peer {
             let fits = |pair: &(String, Value)| match numerical::path(&pair.0) {
                 Some(MODEL) => pair.1 == Value::Text(time.model.clone()),
                 Some(MESH) => pair.1 == Value::Integer(time.subdivisions),
+                Some(INTEGRATOR) => pair.1 == Value::Text(default_integrator().to_owned()),
                 _ => usual.contains(pair),
             };
             let member =

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Chain, Course, Member, Outcome, Quantity, Reference};
 use crate::analysis::statistics::Spread;
 
-/// Part of the difference from the next coarser mesh that counts as uncertainty. Chosen: it is the error of a method
+/// Part of the difference from the next coarser mesh (or step) that counts as uncertainty. Chosen: it is the error of a method
 /// for which r^p = 3 (meshes that halve: order 1.6; from n 16 to 24: 2.7); an order below has a larger one.
 const MESH_PART: f64 = 0.5;
 
@@ -21,15 +21,19 @@ pub(super) fn of(
         let reference = Reference { value: Some(exact), member: None, uncertainty: Some(0.0) };
         return Some((reference, Outcome::Number(exact)));
     }
-    let work = |index: &usize| (members[*index].elements > 0.0, members[*index].work());
-    let usable = |index: &usize| members[*index].trusted && !outcomes[*index].is_empty();
+    let usable =
+        |index: &usize| members[*index].ending.is_trusted() && !outcomes[*index].is_empty();
     let finest = (0..members.len()).filter(usable).max_by(|a, b| {
-        let (a, b) = (work(a), work(b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        let [a, b] = [a, b].map(|index| &members[*index]);
+        a.elements.total_cmp(&b.elements).then(a.steps.total_cmp(&b.steps))
     })?;
     let target = centre(&outcomes[finest])?;
-    let estimated = uncertainty(finest, &target, outcomes, members, chains);
-    let uncertainty = of_parts(estimated, mesh_errors[finest]);
+    let mesh = members[finest].elements;
+    // The error of the mesh is then that of every run: it has no part in their differences.
+    let one_mesh =
+        mesh > 0.0 && members.iter().all(|member| member.elements.total_cmp(&mesh).is_eq());
+    let estimated = uncertainty(finest, &target, outcomes, (members, chains), one_mesh);
+    let uncertainty = of_parts(estimated, mesh_errors[finest].filter(|_| !one_mesh));
     let value = median(&outcomes[finest]);
     Some((Reference { value, member: Some(finest), uncertainty }, target))
 }
@@ -45,23 +49,24 @@ fn of_parts([spread, mesh]: [Option<f64>; 2], mesh_error: Option<f64>) -> Option
     Some((spread * spread + mesh * mesh).sqrt())
 }
 
-/// The parts of the relative uncertainty of the reference that follow from the runs of the scene: spread, mesh.
+/// The parts of the relative uncertainty of the reference that follow from the runs of the scene: spread, mesh. On one
+/// mesh the step takes the place of the mesh.
 fn uncertainty(
     finest: usize,
     target: &Outcome,
     outcomes: &[Vec<Outcome>],
-    members: &[Member],
-    chains: &[Chain],
+    (members, chains): (&[Member], &[Chain]),
+    one_mesh: bool,
 ) -> [Option<f64>; 2] {
-    let of_mesh = |chain: &&Chain| chain.of_meshes && chain.members.contains(&finest);
+    let refined = |chain: &&Chain| chain.of_meshes != one_mesh && chain.members.contains(&finest);
     // Coarse to fine, without the reference.
     let coarser: Vec<usize> = chains
         .iter()
-        .find(of_mesh)
+        .find(refined)
         .into_iter()
         .flat_map(|chain| chain.members.iter().copied())
-        .filter(|index| members[*index].elements < members[finest].elements)
-        .filter(|index| members[*index].trusted && !outcomes[*index].is_empty())
+        .take_while(|index| *index != finest)
+        .filter(|index| members[*index].ending.is_trusted() && !outcomes[*index].is_empty())
         .collect();
     let with_runs = |index: &&usize| outcomes[**index].len() > 1;
     let spread = std::iter::once(&finest).chain(coarser.iter().rev()).find(with_runs);

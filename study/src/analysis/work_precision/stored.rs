@@ -1,7 +1,8 @@
 //! Stored runs of scenes with an exact answer, as runs of a scene.
 
-use super::{Outcome, Quantity, Run, SceneRuns};
+use super::{Ending, Outcome, Quantity, Run, SceneRuns};
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::store::exact_scenes::ExactScene;
 
 /// The runs of a stored scene.
@@ -20,11 +21,17 @@ pub fn from_stored(scene: &ExactScene) -> SceneRuns {
             .cloned()
             .zip(run.configuration.iter().map(value))
             .collect(),
-        trusted: true,
+        ending: match Status::from_name(&run.status) {
+            Some(Status::Done) | None => Ending::Trusted,
+            Some(status) => Ending::Failed(status),
+        },
         elements: run.elements,
         steps: run.steps,
+        implicit: run.implicit,
         seconds: Some(run.seconds),
-        results: run.values.iter().map(|number| Some(Outcome::Number(*number))).collect(),
+        results: (0..scene.quantities.len())
+            .map(|index| run.values.get(index).map(|number| Outcome::Number(*number)))
+            .collect(),
         mesh_errors: Vec::new(),
     });
     SceneRuns {

@@ -3,11 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::{Configuration, Course, Outcome, Quantity, Run, SceneRuns};
+use billow_solver::integrators::entry;
+use billow_solver::scene::IntegratorKind;
+
+use super::{Configuration, Course, Ending, Outcome, Quantity, Run, SceneRuns};
 use crate::accuracy::{PROMISED, Promised};
 use crate::analysis::values::canonical;
-use crate::input::keys::MODELS;
-use crate::input::keys::numerical::{self, MODEL, SEED};
+use crate::input::keys::numerical::{self, INTEGRATOR, MESH, MODEL, SEED};
+use crate::input::keys::{MODELS, ignored_by_integrator};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::ColumnId;
@@ -24,6 +27,8 @@ pub struct Histories {
     pub courses: [Option<Arc<Course>>; 2],
     /// Simulated time, s.
     pub simulated: f64,
+    /// Whether an implicit integrator took over within the run.
+    pub implicit: bool,
 }
 
 /// The columns of a table by their part.
@@ -52,15 +57,46 @@ impl<'a> Parts<'a> {
         parts
     }
 
-    /// Keys that change no result of the model of a row.
-    fn ignored(&self, row: usize) -> &'static [&'static str] {
-        let is_model = |column: &&&Column| numerical::path(&column.name) == Some(MODEL);
-        let name = self.numerical.iter().find(is_model).map(|column| &column.cells[row]);
-        let model = MODELS.iter().find(|model| name == Some(&Value::Text(model.name.to_owned())));
-        model.map_or(&[], |model| model.ignores)
+    /// Numerical parameters that differ only between scenes become part of them. Models and meshes stay.
+    fn give_to_scenes(&mut self, groups: &[(Vec<String>, Vec<usize>)]) {
+        let constant = |column: &Column, rows: &[usize]| {
+            rows.iter()
+                .all(|row| canonical(&column.cells[*row]) == canonical(&column.cells[rows[0]]))
+        };
+        let of_scenes = |column: &&Column| {
+            let kept = [Some(MODEL), Some(MESH)].contains(&numerical::path(&column.name));
+            let all: Vec<usize> = groups.iter().flat_map(|(_, rows)| rows.clone()).collect();
+            let within = groups.iter().all(|(_, rows)| constant(column, rows));
+            !kept && within && !constant(column, &all)
+        };
+        let (given, kept): (Vec<&Column>, Vec<&Column>) =
+            self.numerical.iter().copied().partition(of_scenes);
+        self.physical.extend(given);
+        self.numerical = kept;
     }
 
-    /// Names and values of some parameters; null for those that the model ignores.
+    /// The word of a row for a numerical key; `None` where the key is no parameter.
+    fn word(&self, path: &str, row: usize) -> Option<&str> {
+        let column = self.numerical.iter().find(|one| numerical::path(&one.name) == Some(path))?;
+        match &column.cells[row] {
+            Value::Text(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// Keys that change no result of the model of a row, or of its integrator.
+    fn ignored(&self, row: usize) -> Vec<&'static str> {
+        let name = self.word(MODEL, row);
+        let model = MODELS.iter().find(|model| name == Some(model.name));
+        let of_model = model.map_or(&[][..], |model| model.ignores);
+        if of_model.contains(&INTEGRATOR) {
+            return of_model.to_vec();
+        }
+        let of_integrator = self.word(INTEGRATOR, row).map_or(&[][..], ignored_by_integrator);
+        [of_model, of_integrator].concat()
+    }
+
+    /// Names and values of some parameters; null for those that the model or the integrator ignores.
     fn values(&self, columns: &[&Column], row: usize) -> Configuration {
         let ignored = self.ignored(row);
         let value = |column: &&Column| {
@@ -80,7 +116,7 @@ pub fn scenes(
     replicates: &[String],
     histories: &dyn Fn(&str) -> Option<Histories>,
 ) -> Vec<SceneRuns> {
-    let parts = Parts::of(table, replicates);
+    let mut parts = Parts::of(table, replicates);
     let mut groups: Vec<(Vec<String>, Vec<usize>)> = Vec::new();
     for row in 0..table.rows() {
         let key: Vec<String> =
@@ -90,6 +126,7 @@ pub fn scenes(
             None => groups.push((key, vec![row])),
         }
     }
+    parts.give_to_scenes(&groups);
     let firsts: Vec<usize> = groups.iter().map(|(_, rows)| rows[0]).collect();
     let naming = naming(&parts.physical, &firsts);
     let scene = |rows: &[usize]| {
@@ -118,7 +155,18 @@ fn quantities() -> Vec<Quantity> {
     measures.chain(courses).map(quantity).collect()
 }
 
-/// The runs of a scene, each once, and the number of rows without a result.
+/// How the run of a row ended; `None` for one that has not.
+fn ending(table: &Table, row: usize) -> Option<Ending> {
+    match table.status(row)? {
+        Status::Done => {
+            let mark = table.audit_mark(row);
+            Some(mark.map_or(Ending::Trusted, |column| Ending::Marked(column.name())))
+        }
+        status => status.is_failure().then_some(Ending::Failed(status)),
+    }
+}
+
+/// The runs of a scene, each once, and the number of rows that have not ended.
 fn runs(
     table: &Table,
     parts: &Parts<'_>,
@@ -135,10 +183,10 @@ fn runs(
         if !known.insert(key.collect()) {
             continue;
         }
-        if table.status(row) != Some(Status::Done) {
+        let Some(ending) = ending(table, row) else {
             without += 1;
             continue;
-        }
+        };
         let number = |id: ColumnId| table.value(id, row).and_then(number);
         let job = match table.column("job").map(|column| &column.cells[row]) {
             Some(Value::Text(id)) => id.as_str(),
@@ -146,6 +194,8 @@ fn runs(
         };
         let history = histories(job);
         let simulated = history.as_ref().map(|history| history.simulated);
+        let implicit = parts.word(INTEGRATOR, row) == Some(entry(IntegratorKind::Implicit).name)
+            || history.as_ref().is_some_and(|history| history.implicit);
         let seconds = number(ColumnId::WallSeconds)
             .zip(simulated.filter(|time| *time > 0.0))
             .map(|(wall, simulated)| wall / simulated);
@@ -161,13 +211,19 @@ fn runs(
         let mesh_errors = PROMISED.iter().map(mesh_error).collect();
         let courses = history.map_or([None, None], |history| history.courses);
         let courses = courses.into_iter().map(|course| course.map(Outcome::Course));
+        let mut results: Vec<Option<Outcome>> = measures.chain(courses).collect();
+        if ending.is_failure() {
+            // What was measured until then is no result of the scene.
+            results.fill(None);
+        }
         found.push(Run {
             configuration,
-            trusted: table.is_trusted(row),
+            ending,
             elements: number(ColumnId::Elements).unwrap_or(0.0),
             steps: number(ColumnId::Steps).unwrap_or(0.0),
+            implicit,
             seconds,
-            results: measures.chain(courses).collect(),
+            results,
             mesh_errors,
         });
     }
@@ -259,7 +315,8 @@ mod tests {
                 column("wall_seconds", [1.0; 6].map(Value::Number).to_vec()),
             ],
         };
-        let history = |_: &str| Some(Histories { courses: [None, None], simulated: 0.5 });
+        let history =
+            |_: &str| Some(Histories { courses: [None, None], simulated: 0.5, implicit: false });
         let scenes = scenes("study", &table, &["seed".to_owned()], &history);
         let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
         assert_eq!(names, ["a", "b"]);
@@ -271,9 +328,37 @@ mod tests {
         assert_eq!(a.runs[0].configuration, a.runs[1].configuration, "seeds are runs");
         assert_eq!(a.runs[0].configuration[2], ("contact.distance".to_owned(), Value::Integer(1)));
         assert_eq!(a.runs[0].seconds, Some(2.0), "for a simulated second");
-        assert_eq!((b.runs.len(), b.without_result), (1, 1));
+        let endings: Vec<&str> = b.runs.iter().map(|run| run.ending.name()).collect();
+        assert_eq!((endings, b.without_result), (vec!["done", "unstable"], 0));
+        assert!(b.runs[1].results.iter().all(Option::is_none), "a failed run has no result");
         let peak = PROMISED.iter().position(|one| one.measure == ColumnId::PeakVz).unwrap();
         assert_eq!(a.runs[1].results[peak], Some(Outcome::Number(21.0)));
         assert_eq!(a.runs[1].results.len(), PROMISED.len() + COURSES.len());
+    }
+
+    #[test]
+    fn a_numerical_parameter_that_differs_only_between_scenes_is_part_of_them() {
+        let table = Table {
+            columns: vec![
+                column("job", texts(&["1", "2", "3", "4"])),
+                column("strategy", texts(&["a", "a", "b", "b"])),
+                column("model", texts(&["film"; 4])),
+                column("outputs.sample_interval", numbers(&[1, 1, 5, 5])),
+                column("film.numerical_damping", numbers(&[0, 1, 0, 1])),
+                column("integrator", texts(&["explicit", "hybrid", "xpbd", "xpbd"])),
+                column("status", texts(&["done"; 4])),
+                column("elements", numbers(&[768; 4])),
+                column("steps", numbers(&[1000; 4])),
+            ],
+        };
+        let scenes = scenes("study", &table, &[], &|_: &str| None);
+        assert_eq!(scenes[1].meaning, "outputs.sample_interval 5");
+        let names = |run: &Run| -> Vec<String> {
+            run.configuration.iter().map(|(name, _)| name.clone()).collect()
+        };
+        assert_eq!(names(&scenes[0].runs[0]), ["model", "film.numerical_damping", "integrator"]);
+        // xpbd ignores numerical damping: two equal runs are one.
+        assert_eq!((scenes[0].runs.len(), scenes[1].runs.len()), (2, 1));
+        assert_eq!(scenes[1].runs[0].configuration[1].1, Value::Null);
     }
 }

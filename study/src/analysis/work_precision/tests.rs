@@ -1,3 +1,5 @@
+use billow_solver::output::outcome::FailureKind;
+
 use super::*;
 use crate::analysis::work_precision::peer::Peer;
 
@@ -12,6 +14,9 @@ pub fn quantity(name: &str, exact: Option<f64>) -> Quantity {
     }
 }
 
+/// An audit that speaks against a run.
+const MARKED: Ending = Ending::Marked("numerically_damped");
+
 /// A run of film on a mesh of 48 n² elements that takes steps in proportion to n over the CFL number.
 pub fn film(n: i64, cfl: f64, value: f64) -> Run {
     let size = n as f64;
@@ -22,9 +27,10 @@ pub fn film(n: i64, cfl: f64, value: f64) -> Run {
             ("subdivisions".to_owned(), Value::Integer(n)),
             ("cfl".to_owned(), Value::Number(cfl)),
         ],
-        trusted: true,
+        ending: Ending::Trusted,
         elements: 48.0 * size * size,
         steps,
+        implicit: false,
         seconds: Some(1e-6 * size * size * steps),
         results: vec![Some(Outcome::Number(value))],
         mesh_errors: Vec::new(),
@@ -72,7 +78,7 @@ fn a_known_order_and_a_known_front_are_found() {
     runs.push(film(8, 1.0, 2.1));
     runs.push(piston(2.4));
     // As cheap as n 4 and better, but no run can be trusted.
-    runs.push(Run { trusted: false, ..film(4, 0.6, 2.0) });
+    runs.push(Run { ending: MARKED, ..film(4, 0.6, 2.0) });
     let diagram = Diagram::of(scene(Some(2.0), runs));
     let errors = &diagram.quantities[0];
     let front = |cost| -> Vec<usize> {
@@ -126,7 +132,7 @@ fn without_an_exact_value_the_finest_trusted_mesh_is_the_reference() {
     for (n, values) in [(4, [2.3, 2.4, 2.5]), (8, [2.1, 2.2, 2.2]), (16, [2.0, 2.02, 2.04])] {
         runs.extend(values.map(|value| film(n, 0.5, value)));
     }
-    runs.push(Run { trusted: false, ..film(32, 0.5, 9.0) });
+    runs.push(Run { ending: MARKED, ..film(32, 0.5, 9.0) });
     let diagram = Diagram::of(scene(None, runs));
     let errors = &diagram.quantities[0];
     let reference = errors.reference.as_ref().unwrap();
@@ -191,6 +197,63 @@ fn courses_are_compared_over_their_common_time() {
     assert!((errors.uncertainty() - 0.05).abs() < 1e-12);
     assert!((errors.points[0].unwrap().error.median - 0.2).abs() < 1e-12);
     assert!(diagram.largest().reference.is_none(), "courses have no part in the largest error");
+}
+
+/// A run with another integrator of the mesh n 8, in a configuration that names it.
+fn with_integrator(name: &str, cfl: f64, value: f64) -> Run {
+    let mut run = film(8, cfl, value);
+    run.configuration.push(("integrator".to_owned(), Value::Text(name.to_owned())));
+    run
+}
+
+#[test]
+fn a_failed_configuration_is_a_member_and_a_failed_run_beside_others_is_none() {
+    let limit = Ending::Failed(Status::Failed(FailureKind::StepLimit));
+    let failed = |n| Run { ending: limit, results: vec![None], ..film(n, 0.5, 0.0) };
+    let runs = vec![film(4, 0.5, 2.2), film(8, 0.5, 2.1), failed(8), failed(16)];
+    let diagram = Diagram::of(scene(Some(2.0), runs));
+    let endings: Vec<&str> = diagram.members.iter().map(|one| one.ending.name()).collect();
+    assert_eq!(endings, ["done", "done", "step_limit"]);
+    // Of two runs with n 8 one failed; two runs of the scene have not ended.
+    assert_eq!((diagram.without_result, diagram.members[1].runs), (1, 1));
+    assert!(diagram.quantities[0].points[2].is_none(), "there is no error without a result");
+    assert!(diagram.largest().points[2].is_none());
+    assert!(diagram.members[2].work() > diagram.members[1].work(), "its steps have a cost");
+}
+
+#[test]
+fn implicit_steps_are_on_the_front_of_seconds_alone() {
+    let quick = |run: Run| Run { seconds: Some(1e-3), implicit: true, steps: 10.0, ..run };
+    let explicit = with_integrator("explicit", 0.5, 2.1);
+    let implicit = quick(with_integrator("implicit", 0.5, 2.05));
+    let errors = Diagram::of(scene(Some(2.0), vec![explicit, implicit.clone()])).quantities;
+    let front = |cost| [0, 1].map(|member: usize| errors[0].points[member].unwrap().on_front(cost));
+    assert_eq!(front(Cost::Work), [true, false]);
+    assert_eq!(front(Cost::Seconds), [false, true]);
+    // Among themselves their steps compare.
+    let alone = Diagram::of(scene(Some(2.0), vec![implicit])).quantities;
+    assert!(alone[0].points[0].unwrap().on_front(Cost::Work));
+}
+
+#[test]
+fn on_one_mesh_the_uncertainty_is_that_of_the_step() {
+    let known = |cfl, value| Run {
+        mesh_errors: vec![Some(0.1)],
+        ..with_integrator("explicit", cfl, value)
+    };
+    let mut runs = vec![known(0.5, 2.04), known(0.25, 2.01), known(0.25, 1.99)];
+    runs.push(with_integrator("hybrid", 0.5, 2.02));
+    let errors = Diagram::of(scene(None, runs.clone())).quantities.remove(0);
+    assert_eq!(errors.reference.as_ref().unwrap().member, Some(1), "the most steps of the mesh");
+    let (spread, step): (f64, f64) = (0.01 / 2.0, 0.5 * (2.04 / 2.0 - 1.0));
+    let expected = (spread * spread + step * step).sqrt();
+    assert!((errors.uncertainty() - expected).abs() < 1e-12, "{}", errors.uncertainty());
+    // A model without a mesh does not share its error.
+    let mut meshless = piston(2.1);
+    meshless.configuration.push(("integrator".to_owned(), Value::Null));
+    runs.push(meshless);
+    let errors = Diagram::of(scene(None, runs)).quantities.remove(0);
+    assert!(errors.uncertainty() > 0.1, "{}", errors.uncertainty());
 }
 
 #[test]

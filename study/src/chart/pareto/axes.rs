@@ -11,6 +11,8 @@ use crate::render::figure::ticks::{Tick, minus};
 pub(super) const ERROR: &str = "Relative error";
 /// Least error that is drawn. Chosen: rounding.
 const MIN_ERROR: f64 = 1e-15;
+/// Distance of the crosses of failed configurations from the upper end of an axis, as a part of its length.
+const TOP_SHARE: f64 = 0.04;
 /// Part of a decade that stays free at the ends of an axis.
 const PADDING: f64 = 0.12;
 
@@ -44,9 +46,12 @@ impl Axes {
             for one in list {
                 let points = one.points.iter().zip(&diagram.members);
                 for (point, member) in points {
-                    if let (Some(point), Some(cost)) = (point, member.cost(cost)) {
+                    let Some(cost) = member.cost(cost) else { continue };
+                    if let Some(point) = point {
                         costs.push(cost);
                         errors.extend([point.error.median, point.error.largest]);
+                    } else if member.ending.is_failure() {
+                        costs.push(cost);
                     }
                 }
                 errors.push(one.uncertainty());
@@ -71,6 +76,12 @@ impl Axes {
     /// The same axis of cost, with the errors of another one.
     pub(super) fn with_errors_of(self, other: &Self) -> Self {
         Self { error: other.error, ..self }
+    }
+
+    /// Where configurations without a result stand: just below the upper end of the axis of errors.
+    pub(super) fn top(&self) -> f64 {
+        let [low, high] = self.error;
+        high * libm::pow(low / high, TOP_SHARE)
     }
 
     /// An error within the axis.

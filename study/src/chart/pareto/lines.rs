@@ -65,7 +65,7 @@ impl<'a> Drawing<'a> {
         let diagram = self.diagram;
         let mut line = Line::new(series(number));
         let joined = chain.map_or(&[][..], |chain| diagram.chains[chain].members.as_slice());
-        let joined = joined.iter().filter(|index| diagram.members[**index].trusted);
+        let joined = joined.iter().filter(|index| diagram.members[**index].ending.is_trusted());
         let piece: Vec<[f64; 2]> =
             joined.filter_map(|index| self.position(errors, *index)).collect();
         if piece.len() > 1 {
@@ -73,13 +73,17 @@ impl<'a> Drawing<'a> {
         }
         let parameter = chain.map(|chain| diagram.chains[chain].parameter.as_str());
         for index in new {
+            let member = &diagram.members[*index];
+            if let (true, Some(cost)) = (member.ending.is_failure(), member.cost(self.cost)) {
+                line.crosses.push([cost, self.axes.top()]);
+                continue;
+            }
             let (Some(point), Some(position)) =
                 (&errors.points[*index], self.position(errors, *index))
             else {
                 continue;
             };
-            let member = &diagram.members[*index];
-            if !member.trusted {
+            if !member.ending.is_trusted() {
                 line.crosses.push(position);
                 continue;
             }

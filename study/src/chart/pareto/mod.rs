@@ -4,11 +4,13 @@
 //! A line joins configurations that differ in the mesh, or in the step. A filled marker is on the front: no other
 //! configuration is cheaper and more accurate.
 
+use std::collections::BTreeSet;
+
 use self::axes::{Axes, nothing};
 use self::lines::Drawing;
 use super::names::{self, Name};
 use crate::analysis::work_precision::peer::Peer;
-use crate::analysis::work_precision::{Cost, Diagram, Errors, label, words};
+use crate::analysis::work_precision::{Cost, Diagram, Ending, Errors, label, words};
 use crate::input::value::brief_number;
 use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::plot::line::Direction;
@@ -95,6 +97,7 @@ pub fn overview(diagrams: &[Diagram], cost: Cost) -> String {
     }
     notes.extend(numbers(diagrams));
     notes.push(cost_note(cost, diagrams).to_owned());
+    notes.extend(implicit_note(cost, diagrams));
     Plots {
         sheet: Sheet {
             title: "Work and precision: every scene".to_owned(),
@@ -143,13 +146,24 @@ fn marks(errors: &[&Errors], diagrams: &[Diagram]) -> Legend {
     if points().any(|point| point.error.count > 1) {
         entries.push((Sample::Bar, "range over the runs (seeds)".to_owned()));
     }
-    if diagrams.iter().flat_map(|diagram| &diagram.members).any(|member| !member.trusted) {
-        entries.push((Sample::Cross, "no run passes its audit".to_owned()));
+    for (problem, failed) in [("no run passes its audit", false), ("at the top: failed", true)] {
+        let names = endings(diagrams, failed);
+        if !names.is_empty() {
+            entries.push((Sample::Cross, format!("{problem} ({})", names.join(", "))));
+        }
     }
     if errors.iter().any(|errors| errors.uncertainty() > 0.0) {
         entries.push((Sample::Closed, "within the reference's uncertainty".to_owned()));
     }
     Legend { heading: String::new(), entries }
+}
+
+/// What speaks against configurations that cannot be trusted: failures, or findings of the audit. Each once.
+fn endings(diagrams: &[Diagram], failed: bool) -> Vec<&'static str> {
+    let members = diagrams.iter().flat_map(|diagram| &diagram.members);
+    let endings = members.map(|member| member.ending).filter(|ending| !ending.is_trusted());
+    let names = endings.filter(|ending| ending.is_failure() == failed).map(Ending::name);
+    names.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// The notes below the pictures of a scene.
@@ -159,13 +173,19 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
         diagram.quantities.iter().filter_map(|errors| errors.reference.as_ref()?.member).collect();
     if let Some(first) = references.first() {
         let member = &diagram.members[*first];
+        let has_meshes = diagram.chains.iter().any(|chain| chain.of_meshes);
         let same = references.iter().all(|other| other == first);
         let runs =
             if member.runs == 1 { "1 run".to_owned() } else { format!("{} runs", member.runs) };
         let other = if same { "" } else { " (of some quantities another one)" };
+        let from = if has_meshes {
+            "the next coarser mesh, or its mesh error if that is known and larger. A method of low order may be further \
+             from its limit."
+        } else {
+            "the next coarser step. Every run has this mesh, so its error has no part."
+        };
         notes.push(format!(
-            "Reference: {}, {runs}{other}. Its uncertainty: half the range over the runs, and half the difference from \
-             the next coarser mesh, or its mesh error if that is known and larger. A method of low order may be further from its limit.",
+            "Reference: {}, {runs}{other}. Its uncertainty: half the range over the runs, and half the difference from {from}",
             label(&member.configuration, &diagram.usual())
         ));
     } else {
@@ -173,9 +193,10 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
     }
     notes.extend(numbers(std::slice::from_ref(diagram)));
     notes.push(cost_note(cost, std::slice::from_ref(diagram)).to_owned());
+    notes.extend(implicit_note(cost, std::slice::from_ref(diagram)));
     if diagram.without_result > 0 {
         notes.push(format!(
-            "{} runs failed or have not ended; they are not drawn.",
+            "{} runs have not ended, or failed beside others of their configuration; they are not drawn.",
             diagram.without_result
         ));
     }
@@ -205,6 +226,19 @@ fn cost_note(cost: Cost, diagrams: &[Diagram]) -> &'static str {
              lengthen it."
         }
     }
+}
+
+/// Why implicit steps are not on the front of work.
+fn implicit_note(cost: Cost, diagrams: &[Diagram]) -> Option<String> {
+    let mixed = |diagram: &Diagram| {
+        let implicit = diagram.members.iter().filter(|member| member.implicit).count();
+        implicit > 0 && implicit < diagram.members.len()
+    };
+    (cost == Cost::Work && diagrams.iter().any(mixed)).then(|| {
+        "An implicit step solves equations for all nodes: it costs as much as hundreds of explicit ones. Here implicit \
+         steps have no part in the front; the pictures over seconds compare them."
+            .to_owned()
+    })
 }
 
 /// What is known of a peer.

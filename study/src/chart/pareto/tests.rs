@@ -1,5 +1,5 @@
 use super::*;
-use crate::analysis::work_precision::{Outcome, Quantity, Run, SceneRuns};
+use crate::analysis::work_precision::{Ending, Outcome, Quantity, Run, SceneRuns};
 use crate::input::value::Value;
 use crate::render::figure::check;
 
@@ -11,9 +11,10 @@ fn run(model: &str, n: Option<i64>, value: f64) -> Run {
             ("solver.model".to_owned(), Value::Text(model.to_owned())),
             ("subdivisions".to_owned(), n.map_or(Value::Null, Value::Integer)),
         ],
-        trusted: true,
+        ending: Ending::Trusted,
         elements: 48.0 * size * size,
         steps,
+        implicit: false,
         seconds: Some(1e-6 * (1.0 + size * size) * steps),
         results: vec![Some(Outcome::Number(value)), None],
         mesh_errors: Vec::new(),
@@ -58,7 +59,7 @@ fn a_picture_has_orders_front_reference_and_gaps() {
     assert!(has("on the front (dotted line)") && has("reference, at its uncertainty"));
     assert!(has("no trusted configuration"), "{texts:?}");
     assert!(has("film, over subdivisions") && has("piston"));
-    assert!(has("2 runs failed") && has("Numbers beside points: subdivisions."));
+    assert!(has("2 runs have not ended") && has("Numbers beside points: subdivisions."));
     let exact = check::figure(&scene(&diagram("disc", Some(20.0)), Cost::Work, None));
     assert!(exact.iter().any(|text| text.contains("order 2")), "{exact:?}");
     assert!(exact.iter().any(|text| text.contains("Reference: the exact value.")), "{exact:?}");

@@ -4,6 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use billow_solver::output::events::EventKind;
+
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::picture::{self, Picture};
 use super::target::StudyArgs;
@@ -205,7 +207,11 @@ fn of_history(history: &StoredHistory) -> Histories {
     let course = |(name, _, _): (&str, &str, &str)| {
         Course::new(times, history.history.column(name)).map(Arc::new)
     };
-    Histories { courses: COURSES.map(course), simulated: times.last().copied().unwrap_or(0.0) }
+    Histories {
+        courses: COURSES.map(course),
+        simulated: times.last().copied().unwrap_or(0.0),
+        implicit: history.events.iter().any(|event| event.kind == EventKind::Implicit),
+    }
 }
 
 /// Reads the file of a peer.

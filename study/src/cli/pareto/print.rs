@@ -10,11 +10,12 @@ use crate::input::value::{Value, brief_number};
 use crate::platform::error::Result;
 
 /// Columns of the output.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 16] = [
     "scene",
     "quantity",
     "configuration",
     "front",
+    "status",
     "error",
     "least",
     "largest",
@@ -28,7 +29,11 @@ const COLUMNS: [&str; 15] = [
     "of",
 ];
 
-/// Prints one row per configuration on the front, by scene and quantity; with `all` one per configuration.
+/// Columns that only a table of every configuration needs.
+const OF_ALL: [&str; 2] = ["front", "status"];
+
+/// Prints one row per configuration on the front, by scene and quantity; with `all` one per configuration, those
+/// without a result too.
 ///
 /// # Errors
 /// When the output cannot be written.
@@ -44,10 +49,12 @@ pub(super) fn front(
         for errors in &diagram.quantities {
             let mut of_quantity = Vec::new();
             for (point, member) in errors.points.iter().zip(&diagram.members) {
-                let Some(point) = point.filter(|point| all || point.on_front(cost)) else {
+                let on_front = point.is_some_and(|point| point.on_front(cost));
+                let listed = on_front || all && (point.is_some() || member.ending.is_failure());
+                let Some(reference) = errors.reference.as_ref().filter(|_| listed) else {
                     continue;
                 };
-                let Some(reference) = &errors.reference else { continue };
+                let error = point.filter(|point| !point.is_reference).map(|point| point.error);
                 let number =
                     |value: Option<f64>| value.map_or(Value::Null, |value| shown(value, format));
                 let of = match reference.member {
@@ -58,16 +65,17 @@ pub(super) fn front(
                     Value::Text(diagram.name.clone()),
                     Value::Text(errors.quantity.name.clone()),
                     Value::Text(label(&member.configuration, &[])),
-                    Value::Bool(point.on_front(cost)),
-                    number((!point.is_reference).then_some(point.error.median)),
-                    number((!point.is_reference).then_some(point.error.least)),
-                    number((!point.is_reference).then_some(point.error.largest)),
+                    Value::Bool(on_front),
+                    Value::Text(member.ending.name().to_owned()),
+                    number(error.map(|error| error.median)),
+                    number(error.map(|error| error.least)),
+                    number(error.map(|error| error.largest)),
                     number(reference.uncertainty),
-                    number(point.order),
+                    number(point.and_then(|point| point.order)),
                     Value::Number(member.work()),
                     number(member.seconds),
                     Value::Integer(i64::try_from(member.runs).unwrap_or(i64::MAX)),
-                    point.value.map_or(Value::Null, Value::Number),
+                    point.and_then(|point| point.value).map_or(Value::Null, Value::Number),
                     reference.value.map_or(Value::Null, Value::Number),
                     Value::Text(of),
                 ];
@@ -80,7 +88,7 @@ pub(super) fn front(
     if all {
         return print_rows(&COLUMNS, &rows, format, out);
     }
-    let kept = |index: &usize| COLUMNS[*index] != "front";
+    let kept = |index: &usize| !OF_ALL.contains(&COLUMNS[*index]);
     let columns: Vec<&str> = (0..COLUMNS.len()).filter(kept).map(|index| COLUMNS[index]).collect();
     let rows: Vec<Vec<Value>> = rows
         .into_iter()
@@ -150,6 +158,13 @@ pub(super) fn notes(diagrams: &[Diagram], cost: Cost) {
          configuration, whose uncertainty is beside it: an error below that counts as equal to it; a model without elements \
          costs its steps"
     );
+    let implicit = |diagram: &Diagram| diagram.members.iter().any(|member| member.implicit);
+    if cost == Cost::Work && diagrams.iter().any(implicit) {
+        eprintln!(
+            "note: an implicit step solves equations for all nodes and costs as much as hundreds of explicit ones: by \
+             element-steps it is not on the front beside them; --cost seconds compares them"
+        );
+    }
     eprintln!(
         "note: seconds: wall time for a simulated second (at rest: of the search) on one thread; other jobs on the \
          machine lengthen it"

@@ -27,7 +27,9 @@ pub use strategy::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 pub(crate) use study::GRID_MEANINGS;
 pub use study::{KEYS, SECTIONS};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};
-pub use words::{MODELS, Model, ResidualGas, Word, model};
+pub use words::{
+    MODELS, Model, ResidualGas, Word, default_integrator, ignored_by_integrator, model,
+};
 pub(crate) use words::{PROFILES, SUPPORT_PLACES};
 
 #[cfg(test)]

@@ -160,6 +160,19 @@ pub const MODELS: [Model; ModelKind::ALL.len()] = {
     models
 };
 
+/// Keys that change no result of film with the integrator of this name.
+pub fn ignored_by_integrator(name: &str) -> &'static [&'static str] {
+    match INTEGRATORS.iter().find(|row| row.name == name).map(|row| row.value) {
+        Some(IntegratorKind::Implicit | IntegratorKind::Xpbd) => &["film.numerical_damping"],
+        Some(IntegratorKind::Explicit | IntegratorKind::Hybrid) | None => &[],
+    }
+}
+
+/// Name of the integrator of a study that names none.
+pub fn default_integrator() -> &'static str {
+    integrators::entry(IntegratorKind::default()).name
+}
+
 /// Values of `solver.integrator`: the rows of the solver's table.
 pub(super) const INTEGRATORS: [Named<IntegratorKind>; IntegratorKind::ALL.len()] = {
     let mut rows = [word("", IntegratorKind::Explicit, ""); IntegratorKind::ALL.len()];

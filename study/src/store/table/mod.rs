@@ -158,11 +158,17 @@ impl Table {
     /// Whether a job is done and its audit found nothing: no passage, no intersection, no motion damped by the
     /// numerics.
     pub fn is_trusted(&self, row: usize) -> bool {
-        let none = |column| !matches!(self.value(column, row), Some(Value::Integer(1..)));
-        self.status(row) == Some(Status::Done)
-            && none(ColumnId::Passages)
-            && none(ColumnId::Intersections)
-            && self.value(ColumnId::NumericallyDamped, row) != Some(&Value::Bool(true))
+        self.status(row) == Some(Status::Done) && self.audit_mark(row).is_none()
+    }
+
+    /// The first column of the audit that speaks against a row; `None` without any.
+    pub fn audit_mark(&self, row: usize) -> Option<ColumnId> {
+        let speaks = |column: &ColumnId| {
+            matches!(self.value(*column, row), Some(Value::Integer(1..) | Value::Bool(true)))
+        };
+        [ColumnId::Passages, ColumnId::Intersections, ColumnId::NumericallyDamped]
+            .into_iter()
+            .find(speaks)
     }
 
     /// The parameters of the study: the columns between `job` and `status`.
