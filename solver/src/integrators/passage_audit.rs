@@ -1,5 +1,6 @@
-//! The audit of passages: no film passes through film.
+//! The audit of every integrator of film with contact: no film passes through film.
 
+use super::interface::StepAudit;
 use crate::collision::monitor::TunnellingMonitor;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::monitor_settings::MonitorSettings;
@@ -60,9 +61,8 @@ impl PassageAudit {
     }
 }
 
-impl PassageAudit {
-    /// As [`super::StepAudit::record`].
-    pub(super) fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+impl StepAudit for PassageAudit {
+    fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             self.monitor.record_step(&contact_model.mesh.topology, &state.positions);
         }
@@ -71,8 +71,7 @@ impl PassageAudit {
         self.check(before)
     }
 
-    /// As [`super::StepAudit::look`].
-    pub(super) fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+    fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             let topology = &contact_model.mesh.topology;
             self.monitor.intersection_counter.update(topology, &state.positions);
@@ -80,12 +79,7 @@ impl PassageAudit {
         Ok(())
     }
 
-    /// As [`super::StepAudit::complete`].
-    pub(super) fn complete(
-        &mut self,
-        system: &FilmSystem,
-        state: &FilmState,
-    ) -> Result<(), Failure> {
+    fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             self.monitor.test_block(&contact_model.mesh.topology);
         }

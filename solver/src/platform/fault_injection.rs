@@ -27,8 +27,6 @@ pub enum Term {
     PressureForce,
     /// Enclosed volume.
     Volume,
-    /// Force of contact, of film and of plates.
-    Contact,
     /// Weight.
     Gravity,
     /// Force of the ambient pressure.
@@ -67,14 +65,13 @@ pub enum Term {
 
 impl Term {
     /// Every term.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 23] = [
         Self::Elastic,
         Self::NumericalStress,
         Self::NumericalWork,
         Self::Creep,
         Self::PressureForce,
         Self::Volume,
-        Self::Contact,
         Self::Gravity,
         Self::Ambient,
         Self::Kick,

@@ -3,8 +3,6 @@
 //!
 //! Without a fault no bit of a run changes.
 
-use super::pair::Pair;
-
 /// How contact is blinded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BroadPhaseFault {
@@ -15,8 +13,6 @@ pub enum BroadPhaseFault {
     ScaledBounds(f64),
     /// Pairs that are pending at this path length (m) never come due.
     StoppedQueues(f64),
-    /// This pair is never a candidate.
-    LostPair(Pair),
     /// Edges have no contact with edges.
     NoEdgeContacts,
 }

@@ -13,7 +13,7 @@
 use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
-use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepAudit, StepMotion};
+use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
 use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
@@ -214,7 +214,9 @@ impl Implicit {
                 }
                 return Err(failure(state, "no step of the implicit method has a solution"));
             };
-            self.go_ahead(state, stepped, budget.audit)?;
+            let from = (state.clone(), self.motion.accounting);
+            self.motion.ahead =
+                Some(Box::new(Ahead { from, to: (stepped.state, stepped.accounting) }));
         }
         budget.stopwatch.begins(Stage::Audit);
         if self.motion.ahead.is_some() {
@@ -295,46 +297,24 @@ impl Implicit {
         }
     }
 
-    /// Makes a step that is accepted the one that goes beyond the state.
-    fn go_ahead(
-        &mut self,
-        state: &FilmState,
-        stepped: Stepped,
-        audit: &mut dyn StepAudit,
-    ) -> Result<(), Failure> {
-        audit.moved(StepMotion {
-            start: state.time,
-            length: stepped.state.time - state.time,
-            from: &state.positions,
-            velocities: &stepped.state.velocities,
-            coefficients: stepped.coefficients,
-        })?;
-        let from = (state.clone(), self.motion.accounting);
-        let to = (stepped.state, stepped.accounting);
-        self.motion.ahead = Some(Box::new(Ahead { from, to }));
-        Ok(())
-    }
-
     /// Takes a first step beyond the state; whether there is one that pays.
-    ///
-    /// # Errors
-    /// What the audit finds.
     pub(super) fn begin(
         &mut self,
         system: &FilmSystem,
         state: &FilmState,
         phase: &Phase,
         patience: Patience,
-        audit: &mut dyn StepAudit,
-    ) -> Result<bool, Failure> {
+    ) -> bool {
         self.motion.begin_phase(phase.packed, phase.inflow);
         let limits = (state.time, phase.end);
         let Some(stepped) = self.step(system, state, limits, phase.inflow, Some(patience)) else {
-            return Ok(false);
+            return false;
         };
-        self.go_ahead(state, stepped, audit)?;
+        let from = (state.clone(), self.motion.accounting);
+        let to = (stepped.state, stepped.accounting);
+        self.motion.ahead = Some(Box::new(Ahead { from, to }));
         self.evaluate(system, state);
-        Ok(true)
+        true
     }
 
     pub(super) fn add_numerical_dissipation(&mut self, energy: f64) {
