@@ -73,22 +73,23 @@ impl CreepStrain {
                 let [a, b, d] = inverse_shape.each_ref().map(|lanes| lanes.0[lane]);
                 let [start, end] =
                     ends.map(|edges| strain::of_edges(edges[half], [[a, b], [0.0, d]]));
-                let towards = |from: [f64; 3], at: [f64; 3], way: f64, share: f64| -> [f64; 3] {
-                    let [sum, difference, shear] = at;
-                    let mix = |from: f64, to: f64| from + way * (to - from);
-                    let strain = PlaneTensor {
-                        xx: mix(start.xx, end.xx),
-                        yy: mix(start.yy, end.yy),
-                        xy: mix(start.xy, end.xy),
+                let towards =
+                    |from: [f64; 3], at: [f64; 3], progress: f64, share: f64| -> [f64; 3] {
+                        let [sum, difference, shear] = at;
+                        let mix = |from: f64, to: f64| from + progress * (to - from);
+                        let strain = PlaneTensor {
+                            xx: mix(start.xx, end.xx),
+                            yy: mix(start.yy, end.yy),
+                            xy: mix(start.xy, end.xy),
+                        };
+                        let elastic = PlaneTensor {
+                            xx: strain.xx + creep.ratio * (strain.xx - 0.5 * (sum + difference)),
+                            yy: strain.yy + creep.ratio * (strain.yy - 0.5 * (sum - difference)),
+                            xy: strain.xy + creep.ratio * (strain.xy - 0.5 * shear),
+                        };
+                        let rest = creep.at_rest(&model.material, elastic);
+                        core::array::from_fn(|k| from[k] + share * (rest[k] - from[k]))
                     };
-                    let elastic = PlaneTensor {
-                        xx: strain.xx + creep.ratio * (strain.xx - 0.5 * (sum + difference)),
-                        yy: strain.yy + creep.ratio * (strain.yy - 0.5 * (sum - difference)),
-                        xy: strain.xy + creep.ratio * (strain.xy - 0.5 * shear),
-                    };
-                    let rest = creep.at_rest(&model.material, elastic);
-                    core::array::from_fn(|k| from[k] + share * (rest[k] - from[k]))
-                };
                 let mut value = all[block][half].lane(lane);
                 let mut done = 0.0;
                 while done < count {
