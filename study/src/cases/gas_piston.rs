@@ -15,7 +15,7 @@ use billow_solver::scene::timeline::Phase;
 use billow_solver::scene::{Film, GasSupply, IntegratorKind, Species};
 use nalgebra::Vector3;
 
-use super::gas_column::{Column, column};
+use super::gas_column::{Column, column, film_piston};
 use super::piston_model;
 use super::reference::{number, rows};
 use super::rig::{advance, inflow};
@@ -60,7 +60,7 @@ impl Piston {
         let shell = column.shell.clone();
         let speed = |x: &Vector3<f64>| if x.z > 0.0 { self.speed } else { 0.0 };
         let velocities = shell.positions.iter().map(|x| Vector3::z() * speed(x)).collect();
-        let supports = column.film_piston();
+        let supports = film_piston();
         FilmScene { supports, velocities, ..free_film(shell, film) }
     }
 }
