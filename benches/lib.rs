@@ -1,1 +1,1 @@
-//! Empty: the measurements are in `kernels.rs`.
+//! Empty: the measurements are in `kernels.rs` and `factorisation/`.
