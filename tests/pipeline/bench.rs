@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::interruption::signal;
 
-const TARGETS: [&str; 9] = [
+const TARGETS: [&str; 12] = [
     "step_without_contact_n16",
     "speedup_over_reference_n16",
     "step_to_100_ms_n8",
@@ -18,7 +18,10 @@ const TARGETS: [&str; 9] = [
     "step_to_1500_ms_n8",
     "seconds_to_1500_ms_n8",
     "seconds_to_300_ms_n16",
-    "jobs",
+    "hybrid_delayed_n8",
+    "hybrid_preinflate_n8",
+    "hybrid_delayed_n16",
+    "hybrid_preinflate_n16",
     "mesh_scaling",
 ];
 
@@ -118,14 +121,36 @@ fn every_part_has_its_rows() {
     }
     assert_eq!(rows(&report, "cases").len(), 2);
 
-    let jobs = rows(&report, "jobs");
-    assert_eq!(jobs.len(), 2);
-    for (row, threads) in jobs.iter().zip([1, 2]) {
-        assert_eq!(
-            (&row["threads"], &row["jobs"], &row["done"]),
-            (&threads.into(), &64.into(), &64.into())
-        );
-        positive(row, "jobs_per_hour");
+    let hybrid = rows(&report, "hybrid");
+    let runs = ["delayed", "preinflate"].map(|name| (name, ["explicit", "hybrid"]));
+    let runs = [1, 2].into_iter().flat_map(|n| runs.map(|(strategy, pair)| (n, strategy, pair)));
+    assert_eq!(hybrid.len(), 8);
+    for (pair, (n, strategy, integrators)) in hybrid.chunks(2).zip(runs) {
+        for (row, integrator) in pair.iter().zip(integrators) {
+            assert_eq!(
+                (&row["subdivisions"], &row["strategy"], &row["integrator"], &row["passages"]),
+                (&n.into(), &strategy.into(), &integrator.into(), &0.into())
+            );
+            assert!(row["ledger_residual"].as_f64() < Some(1e-2), "{row}");
+            assert_eq!(positive(row, "elements"), f64::from(48 * n * n));
+            positive(row, "steps");
+        }
+        let [explicit, hybrid] = pair else { panic!("a pair of runs") };
+        let over = positive(explicit, "wall_seconds") / positive(hybrid, "wall_seconds");
+        assert!(explicit["speedup"].is_null(), "{explicit}");
+        assert!((over / positive(hybrid, "speedup") - 1.0).abs() < 1e-9, "{hybrid}");
+        let volumes = positive(explicit, "volume") / positive(hybrid, "volume");
+        assert!((volumes - 1.0).abs() < 0.1, "{explicit} {hybrid}");
+    }
+
+    let statics = rows(&report, "statics");
+    assert_eq!(statics.len(), 2);
+    for row in statics {
+        let factorisations = positive(row, "factorisations");
+        assert!(positive(row, "newton_steps") <= factorisations, "{row}");
+        assert!(positive(row, "states") >= 3.0, "{row}");
+        let each = 1e3 * positive(row, "wall_seconds") / factorisations;
+        assert!((each / positive(row, "ms_per_factorisation") - 1.0).abs() < 1e-9, "{row}");
     }
 
     // A quick bench of small meshes measures no target.
@@ -147,7 +172,7 @@ fn parts_are_selected_by_name() {
     let output = billow(&flags);
     let report: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     assert_eq!(rows(&report, "cases").len(), 1);
-    for other in ["kernels", "stages", "jobs"] {
+    for other in ["kernels", "stages", "hybrid", "statics"] {
         assert!(rows(&report, other).is_empty(), "{other}");
     }
     assert!(report["machine"]["multiply_adds_per_second"].is_null());
@@ -179,6 +204,7 @@ fn invalid_flags_are_bad_input() {
         (&["--subdivisions", "five"], "five"),
         (&["--quick", "--full"], "cannot be used with"),
         (&["--quick", "--subdivisions", "32", "--only", "kernels"], "n = 32"),
+        (&["--subdivisions", "16", "--only", "hybrid"], "n = 16"),
     ] {
         let output = billow(flags);
         assert_eq!(output.status.code(), Some(2), "{flags:?}: {}", stderr_of(&output));

@@ -83,6 +83,7 @@ pub fn settle(
         tolerances,
         observer,
         iterations: 0,
+        factorisations: 0,
     };
     let stages = stages(loaded, positions, from);
     if let Some(before) = short_path(loaded, positions, from, stages[0]) {
@@ -174,6 +175,7 @@ struct Continuation<'a, 'b> {
     tolerances: &'a Tolerances,
     observer: IterationObserver<'b>,
     iterations: u32,
+    factorisations: u32,
 }
 
 impl Continuation<'_, '_> {
@@ -230,15 +232,15 @@ impl Continuation<'_, '_> {
         self.counted(found)
     }
 
-    /// A result with the number of steps of the whole search.
+    /// A result with the numbers of steps and factorisations of the whole search.
     fn counted(
         &self,
         found: Result<Equilibrium, StaticFailure>,
     ) -> Result<Equilibrium, StaticFailure> {
-        let iterations = self.iterations;
+        let Self { iterations, factorisations, .. } = *self;
         match found {
-            Ok(found) => Ok(Equilibrium { iterations, ..found }),
-            Err(failure) => Err(StaticFailure { iterations, ..failure }),
+            Ok(found) => Ok(Equilibrium { iterations, factorisations, ..found }),
+            Err(failure) => Err(StaticFailure { iterations, factorisations, ..failure }),
         }
     }
 
@@ -256,7 +258,7 @@ impl Continuation<'_, '_> {
         }
     }
 
-    /// The equilibrium of one load. Counts its steps.
+    /// The equilibrium of one load. Counts its steps and factorisations.
     fn equilibrium(
         &mut self,
         positions: Field,
@@ -278,10 +280,12 @@ impl Continuation<'_, '_> {
             tolerances,
             &mut *self.observer,
         );
-        self.iterations += match &found {
-            Ok(found) => found.iterations,
-            Err(failure) => failure.iterations,
+        let (iterations, factorisations) = match &found {
+            Ok(found) => (found.iterations, found.factorisations),
+            Err(failure) => (failure.iterations, failure.factorisations),
         };
+        self.iterations += iterations;
+        self.factorisations += factorisations;
         found
     }
 }

@@ -106,6 +106,8 @@ pub struct StaticFailure {
     pub node: usize,
     /// Steps taken.
     pub iterations: u32,
+    /// Factorisations computed, those of matrices that are not positive definite included.
+    pub factorisations: u32,
     /// Last positions of the nodes, m: not a result, but a start for another attempt.
     pub positions: Box<Field>,
 }
@@ -119,6 +121,8 @@ pub struct Equilibrium {
     pub forces: Field,
     /// Steps taken.
     pub iterations: u32,
+    /// Factorisations computed, those of matrices that are not positive definite included.
+    pub factorisations: u32,
     /// Residual force over the load, a fraction.
     pub residual: f64,
     /// μ of the last step.
@@ -181,6 +185,7 @@ struct NewtonSearch<'a> {
     forces: Field,
     along: Vec<f64>,
     iterations: u32,
+    factorisations: u32,
 }
 
 impl<'a> NewtonSearch<'a> {
@@ -196,6 +201,7 @@ impl<'a> NewtonSearch<'a> {
             forces: Field::zeros(model.nodes()),
             along: Vec::new(),
             iterations: 0,
+            factorisations: 0,
         }
     }
 
@@ -262,6 +268,7 @@ impl<'a> NewtonSearch<'a> {
             residual: self.residual(),
             node,
             iterations: self.iterations,
+            factorisations: self.factorisations,
             positions: Box::new(self.positions.clone()),
         }
     }
@@ -342,13 +349,16 @@ impl<'a> NewtonSearch<'a> {
         let Loaded { model, overpressure, .. } = *self.loaded;
         let omega = model.largest_frequency();
         self.system.assemble(model, overpressure, &self.positions);
-        while !self.system.factor(self.loaded.instruction_set, shift, omega) {
+        loop {
+            self.factorisations += 1;
+            if self.system.factor(self.loaded.instruction_set, shift, omega) {
+                return Ok(shift);
+            }
             shift *= 10.0;
             if shift > MAX_SHIFT {
                 return Err(self.failure(StaticFailureKind::Stalled));
             }
         }
-        Ok(shift)
     }
 
     /// The equilibrium found, after a last full step, which is known already, if it lowers the residual:
@@ -366,6 +376,7 @@ impl<'a> NewtonSearch<'a> {
             positions: self.positions.clone(),
             forces: self.forces.clone(),
             iterations: self.iterations,
+            factorisations: self.factorisations,
             residual: last,
             shift,
         }

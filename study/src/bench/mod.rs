@@ -6,8 +6,8 @@
 //!
 //! The paper's capsule under 5 g/s ([`capsule`]) is measured in three states: stowed, rising, at the
 //! end. Parts: stages of a step ([`stages`]), whole runs ([`capsule::Case`]), the step without contact
-//! and a plain scalar reference ([`kernels`]), many jobs ([`jobs`]), the machine itself ([`machine`]).
-//! [`targets`] compares the results with the goals of the project; a missed target is not an error.
+//! and a plain scalar reference ([`kernels`]), quiet filling with `explicit` and `hybrid`
+//! ([`quiet_filling`]), static equilibria ([`statics`]), the machine itself ([`machine`]). [`targets`] compares the results with the goals of the project; a missed target is not an error.
 
 use billow_solver::platform::simd::InstructionSet;
 
@@ -18,17 +18,19 @@ use crate::platform::stop::Stop;
 
 pub mod capsule;
 pub mod clock;
-pub mod jobs;
 pub mod kernels;
 pub mod machine;
+pub mod quiet_filling;
 pub mod stages;
+pub mod statics;
 pub mod targets;
 
 use capsule::{Capsule, Case, Mark};
-use jobs::JobsRow;
 use kernels::KernelRow;
 use machine::Machine;
+use quiet_filling::QuietRow;
 use stages::StageRow;
+use statics::StaticsRow;
 use targets::Target;
 
 /// A row: names and values.
@@ -65,14 +67,16 @@ pub enum Part {
     Stages,
     /// Whole runs.
     Cases,
-    /// A study of 64 jobs.
-    Jobs,
+    /// Quiet filling, explicit against hybrid.
+    Hybrid,
+    /// Static equilibria.
+    Statics,
 }
 
 impl Part {
     /// Every part, in the order of measurement.
-    pub const ALL: [Self; 5] =
-        [Self::Machine, Self::Kernels, Self::Stages, Self::Cases, Self::Jobs];
+    pub const ALL: [Self; 6] =
+        [Self::Machine, Self::Kernels, Self::Stages, Self::Cases, Self::Hybrid, Self::Statics];
 }
 
 /// Extent of a bench.
@@ -153,6 +157,18 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Whether a part measures anything of a mesh.
+    pub fn measures(&self, part: Part, subdivisions: u32) -> bool {
+        match part {
+            Part::Machine => true,
+            Part::Kernels => subdivisions <= LARGEST_RUN,
+            Part::Stages => true,
+            Part::Cases => subdivisions <= LARGEST_RUN || self.effort != Effort::Quick,
+            Part::Hybrid => quiet_filling::meshes(self).contains(&subdivisions),
+            Part::Statics => statics::meshes(self).contains(&subdivisions),
+        }
+    }
+
     /// The meshes to time, in ascending order.
     fn meshes(&self) -> Vec<u32> {
         let mut meshes = match (self.subdivisions.as_slice(), self.effort) {
@@ -179,8 +195,10 @@ pub struct Report {
     pub stages: Vec<StageRow>,
     /// Whole runs.
     pub cases: Vec<Case>,
-    /// Many jobs.
-    pub jobs: Vec<JobsRow>,
+    /// Quiet filling.
+    pub hybrid: Vec<QuietRow>,
+    /// Static equilibria.
+    pub statics: Vec<StaticsRow>,
 }
 
 impl Report {
@@ -192,7 +210,8 @@ impl Report {
             kernels: Vec::new(),
             stages: Vec::new(),
             cases: Vec::new(),
-            jobs: Vec::new(),
+            hybrid: Vec::new(),
+            statics: Vec::new(),
         }
     }
 
@@ -209,7 +228,9 @@ impl Report {
     /// Smallest fraction of its wall time that a run was on a core; `None` if unknown.
     pub fn least_core_share(&self) -> Option<f64> {
         let stages = self.stages.iter().filter_map(|row| row.core_share);
-        stages.chain(self.cases.iter().filter_map(Case::core_share)).reduce(f64::min)
+        let cases = self.cases.iter().filter_map(Case::core_share);
+        let hybrid = self.hybrid.iter().filter_map(QuietRow::core_share);
+        stages.chain(cases).chain(hybrid).reduce(f64::min)
     }
 
     /// Names of the targets without a measurement.
@@ -242,10 +263,16 @@ pub fn run(plan: &Plan, stop: &Stop, progress: &mut dyn FnMut(&str)) -> Result<R
             measure_capsule(*n, plan, stop, progress, &mut report)?;
         }
     }
-    if has(Part::Jobs) {
-        for threads in jobs::THREADS {
-            progress(&format!("64 jobs, threads {threads}"));
-            report.jobs.push(jobs::measure(threads, plan.instruction_set, plan.effort, stop)?);
+    let (set, effort) = (plan.instruction_set, plan.effort);
+    if has(Part::Hybrid) {
+        for n in quiet_filling::meshes(plan) {
+            report.hybrid.extend(quiet_filling::measure(n, set, effort, stop, progress)?);
+        }
+    }
+    if has(Part::Statics) {
+        for n in statics::meshes(plan) {
+            progress(&format!("static equilibria, n {n}"));
+            report.statics.push(statics::measure(n, set, effort, stop)?);
         }
     }
     report.machine.peak_memory = memory::peak_resident();

@@ -2,8 +2,11 @@
 
 use super::capsule::Case;
 use super::kernels::{KernelRow, REFERENCE, STEP};
-use super::{EARLY, Effort, Line, Report};
+use super::{EARLY, Line, Report};
 use crate::input::value::Value;
+
+/// Simulated time of a whole case of quiet filling, s.
+const WHOLE_QUIET_CASE: f64 = 12.0;
 
 /// A target.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,13 +83,13 @@ pub fn of(report: &Report) -> Vec<Target> {
         ),
         at_most(
             "step_to_100_ms_n8",
-            40.0,
+            30.0,
             "ns per element and step to 0.1 s with contact, n 8",
             to_100_ms(8),
         ),
         at_most(
             "step_to_100_ms_n16",
-            40.0,
+            30.0,
             "ns per element and step to 0.1 s with contact, n 16",
             to_100_ms(16),
         ),
@@ -109,10 +112,28 @@ pub fn of(report: &Report) -> Vec<Target> {
             case(report, 16, 0.3).map(|case| case.wall_seconds),
         ),
         at_least(
-            "jobs",
-            1.5,
-            "jobs per hour of the 64-job study on two cores, over twice those on one core",
-            jobs(report),
+            "hybrid_delayed_n8",
+            2.0,
+            "wall time of explicit over that of hybrid, delayed filling, 12 s, n 8 (aim 4)",
+            speedup(report, "delayed", 8),
+        ),
+        at_least(
+            "hybrid_preinflate_n8",
+            2.0,
+            "wall time of explicit over that of hybrid, preinflated filling, 12 s, n 8 (aim 4)",
+            speedup(report, "preinflate", 8),
+        ),
+        at_least(
+            "hybrid_delayed_n16",
+            2.0,
+            "wall time of explicit over that of hybrid, delayed filling, 12 s, n 16 (aim 4)",
+            speedup(report, "delayed", 16),
+        ),
+        at_least(
+            "hybrid_preinflate_n16",
+            2.0,
+            "wall time of explicit over that of hybrid, preinflated filling, 12 s, n 16 (aim 4)",
+            speedup(report, "preinflate", 16),
         ),
         at_most(
             "mesh_scaling",
@@ -138,13 +159,12 @@ fn case(report: &Report, subdivisions: u32, end_time: f64) -> Option<&Case> {
     report.cases.iter().find(same)
 }
 
-/// Speedup of two threads with one job each, over two. The jobs of a quick bench are too short.
-fn jobs(report: &Report) -> Option<f64> {
-    let per_hour = |threads: u32| {
-        let row = report.jobs.iter().find(|row| row.threads == threads)?;
-        (report.effort != Effort::Quick).then(|| row.per_hour())
-    };
-    Some(per_hour(2)? / (2.0 * per_hour(1)?))
+/// Wall time of explicit over that of hybrid in a whole case of quiet filling.
+fn speedup(report: &Report, strategy: &str, subdivisions: u32) -> Option<f64> {
+    let whole = report.hybrid.iter().filter(|row| row.end_time >= WHOLE_QUIET_CASE);
+    whole
+        .filter(|row| row.strategy == strategy && row.subdivisions == subdivisions)
+        .find_map(|row| row.speedup)
 }
 
 /// Largest over smallest cost to the same simulated time, if n 5 and n 32 were measured. The same
@@ -160,7 +180,8 @@ fn mesh_scaling(report: &Report) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::jobs::JobsRow;
+    use crate::bench::Effort;
+    use crate::bench::quiet_filling::QuietRow;
     use billow_solver::platform::simd::InstructionSet;
 
     fn early(subdivisions: u32, nanoseconds: f64) -> Case {
@@ -216,25 +237,30 @@ mod tests {
     }
 
     #[test]
-    fn the_jobs_target_is_the_speedup_per_core() {
-        let mut report = Report::empty(Effort::Usual, InstructionSet::Scalar);
-        let row = |threads, wall_seconds| JobsRow {
-            threads,
-            jobs: 64,
-            done: 64,
-            subdivisions: 4,
-            end_time: 0.04,
-            wall_seconds,
+    fn a_speedup_is_that_of_the_whole_case_on_its_mesh() {
+        let mut report = Report::empty(Effort::Quick, InstructionSet::Scalar);
+        let row = |integrator, end_time, speedup| QuietRow {
+            subdivisions: 8,
+            strategy: "delayed",
+            integrator,
+            end_time,
+            elements: 3072,
+            steps: 100,
+            wall_seconds: 1.0,
+            core_seconds: None,
+            speedup,
+            ledger_residual: 0.0,
+            passages: Some(0),
+            volume: 0.6,
         };
-        report.jobs = vec![row(1, 12.0)];
-        assert_eq!(named(&of(&report), "jobs").measured, None, "two threads were not measured");
-        report.jobs.push(row(2, 8.0));
-        let targets = of(&report);
-        assert_eq!(
-            (named(&targets, "jobs").measured, named(&targets, "jobs").met()),
-            (Some(0.75), Some(false))
-        );
-        report.effort = Effort::Quick;
-        assert_eq!(named(&of(&report), "jobs").measured, None);
+        report.hybrid = vec![row("explicit", 0.5, None), row("hybrid", 0.5, Some(3.0))];
+        let measured = |report: &Report, name| named(&of(report), name).measured;
+        assert_eq!(measured(&report, "hybrid_delayed_n8"), None, "a short run is no case");
+        report.hybrid = vec![row("explicit", 12.0, None), row("hybrid", 12.0, Some(1.5))];
+        assert_eq!(measured(&report, "hybrid_delayed_n8"), Some(1.5));
+        assert_eq!(named(&of(&report), "hybrid_delayed_n8").met(), Some(false));
+        for other in ["hybrid_preinflate_n8", "hybrid_delayed_n16", "hybrid_preinflate_n16"] {
+            assert_eq!(measured(&report, other), None, "{other}");
+        }
     }
 }

@@ -28,7 +28,7 @@ pub struct Args {
     /// Take seconds instead of minutes: small meshes, short runs; most targets are not measured.
     #[arg(long, conflicts_with = "full")]
     pub quick: bool,
-    /// Also run the full-length cases: 1.5 s at n = 8, 0.3 s at n = 16.
+    /// Also run the full-length cases: 1.5 s at n = 8, 0.3 s at n = 16, quiet filling of 12 s at n = 8.
     #[arg(long)]
     pub full: bool,
     #[command(flatten)]
@@ -42,10 +42,8 @@ pub struct Args {
 /// # Errors
 /// A run that stops before its end, a disk error, a signal.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let parts = if args.only.is_empty() { Part::ALL.to_vec() } else { args.only.clone() };
-    refuse_unmeasured(args, &parts)?;
     let plan = Plan {
-        parts,
+        parts: if args.only.is_empty() { Part::ALL.to_vec() } else { args.only.clone() },
         subdivisions: args.subdivisions.clone(),
         effort: match (args.quick, args.full) {
             (true, _) => Effort::Quick,
@@ -54,6 +52,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         },
         instruction_set: instruction_set::selected()?,
     };
+    refuse_unmeasured(&plan)?;
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let report = bench::run(&plan, &stop, &mut |next| {
         if !args.quiet.quiet {
@@ -73,28 +72,30 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 }
 
 /// Refuses a mesh for which none of the parts measures anything.
-fn refuse_unmeasured(args: &Args, parts: &[Part]) -> Result<()> {
-    let large = args.subdivisions.iter().find(|n| **n > LARGEST_RUN);
-    let full_cases = !args.quick && parts.contains(&Part::Cases);
-    let measured = full_cases || parts.contains(&Part::Stages);
-    let Some(n) = large.filter(|_| !measured) else { return Ok(()) };
+fn refuse_unmeasured(plan: &Plan) -> Result<()> {
+    let unmeasured = |n: &&u32| !plan.parts.iter().any(|part| plan.measures(*part, **n));
+    let Some(n) = plan.subdivisions.iter().find(unmeasured) else { return Ok(()) };
     Err(Error::invalid_option(
         "--subdivisions",
         &n.to_string(),
         format!("no part measures n = {n}"),
-        format!("up to {LARGEST_RUN} for kernels, and for cases with --quick"),
+        format!(
+            "up to {LARGEST_RUN} for kernels, statics, cases with --quick and hybrid with --full, up to 8 for \
+             hybrid"
+        ),
         "add stages to --only: it measures the stowed state of larger meshes",
     ))
 }
 
 /// Tables of a report, by name.
-fn tables(report: &Report) -> [(&'static str, Vec<Line>); 6] {
+fn tables(report: &Report) -> [(&'static str, Vec<Line>); 7] {
     [
         ("machine", vec![report.machine.line()]),
         ("kernels", report.kernels.iter().map(bench::kernels::KernelRow::line).collect()),
         ("stages", report.stages.iter().map(bench::stages::StageRow::line).collect()),
         ("cases", report.cases.iter().map(bench::capsule::Case::line).collect()),
-        ("jobs", report.jobs.iter().map(bench::jobs::JobsRow::line).collect()),
+        ("hybrid", report.hybrid.iter().map(bench::quiet_filling::QuietRow::line).collect()),
+        ("statics", report.statics.iter().map(bench::statics::StaticsRow::line).collect()),
         ("targets", report.targets().iter().map(bench::targets::Target::line).collect()),
     ]
 }

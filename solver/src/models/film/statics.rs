@@ -41,6 +41,8 @@ pub struct StaticState {
     pub strain_energy: f64,
     /// Newton steps taken.
     pub iterations: u32,
+    /// Factorisations computed.
+    pub factorisations: u32,
     /// Residual force over the load, a fraction.
     pub residual: f64,
     /// Positions of the nodes, m.
@@ -161,6 +163,7 @@ impl Erected {
             z_rim: mean_z(&equilibrium.positions, &self.mesh.top_ring),
             strain_energy: strain_energy(&self.model, &equilibrium.positions),
             iterations: equilibrium.iterations,
+            factorisations: equilibrium.factorisations,
             residual: equilibrium.residual,
             positions: equilibrium.positions,
         })

@@ -59,6 +59,15 @@ pub struct LadderState {
     pub shape: StaticShape,
 }
 
+/// Work of the searches of a ladder, those without a result included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SearchWork {
+    /// Newton steps.
+    pub iterations: u32,
+    /// Factorisations, those of matrices that are not positive definite included.
+    pub factorisations: u32,
+}
+
 /// Static equilibria of one design, film and supports.
 #[derive(Debug, Clone)]
 pub struct Ladder {
@@ -71,6 +80,7 @@ pub struct Ladder {
     states: BTreeMap<Level, Result<StaticShape, NoReference>>,
     /// Positions of computed states, m: starts of further states. Computed again if missing.
     positions: BTreeMap<Level, Field>,
+    work: SearchWork,
 }
 
 impl Ladder {
@@ -98,6 +108,7 @@ impl Ladder {
             capsule: None,
             states: BTreeMap::new(),
             positions: BTreeMap::new(),
+            work: SearchWork::default(),
         };
         let valid = known.iter().filter(|state| {
             state.shape.overpressure.to_bits() == ladder.pressure(state.level).to_bits()
@@ -112,6 +123,11 @@ impl Ladder {
             Some(LadderState { level: *level, shape: *state.as_ref().ok()? })
         };
         self.states.iter().filter_map(found).collect()
+    }
+
+    /// Work of all searches since the ladder was made.
+    pub fn work(&self) -> SearchWork {
+        self.work
     }
 
     /// Forgets the positions of the nodes, which take most memory. Results stay the same.
@@ -224,7 +240,7 @@ impl Ladder {
             },
         };
         let erected = capsule.equilibrium_at.is_none();
-        let found = match settled(capsule, overpressure, continues) {
+        let found = match self.settled(capsule, overpressure, continues) {
             Err(NoReference::NoEquilibrium { .. }) if !erected => {
                 self.alone(overpressure, continues)
             }
@@ -254,7 +270,30 @@ impl Ladder {
         overpressure: f64,
         continues: Continues<'_>,
     ) -> Result<(StaticShape, Field), NoReference> {
-        settled(self.capsule()?.clone(), overpressure, continues)
+        let capsule = self.capsule()?.clone();
+        self.settled(capsule, overpressure, continues)
+    }
+
+    /// Shape and positions of the equilibrium of a capsule at this overpressure (Pa).
+    fn settled(
+        &mut self,
+        mut capsule: Erected,
+        overpressure: f64,
+        continues: Continues<'_>,
+    ) -> Result<(StaticShape, Field), NoReference> {
+        let found = capsule.settle_while(overpressure, continues);
+        let (iterations, factorisations) = match &found {
+            Ok(state) => (state.iterations, state.factorisations),
+            Err(failure) => (failure.iterations, failure.factorisations),
+        };
+        self.work.iterations += iterations;
+        self.work.factorisations += factorisations;
+        let state = found.map_err(|failure: StaticFailure| match failure.kind {
+            StaticFailureKind::Stopped => NoReference::Stopped,
+            _ => NoReference::NoEquilibrium { overpressure, problem: failure.to_string() },
+        })?;
+        let shape = StaticShape { overpressure, volume: state.volume, height: state.z_rim };
+        Ok((shape, state.positions))
     }
 
     /// The erected capsule.
@@ -278,23 +317,6 @@ fn start_of(level: Level) -> Option<Level> {
         return Some(level + (1 << level.trailing_zeros()));
     }
     (level < LOWEST_ERECTED_RUNG * STEPS_PER_RUNG).then_some(level + STEPS_PER_RUNG)
-}
-
-/// Shape and positions of the equilibrium of a capsule at this overpressure (Pa).
-fn settled(
-    mut capsule: Erected,
-    overpressure: f64,
-    continues: Continues<'_>,
-) -> Result<(StaticShape, Field), NoReference> {
-    let state =
-        capsule.settle_while(overpressure, continues).map_err(|failure: StaticFailure| {
-            match failure.kind {
-                StaticFailureKind::Stopped => NoReference::Stopped,
-                _ => NoReference::NoEquilibrium { overpressure, problem: failure.to_string() },
-            }
-        })?;
-    let shape = StaticShape { overpressure, volume: state.volume, height: state.z_rim };
-    Ok((shape, state.positions))
 }
 
 #[cfg(test)]
