@@ -9,27 +9,24 @@
 
 use nalgebra::Vector3;
 
-use super::motion::largest_motion;
-use super::search::IntersectionSearch;
+use super::query::{EDGE_ELEMENTS, Pairs, QueryKind};
+use super::tracking::PairTracker;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
 
-/// How far nodes may move until the next search, over their motion since the last update. Chosen.
-const REACH_PER_MOTION: f64 = 8.0;
-/// Largest such reach over the mean edge length: film that moves more is searched at every update. Chosen.
-const MAX_REACH: f64 = 0.1;
-/// Pairs of elements with overlapping boxes for each element, at most, in a search with a reach. Chosen, as for the
-/// near list.
-const MAX_PAIRS: usize = 64;
-
 /// Every edge and element that intersect at these positions (m) and share no node, in order.
 pub fn intersections(topology: &Topology, positions: &Field) -> Vec<(u32, u32)> {
-    let mut pairs = Vec::new();
-    let mut search = IntersectionSearch::new(topology, InstructionSet::detect());
-    search.find(topology, positions, 0.0, usize::MAX, &mut pairs);
-    let pairs = pairs.into_iter().filter(|pair| intersects(topology, positions, *pair));
-    let mut found: Vec<(u32, u32)> = pairs.map(|[edge, element]| (edge, element)).collect();
+    let mut pairs = Pairs::default();
+    let set = InstructionSet::detect();
+    PairTracker::new(QueryKind::Intersections, topology, positions, set).find_anew(
+        topology,
+        [positions; 2],
+        0.0,
+        &mut pairs,
+    );
+    let pairs = pairs[EDGE_ELEMENTS].iter().filter(|pair| intersects(topology, positions, **pair));
+    let mut found: Vec<(u32, u32)> = pairs.map(|[edge, element]| (*edge, *element)).collect();
     found.sort_unstable();
     found
 }
@@ -37,17 +34,11 @@ pub fn intersections(topology: &Topology, positions: &Field) -> Vec<(u32, u32)> 
 /// Counts the intersections of moving film, at each time from its positions alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntersectionCounter {
-    search: IntersectionSearch,
-    /// Mean edge length, m.
-    edge_length: f64,
-    /// Positions at the last search, m.
-    reference: Field,
-    /// How far every node may be from there for the pairs to be all that can intersect, m.
-    reach: f64,
+    tracker: PairTracker,
     /// Positions at the last update, m.
     last: Field,
-    /// Pairs that may intersect.
-    pairs: Vec<[u32; 2]>,
+    /// Scratch memory: pairs that may intersect.
+    pairs: Pairs,
     /// Number of intersections at the last update.
     pub count: u64,
 }
@@ -55,37 +46,21 @@ pub struct IntersectionCounter {
 impl IntersectionCounter {
     /// Counts the intersections at these positions (m).
     pub fn new(topology: &Topology, positions: &Field, instruction_set: InstructionSet) -> Self {
-        let search = IntersectionSearch::new(topology, instruction_set);
-        let length =
-            |[a, b]: &[u32; 2]| (positions.get(*a as usize) - positions.get(*b as usize)).norm();
-        let sum: f64 = topology.edges.iter().map(length).sum();
-        let edge_length = sum / topology.edges.len() as f64;
-        let (reference, last, pairs) = (positions.clone(), positions.clone(), Vec::new());
-        let mut counter =
-            Self { search, edge_length, reference, reach: -1.0, last, pairs, count: 0 };
+        let kind = QueryKind::Intersections;
+        let tracker = PairTracker::new(kind, topology, positions, instruction_set);
+        let (last, pairs) = (positions.clone(), Pairs::default());
+        let mut counter = Self { tracker, last, pairs, count: 0 };
         counter.update(topology, positions);
         counter
     }
 
     /// Counts the intersections at these positions (m).
     pub fn update(&mut self, topology: &Topology, positions: &Field) {
-        let moved = largest_motion(&self.last, positions);
+        self.tracker.advance(topology, &self.last, positions);
+        self.tracker.find(topology, [&self.last, positions], &mut self.pairs);
         self.last.copy_from(positions);
-        // Written so that NaN searches.
-        let covered = largest_motion(&self.reference, positions) <= self.reach;
-        if !covered {
-            let wanted = REACH_PER_MOTION * moved;
-            let near = wanted <= MAX_REACH * self.edge_length;
-            let reach = if near { wanted } else { 0.0 };
-            let most = MAX_PAIRS * topology.triangles.len();
-            let found = self.search.find(topology, positions, reach, most, &mut self.pairs);
-            self.reach = if found { reach } else { 0.0 };
-            if !found {
-                self.search.find(topology, positions, 0.0, usize::MAX, &mut self.pairs);
-            }
-            self.reference.copy_from(positions);
-        }
-        let found = self.pairs.iter().filter(|pair| intersects(topology, positions, **pair));
+        let pairs = self.pairs[EDGE_ELEMENTS].iter();
+        let found = pairs.filter(|pair| intersects(topology, positions, **pair));
         self.count = found.count() as u64;
     }
 }

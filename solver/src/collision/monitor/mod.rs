@@ -16,14 +16,18 @@
 //! The monitor shares nothing with contact but the mesh connectivity, the fields and the vector types:
 //! no broad phase, no distance, no bound, no decision.
 
+mod apart;
 pub mod boxes;
 pub mod intersections;
 pub mod motion;
-pub mod near_list;
+mod near_list;
 pub mod passages;
+mod paths;
 pub mod primitives;
+pub mod query;
 pub mod search;
 pub mod separation;
+pub mod tracking;
 
 use nalgebra::Vector3;
 
@@ -33,28 +37,25 @@ use crate::platform::simd::InstructionSet;
 use crate::scene::monitor_settings::MonitorSettings;
 use intersections::IntersectionCounter;
 use motion::largest_deviation;
-use near_list::NearList;
 use passages::{Passage, each_passage};
-use primitives::PassagePairs;
-use search::{PassageSearch, filter_passages};
+use query::{Pairs, QueryKind};
+use search::{clear, motion_between};
+use tracking::PairTracker;
 
 /// Counts the passages of film through film in a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TunnellingMonitor {
     settings: MonitorSettings,
-    instruction_set: InstructionSet,
     /// Number of steps of the run before the current block.
     block_start: u64,
     /// Positions at the start of the block and after each of its steps, m.
     frames: Vec<Field>,
     /// Number of frames recorded in the block.
     recorded: usize,
-    search: PassageSearch,
-    /// Pairs that may pass near a reference frame.
-    near: NearList,
-    // Scratch memory: pairs that may pass in a block, and those that no plane separates.
-    pairs: PassagePairs,
-    close: PassagePairs,
+    tracker: PairTracker,
+    // Scratch memory: pairs that may pass in a dense block, and those that no plane separates.
+    pairs: Pairs,
+    close: Pairs,
     /// Scratch memory: the passages of a block, with their steps.
     found: Vec<(usize, Passage)>,
     /// Intersections of the mesh.
@@ -75,20 +76,19 @@ impl TunnellingMonitor {
         instruction_set: InstructionSet,
     ) -> Self {
         let frames = vec![positions.clone(); settings.block as usize + 1];
-        let mut search = PassageSearch::new(topology, instruction_set);
-        let mut near = NearList::new(topology, positions);
-        // A list here, so that the first block costs no more than the others.
-        let _ = near.pairs_of(topology, &mut search, [positions; 2]);
+        let kind = QueryKind::Passages;
+        let mut tracker = PairTracker::new(kind, topology, positions, instruction_set);
+        // Every pair is due here, so that the first block costs no more than the others.
+        let mut close = Pairs::default();
+        tracker.find(topology, [positions; 2], &mut close);
         Self {
             settings,
-            instruction_set,
             block_start: steps,
             frames,
             recorded: 1,
-            search,
-            near,
-            pairs: PassagePairs::default(),
-            close: PassagePairs::default(),
+            tracker,
+            pairs: Pairs::default(),
+            close,
             found: Vec::new(),
             intersection_counter: IntersectionCounter::new(topology, positions, instruction_set),
             passages: 0,
@@ -122,6 +122,7 @@ impl TunnellingMonitor {
             return;
         }
         self.found.clear();
+        self.tracker.advance(topology, &self.frames[0], &self.frames[steps]);
         if self.settings.is_dense_block(self.block_start) {
             self.test_each_step(topology, steps);
             // By step, then by passage.
@@ -145,14 +146,9 @@ impl TunnellingMonitor {
     /// Passages in a block: tests the straight motion from its first to its last frame, and each step
     /// for the pairs that pass on it.
     fn test_motion(&mut self, topology: &Topology, steps: usize) {
-        let Self { instruction_set, frames, search, near, pairs, close, found, .. } = self;
+        let Self { frames, tracker, close, found, .. } = self;
         let ends = [&frames[0], &frames[steps]];
-        if let Some(near) = near.pairs_of(topology, search, ends) {
-            filter_passages(*instruction_set, topology, near, ends, close);
-        } else {
-            search.find(topology, ends, 0.0, usize::MAX, pairs);
-            core::mem::swap(pairs, close);
-        }
+        tracker.find(topology, ends, close);
         each_passage(close, |passage| {
             if passage.occurs(topology, ends[0], ends[1]) {
                 let occurs =
@@ -165,7 +161,7 @@ impl TunnellingMonitor {
     /// Passages in a block, from all its frames alone. Pairs that may pass come from one search: every
     /// node stays within the largest deviation from the straight motion of the block.
     fn test_each_step(&mut self, topology: &Topology, steps: usize) {
-        let Self { instruction_set, frames, search, pairs, close, found, .. } = self;
+        let Self { frames, tracker, pairs, close, found, .. } = self;
         let frames = &frames[..=steps];
         let ends = [&frames[0], &frames[steps]];
         let mut deviation = 0.0_f64;
@@ -175,10 +171,13 @@ impl TunnellingMonitor {
             // NaN has no bound.
             deviation = if of_frame.is_nan() { f64::INFINITY } else { deviation.max(of_frame) };
         }
-        search.find(topology, ends, deviation, usize::MAX, pairs);
+        tracker.find_anew(topology, ends, deviation, pairs);
+        let (kind, set) = (tracker.search.kind, tracker.search.instruction_set);
         for (step, ends) in frames.windows(2).enumerate() {
             let ends = [&ends[0], &ends[1]];
-            filter_passages(*instruction_set, topology, pairs, ends, close);
+            clear(close);
+            let motion = motion_between(ends[0], ends[1], 0.0);
+            kind.filter(set, topology, pairs, &motion, close);
             each_passage(close, |passage| {
                 if passage.occurs(topology, ends[0], ends[1]) {
                     found.push((step, passage));

@@ -14,8 +14,14 @@ use crate::geometry::field::Field;
 pub fn mean_displacement(from: &Field, to: &Field) -> [f64; 3] {
     let mean = |from: &[f64], to: &[f64]| {
         let mut sums = [0.0; 8];
-        for (index, (x, y)) in from.iter().zip(to).enumerate() {
-            sums[index % 8] += y - x;
+        let ((groups, rest), (others, other_rest)) = (from.as_chunks::<8>(), to.as_chunks::<8>());
+        for (x, y) in groups.iter().zip(others) {
+            for lane in 0..8 {
+                sums[lane] += y[lane] - x[lane];
+            }
+        }
+        for (sum, (x, y)) in sums.iter_mut().zip(rest.iter().zip(other_rest)) {
+            *sum += y - x;
         }
         let mean = sums.iter().sum::<f64>() / from.len() as f64;
         if mean.is_finite() { mean } else { 0.0 }

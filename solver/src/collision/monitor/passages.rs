@@ -15,8 +15,9 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
-use super::primitives::{EDGES, MAX_CROSSING_DISTANCE, NODES, PassagePairs};
-use super::search::PassageSearch;
+use super::primitives::{EDGES, MAX_CROSSING_DISTANCE, NODES};
+use super::query::{Pairs, QueryKind};
+use super::tracking::PairTracker;
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
 use crate::platform::simd::InstructionSet;
@@ -170,7 +171,7 @@ fn edges_cross([a, b, c, d]: &FourPoints) -> bool {
 }
 
 /// Calls `visit` with the passage that each pair may make.
-pub(super) fn each_passage(pairs: &PassagePairs, mut visit: impl FnMut(Passage)) {
+pub(super) fn each_passage(pairs: &Pairs, mut visit: impl FnMut(Passage)) {
     for [node, element] in &pairs[NODES] {
         visit(Passage::Node { node: *node, element: *element });
     }
@@ -181,9 +182,14 @@ pub(super) fn each_passage(pairs: &PassagePairs, mut visit: impl FnMut(Passage))
 
 /// All passages on the straight motion between two positions of all nodes, in order.
 pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
-    let mut pairs = PassagePairs::default();
-    let mut search = PassageSearch::new(topology, InstructionSet::detect());
-    search.find(topology, [from, to], 0.0, usize::MAX, &mut pairs);
+    let mut pairs = Pairs::default();
+    let set = InstructionSet::detect();
+    PairTracker::new(QueryKind::Passages, topology, from, set).find_anew(
+        topology,
+        [from, to],
+        0.0,
+        &mut pairs,
+    );
     let mut found = Vec::new();
     each_passage(&pairs, |passage| {
         if passage.occurs(topology, from, to) {

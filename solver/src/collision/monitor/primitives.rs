@@ -22,9 +22,6 @@ pub const NODES: usize = 0;
 /// Pairs of two edges, the lower number first.
 pub const EDGES: usize = 1;
 
-/// Pairs that can pass through each other: [`NODES`] and [`EDGES`].
-pub type PassagePairs = [Vec<[u32; 2]>; 2];
-
 /// Which nodes and edges belong to each element; constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Primitives {
@@ -53,7 +50,12 @@ impl Primitives {
     }
 
     /// Adds the pairs of two elements that can pass through each other.
-    pub fn push_passages(&self, topology: &Topology, pair: [u32; 2], pairs: &mut PassagePairs) {
+    pub fn push_passages(
+        &self,
+        topology: &Topology,
+        pair: [u32; 2],
+        pairs: &mut [Vec<[u32; 2]>; 2],
+    ) {
         let [first, second] = pair.map(|element| element as usize);
         for (a, b, element) in [(first, second, pair[1]), (second, first, pair[0])] {
             let corners = topology.triangles[b];

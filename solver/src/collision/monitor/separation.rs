@@ -9,14 +9,15 @@
 //! frame: the normals of the elements, or the common normal of two edges, in both directions; the vector
 //! between the centroids; of an edge, also the part of that vector normal to it.
 //!
-//! A pair that no plane separates may still be apart. NaN counts as not separated.
+//! A pair that no plane separates may still be apart. NaN counts as not separated. The gap of a pair is the
+//! largest d of these planes at which one of them separates it: a lower bound of its distance.
 
 #![allow(clippy::inline_always, reason = "inside the loop over pairs")]
 #![allow(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
 
 use crate::geometry::field::Field;
 use crate::geometry::topology::Topology;
-use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
+use crate::platform::simd::{Lanes, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
 
 /// One or two frames, and the distance d at which a pair counts as separated, m.
 #[derive(Debug, Clone, Copy)]
@@ -47,9 +48,15 @@ fn lowest<L: Wide, const COUNT: usize>(normal: Vectors<L>, points: &[Vectors<L>;
     lowest
 }
 
-/// The smallest n·(p − q) over both frames, less |n| d.
+/// The smallest n·(p − q) over both frames, less |n| d; over |n| if `UNIT`.
 #[inline(always)]
-fn margin<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+fn margin<
+    L: Wide,
+    const FIRST: usize,
+    const SECOND: usize,
+    const FRAMES: usize,
+    const UNIT: bool,
+>(
     normal: Vectors<L>,
     first: &Corners<L>,
     second: &Corners<L>,
@@ -61,7 +68,13 @@ fn margin<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>
         let last = lowest::<L, FIRST>(normal, &first[1]) + lowest::<L, SECOND>(-normal, &second[1]);
         least = min(least, last);
     }
-    least - distance * normal.dot(normal).sqrt()
+    let length = normal.dot(normal).sqrt();
+    if UNIT {
+        // A normal of length 0 separates nothing.
+        least.over(length + L::splat(f64::MIN_POSITIVE)) - distance
+    } else {
+        least - distance * length
+    }
 }
 
 /// Sum of the first `COUNT` points.
@@ -76,7 +89,13 @@ fn sum<L: Wide, const COUNT: usize>(points: &[Vectors<L>; 3]) -> Vectors<L> {
 
 /// The largest margin of all normals tried: positive if a plane separates the pair.
 #[inline(always)]
-fn largest_margin<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+fn largest_margin<
+    L: Wide,
+    const FIRST: usize,
+    const SECOND: usize,
+    const FRAMES: usize,
+    const UNIT: bool,
+>(
     first: &Corners<L>,
     second: &Corners<L>,
     distance: L,
@@ -85,29 +104,30 @@ fn largest_margin<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES
     // Centroids times the product of the numbers of nodes.
     let between = sum::<L, FIRST>(&first[0]).scale(L::splat(SECOND as f64))
         - sum::<L, SECOND>(&second[0]).scale(L::splat(FIRST as f64));
-    let mut largest = margin::<L, FIRST, SECOND, FRAMES>(between, first, second, distance);
+    let mut largest = margin::<L, FIRST, SECOND, FRAMES, UNIT>(between, first, second, distance);
     if SECOND == 3 {
         let normal = (e - d).cross(f - d);
         largest = largest
-            .max(margin::<L, FIRST, SECOND, FRAMES>(normal, first, second, distance))
-            .max(margin::<L, FIRST, SECOND, FRAMES>(-normal, first, second, distance));
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(normal, first, second, distance))
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(-normal, first, second, distance));
     }
     if FIRST == 3 {
         let normal = (b - a).cross(c - a);
         largest = largest
-            .max(margin::<L, FIRST, SECOND, FRAMES>(normal, first, second, distance))
-            .max(margin::<L, FIRST, SECOND, FRAMES>(-normal, first, second, distance));
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(normal, first, second, distance))
+            .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(-normal, first, second, distance));
     }
     if FIRST == 2 {
         let edge = b - a;
         let along = edge.dot(between).over(edge.dot(edge));
         let across = between - edge.scale(along);
-        largest = largest.max(margin::<L, FIRST, SECOND, FRAMES>(across, first, second, distance));
+        largest =
+            largest.max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(across, first, second, distance));
         if SECOND == 2 {
             let normal = edge.cross(e - d);
             largest = largest
-                .max(margin::<L, FIRST, SECOND, FRAMES>(normal, first, second, distance))
-                .max(margin::<L, FIRST, SECOND, FRAMES>(-normal, first, second, distance));
+                .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(normal, first, second, distance))
+                .max(margin::<L, FIRST, SECOND, FRAMES, UNIT>(-normal, first, second, distance));
         }
     }
     largest
@@ -147,29 +167,48 @@ fn nodes_of<const COUNT: usize>(topology: &Topology, index: u32) -> [u32; 3] {
     }
 }
 
+/// The largest margins of up to eight pairs from `start` on, and the number of these pairs.
 #[inline(always)]
-fn kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+fn margins_of<
+    L: Wide,
+    const FIRST: usize,
+    const SECOND: usize,
+    const FRAMES: usize,
+    const UNIT: bool,
+>(
+    topology: &Topology,
+    pairs: &[[u32; 2]],
+    start: usize,
+    motion: &Motion<'_>,
+) -> (Lanes, usize) {
+    let count = if pairs.len() - start < WIDTH { pairs.len() - start } else { WIDTH };
+    let (mut first, mut second) = ([[0; WIDTH]; 3], [[0; WIDTH]; 3]);
+    for lane in 0..WIDTH {
+        let [a, b] = pairs[start + if lane < count { lane } else { 0 }];
+        let (a, b) = (nodes_of::<FIRST>(topology, a), nodes_of::<SECOND>(topology, b));
+        for k in 0..3 {
+            first[k][lane] = a[k];
+            second[k][lane] = b[k];
+        }
+    }
+    let first = corners_at::<L, FIRST, FRAMES>(motion, &first);
+    let second = corners_at::<L, SECOND, FRAMES>(motion, &second);
+    let distance = L::splat(motion.distance);
+    let margins = largest_margin::<L, FIRST, SECOND, FRAMES, UNIT>(&first, &second, distance);
+    (margins.lanes(), count)
+}
+
+#[inline(always)]
+fn filter_kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
     topology: &Topology,
     pairs: &[[u32; 2]],
     motion: &Motion<'_>,
     close: &mut Vec<[u32; 2]>,
 ) {
-    let distance = L::splat(motion.distance);
     let mut start = 0;
     while start < pairs.len() {
-        let count = if pairs.len() - start < WIDTH { pairs.len() - start } else { WIDTH };
-        let (mut first, mut second) = ([[0; WIDTH]; 3], [[0; WIDTH]; 3]);
-        for lane in 0..WIDTH {
-            let [a, b] = pairs[start + if lane < count { lane } else { 0 }];
-            let (a, b) = (nodes_of::<FIRST>(topology, a), nodes_of::<SECOND>(topology, b));
-            for k in 0..3 {
-                first[k][lane] = a[k];
-                second[k][lane] = b[k];
-            }
-        }
-        let first = corners_at::<L, FIRST, FRAMES>(motion, &first);
-        let second = corners_at::<L, SECOND, FRAMES>(motion, &second);
-        let margins = largest_margin::<L, FIRST, SECOND, FRAMES>(&first, &second, distance).lanes();
+        let (margins, count) =
+            margins_of::<L, FIRST, SECOND, FRAMES, false>(topology, pairs, start, motion);
         for lane in 0..count {
             // Written so that NaN counts as not separated.
             let separated = margins.0[lane] > 0.0;
@@ -181,74 +220,85 @@ fn kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>
     }
 }
 
-macro_rules! kernels {
-    ($(#[$meta:meta])* $name:ident, $one:ident, $one_kernel:ident, $two:ident, $two_kernel:ident, $first:literal, $second:literal) => {
-        #[inline(always)]
-        fn $one_kernel<L: Wide>(
-            topology: &Topology,
-            pairs: &[[u32; 2]],
-            motion: &Motion<'_>,
-            close: &mut Vec<[u32; 2]>,
-        ) {
-            kernel::<L, $first, $second, 1>(topology, pairs, motion, close);
+#[inline(always)]
+fn gaps_kernel<L: Wide, const FIRST: usize, const SECOND: usize, const FRAMES: usize>(
+    topology: &Topology,
+    pairs: &[[u32; 2]],
+    motion: &Motion<'_>,
+    gaps: &mut Vec<f64>,
+) {
+    let mut start = 0;
+    while start < pairs.len() {
+        let (margins, count) =
+            margins_of::<L, FIRST, SECOND, FRAMES, true>(topology, pairs, start, motion);
+        for lane in 0..count {
+            gaps.push(margins.0[lane]);
         }
+        start += WIDTH;
+    }
+}
+
+/// Defines a function over pairs for every instruction set.
+macro_rules! over_pairs {
+    ($(#[$meta:meta])* $name:ident / $kernel:ident = $of:ident<$first:literal, $second:literal, $frames:literal>($out:ty)) => {
         #[inline(always)]
-        fn $two_kernel<L: Wide>(
+        fn $kernel<L: Wide>(
             topology: &Topology,
             pairs: &[[u32; 2]],
             motion: &Motion<'_>,
-            close: &mut Vec<[u32; 2]>,
+            out: &mut Vec<$out>,
         ) {
-            kernel::<L, $first, $second, 2>(topology, pairs, motion, close);
+            $of::<L, $first, $second, $frames>(topology, pairs, motion, out);
         }
         dispatch_wide! {
-            fn $one / $one_kernel(
+            $(#[$meta])*
+            pub fn $name / $kernel(
                 topology: &Topology,
                 pairs: &[[u32; 2]],
                 motion: &Motion<'_>,
-                close: &mut Vec<[u32; 2]>,
+                out: &mut Vec<$out>,
             )
-        }
-        dispatch_wide! {
-            fn $two / $two_kernel(
-                topology: &Topology,
-                pairs: &[[u32; 2]],
-                motion: &Motion<'_>,
-                close: &mut Vec<[u32; 2]>,
-            )
-        }
-        $(#[$meta])*
-        pub fn $name(
-            instruction_set: InstructionSet,
-            topology: &Topology,
-            pairs: &[[u32; 2]],
-            motion: &Motion<'_>,
-            close: &mut Vec<[u32; 2]>,
-        ) {
-            if core::ptr::eq(motion.from, motion.to) {
-                $one(instruction_set, topology, pairs, motion, close);
-            } else {
-                $two(instruction_set, topology, pairs, motion, close);
-            }
         }
     };
 }
 
-kernels! {
-    /// Adds the pairs of a node and an element that no plane separates to `close`.
-    close_nodes, nodes_once, nodes_once_kernel, nodes_moving, nodes_moving_kernel, 1, 3
+over_pairs! {
+    /// Adds the pairs of a node and an element that no plane separates on the motion to `out`.
+    close_nodes / close_nodes_kernel = filter_kernel<1, 3, 2>([u32; 2])
 }
-kernels! {
-    /// Adds the pairs of two edges that no plane separates to `close`.
-    close_edges, edges_once, edges_once_kernel, edges_moving, edges_moving_kernel, 2, 2
+over_pairs! {
+    /// Adds the pairs of two edges that no plane separates on the motion to `out`.
+    close_edges / close_edges_kernel = filter_kernel<2, 2, 2>([u32; 2])
 }
-kernels! {
-    /// Adds the pairs of an edge and an element that no plane separates to `close`.
-    close_edge_elements, edge_element_once, edge_element_once_kernel,
-    edge_element_moving, edge_element_moving_kernel, 2, 3
+over_pairs! {
+    /// Adds the pairs of two elements that no plane separates on the motion to `out`.
+    close_elements / close_elements_kernel = filter_kernel<3, 3, 2>([u32; 2])
 }
-kernels! {
-    /// Adds the pairs of two elements that no plane separates to `close`.
-    close_elements, elements_once, elements_once_kernel,
-    elements_moving, elements_moving_kernel, 3, 3
+over_pairs! {
+    /// Adds the pairs of an edge and an element that no plane separates at the first frame to `out`.
+    close_edge_elements_now / close_edge_elements_kernel = filter_kernel<2, 3, 1>([u32; 2])
+}
+over_pairs! {
+    /// Adds the pairs of two elements that no plane separates at the first frame to `out`.
+    close_elements_now / close_elements_now_kernel = filter_kernel<3, 3, 1>([u32; 2])
+}
+over_pairs! {
+    /// Adds to `out` by how much the gap of each pair of a node and an element exceeds d on the motion, m.
+    gaps_of_nodes / gaps_of_nodes_kernel = gaps_kernel<1, 3, 2>(f64)
+}
+over_pairs! {
+    /// [`gaps_of_nodes`] for pairs of two edges.
+    gaps_of_edges / gaps_of_edges_kernel = gaps_kernel<2, 2, 2>(f64)
+}
+over_pairs! {
+    /// [`gaps_of_nodes`] for pairs of two elements.
+    gaps_of_elements / gaps_of_elements_kernel = gaps_kernel<3, 3, 2>(f64)
+}
+over_pairs! {
+    /// [`gaps_of_nodes`] for pairs of an edge and an element at the first frame.
+    gaps_of_edge_elements_now / gaps_of_edge_elements_kernel = gaps_kernel<2, 3, 1>(f64)
+}
+over_pairs! {
+    /// [`gaps_of_nodes`] for pairs of two elements at the first frame.
+    gaps_of_elements_now / gaps_of_elements_now_kernel = gaps_kernel<3, 3, 1>(f64)
 }
