@@ -55,15 +55,15 @@ impl ApartPairs {
     pub fn due(&mut self, paths: &Paths, due: &mut Vec<u32>) {
         due.clear();
         let elements = self.limits.iter_mut().zip(&paths.of).zip(self.starts.windows(2));
-        for ((limit, own), range) in elements {
+        for ((limit, path), range) in elements {
             // Written so that NaN is looked at.
-            if own + paths.bound < *limit {
+            if path + paths.bound < *limit {
                 continue;
             }
             let mut least = f64::INFINITY;
             for number in range[0]..range[1] {
                 let [_, other] = self.pairs[number as usize];
-                let slack = self.due[number as usize] - (own + paths.of[other as usize]);
+                let slack = self.due[number as usize] - (path + paths.of[other as usize]);
                 // Written so that NaN is due.
                 if slack > 0.0 {
                     least = least.min(slack);
@@ -71,7 +71,7 @@ impl ApartPairs {
                     due.push(number);
                 }
             }
-            *limit = own + paths.bound + least;
+            *limit = path + paths.bound + least;
         }
     }
 

@@ -13,15 +13,14 @@
 //!
 //! Ends are rounded to `f32`. Rounding is monotonic, so boxes that overlap still overlap.
 
-#![allow(clippy::inline_always, reason = "inside the loop over candidates")]
-#![allow(clippy::needless_bitwise_bool, reason = "no branches: the compiler makes masks of them")]
-#![allow(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
+mod fit;
+mod sweep;
 
 use super::motion::mean_displacement;
 use crate::geometry::field::Field;
-use crate::platform::simd::{
-    InstructionSet, Vectors, WIDTH, Wide, dispatch, dispatch_wide, vectors_at,
-};
+use crate::platform::simd::InstructionSet;
+use fit::{Range, fit_boxes, range_of};
+use sweep::{Cell, sweep_cell};
 
 /// Width of a cell over the mean width of the boxes. Chosen: in wider cells more boxes are compared, in narrower ones
 /// a box lies in more cells.
@@ -29,12 +28,6 @@ const CELL_WIDTH: f64 = 3.0;
 
 /// Largest number of cells along an axis. Chosen: it bounds memory where boxes differ much in size.
 const MAX_CELLS: usize = 256;
-
-/// Boxes that are compared together.
-const LANES: usize = 16;
-
-/// Whether an element's lowest cell along the first and the second axis of the grid is this one.
-const STARTS_HERE: [u32; 2] = [1, 2];
 
 /// Ends of boxes along one axis, one entry for each box: lower ends and upper ends, m.
 type Ends = [Vec<f32>; 2];
@@ -62,16 +55,6 @@ pub struct BoxPairs {
     pub pairs: Vec<[u32; 2]>,
 }
 
-/// Boxes of the elements of one cell in the order of the sweep, padded with empty boxes.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Cell {
-    elements: Vec<u32>,
-    /// Ends along the sweep axis and the two axes of the grid.
-    ends: [Ends; 3],
-    /// Bits of [`STARTS_HERE`].
-    flags: Vec<u32>,
-}
-
 /// A grid over two axes.
 struct Grid {
     axes: [usize; 2],
@@ -96,22 +79,6 @@ impl Grid {
 fn ordered(x: f32) -> u32 {
     let bits = x.to_bits();
     if bits >> 31 == 0 { bits | 0x8000_0000 } else { !bits }
-}
-
-/// Where boxes are along one axis.
-#[derive(Debug, Clone, Copy)]
-struct Range {
-    /// Lowest and highest end, m.
-    ends: [f32; 2],
-    /// Sum of all widths, m.
-    widths: f64,
-}
-
-impl Range {
-    /// Length, m.
-    fn length(&self) -> f64 {
-        f64::from(self.ends[1]) - f64::from(self.ends[0])
-    }
 }
 
 impl BoxPairs {
@@ -283,195 +250,6 @@ fn choose_grid(ranges: [Range; 3], elements: usize) -> (Grid, usize) {
     let cells_per_length = [per_length(0), per_length(1)];
     let origin = axes.map(|axis| f64::from(ranges[axis].ends[0]));
     (Grid { axes, origin, cells_per_length, cells }, sweep)
-}
-
-impl Cell {
-    /// Replaces the elements by these. `here`: column and row of the cell. The boxes added at the end are NaN and
-    /// overlap none, so that a group of lanes can begin at every element.
-    fn fill(
-        &mut self,
-        members: &[u32],
-        ends: [&Ends; 3],
-        covered: &[[[u16; 2]; 2]],
-        here: [u16; 2],
-    ) {
-        self.elements.clear();
-        self.elements.extend_from_slice(members);
-        for (columns, ends) in self.ends.iter_mut().zip(ends) {
-            for (column, ends) in columns.iter_mut().zip(ends) {
-                column.clear();
-                column.extend(members.iter().map(|element| ends[*element as usize]));
-                column.extend([f32::NAN; LANES]);
-            }
-        }
-        self.flags.clear();
-        self.flags.extend(members.iter().map(|element| {
-            let [[column, _], [row, _]] = covered[*element as usize];
-            STARTS_HERE[0] * u32::from(column == here[0])
-                + STARTS_HERE[1] * u32::from(row == here[1])
-        }));
-        self.flags.extend([0; LANES]);
-    }
-}
-
-#[inline(always)]
-fn min<L: Wide>(a: L, b: L) -> L {
-    -((-a).max(-b))
-}
-
-/// The smallest and the largest of three values, lane by lane. NaN may be left out.
-#[inline(always)]
-fn ends_of<L: Wide>(a: L, b: L, c: L) -> [L; 2] {
-    [min(min(a, b), c), a.max(b).max(c)]
-}
-
-#[inline(always)]
-fn fit_kernel<L: Wide>(
-    triangles: &[[u32; 3]],
-    [from, to]: [&Field; 2],
-    shift: [f64; 3],
-    reach: f64,
-    boxes: &mut [Ends; 3],
-) {
-    let moving = !core::ptr::eq(from, to);
-    let from: [&[f64]; 3] = [&from.x, &from.y, &from.z];
-    let to: [&[f64]; 3] = [&to.x, &to.y, &to.z];
-    let shift = Vectors { x: L::splat(shift[0]), y: L::splat(shift[1]), z: L::splat(shift[2]) };
-    let reach = L::splat(reach);
-    let mut start = 0;
-    while start < triangles.len() {
-        let count = if triangles.len() - start < WIDTH { triangles.len() - start } else { WIDTH };
-        let mut nodes = [[0; WIDTH]; 3];
-        for lane in 0..WIDTH {
-            let corners = triangles[start + if lane < count { lane } else { 0 }];
-            for k in 0..3 {
-                nodes[k][lane] = corners[k];
-            }
-        }
-        let a = vectors_at::<L>(from, &nodes[0]);
-        let b = vectors_at::<L>(from, &nodes[1]);
-        let c = vectors_at::<L>(from, &nodes[2]);
-        let mut ends = [ends_of(a.x, b.x, c.x), ends_of(a.y, b.y, c.y), ends_of(a.z, b.z, c.z)];
-        if moving {
-            let a = vectors_at::<L>(to, &nodes[0]) - shift;
-            let b = vectors_at::<L>(to, &nodes[1]) - shift;
-            let c = vectors_at::<L>(to, &nodes[2]) - shift;
-            let last = [ends_of(a.x, b.x, c.x), ends_of(a.y, b.y, c.y), ends_of(a.z, b.z, c.z)];
-            for axis in 0..3 {
-                ends[axis] = [min(ends[axis][0], last[axis][0]), ends[axis][1].max(last[axis][1])];
-            }
-        }
-        for axis in 0..3 {
-            let (lower, upper) = ((ends[axis][0] - reach).lanes(), (ends[axis][1] + reach).lanes());
-            for lane in 0..count {
-                boxes[axis][0][start + lane] = to_f32(lower.0[lane]);
-                boxes[axis][1][start + lane] = to_f32(upper.0[lane]);
-            }
-        }
-        start += WIDTH;
-    }
-}
-
-dispatch_wide! {
-    /// Fits boxes to the elements at two frames, or at one that is given twice. `shift` (m) is taken off the second.
-    fn fit_boxes / fit_kernel(
-        triangles: &[[u32; 3]],
-        frames: [&Field; 2],
-        shift: [f64; 3],
-        reach: f64,
-        boxes: &mut [Ends; 3],
-    )
-}
-
-/// The nearest `f32`, infinite beyond its range.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "rounding is intended")]
-fn to_f32(x: f64) -> f32 {
-    x as f32
-}
-
-#[inline(always)]
-fn range_kernel(lower: &[f32], upper: &[f32]) -> Range {
-    let (mut lowest, mut highest) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
-    let mut widths = [0.0_f64; LANES];
-    for index in 0..lower.len() {
-        let lane = index % LANES;
-        let (low, high) = (lower[index], upper[index]);
-        // NaN is left out.
-        lowest[lane] = if low < lowest[lane] { low } else { lowest[lane] };
-        highest[lane] = if high > highest[lane] { high } else { highest[lane] };
-        widths[lane] += f64::from(high) - f64::from(low);
-    }
-    Range {
-        ends: [
-            lowest.into_iter().fold(f32::INFINITY, f32::min),
-            highest.into_iter().fold(f32::NEG_INFINITY, f32::max),
-        ],
-        widths: widths.into_iter().sum(),
-    }
-}
-
-dispatch! {
-    fn range_of / range_kernel(lower: &[f32], upper: &[f32]) -> Range
-}
-
-/// Sixteen values from a column.
-#[inline(always)]
-fn group<T: Copy + Default>(column: &[T], first: usize) -> [T; LANES] {
-    let mut values = [T::default(); LANES];
-    values.copy_from_slice(&column[first..first + LANES]);
-    values
-}
-
-#[inline(always)]
-fn sweep_kernel(cell: &Cell, triangles: &[[u32; 3]], pairs: &mut Vec<[u32; 2]>) {
-    let [[low, high], [low_x, high_x], [low_y, high_y]] = &cell.ends;
-    let count = cell.elements.len();
-    for position in 0..count {
-        let (end, flags) = (high[position], cell.flags[position]);
-        let (x, y) = ([low_x[position], high_x[position]], [low_y[position], high_y[position]]);
-        let mut first = position + 1;
-        while first < count && low[first] <= end {
-            let lows = group(low, first);
-            let (a, b) = (group(low_x, first), group(high_x, first));
-            let (c, d) = (group(low_y, first), group(high_y, first));
-            let others = group(&cell.flags, first);
-            let mut mask = 0_u32;
-            for lane in 0..LANES {
-                let overlaps = (lows[lane] <= end)
-                    & (a[lane] <= x[1])
-                    & (x[0] <= b[lane])
-                    & (c[lane] <= y[1])
-                    & (y[0] <= d[lane])
-                    & (flags | others[lane] == STARTS_HERE[0] | STARTS_HERE[1]);
-                mask |= u32::from(overlaps) << lane;
-            }
-            while mask != 0 {
-                let other = first + mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                push_pair([cell.elements[position], cell.elements[other]], triangles, pairs);
-            }
-            first += LANES;
-        }
-    }
-}
-
-/// Adds a pair of elements unless they share a node.
-#[inline(always)]
-fn push_pair([a, b]: [u32; 2], triangles: &[[u32; 3]], pairs: &mut Vec<[u32; 2]>) {
-    let ([p, q, r], other) = (triangles[a as usize], triangles[b as usize]);
-    let mut shared = false;
-    for node in other {
-        shared |= (node == p) | (node == q) | (node == r);
-    }
-    if !shared {
-        pairs.push(if a < b { [a, b] } else { [b, a] });
-    }
-}
-
-dispatch! {
-    /// Adds the pairs of a cell that belong to it.
-    fn sweep_cell / sweep_kernel(cell: &Cell, triangles: &[[u32; 3]], pairs: &mut Vec<[u32; 2]>)
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use crate::platform::simd::InstructionSet;
 pub fn intersections(topology: &Topology, positions: &Field) -> Vec<(u32, u32)> {
     let mut pairs = Pairs::default();
     let set = InstructionSet::detect();
-    PairTracker::new(QueryKind::Intersections, topology, positions, set).find_anew(
+    PairTracker::new(QueryKind::Intersections, topology, positions, set).find_without_history(
         topology,
         [positions; 2],
         0.0,

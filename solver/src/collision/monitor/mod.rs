@@ -171,7 +171,7 @@ impl TunnellingMonitor {
             // NaN has no bound.
             deviation = if of_frame.is_nan() { f64::INFINITY } else { deviation.max(of_frame) };
         }
-        tracker.find_anew(topology, ends, deviation, pairs);
+        tracker.find_without_history(topology, ends, deviation, pairs);
         let (kind, set) = (tracker.search.kind, tracker.search.instruction_set);
         for (step, ends) in frames.windows(2).enumerate() {
             let ends = [&ends[0], &ends[1]];

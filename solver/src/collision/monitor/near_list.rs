@@ -40,7 +40,7 @@ const MIN_SERVED: u32 = 5;
 const PAUSE: [u32; 2] = [4, 32];
 
 /// Pairs of elements with overlapping boxes for each element, at most. Chosen: film of few layers has 3 to 20.
-const MAX_PAIRS: usize = 64;
+const MAX_PAIRS: usize = 48;
 
 /// Part of the most pairs below which the limit of the reach is doubled. Chosen: a twice larger reach then
 /// seldom finds too many.

@@ -184,7 +184,7 @@ pub(super) fn each_passage(pairs: &Pairs, mut visit: impl FnMut(Passage)) {
 pub fn passages(topology: &Topology, from: &Field, to: &Field) -> Vec<Passage> {
     let mut pairs = Pairs::default();
     let set = InstructionSet::detect();
-    PairTracker::new(QueryKind::Passages, topology, from, set).find_anew(
+    PairTracker::new(QueryKind::Passages, topology, from, set).find_without_history(
         topology,
         [from, to],
         0.0,

@@ -87,7 +87,7 @@ impl PairTracker {
 
     /// Replaces `close` by the pairs that may meet on the straight motion between two frames if every node deviates
     /// from it by at most `reach` (m): without history, from these frames alone.
-    pub fn find_anew(
+    pub fn find_without_history(
         &mut self,
         topology: &Topology,
         [from, to]: [&Field; 2],
