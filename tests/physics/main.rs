@@ -18,6 +18,7 @@ mod equal_meshes;
 mod explicit_bits;
 mod explicit_cases;
 mod exports;
+mod faults;
 mod film_capsule;
 mod film_rig;
 mod fold_numbers;

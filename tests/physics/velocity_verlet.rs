@@ -15,7 +15,8 @@ use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{crossed_grid, icosphere, nodes_where, tube};
 use billow_solver::integrators::energy_accounting::EnergyAccounting;
 use billow_solver::integrators::{
-    Advance, Budget, FilmSimulation, Integrator, Interval, SimulationSettings, StoredIntegrator,
+    Advance, Budget, FilmSimulation, Integrator, Interval, SimulationSettings, StepAudit,
+    StepMotion, StoredIntegrator,
 };
 use billow_solver::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use billow_solver::mechanics::forces::pressure::gas_frequency_squared;
@@ -88,8 +89,16 @@ impl VelocityVerlet {
         state: &mut FilmState,
         (length, end): (f64, f64),
         inflow: Inflow,
+        audit: &mut dyn StepAudit,
     ) -> Result<(), Failure> {
         let given_before = self.half_kick(system, state, length);
+        audit.moved(StepMotion {
+            start: state.time,
+            length,
+            from: &state.positions,
+            velocities: &state.velocities,
+            coefficients: [1.0, 1.0, 0.0],
+        })?;
         let mut largest = 0.0_f64;
         for node in 0..system.model.nodes() {
             let displacement = state.velocities.get(node) * length;
@@ -157,7 +166,7 @@ impl Integrator for VelocityVerlet {
                 let gas = system.gas_step(state, state.volume, length, phase.inflow);
                 self.accounting.commit_gas(system, state, gas, state.volume);
             } else {
-                self.step(system, state, (length, end), phase.inflow)?;
+                self.step(system, state, (length, end), phase.inflow, budget.audit)?;
             }
             state.time = end;
             self.accounting.steps += 1;

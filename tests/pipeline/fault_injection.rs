@@ -13,12 +13,14 @@ const FILM_LEDGER: Detector = ("sphere_ledger", "film energy residual");
 const GAS_LEDGER: Detector = ("sphere_ledger", "gas energy residual");
 const SPHERE_STOPS: Detector = ("sphere_ledger", "run");
 const TAUT_FORCE: Detector = ("force_energy", "film force, taut, c 0,");
+const FILMS_STOP: Detector = ("films_at_50_m_s", "run");
 const SPRING: Detector = ("gas_spring", "period");
+const SPRING_STOPS: Detector = ("gas_spring", "run");
 const ALL_REGIMES: Detector = ("path_energy", "work plus change");
 const PANEL: Detector = ("shear_panel", "P12");
 
 /// For each term: the detector of an error of 1 %, and that of the wrong sign.
-const DETECTORS: [(Term, Detector, Detector); 23] = [
+const DETECTORS: [(Term, Detector, Detector); 24] = [
     (Term::Elastic, TAUT_FORCE, TAUT_FORCE),
     (
         Term::NumericalStress,
@@ -27,14 +29,15 @@ const DETECTORS: [(Term, Detector, Detector); 23] = [
     ),
     (Term::NumericalWork, ("strip_damping", "dissipated energy"), FILM_LEDGER),
     (Term::Creep, ("strip_loss", "log decrement"), ("strip_loss", "run")),
-    (Term::PressureForce, FILM_LEDGER, SPHERE_STOPS),
-    (Term::Volume, FILM_LEDGER, SPHERE_STOPS),
+    (Term::PressureForce, SPHERE_STOPS, SPHERE_STOPS),
+    (Term::Volume, SPHERE_STOPS, SPHERE_STOPS),
+    (Term::Contact, FILMS_STOP, FILMS_STOP),
     (Term::Gravity, ("force_energy", "weight"), FILM_LEDGER),
     (Term::Ambient, FILM_LEDGER, FILM_LEDGER),
     (Term::Kick, SPRING, SPRING),
-    (Term::Drift, SPRING, SPRING),
+    (Term::Drift, SPRING_STOPS, SPRING_STOPS),
     (Term::MassDamping, ("free_flight_damping", "dissipated energy"), FILM_LEDGER),
-    (Term::PlaneForce, SPRING, ("gas_spring", "run")),
+    (Term::PlaneForce, SPRING, SPRING_STOPS),
     (Term::PlaneModulus, ALL_REGIMES, ("sphere_ledger", "run")),
     (Term::WrinkledModulus, PANEL, PANEL),
     (Term::PoissonRatio, ALL_REGIMES, ("step_limit", "sheet 4 x 3: limit")),
@@ -45,7 +48,7 @@ const DETECTORS: [(Term, Detector, Detector); 23] = [
     (Term::GasEnthalpyIn, GAS_LEDGER, ("tank_filling", "T at")),
     (Term::GasMassOut, GAS_LEDGER, GAS_LEDGER),
     (Term::GasEnthalpyOut, GAS_LEDGER, GAS_LEDGER),
-    (Term::GasPressure, FILM_LEDGER, SPHERE_STOPS),
+    (Term::GasPressure, SPHERE_STOPS, SPHERE_STOPS),
 ];
 
 fn judged(case: &str, fault: Option<Fault>) -> Judged {

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::film_audit::FilmAudit;
 use super::film_view::FilmView;
-use super::interface::{Advance, Budget, Integrator, Interval, NoAudit, StepAudit};
-use super::passage_audit::PassageAudit;
+use super::interface::{Advance, Budget, Integrator, Interval};
 use super::{StoredIntegrator, entry};
 use crate::geometry::field::Field;
 use crate::mechanics::gas::GasState;
@@ -57,7 +57,7 @@ pub struct FilmSimulation {
     state: FilmState,
     settings: SimulationSettings,
     integrator: Box<dyn Integrator>,
-    audit: Option<PassageAudit>,
+    audit: FilmAudit,
     events: Vec<Event>,
 }
 
@@ -97,9 +97,7 @@ impl FilmSimulation {
         integrator: Box<dyn Integrator>,
     ) -> Self {
         let steps = integrator.accounting().steps;
-        let audit = settings
-            .monitor
-            .and_then(|monitor| PassageAudit::start(monitor, &system, &state, steps));
+        let audit = FilmAudit::start(settings.monitor, &system, &state, steps);
         Self { system, state, settings, integrator, audit, events: Vec::new() }
     }
 
@@ -146,7 +144,7 @@ impl FilmSimulation {
             system: &self.system,
             state: &self.state,
             integrator: &*self.integrator,
-            audit: self.audit.as_ref(),
+            audit: &self.audit,
         }
     }
 
@@ -169,7 +167,7 @@ impl FilmSimulation {
     /// Whether a run that is resumed from here reports a passage of film at the same step as this one: the
     /// audit has tested every step so far.
     pub fn is_audited(&self) -> bool {
-        self.audit.as_ref().is_none_or(PassageAudit::is_complete)
+        self.audit.is_complete()
     }
 
     /// The decisions of the step controller since the last call.
@@ -211,15 +209,15 @@ impl FilmSimulation {
         steps: &mut u64,
         stopwatch: &mut dyn Stopwatch,
     ) -> Result<bool, Failure> {
-        let mut unaudited = NoAudit;
-        let audit: &mut dyn StepAudit = match &mut self.audit {
-            Some(audit) => audit,
-            None => &mut unaudited,
-        };
         let (step_limit, events) = (self.settings.step_limit, &mut self.events);
+        let audit = &mut self.audit;
         let budget = Budget { steps, step_limit, audit, stopwatch, events };
         let interval = Interval { target, phase };
         let advanced = self.integrator.advance(&mut self.state, &self.system, interval, budget)?;
-        Ok(advanced == Advance::Reached)
+        let reached = advanced == Advance::Reached;
+        if reached {
+            self.audit.inspect(&self.system, &self.state, self.integrator.forces())?;
+        }
+        Ok(reached)
     }
 }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::energy_accounting::EnergyAccounting;
+use super::film_audit::FilmAudit;
 use super::interface::Integrator;
 use super::passage_audit::PassageAudit;
 use crate::mechanics::forces::membrane::{NORMAL_TO_GRADIENT, NodeForces};
@@ -18,7 +19,7 @@ pub struct FilmView<'a> {
     /// What changes, at one time.
     pub state: &'a FilmState,
     pub(super) integrator: &'a dyn Integrator,
-    pub(super) audit: Option<&'a PassageAudit>,
+    pub(super) audit: &'a FilmAudit,
 }
 
 impl<'a> FilmView<'a> {
@@ -111,7 +112,7 @@ impl<'a> FilmView<'a> {
 
     /// Passages of film through film so far; `None` without an audit.
     pub fn passages(&self) -> Option<u64> {
-        self.audit.map(PassageAudit::passages)
+        self.audit.passages().map(PassageAudit::passages)
     }
 
     /// Number of steps of the run that are tested for passages; `None` without an audit.
@@ -121,6 +122,6 @@ impl<'a> FilmView<'a> {
 
     /// Intersections of the mesh at the end of the last interval; `None` without an audit.
     pub fn intersections(&self) -> Option<u64> {
-        self.audit.map(PassageAudit::intersections)
+        self.audit.passages().map(PassageAudit::intersections)
     }
 }

@@ -10,6 +10,7 @@
 
 use core::fmt;
 
+use crate::geometry::field::Field;
 use crate::integrators::StoredIntegrator;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::mechanics::forces::membrane::NodeForces;
@@ -56,8 +57,30 @@ impl Budget<'_> {
     }
 }
 
+/// How an accepted step moves the nodes: a x' = b x − c x⁻ + h u. Rigid motion, supports and impulses are part
+/// of u; vertices that belong to no film are not.
+#[derive(Debug, Clone, Copy)]
+pub struct StepMotion<'a> {
+    /// Time at its start, s.
+    pub start: f64,
+    /// h, s.
+    pub length: f64,
+    /// x: positions at its start, m.
+    pub from: &'a Field,
+    /// u: velocities that move the nodes, m/s.
+    pub velocities: &'a Field,
+    /// a, b and c. With c 0 the positions x⁻ before the last step do not matter.
+    pub coefficients: [f64; 3],
+}
+
 /// Checks accepted steps, whatever the integrator.
 pub trait StepAudit: fmt::Debug {
+    /// Learns how an accepted step moves the nodes, before [`Self::record`].
+    ///
+    /// # Errors
+    /// A [`Failure`] ends the run.
+    fn moved(&mut self, motion: StepMotion<'_>) -> Result<(), Failure>;
+
     /// Records the state after a step.
     ///
     /// # Errors
@@ -83,6 +106,10 @@ pub trait StepAudit: fmt::Debug {
 pub struct NoAudit;
 
 impl StepAudit for NoAudit {
+    fn moved(&mut self, _: StepMotion<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
+
     fn record(&mut self, _: &FilmSystem, _: &FilmState) -> Result<(), Failure> {
         Ok(())
     }

@@ -10,20 +10,25 @@ use serde::{Deserialize, Serialize};
 use crate::scene::IntegratorKind;
 use crate::system::{FilmState, FilmSystem, Workspace};
 
+mod contact_audit;
 pub mod dormand_prince;
 pub mod energy_accounting;
 pub mod explicit;
+pub mod film_audit;
 pub mod film_simulation;
 pub mod film_view;
 pub mod hybrid;
 pub mod implicit;
 pub mod interface;
+mod motion_audit;
 pub mod passage_audit;
+mod pressure_audit;
+mod virtual_displacement;
 pub mod xpbd;
 
 pub use film_simulation::{FilmSimulation, SimulationSettings, StoredFilm};
 pub use film_view::FilmView;
-pub use interface::{Advance, Budget, Integrator, Interval, NoAudit, StepAudit};
+pub use interface::{Advance, Budget, Integrator, Interval, NoAudit, StepAudit, StepMotion};
 
 /// Everything in which integrators of film differ, but for the trait. To add one: a variant of
 /// [`IntegratorKind`], a folder, and an arm of [`entry`].

@@ -1,6 +1,5 @@
-//! The audit of every integrator of film with contact: no film passes through film.
+//! The audit of passages: no film passes through film.
 
-use super::interface::StepAudit;
 use crate::collision::monitor::TunnellingMonitor;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::monitor_settings::MonitorSettings;
@@ -61,8 +60,9 @@ impl PassageAudit {
     }
 }
 
-impl StepAudit for PassageAudit {
-    fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+impl PassageAudit {
+    /// As [`super::StepAudit::record`].
+    pub(super) fn record(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             self.monitor.record_step(&contact_model.mesh.topology, &state.positions);
         }
@@ -71,7 +71,8 @@ impl StepAudit for PassageAudit {
         self.check(before)
     }
 
-    fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+    /// As [`super::StepAudit::look`].
+    pub(super) fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             let topology = &contact_model.mesh.topology;
             self.monitor.intersection_counter.update(topology, &state.positions);
@@ -79,7 +80,12 @@ impl StepAudit for PassageAudit {
         Ok(())
     }
 
-    fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+    /// As [`super::StepAudit::complete`].
+    pub(super) fn complete(
+        &mut self,
+        system: &FilmSystem,
+        state: &FilmState,
+    ) -> Result<(), Failure> {
         if let Some(contact_model) = &system.contact {
             self.monitor.test_block(&contact_model.mesh.topology);
         }

@@ -7,6 +7,10 @@ use crate::output::measures::first_rebound;
 /// any sample fails as `energy_drift`. Chosen.
 pub const MAX_LEDGER_RESIDUAL: f64 = 1e-2;
 
+/// Upper bound of the residual of the gas balance, a fraction of what the gas received. A run with a larger one at any
+/// sample fails as `inconsistent`. Chosen: mass and energy of the gas add up to rounding in every model, below 1e-12.
+pub const MAX_GAS_RESIDUAL: f64 = 1e-7;
+
 /// Numerical dissipation over the work of the gas above which a run is marked `numerically_damped`.
 /// Chosen: kinetic energies are then wrong by about as much.
 pub const MAX_NUMERICAL_FRACTION: f64 = 0.05;
@@ -66,8 +70,17 @@ impl Audit {
 
 /// Time (s) of the first sample whose ledger residual is above [`MAX_LEDGER_RESIDUAL`] or NaN.
 pub fn first_drift(history: &History) -> Option<f64> {
-    let within_bound = |residual: f64| residual <= MAX_LEDGER_RESIDUAL;
-    let index = history.column("ledger_residual").iter().position(|value| !within_bound(*value))?;
+    first_above(history, "ledger_residual", MAX_LEDGER_RESIDUAL)
+}
+
+/// Time (s) of the first sample whose residual of the gas balance is above [`MAX_GAS_RESIDUAL`] or NaN.
+pub fn first_imbalance(history: &History) -> Option<f64> {
+    first_above(history, "gas_residual", MAX_GAS_RESIDUAL)
+}
+
+fn first_above(history: &History, column: &str, bound: f64) -> Option<f64> {
+    let within_bound = |residual: f64| residual <= bound;
+    let index = history.column(column).iter().position(|value| !within_bound(*value))?;
     Some(history.column("time")[index])
 }
 

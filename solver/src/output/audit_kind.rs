@@ -19,6 +19,14 @@ pub enum AuditKind {
     Volume,
     /// The run has steps, and a step that advances time.
     StepLimit,
+    /// Nodes move as the velocities of the method say.
+    Motion,
+    /// Nodes keep their masses.
+    Mass,
+    /// Volume, pressure and the force of the pressure are those of positions and gas.
+    Pressure,
+    /// Contact forces are the derivative of the energy of the contacts.
+    Contact,
     /// No film passes through film.
     Passages,
     /// No film is in film at a sample.
@@ -27,7 +35,7 @@ pub enum AuditKind {
 
 impl AuditKind {
     /// Every audit, in the order of the documentation.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::FiniteMotion,
         Self::EnergySource,
         Self::Stretch,
@@ -35,6 +43,10 @@ impl AuditKind {
         Self::GasBalance,
         Self::Volume,
         Self::StepLimit,
+        Self::Motion,
+        Self::Mass,
+        Self::Pressure,
+        Self::Contact,
         Self::Passages,
         Self::Intersections,
     ];
@@ -49,6 +61,10 @@ impl AuditKind {
             Self::GasBalance => "gas_balance",
             Self::Volume => "volume",
             Self::StepLimit => "step_limit",
+            Self::Motion => "motion",
+            Self::Mass => "mass",
+            Self::Pressure => "pressure",
+            Self::Contact => "contact",
             Self::Passages => "passages",
             Self::Intersections => "intersections",
         }
@@ -60,9 +76,12 @@ impl AuditKind {
         match self {
             Self::FiniteMotion | Self::EnergySource => FailureKind::Unstable,
             Self::Stretch => FailureKind::Overstretched,
-            Self::EnergyLedger | Self::GasBalance => FailureKind::EnergyDrift,
+            Self::EnergyLedger => FailureKind::EnergyDrift,
             Self::Volume => FailureKind::InvertedVolume,
             Self::StepLimit => FailureKind::StepLimit,
+            Self::GasBalance | Self::Motion | Self::Mass | Self::Pressure | Self::Contact => {
+                FailureKind::Inconsistent
+            }
             Self::Passages | Self::Intersections => FailureKind::Interpenetrated,
         }
     }

@@ -16,17 +16,20 @@ pub enum FailureKind {
     StepLimit,
     /// Film passed through film.
     Interpenetrated,
+    /// The state contradicts itself: a defect of the program or of the machine.
+    Inconsistent,
 }
 
 impl FailureKind {
     /// Every kind, in the order of the documentation.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Unstable,
         Self::Overstretched,
         Self::EnergyDrift,
         Self::InvertedVolume,
         Self::StepLimit,
         Self::Interpenetrated,
+        Self::Inconsistent,
     ];
 
     /// Name, as in the `status` column of the table.
@@ -38,6 +41,7 @@ impl FailureKind {
             Self::InvertedVolume => "inverted_volume",
             Self::StepLimit => "step_limit",
             Self::Interpenetrated => "interpenetrated",
+            Self::Inconsistent => "inconsistent",
         }
     }
 

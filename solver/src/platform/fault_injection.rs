@@ -27,6 +27,8 @@ pub enum Term {
     PressureForce,
     /// Enclosed volume.
     Volume,
+    /// Force of contact, of film and of plates.
+    Contact,
     /// Weight.
     Gravity,
     /// Force of the ambient pressure.
@@ -65,13 +67,14 @@ pub enum Term {
 
 impl Term {
     /// Every term.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Elastic,
         Self::NumericalStress,
         Self::NumericalWork,
         Self::Creep,
         Self::PressureForce,
         Self::Volume,
+        Self::Contact,
         Self::Gravity,
         Self::Ambient,
         Self::Kick,

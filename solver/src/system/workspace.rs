@@ -193,6 +193,12 @@ impl Workspace {
             let (film, now) = (&system.model, (positions, time));
             plate.state_at(model, film, now, last, (next, &mut *forces));
         }
+        if system.fault.is_some() {
+            let factor = system.fault_factor(Term::Contact);
+            for node in 0..forces.len() {
+                forces.set(node, forces.get(node) * factor);
+            }
+        }
     }
 
     /// Whether contact or a plate may exert a force at the positions evaluated last.

@@ -3,6 +3,8 @@
 //!
 //! Without a fault no bit of a run changes.
 
+use super::pair::Pair;
+
 /// How contact is blinded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BroadPhaseFault {
@@ -13,6 +15,8 @@ pub enum BroadPhaseFault {
     ScaledBounds(f64),
     /// Pairs that are pending at this path length (m) never come due.
     StoppedQueues(f64),
+    /// This pair is never a candidate.
+    LostPair(Pair),
     /// Edges have no contact with edges.
     NoEdgeContacts,
 }

@@ -221,6 +221,9 @@ impl CandidateList {
             );
         }
         let candidates = &mut self.candidates;
+        if let Some(BroadPhaseFault::LostPair(lost)) = model.broad_phase_fault {
+            candidates.retain(|candidate| candidate.pair != lost);
+        }
         if candidates.len() > before {
             candidates[before..].sort_unstable_by_key(|candidate| candidate.pair);
             // Two sorted runs: the stable sort merges them in one pass.

@@ -25,7 +25,7 @@
 use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
-use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
+use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepMotion};
 use crate::integrators::{IntegratorEntry, StoredIntegrator};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::forces::damping::stable_share;
@@ -36,7 +36,7 @@ use crate::mechanics::forces::pressure::gas_frequency_squared;
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::fault_injection::Term;
-use crate::platform::stopwatch::{Stage, Stopwatch};
+use crate::platform::stopwatch::Stage;
 use crate::scene::inflow::Inflow;
 use crate::system::{FilmState, FilmSystem, PressureLoad, Workspace};
 
@@ -165,7 +165,7 @@ impl Explicit {
                 self.wait(system, state, interval.length, phase.inflow);
                 state.time = end;
             } else {
-                self.step(system, state, interval.length, end, phase.inflow, budget.stopwatch)?;
+                self.step(system, state, interval.length, end, phase.inflow, budget)?;
                 state.time = end;
                 budget.audit.record(system, state)?;
             }
@@ -234,8 +234,9 @@ impl Explicit {
         length: f64,
         end: f64,
         inflow: Inflow,
-        stopwatch: &mut dyn Stopwatch,
+        budget: &mut Budget<'_>,
     ) -> Result<(), Failure> {
+        let stopwatch = &mut *budget.stopwatch;
         stopwatch.begins(Stage::Update);
         let kick = 0.5 * (self.motion.last_step + length);
         self.kick(system, state, kick, length, end);
@@ -244,6 +245,13 @@ impl Explicit {
         self.half_step_works(system, state, length);
         let drift = length * system.fault_factor(Term::Drift);
         let velocities = &self.motion.velocities;
+        budget.audit.moved(StepMotion {
+            start: state.time,
+            length,
+            from: &state.positions,
+            velocities,
+            coefficients: [1.0, 1.0, 0.0],
+        })?;
         let max_speed_squared =
             drift_nodes(system.instruction_set, velocities, drift, &mut state.positions);
         self.add_plate_work(system, state, end);

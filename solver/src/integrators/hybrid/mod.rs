@@ -203,15 +203,15 @@ impl Hybrid {
         state: &mut FilmState,
         system: &FilmSystem,
         interval: Interval<'_>,
-        events: &mut Vec<Event>,
-    ) {
-        let Active::Explicit(explicit) = &self.active else { return };
+        budget: &mut Budget<'_>,
+    ) -> Result<(), Failure> {
+        let Active::Explicit(explicit) = &self.active else { return Ok(()) };
         let stable = explicit.next_step(system, state);
         let (before, accounting) = (explicit.ledger(system, state), *explicit.accounting());
         if !self.is_quiet(state, system, interval.phase, stable) {
-            return;
+            return Ok(());
         }
-        let Some(start) = self.quiet_start.take() else { return };
+        let Some(start) = self.quiet_start.take() else { return Ok(()) };
         self.policy.stable_step = stable;
         let slow = with_mean_velocities(system, state, &start);
         let control = StepControl::error(self.cfl, system.model.size(), ERROR_FACTOR);
@@ -224,16 +224,17 @@ impl Hybrid {
         let mut implicit = Implicit::from(system, &slow, scratch, steps, accounting);
         let after = implicit.ledger(system, &slow).stored();
         implicit.add_numerical_dissipation(before.stored() - after);
-        if implicit.begin(system, &slow, interval.phase, self.patience()) {
+        if implicit.begin(system, &slow, interval.phase, self.patience(), budget.audit)? {
             self.policy.pause = FIRST_PAUSE;
             self.active = Active::Implicit(Box::new(implicit));
             *state = slow;
-            events.push(Event { time: state.time, kind: EventKind::Implicit });
+            budget.events.push(Event { time: state.time, kind: EventKind::Implicit });
         } else {
             self.newton = Some(Box::new(implicit.into_newton()));
             self.policy.next_attempt = state.time + self.policy.pause;
             self.policy.pause = (PAUSE_GROWTH * self.policy.pause).min(LONGEST_PAUSE);
         }
+        Ok(())
     }
 
     /// Explicit steps from here on.
@@ -291,7 +292,7 @@ impl Integrator for Hybrid {
                 Active::Explicit(explicit) => {
                     let advance = explicit.advance(state, system, interval, budget.reborrow())?;
                     if advance == Advance::Reached {
-                        self.attempt(state, system, interval, budget.events);
+                        self.attempt(state, system, interval, &mut budget)?;
                     }
                     return Ok(advance);
                 }

@@ -96,6 +96,11 @@ impl<'a> Method<'a> {
         position * (self.a / self.length) - self.known(node, |s| &s.positions, |l| &l.positions)
     }
 
+    /// a, b and c.
+    pub(super) fn coefficients(&self) -> [f64; 3] {
+        [self.a, self.b, self.c]
+    }
+
     /// Predicted displacements, m.
     pub(super) fn predict(&self, displacements: &mut Field) {
         let h = self.length;

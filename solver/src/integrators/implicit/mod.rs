@@ -13,7 +13,7 @@
 use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
-use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
+use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepAudit, StepMotion};
 use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
@@ -214,9 +214,7 @@ impl Implicit {
                 }
                 return Err(failure(state, "no step of the implicit method has a solution"));
             };
-            let from = (state.clone(), self.motion.accounting);
-            self.motion.ahead =
-                Some(Box::new(Ahead { from, to: (stepped.state, stepped.accounting) }));
+            self.go_ahead(state, stepped, budget.audit)?;
         }
         budget.stopwatch.begins(Stage::Audit);
         if self.motion.ahead.is_some() {
@@ -297,24 +295,46 @@ impl Implicit {
         }
     }
 
+    /// Makes a step that is accepted the one that goes beyond the state.
+    fn go_ahead(
+        &mut self,
+        state: &FilmState,
+        stepped: Stepped,
+        audit: &mut dyn StepAudit,
+    ) -> Result<(), Failure> {
+        audit.moved(StepMotion {
+            start: state.time,
+            length: stepped.state.time - state.time,
+            from: &state.positions,
+            velocities: &stepped.state.velocities,
+            coefficients: stepped.coefficients,
+        })?;
+        let from = (state.clone(), self.motion.accounting);
+        let to = (stepped.state, stepped.accounting);
+        self.motion.ahead = Some(Box::new(Ahead { from, to }));
+        Ok(())
+    }
+
     /// Takes a first step beyond the state; whether there is one that pays.
+    ///
+    /// # Errors
+    /// What the audit finds.
     pub(super) fn begin(
         &mut self,
         system: &FilmSystem,
         state: &FilmState,
         phase: &Phase,
         patience: Patience,
-    ) -> bool {
+        audit: &mut dyn StepAudit,
+    ) -> Result<bool, Failure> {
         self.motion.begin_phase(phase.packed, phase.inflow);
         let limits = (state.time, phase.end);
         let Some(stepped) = self.step(system, state, limits, phase.inflow, Some(patience)) else {
-            return false;
+            return Ok(false);
         };
-        let from = (state.clone(), self.motion.accounting);
-        let to = (stepped.state, stepped.accounting);
-        self.motion.ahead = Some(Box::new(Ahead { from, to }));
+        self.go_ahead(state, stepped, audit)?;
         self.evaluate(system, state);
-        true
+        Ok(true)
     }
 
     pub(super) fn add_numerical_dissipation(&mut self, energy: f64) {

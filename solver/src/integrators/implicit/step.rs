@@ -34,6 +34,8 @@ pub(super) struct Stepped {
     pub(super) accounting: EnergyAccounting,
     /// Mean error, m, and its order.
     pub(super) error: (f64, i32),
+    /// Coefficients of the method.
+    pub(super) coefficients: [f64; 3],
 }
 
 /// Work of all forces but inertia, and of contact alone, along displacements, J.
@@ -84,7 +86,7 @@ impl Implicit {
         }
         self.hold(system, from, &mut state);
         let error = method.error(&system.model.mass, &positions, &self.predicted);
-        let order = method.error_order();
+        let (order, coefficients) = (method.error_order(), method.coefficients());
         let contacts = self.workspace.contact.as_ref().map(|contact| contact.trial.clone());
         let step = (length, inflow);
         self.add_works(
@@ -103,7 +105,7 @@ impl Implicit {
         if let Some(contact) = &self.workspace.contact {
             accounting.broad_phase_rebuilds = contact.progress.rebuilds;
         }
-        Some(Stepped { state, accounting, error: (error, order) })
+        Some(Stepped { state, accounting, error: (error, order), coefficients })
     }
 
     /// Held components rest, and planes move with their nodes.

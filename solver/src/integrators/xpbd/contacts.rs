@@ -17,6 +17,7 @@ use crate::collision::contact::distance::Closest;
 use crate::collision::contact::pair::{CandidatePair, vectors_of};
 use crate::collision::contact::safe_step::{MAX_UNTESTED_APPROACH, MIN_KEPT_SHARE};
 use crate::geometry::field::Field;
+use crate::platform::fault_injection::Term;
 use crate::system::{FilmState, FilmSystem};
 
 /// Rounds over all candidates before all displacements are scaled at once. Chosen: most substeps need two.
@@ -35,7 +36,7 @@ pub(super) fn project_contacts(
     next: &mut Field,
 ) {
     let Some(model) = &system.contact else { return };
-    let squared = length * length;
+    let (squared, fault) = (length * length, system.fault_factor(Term::Contact));
     for contact in &state.contact.contacts {
         let nodes = contact.pair.nodes(&model.mesh.topology);
         let Closest { weights, between, squared: gap_squared } =
@@ -55,7 +56,7 @@ pub(super) fn project_contacts(
         let moves: [Vector3<f64>; 4] =
             core::array::from_fn(|k| mobility.of(nodes[k] as usize, forces[k]));
         let power: f64 = forces.iter().zip(&moves).map(|(force, moved)| force.dot(moved)).sum();
-        let factor = squared / (1.0 + squared * power / twice_energy);
+        let factor = fault * squared / (1.0 + squared * power / twice_energy);
         for (node, moved) in nodes.iter().zip(moves) {
             let node = *node as usize;
             next.set(node, next.get(node) + moved * factor);
@@ -78,7 +79,7 @@ pub(super) fn project_contacts(
             let force = plate.normal * (0.5 * stiffness * penetration * penetration / offset);
             let moved = mobility.of(node, force);
             let power = 1.5 / penetration * plate.normal.dot(&moved);
-            next.set(node, next.get(node) + moved * (squared / (1.0 + squared * power)));
+            next.set(node, next.get(node) + moved * (fault * squared / (1.0 + squared * power)));
         }
     }
 }

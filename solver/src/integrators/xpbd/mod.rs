@@ -184,7 +184,7 @@ impl Xpbd {
                 state.time = end;
             } else {
                 let span = (interval.length, end);
-                self.step(system, state, span, phase.inflow, budget.stopwatch)?;
+                self.step(system, state, span, phase.inflow, budget)?;
                 budget.audit.record(system, state)?;
             }
             self.accounting.steps += 1;

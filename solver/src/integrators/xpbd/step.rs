@@ -12,6 +12,8 @@
 use super::contacts::{keep_apart, project_contacts};
 use super::sweep::{Law, settle, sweep};
 use super::{Xpbd, failure};
+use crate::geometry::field::Field;
+use crate::integrators::interface::{Budget, StepMotion};
 use crate::mechanics::forces::damping::kick_factors;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::platform::fault_injection::Term;
@@ -30,8 +32,9 @@ impl Xpbd {
         state: &mut FilmState,
         (length, end): (f64, f64),
         inflow: Inflow,
-        stopwatch: &mut dyn Stopwatch,
+        budget: &mut Budget<'_>,
     ) -> Result<(), Failure> {
+        let stopwatch = &mut *budget.stopwatch;
         stopwatch.begins(Stage::Update);
         self.predict(system, state, length, end);
         stopwatch.begins(Stage::Membrane);
@@ -39,8 +42,12 @@ impl Xpbd {
         let set = system.instruction_set;
         let (batches, multipliers) = (&self.batches, &mut self.multipliers);
         let next = &mut self.next;
+        let predicted = system.fault.is_some().then(|| next.clone());
         let columns = &mut [&mut next.x[..], &mut next.y[..], &mut next.z[..]];
         sweep(set, batches, law, &state.creep, length, columns, multipliers);
+        if let Some(predicted) = predicted {
+            inject_fault(system, &predicted, next);
+        }
         stopwatch.begins(Stage::Pairs);
         project_contacts(system, state, &self.mobility, (length, end), &mut self.next);
         for node in 0..system.model.nodes() {
@@ -56,9 +63,18 @@ impl Xpbd {
             self.accounting.works.support += work;
         }
         for node in 0..system.model.nodes() {
+            state.velocities.set(node, self.displacements.get(node) / length);
+        }
+        budget.audit.moved(StepMotion {
+            start: state.time,
+            length,
+            from: &state.positions,
+            velocities: &state.velocities,
+            coefficients: [1.0, 1.0, 0.0],
+        })?;
+        for node in 0..system.model.nodes() {
             let displacement = self.displacements.get(node);
             state.positions.set(node, state.positions.get(node) + displacement);
-            state.velocities.set(node, displacement / length);
         }
         system.place_closing_nodes(&mut state.positions);
         let start = core::mem::replace(&mut state.time, end);
@@ -206,6 +222,15 @@ impl Xpbd {
             }
         }
         work
+    }
+}
+
+/// Applies a deliberate fault to what the projections of the elements moved: tests only.
+fn inject_fault(system: &FilmSystem, predicted: &Field, next: &mut Field) {
+    let factor = system.fault_factor(Term::Elastic);
+    for node in 0..next.len() {
+        let from = predicted.get(node);
+        next.set(node, from + (next.get(node) - from) * factor);
     }
 }
 

@@ -113,7 +113,8 @@ pub type CheckpointText = Result<String, CheckpointError>;
 /// Runs a model from time 0 to the end of its timeline.
 ///
 /// A run whose ledger residual is above [`audit::MAX_LEDGER_RESIDUAL`] at any sample fails at that sample
-/// with [`AuditKind::EnergyLedger`]. This is decided at the end, when the divisor of the residual is known;
+/// with [`AuditKind::EnergyLedger`], one whose gas residual is above [`audit::MAX_GAS_RESIDUAL`] with
+/// [`AuditKind::GasBalance`]. This is decided at the end, when the divisor of the residual is known;
 /// so the history is complete, but there is no verdict.
 pub fn run(model: &mut dyn Model, timeline: &Timeline, observer: &mut dyn Observer) -> Deployment {
     Run::default().complete(model, timeline, observer)
@@ -253,10 +254,9 @@ impl Run {
         // A passage ends a run before the next sample can count it.
         audit.passages = audit.passages.map(|counted| counted.max(model.passages()));
         if stop == Stop::Done
-            && let Some(time) = audit::first_drift(&history)
+            && let Some(failure) = judged(&history)
         {
-            let place = format!("energy ledger: residual above {}", audit::MAX_LEDGER_RESIDUAL);
-            stop = Stop::Failed(Failure::new(AuditKind::EnergyLedger, time, place));
+            stop = Stop::Failed(failure);
         }
         let measures = match stop {
             Stop::Cancelled => Measures::default(),
@@ -280,6 +280,17 @@ impl Run {
         let events = self.events;
         Deployment { history, tracks, events, frames, measures, audit, stop, steps, elements }
     }
+}
+
+/// What the residuals of a whole history show: a gas that does not add up, or a ledger that does not close.
+fn judged(history: &History) -> Option<Failure> {
+    if let Some(time) = audit::first_imbalance(history) {
+        let place = format!("gas balance: residual above {:e}", audit::MAX_GAS_RESIDUAL);
+        return Some(Failure::new(AuditKind::GasBalance, time, place));
+    }
+    let time = audit::first_drift(history)?;
+    let place = format!("energy ledger: residual above {}", audit::MAX_LEDGER_RESIDUAL);
+    Some(Failure::new(AuditKind::EnergyLedger, time, place))
 }
 
 fn next_breakpoint(breakpoints: &[f64], time: f64, end: f64) -> f64 {

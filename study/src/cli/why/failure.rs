@@ -73,6 +73,9 @@ fn meaning(status: Status) -> &'static str {
         Status::Failed(FailureKind::Interpenetrated) => {
             "film passed through film, or intersects film"
         }
+        Status::Failed(FailureKind::Inconsistent) => {
+            "the state contradicted itself: an error in the program, or in the memory of the machine"
+        }
         Status::Timeout => "the attempt reached its limit of wall time (job_limits.wall_time)",
         Status::OutOfMemory => "the job needs more memory than it may use",
         Status::Crashed => {
@@ -103,6 +106,9 @@ fn next_step(status: Status, has_history: bool, short_id: &str, root: &str) -> S
                 format!("{rerun}: the job resumes from its checkpoint")
             }
         }
+        Status::Failed(FailureKind::Inconsistent) => format!(
+            "billow rerun {short_id} {root}: if it ends alike, report it with {root}/study.json and the job id"
+        ),
         Status::Timeout => format!(
             "billow rerun {short_id} {root} --job-limit wall_time=…: the job resumes from its checkpoint, if \
              it has one"
