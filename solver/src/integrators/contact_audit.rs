@@ -23,6 +23,10 @@ const MAX_DIFFERENCE: f64 = 1e-5;
 /// η over the penetration, or over the range of adhesion. Chosen: its square is the error of the slope.
 const STEP: f64 = 1e-3;
 
+/// Penetration over the offset below which a force counts as that of this penetration. Chosen: the rounding of a gap
+/// is no error.
+const MIN_PENETRATION: f64 = 1e-3;
+
 /// Sum of virtual works, J, and of their magnitudes.
 #[derive(Debug, Clone, Copy, Default)]
 struct VirtualWork {
@@ -31,9 +35,11 @@ struct VirtualWork {
 }
 
 impl VirtualWork {
-    fn add(&mut self, part: f64) {
-        self.sum += part;
-        self.magnitude += part.abs();
+    /// Adds the work of a force (N) along a displacement (m), of a contact with this stiffness (N/m) and offset (m).
+    fn add(&mut self, force: f64, moved: f64, stiffness: f64, offset: f64) {
+        let least = 0.5 * stiffness * MIN_PENETRATION * MIN_PENETRATION * offset;
+        self.sum += force * moved;
+        self.magnitude += (force.abs() + least) * moved.abs();
     }
 }
 
@@ -59,7 +65,8 @@ fn of_energies(model: &ContactModel, system: &FilmSystem, state: &FilmState) -> 
                 .iter()
                 .zip(weights)
                 .map(|(node, weight)| between.dot(&displacement(*node as usize)) * (weight / gap));
-            work.add(force(energy, gap, step) * moved.sum::<f64>());
+            let force = force(energy, gap, step);
+            work.add(force, moved.sum::<f64>(), contact.stiffness, contact.offset);
         }
     }
     for (plate, plate_state) in model.plates.iter().zip(&state.contact.plates) {
@@ -72,7 +79,8 @@ fn of_energies(model: &ContactModel, system: &FilmSystem, state: &FilmState) -> 
                 let energy =
                     |gap: f64| stiffness * (offset - gap) * (offset - gap) * (offset - gap) / 6.0;
                 let moved = plate.normal.dot(&displacement(node));
-                work.add(force(energy, gap, STEP * penetration) * moved);
+                let force = force(energy, gap, STEP * penetration);
+                work.add(force, moved, stiffness * offset, *offset);
             }
         }
     }
