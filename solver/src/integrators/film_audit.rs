@@ -6,6 +6,7 @@ use super::interface::{StepAudit, StepMotion};
 use super::motion_audit::MotionAudit;
 use super::passage_audit::PassageAudit;
 use super::pressure_audit;
+use crate::geometry::field::Field;
 use crate::mechanics::forces::membrane::NodeForces;
 use crate::output::outcome::{AuditKind, Failure};
 use crate::scene::monitor_settings::MonitorSettings;
@@ -17,6 +18,8 @@ pub struct FilmAudit {
     motion: MotionAudit,
     /// `None` without contact or without a monitor.
     passages: Option<PassageAudit>,
+    /// Scratch memory: a vector for each node.
+    moves: Field,
 }
 
 impl FilmAudit {
@@ -29,7 +32,8 @@ impl FilmAudit {
     ) -> Self {
         let passages =
             monitor.and_then(|settings| PassageAudit::start(settings, system, state, steps));
-        Self { motion: MotionAudit::start(system), passages }
+        let moves = Field::zeros(state.positions.len());
+        Self { motion: MotionAudit::start(system), passages, moves }
     }
 
     /// The audit of passages.
@@ -47,12 +51,12 @@ impl FilmAudit {
     /// # Errors
     /// A [`Failure`] ends the run.
     pub fn inspect(
-        &self,
+        &mut self,
         system: &FilmSystem,
         state: &FilmState,
         forces: &NodeForces,
     ) -> Result<(), Failure> {
-        pressure_audit::check(system, state, forces)?;
+        pressure_audit::check(system, state, forces, &mut self.moves)?;
         contact_audit::check(system, state, forces)
     }
 }

@@ -117,7 +117,7 @@ impl<'a> FilmView<'a> {
 
     /// Number of steps of the run that are tested for passages; `None` without an audit.
     pub fn tested_steps(&self) -> Option<u64> {
-        self.audit.map(PassageAudit::tested_steps)
+        self.audit.passages().map(PassageAudit::tested_steps)
     }
 
     /// Intersections of the mesh at the end of the last interval; `None` without an audit.

@@ -27,10 +27,9 @@ const MAX_VIRTUAL_DIFFERENCE: f64 = 1e-4;
 /// Virtual displacement over δ for those vertices: their place is not linear in that of the rim. Chosen.
 const STEP: f64 = 1e-4;
 
-/// δ of all nodes, m.
-fn virtual_displacements(system: &FilmSystem, positions: &Field) -> Field {
+/// Replaces `moves` by δ of all nodes, m.
+fn set_virtual_displacements(system: &FilmSystem, positions: &Field, moves: &mut Field) {
     let middle = positions.iter().sum::<Vector3<f64>>() / positions.len() as f64;
-    let mut moves = Field::zeros(positions.len());
     for node in 0..positions.len() {
         moves.set(node, (positions.get(node) - middle) * weight(node));
     }
@@ -50,10 +49,9 @@ fn virtual_displacements(system: &FilmSystem, positions: &Field) -> Field {
             }
         }
     }
-    moves
 }
 
-/// Checks gas and pressure of a state with these forces.
+/// Checks gas and pressure of a state with these forces. `moves`: scratch memory, a vector for each node.
 ///
 /// # Errors
 /// [`AuditKind::Pressure`].
@@ -61,11 +59,12 @@ pub(super) fn check(
     system: &FilmSystem,
     state: &FilmState,
     forces: &NodeForces,
+    moves: &mut Field,
 ) -> Result<(), Failure> {
     let PressureLoad::Gas(gas) = system.pressure_load else { return Ok(()) };
     let failure = |problem: &str| Err(Failure::new(AuditKind::Pressure, state.time, problem));
     let (model, positions) = (&system.model, &state.positions);
-    let moves = virtual_displacements(system, positions);
+    set_virtual_displacements(system, positions, moves);
     let (mut volume, mut size, mut growth) = (0.0, 0.0, 0.0);
     for face in model.triangles.iter().chain(&model.closure) {
         let [a, b, c] = face.map(|node| positions.get(node as usize));

@@ -26,8 +26,9 @@ use super::stored::ahead;
 pub enum Change {
     /// Nothing.
     Nothing,
-    /// The system that the integrator sees, from a step on. The change is given the state there.
-    System(fn(&mut FilmSystem, &FilmState)),
+    /// The system that the integrator sees, from a step on. The change is given the state there; `false` if it can
+    /// be made only in a later one.
+    System(fn(&mut FilmSystem, &FilmState) -> bool),
     /// The system that the integrator sees, in one step.
     OneStep(fn(&mut FilmSystem)),
     /// What a checkpoint holds, once between two steps.
@@ -126,9 +127,10 @@ impl Injected {
         match self.change {
             Change::Nothing => self.over = true,
             Change::System(change) => {
-                change(&mut faulty, state);
-                self.faulty = Some(faulty);
-                self.over = true;
+                if change(&mut faulty, state) {
+                    self.faulty = Some(faulty);
+                    self.over = true;
+                }
             }
             Change::OneStep(change) => {
                 change(&mut faulty);
@@ -177,7 +179,8 @@ impl Integrator for Injected {
             }
             let before = state.positions.clone();
             let (stepped, advance) = self.step(state, system, interval, &mut budget)?;
-            if due && stepped && !self.over {
+            let waits = matches!(self.change, Change::System(_));
+            if due && stepped && !self.over && !waits {
                 self.after_step(state, system, &before);
             }
             if advance == Advance::Reached {

@@ -34,7 +34,7 @@ fn audit(end: &Deployment) -> Option<&'static str> {
     match &end.stop {
         Stop::Done => None,
         Stop::Failed(failure) => Some(failure.audit.name()),
-        Stop::Cancelled => panic!("nobody cancels"),
+        Stop::Cancelled => panic!("no observer cancels"),
     }
 }
 

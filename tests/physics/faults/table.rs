@@ -33,26 +33,30 @@ pub const REASONS: [&str; 3] = [
     "The numerical stress lives for one step. What is missing is the numerical damping of that step.",
 ];
 
-fn term(system: &mut FilmSystem, term: Term, factor: f64) {
+fn term(system: &mut FilmSystem, term: Term, factor: f64) -> bool {
     system.fault = Some(Fault { term, factor });
+    true
 }
 
-/// The contact with the smallest gap is in no list from now on.
-fn lose_pair(system: &mut FilmSystem, state: &FilmState) {
+/// The first contact that there is, that with the smallest gap, is in no list from then on.
+fn lose_pair(system: &mut FilmSystem, state: &FilmState) -> bool {
     let contacts = state.contact.contacts.iter();
-    let nearest = contacts.min_by(|a, b| a.gap.total_cmp(&b.gap)).expect("a contact");
+    let Some(nearest) = contacts.min_by(|a, b| a.gap.total_cmp(&b.gap)) else { return false };
     let model = system.contact.as_mut().expect("contact");
     model.broad_phase_fault = Some(BroadPhaseFault::LostPair(nearest.pair));
+    true
 }
 
-fn stop_search(system: &mut FilmSystem, _: &FilmState) {
+fn stop_search(system: &mut FilmSystem, _: &FilmState) -> bool {
     let model = system.contact.as_mut().expect("contact");
     model.broad_phase_fault = Some(BroadPhaseFault::StoppedQueues(0.0));
+    true
 }
 
-fn double_mass(system: &mut FilmSystem, _: &FilmState) {
+fn double_mass(system: &mut FilmSystem, _: &FilmState) -> bool {
     system.model.mass[5] *= 2.0;
     system.model.inverse_mass[5] *= 0.5;
+    true
 }
 
 const ELASTIC: Change = Change::System(|system, _| term(system, Term::Elastic, -1.0));
@@ -63,7 +67,9 @@ const GAS_WORK: Change = Change::System(|system, _| term(system, Term::GasWork, 
 const PUSH: Change = Change::System(|system, _| term(system, Term::PressureForce, 1.01));
 const GAS_PRESSURE: Change = Change::System(|system, _| term(system, Term::GasPressure, 1.01));
 const VOLUME: Change = Change::System(|system, _| term(system, Term::Volume, 1.01));
-const NAN_FORCE: Change = Change::OneStep(|system| term(system, Term::Elastic, f64::NAN));
+const NAN_FORCE: Change = Change::OneStep(|system| {
+    term(system, Term::Elastic, f64::NAN);
+});
 const NAN_POSITION: Change = Change::Stored(|stored, _| {
     stored::change_state(stored, |state| state.positions.x[5] = f64::NAN);
 });
@@ -100,7 +106,7 @@ const BAG: (&str, SceneOf, f64) = ("bag", scenes::bag, 0.0102);
 const FILLING: (&str, SceneOf, f64) = ("filling", scenes::filling, 0.302);
 const SHEETS: (&str, SceneOf, f64) = ("sheets", scenes::sheets, 0.0022);
 const STRIP: (&str, SceneOf, f64) = ("strip", scenes::strip, 0.0003);
-const TOUCHING: (&str, SceneOf, f64) = ("sheets", scenes::sheets, 0.0067);
+const TOUCHING: (&str, SceneOf, f64) = ("sheets", scenes::sheets, 0.0);
 const CAPSULE: (&str, SceneOf, f64) = ("capsule", scenes::capsule, 0.0102);
 
 pub const ROWS: &[Row] = &[

@@ -1,5 +1,5 @@
 use super::*;
-use crate::output::ledger::Ledger;
+use crate::output::ledger::{GasBalance, Ledger};
 use crate::output::measures::StaticShape;
 use crate::output::outcome::FailureKind;
 use crate::scene::InflowWindow;
@@ -11,11 +11,13 @@ struct Recorder {
     calls: Vec<(f64, Phase)>,
     energy: fn(f64) -> f64,
     fails_after: f64,
+    /// Mass of the gas over the mass let in.
+    mass_factor: f64,
 }
 
 impl Recorder {
     fn new(energy: fn(f64) -> f64) -> Self {
-        Self { calls: Vec::new(), energy, fails_after: f64::INFINITY }
+        Self { calls: Vec::new(), energy, fails_after: f64::INFINITY, mass_factor: 1.0 }
     }
 
     fn time(&self) -> f64 {
@@ -37,7 +39,10 @@ impl Model for Recorder {
         let (time, kinetic) = (self.time(), (self.energy)(self.time()));
         let gas_work = time;
         let ledger = Ledger { kinetic, gas_work, ..Ledger::default() };
-        Sample { time, volume: 1.0, z_rim: 1.0, ledger, ..Sample::default() }
+        let mass = timeline().schedule.mass_until(time) * self.mass_factor;
+        let gas =
+            GasBalance { mass, internal_energy: -gas_work, gas_work, ..GasBalance::default() };
+        Sample { time, volume: 1.0, z_rim: 1.0, ledger, gas, ..Sample::default() }
     }
 
     fn reference(&self, overpressure: f64) -> Option<Reference> {
@@ -108,6 +113,15 @@ fn an_end_at_a_sample_time_is_sampled_once() {
     let deployment = run(&mut Recorder::new(|time| time), &exact, &mut Unobserved);
     assert_eq!(deployment.history.len(), 4);
     assert_eq!(deployment.history.column("time")[3].to_bits(), 0.3_f64.to_bits());
+}
+
+#[test]
+fn a_gas_that_does_not_add_up_is_inconsistent() {
+    let mut model = Recorder { mass_factor: 1.0 + 1e-6, ..Recorder::new(|time| time) };
+    let deployment = run(&mut model, &timeline(), &mut Unobserved);
+    let Stop::Failed(failure) = &deployment.stop else { panic!("{:?}", deployment.stop) };
+    assert_eq!((failure.kind, failure.audit), (FailureKind::Inconsistent, AuditKind::GasBalance));
+    assert_eq!(deployment.measures.verdict, None);
 }
 
 #[test]
