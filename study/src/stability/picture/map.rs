@@ -9,6 +9,7 @@ use crate::render::figure::legend::{Legend, Sample};
 use crate::render::figure::outcome::{Cell, Outcomes, Panel};
 use crate::render::figure::style::Outcome;
 use crate::stability::Method;
+use crate::stability::cell::Cell as Found;
 use crate::stability::file::{Axis, Map, failure_expected};
 use crate::stability::map::{Border, Placed};
 
@@ -30,10 +31,11 @@ pub fn map(map: &Map, cells: &[Placed], borders: &[Border]) -> String {
     let per_method = map.places().len();
     let mut panels: Vec<Panel> = Vec::new();
     for (method, cells) in map.methods.iter().zip(cells.chunks(per_method)) {
+        let cells = in_order(map, cells);
         let new = Panel {
             title: method.name().to_owned(),
-            cells: in_order(map, cells).into_iter().map(drawn).collect(),
-            beside: beside(map, *method, borders, headings.len()),
+            beside: beside(map, &cells, borders, headings.len()),
+            cells: cells.into_iter().map(drawn).collect(),
         };
         match panels.iter_mut().find(|panel| panel.cells == new.cells && panel.beside == new.beside)
         {
@@ -82,21 +84,26 @@ fn drawn(placed: &Placed) -> Option<Cell> {
 }
 
 /// Border, and border over the limit of theory, of each row.
-fn beside(map: &Map, method: Method, borders: &[Border], columns: usize) -> Vec<Vec<String>> {
+fn beside(map: &Map, cells: &[&Placed], borders: &[Border], columns: usize) -> Vec<Vec<String>> {
     let Some(search) = map.search else { return Vec::new() };
-    let rows: Vec<Option<f64>> = match map.axes.get(1 - search.axis) {
-        Some(axis) => axis.values.iter().copied().map(Some).collect(),
-        None => vec![None],
-    };
-    let row = |at: &Option<f64>| {
-        let border = borders.iter().find(|border| border.method == method && border.at == *at);
-        let value = border.and_then(|border| border.value);
-        let value = value.map_or("none".to_owned(), brief_number);
+    let row = |cells: &[&Placed]| {
+        let of_row = |border: &&Border| {
+            let at = cells[0].at.get(1 - search.axis).copied();
+            border.method == cells[0].question.method && border.at == at
+        };
+        let border = borders.iter().find(of_row);
+        let done = |placed: &&Placed| placed.cell.as_ref().is_some_and(Found::is_done);
+        let value = match border.and_then(|border| border.value) {
+            Some(value) => brief_number(value),
+            None if cells.iter().any(|placed| placed.cell.is_none()) => String::new(),
+            None if cells.iter().any(done) => "none".to_owned(),
+            None => "all fail".to_owned(),
+        };
         let theory = border.and_then(|border| border.of_theory);
         let theory = theory.map_or(String::new(), |ratio| format!("{ratio:.4}"));
         [value, theory][..columns].to_vec()
     };
-    rows.iter().map(row).collect()
+    cells.chunks(map.axes[search.axis].values.len()).map(row).collect()
 }
 
 fn legends(cells: &[Placed]) -> Vec<Legend> {
@@ -107,7 +114,7 @@ fn legends(cells: &[Placed]) -> Vec<Legend> {
         .into_iter()
         .map(|(outcome, status)| (Sample::Outcome(outcome), status.to_owned()))
         .collect();
-    if found().any(|cell| cell.is_done()) && found().any(|cell| !cell.is_done()) {
+    if found().any(Found::is_done) && found().any(|cell| !cell.is_done()) {
         entries.push((Sample::Border, "between done and failed".to_owned()));
     }
     if cells.iter().any(|placed| failure_expected(&placed.expected)) {

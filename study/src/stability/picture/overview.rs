@@ -36,9 +36,9 @@ pub fn overview(maps: &[(&Map, Vec<Placed>)]) -> String {
     Outcomes {
         sheet: Sheet {
             title: "Where methods fail: all maps".to_owned(),
-            subtitle: vec!["Number of cells that fail, and of all, by map and method".to_owned()],
+            subtitle: vec!["Number of runs that fail, and of all, by map and method".to_owned()],
             legends: vec![Legend { heading, entries }],
-            notes: vec!["hatched: no cell of this method in the map".to_owned()],
+            notes: vec!["hatched: no run of this method in the map".to_owned()],
         },
         x: ("method".to_owned(), methods.iter().map(|method| method.name().to_owned()).collect()),
         y: ("map".to_owned(), rows().map(|(map, _)| map.name.clone()).collect()),
@@ -51,8 +51,8 @@ pub fn overview(maps: &[(&Map, Vec<Placed>)]) -> String {
 
 /// The cells of a method in a map as one cell.
 fn summary(cells: &[Placed], method: Method) -> Option<Cell> {
-    let of: Vec<&Placed> =
-        cells.iter().filter(|placed| placed.question.method == method).collect();
+    let ran = |placed: &&Placed| placed.question.method == method && placed.cell.is_some();
+    let of: Vec<&Placed> = cells.iter().filter(ran).collect();
     let failed = of.iter().filter_map(|placed| placed.cell.as_ref()).filter(|cell| !cell.is_done());
     let failed: Vec<Outcome> = failed.map(|cell| outcome(&cell.status)).collect();
     let number = |outcome: Outcome| failed.iter().filter(|other| **other == outcome).count();
