@@ -196,5 +196,5 @@ fn the_shipped_maps_are_read() {
     ];
     let printed = folder.stdout(&arguments);
     assert!(printed.contains("invalid"), "{printed}");
-    assert!(printed.contains("border piston: fixed_step"), "{printed}");
+    assert!(printed.contains("border piston, mass_flow_rate 0.005: fixed_step"), "{printed}");
 }
