@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Runs studies/stability.json (minutes on two cores; finished cells are not run again) and writes the maps, borders and
-# pictures of where methods fail to results/stability/published.
+# Runs studies/stability.json (a quarter of an hour on two cores; finished cells are not run again) and writes the maps, borders
+# and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv, overview.png, one SVG a map, and the strips of
+# the page.
 #
-# usage: studies/publish_stability.sh [BILLOW]
+# usage: studies/publish_stability.sh [BILLOW [RESULTS]]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 billow=${1:-target/release/billow}
-results=results/stability
+results=${2:-results/stability}
 out=$results/published
 mkdir -p "$out"
 rm -rf "$results/charts"
@@ -15,7 +16,7 @@ rm -rf "$results/charts"
 code=0
 "$billow" stability studies/stability.json --results "$results" > "$results/maps.txt" || code=$?
 sed "\\|$results/charts/|d" "$results/maps.txt" > "$out/maps.txt"
-"$billow" stability "$results" --all --format csv --no-pictures -q > "$out/cells.csv" || true
+"$billow" stability "$results" --all --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
 
 rm -f "$out"/*.svg "$out"/*.png
 for picture in "$results"/charts/*.svg; do
@@ -24,9 +25,9 @@ for picture in "$results"/charts/*.svg; do
     *) cp "$picture" "$out" ;;
   esac
 done
-# Pictures of the page; the other maps are SVG only.
-for picture in overview step step_bag coincident residual_gas mass_flow_rate \
-  step_strip step_bag_strip residual_gas_strip stowed_height_strip; do
-  if [ -f "$results/charts/$picture.png" ]; then cp "$results/charts/$picture.png" "$out"; fi
+# Pictures of the page: SVG has a tenth of the size of PNG.
+for picture in overview.png step_strip.svg step_bag_strip.svg residual_gas_strip.svg stowed_height_strip.svg; do
+  if [ -f "$results/charts/$picture" ]; then cp "$results/charts/$picture" "$out"; fi
 done
+echo "written to $out: $(find "$out" -type f | wc -l) files, $(du -sk "$out" | cut -f 1) KiB; exit code of the maps: $code"
 exit "$code"

@@ -181,6 +181,24 @@ fn a_bad_file_gives_one_error_with_place_key_value_and_what_is_allowed() {
 }
 
 #[test]
+fn the_search_of_a_border_from_zero_ends() {
+    let why = "no volume for the gas";
+    let folder = folder(&json!({"maps": [{
+        "name": "start", "scene": "bag", "methods": ["xpbd"], "axes": {"flatness": [0, 1e-6]},
+        "border": {"along": "flatness", "within": 0.05},
+        "expect": [{"where": {"flatness": 0}, "status": "unstable", "why": why},
+            {"where": {"flatness": 1e-6}, "status": "done", "why": "a reason of no failure"}]
+    }]}));
+    let printed = folder.stdout(&RUN);
+    // Half of 0.05 of the smallest value above 0: xpbd fails at 0 only.
+    assert!(printed.contains("border xpbd: flatness 1.563e-8"), "{printed}");
+    let stored: Value = serde_json::from_slice(&cells(&folder)).unwrap();
+    assert_eq!(stored["cells"].as_array().unwrap().len(), 7);
+    let picture = fs::read_to_string(folder.path().join("out/charts/start.svg")).unwrap();
+    assert!(picture.contains(why) && !picture.contains("a reason of no failure"));
+}
+
+#[test]
 fn the_shipped_maps_are_read() {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies/stability.json");
     let folder = folder(&maps());

@@ -124,10 +124,11 @@ impl Map {
         first.map_or_else(done, |rule| rule.statuses.clone())
     }
 
-    /// The reasons of what is expected, with the methods they are of: each once.
+    /// The reasons of the failures that are expected, with the methods they are of: each once.
     pub fn reasons(&self) -> Vec<(Vec<Method>, &str)> {
         let mut reasons: Vec<(Vec<Method>, &str)> = Vec::new();
-        for rule in self.rules.iter().filter(|rule| !rule.why.is_empty()) {
+        let of_failure = |rule: &&Rule| !rule.why.is_empty() && failure_expected(&rule.statuses);
+        for rule in self.rules.iter().filter(of_failure) {
             let methods: Vec<Method> = self
                 .methods
                 .iter()

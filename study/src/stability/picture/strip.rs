@@ -5,6 +5,7 @@
 //! ```
 
 use billow_solver::models::run::Model as _;
+use billow_solver::output::audit_kind::AuditKind;
 use billow_solver::output::frames::Frame;
 
 use super::words::{rough, short_time, two_digits};
@@ -36,7 +37,10 @@ pub fn strip(rig: &Rig, map: &Map, cells: &[Placed]) -> Option<String> {
     let values: Vec<Vec<String>> = shapes.iter().map(texts).collect();
     let mut frames: Vec<Frame> = shapes.into_iter().map(|shape| shape.frame).collect();
     let colour = speeds(&triangles, &frames).map_or(Colour::Regime, Colour::Quantity);
-    let mut notes = vec![format!("ended at {} s: {}", brief_number(found.time), found.place)];
+    // The ledger is judged after the run: shapes go on to its end.
+    let what =
+        if found.audit == AuditKind::EnergyLedger.name() { "failed from" } else { "ended at" };
+    let mut notes = vec![format!("{what} {} s: {}", brief_number(found.time), found.place)];
     if map.scene.name == "sheet"
         && let Some(factor) = enlarge(&mut frames)
     {
