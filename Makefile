@@ -5,7 +5,7 @@
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
-# make stability  where each method fails: studies/stability.json (minutes), its maps and pictures
+# make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
