@@ -15,6 +15,8 @@ rm -rf "$results/charts"
 # Outcomes that are not as expected end this script; the pictures and lines that show them are written before.
 code=0
 "$billow" stability studies/stability.json --results "$results" > "$results/maps.txt" || code=$?
+# A run that was stopped draws nothing, and what is published stays.
+[ -d "$results/charts" ] || exit "$code"
 sed "\\|$results/charts/|d" "$results/maps.txt" > "$out/maps.txt"
 "$billow" stability "$results" --all --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
 

@@ -35,15 +35,19 @@ fn damping_factors_match_their_closed_forms() {
 #[test]
 fn an_element_of_a_factor_is_film_of_that_modulus() {
     let shell = sheet(3, 2, 0.3, 0.2);
-    let soft = Film { youngs_modulus: 1e-3 * Film::PAPER.youngs_modulus, ..Film::PAPER };
-    let (whole, expected) = (model(&shell, &Film::PAPER), model(&shell, &soft));
+    let stiff = Film { numerical_damping: 0.1, ..Film::PAPER_ELASTIC };
+    let soft = Film { youngs_modulus: 1e-3 * stiff.youngs_modulus, ..stiff };
+    let (whole, expected) = (model(&shell, &stiff), model(&shell, &soft));
     let found = whole.clone().with_stiffness(&vec![1e-3; shell.triangles.len()]);
     assert_eq!(found.mass, expected.mass);
     let stretched = mapped(&shell, |x| Vector3::new(1.01 * x.x, 1.004 * x.y + 0.002 * x.x, 0.0));
     let forces = [&found, &expected].map(|model| film_forces(model, &stretched));
-    for node in 0..shell.positions.len() {
+    // Forces of inner nodes cancel: the largest one is the measure.
+    let nodes = 0..shell.positions.len();
+    let largest = nodes.clone().map(|node| forces[1].film(node).norm()).fold(0.0, f64::max);
+    for node in nodes {
         let [found, expected] = forces.each_ref().map(|forces| forces.film(node));
-        assert!((found - expected).norm() <= 1e-13 * expected.norm(), "{found} {expected}");
+        assert!((found - expected).norm() <= 1e-13 * largest, "{found} {expected}");
     }
     for element in 0..shell.triangles.len() {
         let ratio = |column: fn(&FilmModel) -> &Vec<f64>| {
