@@ -5,6 +5,7 @@
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
+# make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
@@ -21,7 +22,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study paper pareto test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -33,6 +34,9 @@ paper: build
 
 pareto: build
 	studies/publish_pareto.sh $(BILLOW)
+
+stability: build
+	studies/publish_stability.sh $(BILLOW)
 
 test: deps
 	$(CARGO) test $(FLAGS)

@@ -10,10 +10,11 @@ use crate::support::{TestFolder, grid, stderr};
 /// A map of a linear sheet on both sides of its stable step.
 fn maps() -> Value {
     json!({"maps": [{
-        "name": "step", "scene": "sheet", "methods": ["explicit"], "axes": {"step": [0.5, 1.2, 1.5]},
+        "name": "step", "description": "what is asked", "scene": "sheet", "methods": ["explicit"],
+        "axes": {"step": [0.5, 1.2, 1.5]}, "strip": {"where": {"step": 1.5}},
         "border": {"along": "step", "within": 1e-3},
         "theory": {"methods": ["explicit"], "within": 0.01},
-        "expect": [{"where": {"step": [1.4, 2]}, "status": "unstable"}]
+        "expect": [{"where": {"step": [1.4, 2]}, "status": "unstable", "why": "the step is beyond the limit"}]
     }]})
 }
 
@@ -33,7 +34,7 @@ const RUN: [&str; 4] = ["stability", "maps.json", "--results", "out"];
 fn the_limit_of_a_linear_sheet_is_that_of_theory_and_cells_are_kept() {
     let folder = folder(&maps());
     let printed = folder.stdout(&RUN);
-    assert!(printed.contains("step: 2 done, 1 unstable"), "{printed}");
+    assert!(printed.contains("step: 3 cells\n  explicit: 2 done, 1 unstable\n"), "{printed}");
     let of_theory: f64 = printed
         .lines()
         .find_map(|line| line.strip_suffix(" of 2/omega_max")?.rsplit(' ').next()?.parse().ok())
@@ -41,6 +42,24 @@ fn the_limit_of_a_linear_sheet_is_that_of_theory_and_cells_are_kept() {
     assert!((of_theory - 1.0).abs() < 0.01, "{of_theory}");
     for name in ["step.svg", "step.png", "step_strip.svg", "step_strip.png"] {
         assert!(folder.path().join("out/charts").join(name).is_file(), "{name}");
+    }
+    // The picture says the unit of the axis, the border over theory, time and audit of the failure, and what is expected.
+    let picture = fs::read_to_string(folder.path().join("out/charts/step.svg")).unwrap();
+    for text in [
+        "step (CFL number)",
+        "of 2/ω",
+        "energy_source",
+        "µs",
+        "a failure is expected",
+        "the step is beyond the limit",
+        "what is asked",
+        "3 of 3 cells as expected",
+    ] {
+        assert!(picture.contains(text), "{text}");
+    }
+    let strip = fs::read_to_string(folder.path().join("out/charts/step_strip.svg")).unwrap();
+    for text in ["step 1.5 (CFL number): unstable", "fastest node", "log10 of the speed"] {
+        assert!(strip.contains(text), "{text}");
     }
     let rows: Vec<Value> =
         serde_json::from_str(&folder.stdout(&["stability", "out", "--json", "-q"])).unwrap();
@@ -100,6 +119,29 @@ fn models_and_every_integrator_run_a_capsule() {
 }
 
 #[test]
+fn film_of_two_materials_has_the_limit_of_the_stiff_one_and_statics_is_a_method() {
+    let maps = json!({"maps": [
+        {"name": "soft", "scene": "sheet", "methods": ["explicit"], "axes": {"step": [1, 1.5], "soft": [1e-4]},
+         "border": {"along": "step", "within": 1e-3}, "theory": {"methods": ["explicit"], "within": 0.01},
+         "expect": [{"where": {"step": 1.5}, "status": "fails"}]},
+        {"name": "contact", "scene": "films", "methods": ["explicit"], "axes": {"soft": [1e-4, 1]}},
+        {"name": "bag", "scene": "bag_statics", "axes": {"flatness": [0, 1]},
+         "expect": [{"where": {"flatness": 0}, "status": ["no_equilibrium", "done"]}]},
+        {"name": "capsule", "scene": "capsule_statics", "axes": {"overpressure": [100]}}
+    ]});
+    let folder = folder(&maps);
+    let printed = folder.stdout(&RUN);
+    for text in ["contact: 2 cells\n  explicit: 2 done", "capsule: 1 cell\n  statics: 1 done"] {
+        assert!(printed.contains(text), "{printed}");
+    }
+    assert!(printed.contains("of 2/omega_max"), "{printed}");
+    let overview = fs::read_to_string(folder.path().join("out/charts/overview.svg")).unwrap();
+    for text in ["statics", "explicit", "capsule", "1 of 2", "0 of 1"] {
+        assert!(overview.contains(text), "{text}");
+    }
+}
+
+#[test]
 fn a_bad_file_gives_one_error_with_place_key_value_and_what_is_allowed() {
     let change = |change: &dyn Fn(&mut Value)| {
         let mut maps = maps();
@@ -139,6 +181,24 @@ fn a_bad_file_gives_one_error_with_place_key_value_and_what_is_allowed() {
 }
 
 #[test]
+fn the_search_of_a_border_from_zero_ends() {
+    let why = "no volume for the gas";
+    let folder = folder(&json!({"maps": [{
+        "name": "start", "scene": "bag", "methods": ["xpbd"], "axes": {"flatness": [0, 1e-6]},
+        "border": {"along": "flatness", "within": 0.05},
+        "expect": [{"where": {"flatness": 0}, "status": "unstable", "why": why},
+            {"where": {"flatness": 1e-6}, "status": "done", "why": "a reason of no failure"}]
+    }]}));
+    let printed = folder.stdout(&RUN);
+    // xpbd fails at 0 only: half of the width at which the search ends.
+    assert!(printed.contains("border xpbd: flatness 1.562e-8 (unstable)"), "{printed}");
+    let stored: Value = serde_json::from_slice(&cells(&folder)).unwrap();
+    assert_eq!(stored["cells"].as_array().unwrap().len(), 7);
+    let picture = fs::read_to_string(folder.path().join("out/charts/start.svg")).unwrap();
+    assert!(picture.contains(why) && !picture.contains("a reason of no failure"));
+}
+
+#[test]
 fn the_shipped_maps_are_read() {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies/stability.json");
     let folder = folder(&maps());
@@ -153,6 +213,6 @@ fn the_shipped_maps_are_read() {
         "--no-pictures",
     ];
     let printed = folder.stdout(&arguments);
-    assert!(printed.contains("storeys_step: 4 done, 2 invalid"), "{printed}");
-    assert!(printed.contains("border piston: fixed_step"), "{printed}");
+    assert!(printed.contains("invalid"), "{printed}");
+    assert!(printed.contains("border piston, mass_flow_rate 0.005: fixed_step"), "{printed}");
 }

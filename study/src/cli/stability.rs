@@ -15,7 +15,7 @@ use crate::platform::nearest::did_you_mean;
 use crate::platform::stop::Stop;
 use crate::stability::file::Map;
 use crate::stability::map::{Border, Placed, Running, borders, placed};
-use crate::stability::picture::{border_text, map as map_picture, strip};
+use crate::stability::picture::{border_text, map as map_picture, overview, strip};
 use crate::stability::read;
 use crate::stability::stored::{self, Cells, MAP_FILE};
 
@@ -44,7 +44,7 @@ pub struct Args {
     /// Only these maps, comma-separated.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     maps: Vec<String>,
-    /// Print every cell, not only the numbers of cells, the borders and what is not as expected.
+    /// Print every cell, not only their numbers by method and status, the borders and what is not as expected.
     #[arg(long)]
     all: bool,
     /// Draw no pictures.
@@ -141,10 +141,11 @@ fn report(
 ) -> Result<()> {
     let format = args.output.format();
     let (mut rows, mut lines, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    let mut all = Vec::new();
     for map in maps {
         let (found, borders) = (placed(map, cells), borders(map, cells));
         rows.extend(found.iter().map(|placed| row(map, placed)));
-        lines.push(summary(map, &found));
+        lines.extend(summary(map, &found));
         for border in &borders {
             let text = border_text(map, border);
             if border.wrong {
@@ -157,8 +158,17 @@ fn report(
             found.iter().filter(|placed| placed.is_wrong()).map(|one| unexpected(map, one)),
         );
         if !args.no_pictures {
-            lines.extend(draw(map, &found, &borders, rig, folder)?);
+            let of_map = map_picture(map, &found, &borders);
+            let pictures = [
+                (map.name.clone(), Some(of_map)),
+                (format!("{}_strip", map.name), strip(&rig, map, &found)),
+            ];
+            lines.extend(draw(pictures, folder)?);
         }
+        all.push((map, found));
+    }
+    if !args.no_pictures && all.len() > 1 {
+        lines.extend(draw([("overview".to_owned(), Some(overview(&all)))], folder)?);
     }
     if args.all || format != Format::Table {
         print_rows(&COLUMNS, &rows, format, out)?;
@@ -193,19 +203,23 @@ fn unexpected(map: &Map, placed: &Placed) -> String {
     format!("{}: {method}, {}: {status}{place}, expected {expected}", map.name, at.join(", "))
 }
 
-/// The numbers of cells by status.
-fn summary(map: &Map, found: &[Placed]) -> String {
-    let mut numbers: Vec<(&str, usize)> = Vec::new();
-    for placed in found {
-        let status = placed.cell.as_ref().map_or("not run", |cell| cell.status.as_str());
-        match numbers.iter_mut().find(|(known, _)| *known == status) {
-            Some((_, number)) => *number += 1,
-            None => numbers.push((status, 1)),
+/// The numbers of cells by status, of each method.
+fn summary(map: &Map, found: &[Placed]) -> Vec<String> {
+    let mut lines = vec![format!("{}: {}", map.name, count(found.len(), "cell"))];
+    for (method, cells) in map.methods.iter().zip(found.chunks(map.places().len())) {
+        let mut numbers: Vec<(&str, usize)> = Vec::new();
+        for placed in cells {
+            let status = placed.cell.as_ref().map_or("not run", |cell| cell.status.as_str());
+            match numbers.iter_mut().find(|(known, _)| *known == status) {
+                Some((_, number)) => *number += 1,
+                None => numbers.push((status, 1)),
+            }
         }
+        let texts: Vec<String> =
+            numbers.iter().map(|(status, number)| format!("{number} {status}")).collect();
+        lines.push(format!("  {}: {}", method.name(), texts.join(", ")));
     }
-    let texts: Vec<String> =
-        numbers.iter().map(|(status, number)| format!("{number} {status}")).collect();
-    format!("{}: {}", map.name, texts.join(", "))
+    lines
 }
 
 fn row(map: &Map, placed: &Placed) -> Vec<Value> {
@@ -235,20 +249,13 @@ fn row(map: &Map, placed: &Placed) -> Vec<Value> {
     row
 }
 
-/// Writes the pictures of a map. Returns their paths as lines.
+/// Writes pictures under their names. Returns their paths as lines.
 fn draw(
-    map: &Map,
-    found: &[Placed],
-    borders: &[Border],
-    rig: Rig,
+    pictures: impl IntoIterator<Item = (String, Option<String>)>,
     folder: &Path,
 ) -> Result<Vec<String>> {
     let folder = folder.join("charts");
     Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
-    let pictures = [
-        (map.name.clone(), Some(map_picture(map, found, borders))),
-        (format!("{}_strip", map.name), strip(&rig, map, found)),
-    ];
     let mut lines = Vec::new();
     for (name, svg) in pictures {
         let Some(svg) = svg else { continue };

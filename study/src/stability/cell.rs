@@ -2,8 +2,10 @@
 //!
 //! ```text
 //! ledger residual of a cell = max(largest at its samples, that of its last state)
+//! statics:                    residual force over the load; steps are those of Newton's method
 //! ```
 
+use core::ops::ControlFlow;
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -14,10 +16,12 @@ use billow_solver::output::frames::Frame;
 use billow_solver::output::ledger::residuals;
 use billow_solver::output::outcome::{Deployment, Stop as End};
 use billow_solver::scene::timeline::Timeline;
+use billow_solver::statics::{Loaded, StaticFailureKind, Tolerances, settle};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::Method;
-use super::scenes::{Prepared, StabilityScene, Values};
+use super::scenes::{Prepared, StabilityScene, Values, Vessel};
 use crate::cases::Rig;
 use crate::job::Status;
 use crate::platform::stop::Stop;
@@ -60,9 +64,9 @@ pub struct Cell {
     pub time: f64,
     /// Time that the run was to reach, s.
     pub end_time: f64,
-    /// Accepted steps.
+    /// Accepted steps; of statics Newton steps.
     pub steps: u64,
-    /// Largest ledger residual; null where it is not a number.
+    /// Largest ledger residual, of statics the residual force over the load; null where it is not a number.
     pub residual: Option<f64>,
     /// The step of the stable bound (CFL number 1) times ω/2 of a linear scene: what a step of 1 is as a fraction of
     /// 2/ω; null for a scene that is not linear.
@@ -138,6 +142,47 @@ fn answer(
             let blank = Cell { end_time: scene.solver.end_time, ..blank.clone() };
             Ok(judged(&deployment, None, blank))
         }
+        Prepared::Statics(vessel) => Ok(settled(rig, &vessel, stop, blank.clone())),
+    }
+}
+
+/// The cell of a search for a static equilibrium.
+fn settled(rig: &Rig, vessel: &Vessel, stop: &Stop, blank: Cell) -> Option<Cell> {
+    let loaded = Loaded {
+        model: &vessel.model,
+        supports: &vessel.supports,
+        overpressure: vessel.overpressure,
+        gravity: Vector3::zeros(),
+        instruction_set: rig.instruction_set,
+    };
+    let observer = &mut |_: &_| match stop.requested() {
+        None => ControlFlow::Continue(()),
+        Some(_) => ControlFlow::Break(()),
+    };
+    let finite = |residual: f64| Some(residual).filter(|value| value.is_finite());
+    match settle(&loaded, &vessel.positions, None, &Tolerances::default(), observer) {
+        Ok(found) => Some(Cell {
+            status: Status::Done.name().to_owned(),
+            steps: found.iterations.into(),
+            residual: finite(found.residual),
+            ..blank
+        }),
+        Err(failure) => {
+            let audit = match failure.kind {
+                StaticFailureKind::Stopped => return None,
+                StaticFailureKind::IterationLimit => "iteration_limit",
+                StaticFailureKind::Stalled => "stalled",
+                StaticFailureKind::NotFinite => "not_finite",
+            };
+            Some(Cell {
+                status: Status::NoEquilibrium.name().to_owned(),
+                audit: audit.to_owned(),
+                place: failure.to_string(),
+                steps: failure.iterations.into(),
+                residual: finite(failure.residual),
+                ..blank
+            })
+        }
     }
 }
 
@@ -163,34 +208,47 @@ fn judged(deployment: &Deployment, last: Option<f64>, blank: Cell) -> Option<Cel
     }
 }
 
+/// A shape of a run, and what the ledger says there.
+pub struct Shape {
+    /// The shape.
+    pub frame: Frame,
+    /// Ledger residual.
+    pub residual: f64,
+}
+
 /// Shapes of the run of a cell, evenly spaced in steps up to the last state, and the film they belong to. `None`
-/// for a scene without a mesh, or one that cannot be built.
+/// for a scene without motion of film, or one that cannot be built.
 pub fn shapes(
     rig: &Rig,
     question: &Question,
     cell: &Cell,
     count: u64,
-) -> Option<(FilmRun, Vec<Frame>)> {
+) -> Option<(FilmRun, Vec<Shape>)> {
     let built = (question.scene.build)(rig, question.method, &question.values).ok()?;
     let Prepared::Film(mut film, timeline, _) = built else { return None };
-    let frames = pauses(&mut film, &timeline, cell.steps, count);
-    Some((*film, frames))
+    let shapes = pauses(&mut film, &timeline, cell.steps, count);
+    Some((*film, shapes))
 }
 
-/// Frames at pauses of a run: a pause changes no bit of it.
-fn pauses(film: &mut FilmRun, timeline: &Timeline, steps: u64, count: u64) -> Vec<Frame> {
-    let mut frames: Vec<Frame> = film.frame().into_iter().collect();
+/// Shapes at pauses of a run: a pause changes no bit of it.
+fn pauses(film: &mut FilmRun, timeline: &Timeline, steps: u64, count: u64) -> Vec<Shape> {
+    let start = film.view().ledger();
+    let shape = |film: &FilmRun| {
+        let residual = residuals(&[start, film.view().ledger()]).pop().unwrap_or(0.0);
+        film.frame().map(|frame| Shape { frame, residual })
+    };
+    let mut shapes: Vec<Shape> = shape(film).into_iter().collect();
     let (mut progress, stop) = (Run::default(), Stop::new());
     for part in 1..count {
         let due = (steps * part / (count - 1)).saturating_sub(film.steps());
         // The last part goes on to the failure.
         let due = if part + 1 == count { due + 1 } else { due.max(1) };
         let ended = progress.advance(film, timeline, due, &mut Listener(&stop));
-        frames.extend(film.frame());
+        shapes.extend(shape(film));
         if ended.is_some() {
             break;
         }
     }
-    frames.retain(|frame| frame.positions.iter().flatten().all(|x| x.is_finite()));
-    frames
+    shapes.retain(|shape| shape.frame.positions.iter().flatten().all(|x| x.is_finite()));
+    shapes
 }

@@ -1,8 +1,9 @@
 //! Runs the cells of maps, in parallel, and searches the borders.
 //!
 //! ```text
-//! border: done at a, failing at b  →  the same at half the way, until |b − a| ≤ within · max(|a|, |b|)
+//! border: done at a, failing at b  →  the same at half the way, until |b − a| ≤ within · max(|a|, |b|, s)
 //!         half the way: √(ab) if both are above 0, (a + b)/2 otherwise
+//!         s: smallest value above 0 of the axis; without it a search from 0 never ends
 //! ```
 //!
 //! Every trial is a cell, so a search that continues finds its trials among the finished cells.
@@ -199,7 +200,10 @@ fn border(map: &Map, line: &Line, cell: &dyn Fn(&Question) -> Result<Cell>) -> R
         return Ok(none(bound.is_some()));
     };
     let mut failing = if first.is_done() { last } else { first.clone() };
-    while high - low > search.within * high.abs().max(low.abs()) {
+    let smallest =
+        values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
+    let smallest = if smallest.is_finite() { smallest } else { 0.0 };
+    while high - low > search.within * high.abs().max(low.abs()).max(smallest) {
         let middle = if low > 0.0 { (low * high).sqrt() } else { 0.5 * (low + high) };
         let trial = ask(middle)?;
         if !trial.is_done() {

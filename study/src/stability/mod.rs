@@ -6,7 +6,8 @@
 //! linear scenes:  largest stable step = 2/ω_max
 //! ```
 //!
-//! A method is an integrator of film (each of [`IntegratorKind::ALL`]) or a model without film. A map file
+//! A method is an integrator of film (each of [`IntegratorKind::ALL`]), a model without film, or the search for a static
+//! equilibrium. A map file
 //! ([`mod@file`]) names scenes, axes and what is expected of each cell. The runs go to the solver directly: a step
 //! beyond the stable one is outside the range of `solver.cfl`, and the map must show what it does.
 
@@ -30,13 +31,15 @@ pub enum Method {
     Piston,
     /// The model storeys.
     Storeys,
+    /// The search for a static equilibrium.
+    Statics,
 }
 
 impl Method {
-    /// Every method: all integrators, then the models without film.
+    /// Every method: all integrators, then the models without film, then statics.
     pub fn all() -> Vec<Self> {
         let film = IntegratorKind::ALL.map(Self::Film);
-        film.into_iter().chain([Self::Piston, Self::Storeys]).collect()
+        film.into_iter().chain([Self::Piston, Self::Storeys, Self::Statics]).collect()
     }
 
     /// Name, as in a map file.
@@ -45,6 +48,7 @@ impl Method {
             Self::Film(kind) => integrators::entry(kind).name,
             Self::Piston => "piston",
             Self::Storeys => "storeys",
+            Self::Statics => "statics",
         }
     }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Method;
-use super::file::{ANY, Axis, FAILS, Map, Rule, Search, Theory};
+use super::file::{ANY, Axis, Choice, FAILS, Map, Rule, Search, Theory};
 use super::scenes::{self, Parameter, SCENES, StabilityScene, Values};
 use crate::input::study_file::{self, Json, with_place};
 use crate::job::Status;
@@ -75,6 +75,12 @@ fn text<'a>(json: &'a Json, key: &str) -> Checked<&'a str> {
     }
 }
 
+/// The text of a member; empty without it.
+fn optional_text(json: &Json, key: &str, name: &str) -> Checked<String> {
+    json.get(name)
+        .map_or(Ok(String::new()), |json| text(json, &format!("{key}.{name}")).map(str::to_owned))
+}
+
 fn number(json: &Json, key: &str, range: [f64; 2]) -> Checked<f64> {
     let value = match json {
         Json::Integer(value) => *value as f64,
@@ -136,7 +142,7 @@ fn methods(json: &Json, key: &str, scene: &StabilityScene) -> Checked<Vec<Method
         let name = text(json, &key)?;
         let named = |method: &Method| match method {
             Method::Film(_) => name == FILM || method.name() == name,
-            Method::Piston | Method::Storeys => method.name() == name,
+            Method::Piston | Method::Storeys | Method::Statics => method.name() == name,
         };
         let methods: Vec<Method> = scene.methods().into_iter().filter(named).collect();
         if methods.is_empty() {
@@ -173,8 +179,18 @@ fn maps(json: &Json) -> Checked<Vec<Map>> {
 }
 
 fn map(json: &Json, key: &str) -> Checked<Map> {
-    let known =
-        ["name", "description", "scene", "methods", "axes", "values", "border", "theory", "expect"];
+    let known = [
+        "name",
+        "description",
+        "scene",
+        "methods",
+        "axes",
+        "values",
+        "border",
+        "theory",
+        "strip",
+        "expect",
+    ];
     members(json, key, &known)?;
     let name_key = format!("{key}.name");
     let name_json = needed(json, key, "name")?;
@@ -207,6 +223,11 @@ fn map(json: &Json, key: &str) -> Checked<Map> {
         let within = number(needed(json, &key, "within")?, &format!("{key}.within"), [0.0, 1.0])?;
         Ok(Theory { methods: methods(json, &key, scene)?, within })
     });
+    let strip = json.get("strip").map(|json| {
+        let key = format!("{key}.strip");
+        members(json, &key, &["methods", "where"])?;
+        choice(json, &key, scene)
+    });
     let rules = match json.get("expect") {
         Some(given) => {
             let key = format!("{key}.expect");
@@ -217,12 +238,14 @@ fn map(json: &Json, key: &str) -> Checked<Map> {
     };
     Ok(Map {
         name,
+        description: optional_text(json, key, "description")?,
         scene,
         methods: methods_of_map,
         values,
         axes,
         search: search.transpose()?,
         theory: theory.transpose()?,
+        strip: strip.transpose()?,
         rules,
     })
 }
@@ -273,8 +296,8 @@ fn search(json: &Json, key: &str, axes: &[Axis]) -> Checked<Search> {
     Ok(Search { axis, within })
 }
 
-fn rule(json: &Json, key: &str, scene: &'static StabilityScene) -> Checked<Rule> {
-    members(json, key, &["methods", "where", "status", "why"])?;
+/// The cells that `methods` and `where` name.
+fn choice(json: &Json, key: &str, scene: &'static StabilityScene) -> Checked<Choice> {
     let mut place = Vec::new();
     if let Some(Json::Object(given)) = json.get("where") {
         for (name, json) in given {
@@ -290,6 +313,11 @@ fn rule(json: &Json, key: &str, scene: &'static StabilityScene) -> Checked<Rule>
             place.push((parameter.name, range));
         }
     }
+    Ok(Choice { methods: methods(json, key, scene)?, place })
+}
+
+fn rule(json: &Json, key: &str, scene: &'static StabilityScene) -> Checked<Rule> {
+    members(json, key, &["methods", "where", "status", "why"])?;
     let (status_key, status) = (format!("{key}.status"), needed(json, key, "status")?);
     let given: Vec<&Json> = match status {
         Json::List(items) => items.iter().collect(),
@@ -308,5 +336,6 @@ fn rule(json: &Json, key: &str, scene: &'static StabilityScene) -> Checked<Rule>
         Err(refuse(&status_key, json, "unknown status", &names.join(", "), near))
     };
     let statuses = given.into_iter().map(word).collect::<Checked<Vec<String>>>()?;
-    Ok(Rule { methods: methods(json, key, scene)?, place, statuses })
+    let why = optional_text(json, key, "why")?;
+    Ok(Rule { of: choice(json, key, scene)?, statuses, why })
 }

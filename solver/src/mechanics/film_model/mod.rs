@@ -94,7 +94,7 @@ pub struct FilmModel {
     pub closure_nodes: ClosureNodes,
     /// Dm⁻¹ of each element, row by row, 1/m; 4 × `N_e`.
     pub inverse_shape: [Vec<f64>; 4],
-    /// A t of each element, m³; `N_e`.
+    /// A t of each element, m³; `N_e`. Times the factor of its modulus after [`Self::with_stiffness`].
     pub volume: Vec<f64>,
     /// `ω_e` of each element, rad/s; `N_e`.
     pub frequency: Vec<f64>,
@@ -217,6 +217,30 @@ impl FilmModel {
         model.corners = Corners::new(&model.kites, nodes);
         model.constants = ElementBlock::all(&model, &kites);
         Ok(model)
+    }
+
+    /// The same film with the modulus of each element times its factor: several materials in one film. Masses stay.
+    ///
+    /// ```text
+    /// A t → k A t in forces and energies        ω_e → √k ω_e,  2ζ/ω_e → 2ζ/(√k ω_e)
+    /// ```
+    ///
+    /// Tensions are those of the factor; stresses, which are tensions over the thickness, are not: a recorded stress
+    /// is that of the factor 1.
+    ///
+    /// # Panics
+    /// If the number of factors is not that of the elements.
+    #[must_use]
+    pub fn with_stiffness(mut self, factors: &[f64]) -> Self {
+        assert_eq!(factors.len(), self.elements(), "one factor an element");
+        for (element, factor) in factors.iter().enumerate() {
+            self.volume[element] *= factor;
+            self.frequency[element] *= factor.sqrt();
+            self.damping_time[element] /= factor.sqrt();
+        }
+        self.largest_frequency = self.frequency.iter().copied().fold(0.0, f64::max);
+        self.constants = ElementBlock::all(&self, &kites::pair_elements(&self.triangles));
+        self
     }
 
     /// Injects a fault into the constants, for tests only. Frequencies and damping times stay correct.

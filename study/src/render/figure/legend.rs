@@ -1,10 +1,11 @@
 //! The legend, below the plots, so that it never covers data.
 
 use super::map;
+use super::outcome;
 use super::plot::line::Direction;
 use super::plot::range::{self, FAINT, FAINT_OPACITY};
 use super::plot::rule;
-use super::style::{self, Fill, MEDIUM, PLAIN, SMALL, Series};
+use super::style::{self, Fill, MEDIUM, Outcome, PLAIN, SMALL, Series};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, cut};
 
@@ -36,6 +37,12 @@ pub enum Sample {
     Absent,
     /// A cell with a thick frame: it misses a limit.
     Missed,
+    /// A cell of an outcome.
+    Outcome(Outcome),
+    /// A cell with the corner of those in which a failure is expected.
+    Expected,
+    /// The line between runs that end well and those that fail.
+    Border,
     /// A shaded area.
     Area,
     /// A line in a shaded range.
@@ -145,6 +152,18 @@ fn draw_sample(page: &mut Page, sample: &Sample, left: Position) {
             page.frame([left[0], left[1] - 1.9], [4.0, 3.8], &style::HATCH);
             map::draw_missed(page, [left[0], left[1] - 1.9], [4.0, 3.8], "#000000");
         }
+        Sample::Outcome(outcome) => {
+            let corner = [left[0], left[1] - 1.9];
+            page.fill(corner, [4.0, 3.8], outcome.ground());
+            page.frame(corner, [4.0, 3.8], &style::HATCH);
+            outcome.draw(page, [middle[0], left[1]]);
+        }
+        Sample::Expected => {
+            let corner = [left[0], left[1] - 1.9];
+            page.frame(corner, [4.0, 3.8], &style::HATCH);
+            outcome::draw_expected(page, [corner[0] + 4.0, corner[1]], "#000000");
+        }
+        Sample::Border => page.line(left, [left[0] + 4.2, left[1]], &outcome::BORDER),
         Sample::Area => area(page, left, 4.0),
         Sample::Band => {
             area(page, left, LINE_SAMPLE - 2.0);

@@ -1,4 +1,4 @@
-//! Figures: plots ([`plot`]) and maps ([`map`]) with a title above, a legend and notes below.
+//! Figures: plots ([`plot`]), maps ([`map`]) and maps of outcomes ([`outcome`]) with a title above, a legend and notes below.
 //!
 //! Values are given in the units in which they are shown. Sizes are those of print: 160 mm wide, texts of
 //! at least 8 pt. Series never differ in colour only ([`style`]).
@@ -9,6 +9,7 @@ use super::page::{Letters, Page, wrapped};
 
 pub mod legend;
 pub mod map;
+pub mod outcome;
 pub mod plot;
 pub mod scale;
 pub mod style;

@@ -6,9 +6,10 @@ use billow_solver::scene::film_scene::{Filling, FilmScene};
 use billow_solver::scene::paper::{TEMPERATURE, free_film, nitrogen_supply, window};
 use nalgebra::Vector3;
 
-use super::film::{prepared, stable_step};
+use super::film::{Parts, prepared, stable_step};
 use super::{
-    DAMPING, MODULUS, Prepared, STEP, StabilityScene, THICKNESS, Values, compression, real, whole,
+    DAMPING, MODULUS, Prepared, Runs, STEP, StabilityScene, THICKNESS, Values, compression, real,
+    whole,
 };
 use crate::cases::Rig;
 use crate::stability::Method;
@@ -31,13 +32,13 @@ pub const SCENE: StabilityScene = StabilityScene {
         THICKNESS,
         MODULUS,
         whole("level", 1.0, [0.0, 3.0], "refinements of the icosahedron"),
-        real("flatness", 0.3, [0.0, 1.0], "height at the start over that of the sphere"),
-        real("mass_flow_rate", 5e-3, [0.0, 1e3], "inflow from 0 to the end, kg/s"),
-        real("residual_pressure", 1.0, [0.0, 1e9], "pressure of the gas at the start, Pa"),
-        real("burst_steps", 0.0, [0.0, 1e3], "length of a burst in stable steps; 0 for none"),
-        real("burst_mass", 1e-4, [0.0, 1.0], "mass of the burst, kg"),
+        real("flatness", 0.3, [0.0, 1.0], "ratio", "height at the start over that of the sphere"),
+        real("mass_flow_rate", 5e-3, [0.0, 1e3], "kg/s", "inflow from 0 to the end"),
+        real("residual_pressure", 1.0, [0.0, 1e9], "Pa", "pressure of the gas at the start"),
+        real("burst_steps", 0.0, [0.0, 1e3], "stable steps", "length of a burst; 0: none"),
+        real("burst_mass", 1e-4, [0.0, 1.0], "kg", "mass of the burst"),
     ],
-    models: false,
+    runs: Runs::Film,
     build,
 };
 
@@ -67,6 +68,6 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
             supply.windows.push(burst);
         }
     }
-    let (run, timeline) = prepared(rig, scene, kind, values, None)?;
+    let (run, timeline) = prepared(rig, scene, kind, values, Parts::default())?;
     Ok(Prepared::Film(Box::new(run), timeline, None))
 }

@@ -7,9 +7,9 @@ use billow_solver::scene::monitor_settings::MonitorSettings;
 use billow_solver::scene::paper::{self, window};
 use billow_solver::scene::{ModelKind, Scene, Stepping};
 
-use super::film::prepared;
+use super::film::{Parts, prepared};
 use super::{
-    CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, STEP, StabilityScene, THICKNESS, Values,
+    CONTACT_STIFFNESS, MODULUS, Parameter, Prepared, Runs, STEP, StabilityScene, THICKNESS, Values,
     compression, real, whole,
 };
 use crate::cases::Rig;
@@ -37,14 +37,20 @@ pub const SCENE: StabilityScene = StabilityScene {
         MODULUS,
         CONTACT_STIFFNESS,
         whole("subdivisions", 2.0, [2.0, 6.0], "design.subdivisions"),
-        real("stowed_height", paper::STOWED_HEIGHT, [1e-6, 0.5], "design.stowed_height, m"),
-        real("mass_flow_rate", paper::MASS_FLOW_RATE, [0.0, 1e3], "inflow from 0 to the end, kg/s"),
-        real("residual_mass", 0.0, [0.0, 10.0], "mass of the gas at the start, kg"),
-        real("burst", 0.0, [0.0, 0.04], "length of a burst, s; 0 for none"),
-        real("burst_mass", 1e-4, [0.0, 1.0], "mass of the burst, kg"),
-        real("fixed_step", 0.0, [0.0, 0.05], "fixed step of the model piston, s; 0: adaptive"),
+        real("stowed_height", paper::STOWED_HEIGHT, [1e-6, 0.5], "m", "design.stowed_height"),
+        real(
+            "mass_flow_rate",
+            paper::MASS_FLOW_RATE,
+            [0.0, 1e3],
+            "kg/s",
+            "inflow from 0 to the end",
+        ),
+        real("residual_mass", 0.0, [0.0, 10.0], "kg", "mass of the gas at the start"),
+        real("burst", 0.0, [0.0, 0.04], "s", "length of a burst; 0: none"),
+        real("burst_mass", 1e-4, [0.0, 1.0], "kg", "mass of the burst"),
+        real("fixed_step", 0.0, [0.0, 0.05], "s", "fixed step of the model piston; 0: adaptive"),
     ],
-    models: true,
+    runs: Runs::FilmAndModels,
     build,
 };
 
@@ -75,6 +81,7 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
     let step = values.get("step");
     let kind = match method {
         Method::Film(kind) => kind,
+        Method::Statics => return Err("no statics".to_owned()),
         Method::Piston | Method::Storeys => {
             let fixed = values.get("fixed_step");
             (scene.solver.model, scene.solver.stepping) = match method {
@@ -98,6 +105,6 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
     let contact = FilmContact { monitor, ..FilmContact::of(&scene.contact) };
     let contact = capsule::resolved_contact(contact, &scene.design).map_err(text)?;
     let film = FilmScene { contact: Some(contact), ..film };
-    let (run, timeline) = prepared(rig, film, kind, values, Some(Rings::of(&mesh, height)))?;
+    let (run, timeline) = prepared(rig, film, kind, values, Parts::of(Rings::of(&mesh, height)))?;
     Ok(Prepared::Film(Box::new(run), timeline, None))
 }

@@ -18,6 +18,22 @@ const MAX_STEPS: f64 = 50.0;
 /// Most steps of any run. Chosen: minutes of a small scene.
 const MOST_STEPS: f64 = 1e7;
 
+/// Parts of a film.
+#[derive(Default)]
+pub(super) struct Parts {
+    /// Factor of the modulus of each element, at most 1; empty for one material.
+    pub(super) factors: Vec<f64>,
+    /// Rings of a capsule.
+    pub(super) rings: Option<Rings>,
+}
+
+impl Parts {
+    /// The parts of a capsule.
+    pub(super) fn of(rings: Rings) -> Self {
+        Self { rings: Some(rings), ..Self::default() }
+    }
+}
+
 /// The step that a film of a scene takes at the CFL number 1, s.
 ///
 /// # Errors
@@ -41,7 +57,7 @@ pub(super) fn prepared(
     mut scene: FilmScene,
     kind: IntegratorKind,
     values: &Values,
-    rings: Option<Rings>,
+    parts: Parts,
 ) -> Result<(FilmRun, Timeline), String> {
     let step = values.get("step");
     let end = scene.solver.end_time;
@@ -52,12 +68,15 @@ pub(super) fn prepared(
     scene.solver.cfl = step.min(1.0);
     let film = capsule::start(&rig.on_instruction_set(&scene), &[]).map_err(|e| e.to_string())?;
     let (mut system, state, settings) = film.into_parts();
+    if parts.factors.iter().any(|factor| *factor < 1.0) {
+        system.model = system.model.with_stiffness(&parts.factors);
+    }
     if let Some(contact) = &mut system.contact {
         contact.stiffness_per_mass *= values.get("contact_stiffness");
     }
     let settings = SimulationSettings { cfl: step, step_limit, ..settings };
     let film = FilmSimulation::new(system, settings, state.positions, state.velocities, state.gas);
-    Ok((FilmRun::with(film, &scene, rings), Timeline::of_film(&scene)))
+    Ok((FilmRun::with(film, &scene, parts.rings), Timeline::of_film(&scene)))
 }
 
 /// A count of steps; [`MOST_STEPS`] where the stable step is not a number.

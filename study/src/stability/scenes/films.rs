@@ -6,10 +6,10 @@ use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::film::prepared;
+use super::film::{Parts, prepared};
 use super::{
-    CONTACT_STIFFNESS, DAMPING, MODULUS, Prepared, STEP, StabilityScene, THICKNESS, Values,
-    compression, real,
+    CONTACT_STIFFNESS, DAMPING, MODULUS, Prepared, Runs, STEP, StabilityScene, THICKNESS, Values,
+    compression, real, soft,
 };
 use crate::cases::Rig;
 use crate::cases::contact_rig::monitored_contact;
@@ -31,22 +31,24 @@ pub const SCENE: StabilityScene = StabilityScene {
         THICKNESS,
         MODULUS,
         CONTACT_STIFFNESS,
-        real("speed", 5.0, [0.0, 1e4], "speed of approach, m/s"),
+        real("speed", 5.0, [0.0, 1e4], "m/s", "speed of approach"),
         real(
             "gap",
             2.0,
             [0.0, 100.0],
-            "gap at the start in contact distances (2 mm); 0: facets coincide",
+            "contact distances",
+            "gap at the start; the contact distance is 2 mm; 0: facets coincide",
         ),
+        soft("modulus of the upper sheet over that of the lower one"),
     ],
-    models: false,
+    runs: Runs::Film,
     build,
 };
 
 fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String> {
     let Method::Film(kind) = method else { return Err("film only".to_owned()) };
     let low = sheet(4, 3, 0.2, 0.15);
-    let nodes = low.positions.len();
+    let (nodes, elements) = (low.positions.len(), low.triangles.len());
     let rise = Vector3::z() * (values.get("gap") * DISTANCE);
     let high = moved(sheet(4, 3, 0.2, 0.15), |x| x + rise);
     let high = Shell::relaxed(high.positions, high.triangles);
@@ -59,6 +61,9 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
         ..free_film(shell, values.film())
     };
     scene.solver.end_time = END;
-    let (run, timeline) = prepared(rig, scene, kind, values, None)?;
+    let soft = values.get("soft");
+    let factors = (0..2 * elements).map(|element| if element < elements { 1.0 } else { soft });
+    let parts = Parts { factors: factors.collect(), rings: None };
+    let (run, timeline) = prepared(rig, scene, kind, values, parts)?;
     Ok(Prepared::Film(Box::new(run), timeline, None))
 }

@@ -10,9 +10,10 @@ use billow_solver::scene::film_scene::FilmScene;
 use billow_solver::scene::paper::free_film;
 use nalgebra::Vector3;
 
-use super::film::{prepared, stable_step};
+use super::film::{Parts, prepared, stable_step};
 use super::{
-    DAMPING, MODULUS, Prepared, STEP, StabilityScene, THICKNESS, Values, compression, real,
+    DAMPING, MODULUS, Prepared, Runs, STEP, StabilityScene, THICKNESS, Values, compression, real,
+    soft,
 };
 use crate::cases::{Rig, step_limit};
 use crate::stability::Method;
@@ -34,15 +35,23 @@ pub const SCENE: StabilityScene = StabilityScene {
         compression(1.0),
         THICKNESS,
         MODULUS,
-        real("sliver", 1.0, [1e-6, 1.0], "height of the elements over that of well-shaped ones"),
+        real(
+            "sliver",
+            1.0,
+            [1e-6, 1.0],
+            "ratio",
+            "height of the elements over that of well-shaped ones",
+        ),
         real(
             "slack",
             0.0,
             [0.0, 0.9],
+            "ratio",
             "share by which the sheet starts shortened in both directions",
         ),
+        soft("modulus of the left half of the sheet over that of the right half"),
     ],
-    models: false,
+    runs: Runs::Film,
     build,
 };
 
@@ -50,7 +59,16 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
     let Method::Film(kind) = method else { return Err("film only".to_owned()) };
     let film = values.film();
     let flat = sheet(4, 3, SIZE[0], SIZE[1] * values.get("sliver"));
-    let model = FilmModel::of_shell(&film, &flat).map_err(|error| error.to_string())?;
+    let soft = values.get("soft");
+    let left = |triangle: &[u32; 3]| {
+        let x = triangle.map(|node| flat.positions[node as usize].x);
+        x.iter().sum::<f64>() < 1.5 * SIZE[0]
+    };
+    let factors: Vec<f64> =
+        flat.triangles.iter().map(|triangle| if left(triangle) { soft } else { 1.0 }).collect();
+    let model = FilmModel::of_shell(&film, &flat)
+        .map_err(|error| error.to_string())?
+        .with_stiffness(&factors);
     let (compression, slack) = (film.compression, values.get("slack"));
     let linear = compression.to_bits() == 1.0_f64.to_bits() && slack.to_bits() == 0;
     let omega = linear.then(|| step_limit::assembled(&flat, &film, &model));
@@ -59,6 +77,6 @@ fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String>
     let velocities = pseudo_random(shell.positions.len(), 4).iter().map(kick).collect();
     let mut scene = FilmScene { velocities, ..free_film(shell, film) };
     scene.solver.end_time = STEPS * values.get("step") * stable_step(rig, &scene)?;
-    let (run, timeline) = prepared(rig, scene, kind, values, None)?;
+    let (run, timeline) = prepared(rig, scene, kind, values, Parts { factors, rings: None })?;
     Ok(Prepared::Film(Box::new(run), timeline, omega))
 }

@@ -54,7 +54,7 @@ pub fn map_marker(page: &mut Page, centre: Position, colour: &'static str, fill:
 
 /// Draws a marker shape (0 to 6) with its outline, inner colour, the cross of
 /// [`Fill::Crossed`] and the filled half of [`Fill::Half`].
-fn draw_shape(
+pub(super) fn draw_shape(
     page: &mut Page,
     centre: Position,
     shape: usize,

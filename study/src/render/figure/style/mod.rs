@@ -10,8 +10,10 @@
 use crate::render::page::Stroke;
 
 mod marker;
+mod outcome;
 
 pub use self::marker::{Fill, cross, map_marker, marker, plain_marker};
+pub use self::outcome::Outcome;
 
 /// Size of the numbers of axes, legends and notes, mm: 8 pt and more.
 pub const SMALL: f64 = 2.9;
@@ -19,6 +21,8 @@ pub const SMALL: f64 = 2.9;
 pub const MEDIUM: f64 = 3.2;
 /// Size of the title, mm: 11 pt.
 pub const LARGE: f64 = 3.9;
+/// Size of the shape of an outcome, mm.
+const MARKER_SIZE: f64 = 2.2;
 /// Width of every figure, mm: a column of text on A4.
 pub const PAGE_WIDTH: f64 = 160.0;
 /// Margin round a figure, mm.
@@ -168,9 +172,13 @@ fn luminance(colour: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    fn rgb(text: &str) -> [f64; 3] {
+    pub(super) fn rgb(text: &str) -> [f64; 3] {
         let channel = |i| f64::from(u8::from_str_radix(&text[i..i + 2], 16).unwrap());
         [channel(1), channel(3), channel(5)]
+    }
+
+    pub(super) fn luminance_of(text: &str) -> f64 {
+        luminance(rgb(text))
     }
 
     #[test]

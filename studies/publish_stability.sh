@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Runs studies/stability.json (a quarter of an hour on two cores; finished cells are not run again) and writes the maps, borders
+# and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv, overview.png, one SVG a map, and the strips of
+# the page.
+#
+# usage: studies/publish_stability.sh [BILLOW [RESULTS]]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+billow=${1:-target/release/billow}
+results=${2:-results/stability}
+out=$results/published
+mkdir -p "$out"
+rm -rf "$results/charts"
+
+# Outcomes that are not as expected end this script; the pictures and lines that show them are written before.
+code=0
+"$billow" stability studies/stability.json --results "$results" > "$results/maps.txt" || code=$?
+# A run that was stopped draws nothing, and what is published stays.
+[ -d "$results/charts" ] || exit "$code"
+sed "\\|$results/charts/|d" "$results/maps.txt" > "$out/maps.txt"
+"$billow" stability "$results" --all --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
+
+rm -f "$out"/*.svg "$out"/*.png
+for picture in "$results"/charts/*.svg; do
+  case $picture in
+    *_strip.svg) ;;
+    *) cp "$picture" "$out" ;;
+  esac
+done
+# Pictures of the page: SVG has a tenth of the size of PNG.
+for picture in overview.png step_strip.svg step_bag_strip.svg residual_gas_strip.svg stowed_height_strip.svg; do
+  if [ -f "$results/charts/$picture" ]; then cp "$results/charts/$picture" "$out"; fi
+done
+echo "written to $out: $(find "$out" -type f | wc -l) files, $(du -sk "$out" | cut -f 1) KiB; exit code of the maps: $code"
+exit "$code"
