@@ -22,6 +22,8 @@ pub enum Outcome {
     StepLimit,
     /// Film in film.
     Interpenetrated,
+    /// The state contradicts itself.
+    Inconsistent,
     /// No static equilibrium.
     NoEquilibrium,
     /// Refused before it began.
@@ -51,7 +53,7 @@ enum Shape {
 
 impl Outcome {
     /// Every outcome.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Done,
         Self::Unstable,
         Self::Overstretched,
@@ -59,6 +61,7 @@ impl Outcome {
         Self::InvertedVolume,
         Self::StepLimit,
         Self::Interpenetrated,
+        Self::Inconsistent,
         Self::NoEquilibrium,
         Self::Refused,
         Self::Other,
@@ -73,11 +76,12 @@ impl Outcome {
             Self::InvertedVolume => ("#cc79a7", Shape::Marker(4)),
             Self::StepLimit => ("#56b4e9", Shape::Marker(6)),
             Self::Interpenetrated => ("#0072b2", Shape::Marker(3)),
+            Self::Inconsistent => ("#8c510a", Shape::Marker(0)),
             Self::NoEquilibrium => ("#f0e442", Shape::Marker(5)),
             Self::Refused => ("#b0b0b0", Shape::Bar),
             Self::Other => ("#000000", Shape::Cross),
         };
-        let dark = matches!(self, Self::Interpenetrated | Self::Other);
+        let dark = matches!(self, Self::Interpenetrated | Self::Inconsistent | Self::Other);
         Look { ground, ink: if dark { "#ffffff" } else { "#000000" }, shape }
     }
 
