@@ -79,6 +79,21 @@ fn failed_jobs_give_exit_code_1_and_rows() {
     assert!(failed.iter().all(|row| row["verdict"].is_null()));
 }
 
+/// The command that a failed run names lists the failed jobs, with replicates too.
+#[test]
+fn the_next_step_of_a_failed_run_works_with_replicates() {
+    let mut study = small_grid();
+    study["solver"]["step_limit"] = json!(3);
+    study["replicates"] = json!({"film.thickness": ["25 um", "26 um"]});
+    let folder = TestFolder::new(&study);
+    let said = stderr(&folder.run(&["run", "grid.json", "-q"]));
+    let command = said.lines().find_map(|line| line.split_once("next: billow "));
+    let words: Vec<&str> = command.expect("a next step").1.split([' ', ';']).collect();
+    let words: Vec<&str> = words.into_iter().take_while(|word| !word.is_empty()).collect();
+    let table = folder.stdout(&words);
+    assert_eq!(table.matches("step_limit").count(), 32, "{words:?} {table}");
+}
+
 #[test]
 fn table_selects_sorts_and_filters() {
     let folder = TestFolder::new(&small_grid());

@@ -168,7 +168,7 @@ pub(super) fn run_study(
     let answer = Answer::of(&stored);
     let ended = Ended { study, root, summary: &summary, points: stored.planned_runs() };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
-    result(&summary, &limits, root, &Applicable::of(&stored))
+    result(study, &summary, &limits, root, &Applicable::of(&stored))
 }
 
 /// The error of a run that a signal stopped. A signal after the last job has stopped nothing.
@@ -189,7 +189,13 @@ fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
 }
 
 /// The error of a run, if it has one.
-fn result(summary: &Summary, limits: &JobLimits, root: &Path, remedies: &Applicable) -> Result<()> {
+fn result(
+    study: &Study,
+    summary: &Summary,
+    limits: &JobLimits,
+    root: &Path,
+    remedies: &Applicable,
+) -> Result<()> {
     if !summary.different.is_empty() {
         return Err(Error::JobsFailed(format!(
             "{} gave different bits than before: {}\n  next: billow show JOB; compare \
@@ -201,10 +207,12 @@ fn result(summary: &Summary, limits: &JobLimits, root: &Path, remedies: &Applica
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed{}\n  next: billow table {} --columns job,status,reason,stop_time,stop_location{}{}",
+            "{} failed{}\n  next: billow table {}{} --columns job,status,reason,stop_time,stop_location{}{}",
             count(failed, "job"),
             limited(&summary.counts.failures()),
             root.display(),
+            // A point of several runs has no job.
+            if study.replicate_count() > 1 { " --runs" } else { "" },
             next_with_remedy(remedies, root),
             next_of_limited(summary, limits, root),
         ))),
