@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::print::count;
+use crate::input::value::Value;
 use crate::job::point::Point;
 use crate::job::remedy::{Failure, remedies};
-use crate::job::row::Cells;
+use crate::job::row::{Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::store::remedied::Attempt;
 use crate::store::stored::Stored;
+use crate::store::table::Table;
 
 /// Remedies that one line names, at most.
 const MAX_NAMED: usize = 3;
@@ -18,6 +20,16 @@ pub(super) const NONE: &str = "no further remedy is known";
 
 /// A line: its topic and its text.
 pub(super) type Line = (&'static str, String);
+
+/// The note on a table with rows whose result a remedy gave.
+pub(super) fn note(table: &Table) -> Option<String> {
+    let column = table.column(ColumnId::Remedy.name())?;
+    let rows = column.cells.iter().filter(|cell| **cell != Value::Null).count();
+    (rows > 0).then(|| {
+        let rows = count(rows, "row");
+        format!("note: {rows} with other numerical settings than planned (column remedy)")
+    })
+}
 
 /// What only the user can decide about the run of a point.
 pub(super) fn proposed(cells: &Cells, point: &Point) -> Vec<&'static str> {

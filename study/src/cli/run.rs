@@ -207,12 +207,13 @@ fn result(
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed{}\n  next: billow table {}{} --columns job,status,reason,stop_time,stop_location{}{}",
+            "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow why JOB {}{}{}",
             count(failed, "job"),
             limited(&summary.counts.failures()),
             root.display(),
             // A point of several runs has no job.
             if study.replicate_count() > 1 { " --runs" } else { "" },
+            root.display(),
             next_with_remedy(remedies, root),
             next_of_limited(summary, limits, root),
         ))),
@@ -239,7 +240,7 @@ fn limited(failures: &BTreeMap<String, usize>) -> String {
 fn next_with_remedy(remedies: &Applicable, root: &Path) -> String {
     match remedies.jobs() {
         0 => String::new(),
-        _ => format!("; billow rerun {} --remedy: {}", root.display(), remedies.named()),
+        _ => format!("\n  {}:\n        billow rerun {} --remedy", remedies.named(), root.display()),
     }
 }
 
@@ -254,7 +255,7 @@ fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String
             // Without job_limits.memory it is the machine's memory, or a limit of the process.
             let by_machine = status == Status::OutOfMemory && limits.memory.is_none();
             let option = if by_machine { ", with more memory or a coarser mesh" } else { option };
-            let _ = write!(text, "; billow rerun {root} --status {status}{option}");
+            let _ = write!(text, "\n        billow rerun {root} --status {status}{option}");
         }
     }
     text

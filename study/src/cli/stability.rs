@@ -8,7 +8,7 @@ use super::picture::{self, Picture};
 use super::print::{count, print_rows};
 use super::{Format, instruction_set, output_error};
 use crate::cases::Rig;
-use crate::input::value::Value;
+use crate::input::value::{Value, brief_number};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{self, Disk, Files, disk_error};
 use crate::platform::nearest::did_you_mean;
@@ -119,6 +119,15 @@ fn run_missing(args: &Args, maps: &[Map], rig: Rig, folder: &Path, cells: Cells)
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let running = Running::new(rig, folder, &stop, cells);
     let pool = args.threads.pool()?;
+    if !args.quiet.quiet {
+        let cells: usize = maps.iter().map(|map| map.methods.len() * map.places().len()).sum();
+        let known = running.cells().len();
+        eprintln!(
+            "billow: {} with {}, and those of borders; {known} stored",
+            count(maps.len(), "map"),
+            count(cells, "cell")
+        );
+    }
     for map in maps {
         let before = running.cells().len();
         pool.install(|| running.run(map))?;
@@ -149,10 +158,10 @@ fn report(
         for border in &borders {
             let text = border_text(map, border);
             if border.wrong {
-                let text = text.clone().unwrap_or_else(|| no_border(border));
+                let text = text.clone().unwrap_or_else(|| no_border(map, border));
                 wrong.push(format!("{}: {text}: not the limit of theory", map.name));
             }
-            lines.extend(text.map(|text| format!("  {text}")));
+            lines.push(format!("  {}", text.unwrap_or_else(|| no_border(map, border))));
         }
         wrong.extend(
             found.iter().filter(|placed| placed.is_wrong()).map(|one| unexpected(map, one)),
@@ -188,8 +197,13 @@ fn report(
     }
 }
 
-fn no_border(border: &Border) -> String {
-    format!("border {}: none within the axis", border.method.name())
+fn no_border(map: &Map, border: &Border) -> String {
+    let (other, at) = (map.axes.iter().rev(), border.at);
+    let search = map.search.map(|search| map.axes[search.axis].parameter.name);
+    let other = other.map(|axis| axis.parameter.name).find(|name| Some(*name) != search);
+    let at =
+        other.zip(at).map_or(String::new(), |(name, at)| format!(", {name} {}", brief_number(at)));
+    format!("border {}{at}: none along {}", border.method.name(), search.unwrap_or_default())
 }
 
 fn unexpected(map: &Map, placed: &Placed) -> String {

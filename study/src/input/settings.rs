@@ -277,7 +277,9 @@ fn unknown(
 ) -> InputError {
     let known = table.children(prefix);
     let mut problem = format!("is not a key of {}", table.what);
-    if let Some(near) = keys::nearest(name, known.iter().copied()) {
+    if prefix.is_empty() && name == "maps" {
+        problem.push_str("; a file of maps runs with billow stability");
+    } else if let Some(near) = keys::nearest(name, known.iter().copied()) {
         let _ = write!(problem, "; did you mean {near}?");
     } else if let Some(elsewhere) = table.find(name) {
         let _ = write!(problem, "; did you mean {}?", table.keys[elsewhere].path);

@@ -39,7 +39,7 @@ pub const EXIT_CODES: [ExitCode; 4] = [
     ExitCode {
         number: "1",
         name: "failure",
-        brief: "a job, scene or case failed, or stored results are broken",
+        brief: "a job, scene, case or expected outcome failed, or stored results are broken",
         meaning: "A job failed, `rerun` gave different bits, `doctor` found a fault, a scene of \
                   `solve` has no result, a case of `validate` is out of tolerance, or an outcome of \
                   `stability` is not as expected. The output names each of them.",

@@ -19,6 +19,7 @@ pub mod file;
 pub mod map;
 pub mod picture;
 pub mod read;
+pub mod reference;
 pub mod scenes;
 pub mod stored;
 

@@ -81,16 +81,21 @@ fn optional_text(json: &Json, key: &str, name: &str) -> Checked<String> {
         .map_or(Ok(String::new()), |json| text(json, &format!("{key}.{name}")).map(str::to_owned))
 }
 
-fn number(json: &Json, key: &str, range: [f64; 2]) -> Checked<f64> {
+/// A number in a range, in a unit that errors name.
+fn number(json: &Json, key: &str, range: [f64; 2], unit: &str) -> Checked<f64> {
+    let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+    let allowed = format!("a number from {} to {}{unit}", range[0], range[1]);
     let value = match json {
         Json::Integer(value) => *value as f64,
         Json::Number(value) => *value,
-        _ => f64::NAN,
+        other => {
+            let problem = format!("is {}, not a number", other.kind());
+            return Err(refuse(key, json, &problem, &allowed, None));
+        }
     };
     if (range[0]..=range[1]).contains(&value) {
         return Ok(value);
     }
-    let allowed = format!("a number from {} to {}", range[0], range[1]);
     Err(refuse(key, json, "out of range", &allowed, None))
 }
 
@@ -109,7 +114,7 @@ fn needed<'a>(json: &'a Json, key: &str, name: &str) -> Checked<&'a Json> {
 
 /// A value of a parameter.
 fn value(parameter: &Parameter, json: &Json, key: &str) -> Checked<f64> {
-    let value = number(json, key, parameter.range)?;
+    let value = number(json, key, parameter.range, parameter.unit)?;
     if parameter.whole && value.fract().abs() > 0.0 {
         return Err(refuse(key, json, "is no whole number", "a whole number", None));
     }
@@ -156,8 +161,12 @@ fn methods(json: &Json, key: &str, scene: &StabilityScene) -> Checked<Vec<Method
 }
 
 fn maps(json: &Json) -> Checked<Vec<Map>> {
-    members(json, "", &["description", "maps"])?;
     let empty = Json::Null;
+    if json.get("maps").is_none() {
+        let hint = "if this is a study: billow run FILE".to_owned();
+        return Err(refuse("maps", &empty, "is missing", "description, maps", Some(hint)));
+    }
+    members(json, "", &["description", "maps"])?;
     let given = list(json.get("maps").unwrap_or(&empty), "maps")?;
     let mut maps: Vec<Map> = Vec::new();
     for (index, json) in given.iter().enumerate() {
@@ -213,14 +222,28 @@ fn map(json: &Json, key: &str) -> Checked<Map> {
         let names: Vec<&str> = scene.parameters.iter().map(|parameter| parameter.name).collect();
         for (name, json) in members(given, &format!("{key}.values"), &names)? {
             let key = format!("{key}.values.{name}");
+            if axes.iter().any(|axis| axis.parameter.name == name) {
+                return Err(refuse(
+                    &key,
+                    json,
+                    "is an axis too",
+                    "parameters that are no axis",
+                    None,
+                ));
+            }
             values.set(name, value(parameter(scene, name, &key, json)?, json, &key)?);
         }
     }
     let search = json.get("border").map(|json| search(json, &format!("{key}.border"), &axes));
     let theory = json.get("theory").map(|json| {
         let key = format!("{key}.theory");
+        if !scene.has_theory() {
+            let allowed = "only in maps of the scene sheet: its film is linear";
+            return Err(refuse(&key, json, "no theory is known", allowed, None));
+        }
         members(json, &key, &["methods", "within"])?;
-        let within = number(needed(json, &key, "within")?, &format!("{key}.within"), [0.0, 1.0])?;
+        let within =
+            number(needed(json, &key, "within")?, &format!("{key}.within"), [0.0, 1.0], "")?;
         Ok(Theory { methods: methods(json, &key, scene)?, within })
     });
     let strip = json.get("strip").map(|json| {
@@ -290,7 +313,7 @@ fn search(json: &Json, key: &str, axes: &[Axis]) -> Checked<Search> {
         refuse(&place, along, "no such axis", allowed, None)
     })?;
     let within = match json.get("within") {
-        Some(json) => number(json, &format!("{key}.within"), [1e-6, 1.0])?,
+        Some(json) => number(json, &format!("{key}.within"), [1e-6, 1.0], "")?,
         None => 0.02,
     };
     Ok(Search { axis, within })
@@ -303,12 +326,10 @@ fn choice(json: &Json, key: &str, scene: &'static StabilityScene) -> Checked<Cho
         for (name, json) in given {
             let key = format!("{key}.where.{name}");
             let parameter = parameter(scene, name, &key, json)?;
+            let end = |json| number(json, &key, parameter.range, parameter.unit);
             let range = match json {
-                Json::List(ends) if ends.len() == 2 => [
-                    number(&ends[0], &key, parameter.range)?,
-                    number(&ends[1], &key, parameter.range)?,
-                ],
-                one => [number(one, &key, parameter.range)?; 2],
+                Json::List(ends) if ends.len() == 2 => [end(&ends[0])?, end(&ends[1])?],
+                one => [end(one)?; 2],
             };
             place.push((parameter.name, range));
         }

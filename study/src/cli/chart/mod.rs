@@ -215,7 +215,7 @@ fn study_name(results: &Results<'_>) -> String {
 fn standard_kinds(source: &Source<'_>, quiet: bool) -> Vec<ChartKind> {
     let (kinds, notes) = standard::kinds(source);
     for note in notes.iter().filter(|_| !quiet) {
-        eprintln!("billow: {note}");
+        eprintln!("note: {note}");
     }
     kinds
 }

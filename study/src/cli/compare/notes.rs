@@ -6,9 +6,9 @@ use super::Comparison;
 use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
 use crate::analysis::replicates::is_mesh;
 use crate::cli::print::count;
-use crate::cli::{best, legend};
+use crate::cli::{best, legend, remedies};
 use crate::input::value::Value;
-use crate::job::row::{BetterSide, ColumnId};
+use crate::job::row::BetterSide;
 
 /// What a cell of a point holds.
 const MEDIANS: &str = "median [least to largest]";
@@ -58,15 +58,8 @@ impl Comparison<'_> {
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");
         }
-        let remedied = self
-            .table
-            .column(ColumnId::Remedy.name())
-            .map_or(0, |column| column.cells.iter().filter(|cell| **cell != Value::Null).count());
-        if remedied > 0 {
-            eprintln!(
-                "note: {} with other numerical settings than planned (column remedy)",
-                count(remedied, "row")
-            );
+        if let Some(note) = remedies::note(self.table) {
+            eprintln!("{note}");
         }
         let jobs = pairs_of_jobs(self.table, &self.pairs).len();
         if jobs < self.pairs.len() {

@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
-use super::Format;
 use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::chosen_runs;
 use super::target::{StudyArgs, current_name};
+use super::{Format, remedies};
 use crate::analysis::compare::{self, measures_with};
 use crate::analysis::ranking::{DEFAULT_MEASURES, Question, Ranking};
 use crate::job::row::{BetterSide, ColumnId};
@@ -89,6 +89,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     printed.print(args.top, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
         printed.notes(args.top, &stored.study).iter().for_each(|note| eprintln!("{note}"));
+        remedies::note(&table).iter().for_each(|note| eprintln!("{note}"));
     }
     Ok(())
 }

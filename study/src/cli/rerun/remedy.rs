@@ -51,7 +51,8 @@ pub(super) fn run(
     }
     if failed.is_empty() {
         if !options.progress.quiet {
-            eprintln!("nothing to do: no job has failed, of {}", count(jobs.len(), "job"));
+            let of = if jobs.is_empty() { stored.points.len() } else { jobs.len() };
+            eprintln!("nothing to do: no job has failed, of {}", count(of, "job"));
         }
         return Ok(());
     }

@@ -72,7 +72,11 @@ impl<W: Write> Reporter for Lines<W> {
         let (jobs, finished) = (self.work.jobs, self.work.finished);
         match event {
             Event::GenerationStarted { .. } if finished < jobs => {
-                self.line(&format!("{jobs} jobs, {finished} finished, {} to run", jobs - finished));
+                let word = if jobs == 1 { "job" } else { "jobs" };
+                self.line(&format!(
+                    "{jobs} {word}, {finished} finished, {} to run",
+                    jobs - finished
+                ));
                 self.last = Some(Instant::now());
             }
             Event::JobSample { .. } if self.due() => self.report(),

@@ -177,6 +177,11 @@ pub struct StabilityScene {
 }
 
 impl StabilityScene {
+    /// Whether the largest stable step of its linear film is known.
+    pub fn has_theory(&self) -> bool {
+        self.name == sheet::SCENE.name
+    }
+
     /// The parameter of a name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)
