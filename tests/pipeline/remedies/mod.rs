@@ -53,7 +53,7 @@ fn a_drifting_job_gets_the_result_of_a_smaller_step() {
     let folder = capsule(&json!({"cfl": 0.9}), &axes);
     let ended = folder.run(&["run", "grid.json"]);
     assert_eq!(ended.status.code(), Some(1));
-    let next = "billow rerun results/grid --remedy: solver.cfl 0.9 -> 0.45 (1 job)";
+    let next = "solver.cfl 0.9 -> 0.45 (1 job):\n        billow rerun results/grid --remedy";
     assert!(stderr(&ended).contains(next), "{}", stderr(&ended));
     let planned = ids(&folder, "energy_drift").remove(0);
     let before = histories(&folder.results());
