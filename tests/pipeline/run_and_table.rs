@@ -91,7 +91,8 @@ fn the_next_step_of_a_failed_run_works_with_replicates() {
     let words: Vec<&str> = command.expect("a next step").1.split([' ', ';']).collect();
     let words: Vec<&str> = words.into_iter().take_while(|word| !word.is_empty()).collect();
     let table = folder.stdout(&words);
-    assert_eq!(table.matches("step_limit").count(), 32, "{words:?} {table}");
+    let failed = table.lines().filter(|line| line.contains("step_limit")).count();
+    assert_eq!(failed, 32, "{words:?} {table}");
 }
 
 #[test]
