@@ -78,8 +78,8 @@ fn pressed_sheets() -> FilmSimulation {
     film
 }
 
-fn films() -> [(&'static str, FilmSimulation); 4] {
-    [
+fn films() -> Vec<(&'static str, FilmSimulation)> {
+    vec![
         ("capsule", capsule_in_contact()),
         ("sphere", sphere(HeatTransfer::Coefficient(3.0))),
         ("isothermal sphere", sphere(HeatTransfer::Isothermal)),

@@ -132,7 +132,7 @@ fn every_part_has_its_rows() {
                 (&n.into(), &strategy.into(), &integrator.into(), &0.into())
             );
             assert!(row["ledger_residual"].as_f64() < Some(1e-2), "{row}");
-            assert_eq!(positive(row, "elements"), f64::from(48 * n * n));
+            assert!((positive(row, "elements") - f64::from(48 * n * n)).abs() < 0.5);
             positive(row, "steps");
         }
         let [explicit, hybrid] = pair else { panic!("a pair of runs") };

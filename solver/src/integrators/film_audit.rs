@@ -75,8 +75,10 @@ impl StepAudit for FilmAudit {
         self.passages.as_mut().map_or(Ok(()), |audit| audit.record(system, state))
     }
 
-    fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
-        self.passages.as_mut().map_or(Ok(()), |audit| audit.look(system, state))
+    fn look(&mut self, system: &FilmSystem, state: &FilmState) {
+        if let Some(audit) = &mut self.passages {
+            audit.look(system, state);
+        }
     }
 
     fn complete(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {

@@ -72,12 +72,11 @@ impl PassageAudit {
     }
 
     /// As [`super::StepAudit::look`].
-    pub(super) fn look(&mut self, system: &FilmSystem, state: &FilmState) -> Result<(), Failure> {
+    pub(super) fn look(&mut self, system: &FilmSystem, state: &FilmState) {
         if let Some(contact_model) = &system.contact {
             let topology = &contact_model.mesh.topology;
             self.monitor.intersection_counter.update(topology, &state.positions);
         }
-        Ok(())
     }
 
     /// As [`super::StepAudit::complete`].
@@ -89,7 +88,7 @@ impl PassageAudit {
         if let Some(contact_model) = &system.contact {
             self.monitor.test_block(&contact_model.mesh.topology);
         }
-        self.look(system, state)?;
+        self.look(system, state);
         self.time = state.time;
         self.check(self.time)
     }

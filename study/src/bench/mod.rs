@@ -160,9 +160,8 @@ impl Plan {
     /// Whether a part measures anything of a mesh.
     pub fn measures(&self, part: Part, subdivisions: u32) -> bool {
         match part {
-            Part::Machine => true,
+            Part::Machine | Part::Stages => true,
             Part::Kernels => subdivisions <= LARGEST_RUN,
-            Part::Stages => true,
             Part::Cases => subdivisions <= LARGEST_RUN || self.effort != Effort::Quick,
             Part::Hybrid => quiet_filling::meshes(self).contains(&subdivisions),
             Part::Statics => statics::meshes(self).contains(&subdivisions),

@@ -9,7 +9,7 @@
 //! A block is a number of steps between two frames. On the straight motion from one frame to the next
 //! only pairs that may pass are tested; a pair that passes on it is then tested in each step. In film
 //! that hardly moves these pairs come from a near list, found once around a reference frame
-//! ([`near_list`]); else from a search of the two frames ([`search`]). Some blocks, or all where every
+//! (`near_list`); else from a search of the two frames ([`search`]). Some blocks, or all where every
 //! step is asked for, are tested step by step from their positions alone, without the near list. So an
 //! error in that list is found.
 //!

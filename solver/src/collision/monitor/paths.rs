@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Symbols: u displacement of a node from one frame to the next, ū mean of all displacements, m; the sums are over
-//! the motions so far. Points of two elements a and b approach each other by at most the growth of P_a + P_b. If
-//! the elements share a node, also by at most that of S_a + S_b: relative to that node.
+//! the motions so far. Points of two elements a and b approach each other by at most the growth of `P_a + P_b`. If
+//! the elements share a node, also by at most that of `S_a + S_b`: relative to that node.
 
 #![allow(clippy::inline_always, reason = "inside the loop over elements")]
 #![allow(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
@@ -208,7 +208,7 @@ mod tests {
                 paths.add(set, &triangles, &still, &broken);
                 paths.add(set, &triangles, &broken, &still);
                 paths.add(set, &triangles, &still, &still);
-                let never_below = |path: &f64| !(*path < f64::MAX);
+                let never_below = |path: &f64| path.is_nan() || *path >= f64::MAX;
                 assert!(
                     never_below(&paths.shape.of[0]) && never_below(&paths.position.of[0]),
                     "{paths:?}"

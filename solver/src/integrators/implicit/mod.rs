@@ -218,7 +218,7 @@ impl Implicit {
         }
         budget.stopwatch.begins(Stage::Audit);
         if self.motion.ahead.is_some() {
-            budget.audit.look(system, state)?;
+            budget.audit.look(system, state);
         } else {
             self.evaluate(system, state);
             budget.audit.complete(system, state)?;

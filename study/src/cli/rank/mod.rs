@@ -89,7 +89,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     printed.print(args.top, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
         printed.notes(args.top, &stored.study).iter().for_each(|note| eprintln!("{note}"));
-        remedies::note(&table).iter().for_each(|note| eprintln!("{note}"));
+        if let Some(note) = remedies::note(&table) {
+            eprintln!("{note}");
+        }
     }
     Ok(())
 }

@@ -127,12 +127,11 @@ impl Outcomes {
         let columns = self.x.1.len();
         let place = |index: usize| layout.place(corner, index % columns, index / columns);
         for (index, cell) in panel.cells.iter().enumerate() {
-            match cell {
-                Some(cell) => draw_cell(page, layout, cell, place(index)),
-                None => {
-                    page.fill(place(index), layout.cell, EMPTY);
-                    page.hatch(place(index), layout.cell, 1.8, &HATCH);
-                }
+            if let Some(cell) = cell {
+                draw_cell(page, layout, cell, place(index));
+            } else {
+                page.fill(place(index), layout.cell, EMPTY);
+                page.hatch(place(index), layout.cell, 1.8, &HATCH);
             }
         }
         page.frame(corner, [layout.width(), layout.height()], &AXIS);
