@@ -67,7 +67,7 @@ fn meaning(status: Status) -> &'static str {
             "the enclosed volume became zero or negative"
         }
         Status::Failed(FailureKind::StepLimit) => {
-            "the run used its steps (solver.step_limit, job_limits.steps), or no step could advance it: see location"
+            "the run used all steps that it may take (solver.step_limit, job_limits.steps), or no step could advance it: see location"
         }
         Status::Failed(FailureKind::Interpenetrated) => {
             "film passed through film, or intersects film"
