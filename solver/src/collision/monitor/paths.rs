@@ -14,7 +14,9 @@
 
 use super::motion::mean_displacement;
 use crate::geometry::field::Field;
-use crate::platform::simd::{InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, vectors_at};
+use crate::platform::simd::{
+    InstructionSet, Vectors, WIDTH, Wide, dispatch_wide, nodes_of, vectors_at,
+};
 
 /// Factor on a path that covers rounding. Chosen: far above the relative error of a norm and of the sums (about
 /// 1e-13), far below any effect on cost.
@@ -81,14 +83,7 @@ fn add_motion_kernel<L: Wide>(
     let (mut most_position, mut most_shape) = (L::splat(0.0), L::splat(0.0));
     let mut start = 0;
     while start < triangles.len() {
-        let count = if triangles.len() - start < WIDTH { triangles.len() - start } else { WIDTH };
-        let mut nodes = [[0; WIDTH]; 3];
-        for lane in 0..WIDTH {
-            let corners = triangles[start + if lane < count { lane } else { 0 }];
-            for k in 0..3 {
-                nodes[k][lane] = corners[k];
-            }
-        }
+        let (nodes, count) = nodes_of(triangles, start);
         let a = vectors_at::<L>(to, &nodes[0]) - vectors_at::<L>(from, &nodes[0]);
         let b = vectors_at::<L>(to, &nodes[1]) - vectors_at::<L>(from, &nodes[1]);
         let c = vectors_at::<L>(to, &nodes[2]) - vectors_at::<L>(from, &nodes[2]);

@@ -116,6 +116,22 @@ impl<'a> Columns<'a> {
     }
 }
 
+/// The nodes of a group of elements from `start` on, one list for each corner, and the number of elements in it. Lanes
+/// past the last element repeat the first one of the group.
+#[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "an iterator is not inlined into a target feature")]
+pub fn nodes_of(triangles: &[[u32; 3]], start: usize) -> ([[u32; WIDTH]; 3], usize) {
+    let count = if triangles.len() - start < WIDTH { triangles.len() - start } else { WIDTH };
+    let mut nodes = [[0; WIDTH]; 3];
+    for lane in 0..WIDTH {
+        let corners = triangles[start + if lane < count { lane } else { 0 }];
+        for k in 0..3 {
+            nodes[k][lane] = corners[k];
+        }
+    }
+    (nodes, count)
+}
+
 /// The vectors at these indices of three columns.
 ///
 /// # Panics

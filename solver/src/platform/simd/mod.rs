@@ -21,7 +21,7 @@ mod vectors;
 pub(crate) mod x86;
 
 pub use column::Column;
-pub use corners::{Columns, Corners, NodeSum, vectors_at};
+pub use corners::{Columns, Corners, NodeSum, nodes_of, vectors_at};
 pub(crate) use dispatch::{dispatch, dispatch_wide};
 pub use lanes::Lanes;
 pub use vectors::Vectors;

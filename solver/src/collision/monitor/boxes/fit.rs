@@ -11,7 +11,7 @@
 
 use super::Ends;
 use crate::geometry::field::Field;
-use crate::platform::simd::{Vectors, WIDTH, Wide, dispatch, dispatch_wide, vectors_at};
+use crate::platform::simd::{Vectors, WIDTH, Wide, dispatch, dispatch_wide, nodes_of, vectors_at};
 
 /// Partial sums of widths. Chosen: the same on every instruction set.
 const LANES: usize = 16;
@@ -58,14 +58,7 @@ fn fit_kernel<L: Wide>(
     let reach = L::splat(reach);
     let mut start = 0;
     while start < triangles.len() {
-        let count = if triangles.len() - start < WIDTH { triangles.len() - start } else { WIDTH };
-        let mut nodes = [[0; WIDTH]; 3];
-        for lane in 0..WIDTH {
-            let corners = triangles[start + if lane < count { lane } else { 0 }];
-            for k in 0..3 {
-                nodes[k][lane] = corners[k];
-            }
-        }
+        let (nodes, count) = nodes_of(triangles, start);
         let a = vectors_at::<L>(from, &nodes[0]);
         let b = vectors_at::<L>(from, &nodes[1]);
         let c = vectors_at::<L>(from, &nodes[2]);
