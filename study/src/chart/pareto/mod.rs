@@ -195,10 +195,13 @@ fn notes(diagram: &Diagram, cost: Cost) -> Vec<String> {
     notes.push(cost_note(cost, std::slice::from_ref(diagram)).to_owned());
     notes.extend(implicit_note(cost, std::slice::from_ref(diagram)));
     if diagram.without_result > 0 {
-        notes.push(format!(
-            "{} runs have not ended, or failed beside others of their configuration; they are not drawn.",
-            diagram.without_result
-        ));
+        notes.push(match diagram.without_result {
+            1 => "1 run has not ended, or failed beside others of its configuration; it is not drawn."
+                .to_owned(),
+            number => format!(
+                "{number} runs have not ended, or failed beside others of their configuration; they are not drawn."
+            ),
+        });
     }
     notes
 }
