@@ -21,6 +21,7 @@
 //! | [`render`] | pictures: SVG and PNG |
 //! | [`analysis`] | comparisons, statistics, the answer of a study |
 //! | [`scene`] | one scene without a study: its file, its run, its summary |
+//! | [`cluster`] | gives the jobs of a study to a cluster |
 //! | [`run`] | runs jobs in parallel |
 //! | [`store`] | what a study stores on disk |
 //! | [`study`] | a study: axes, points, jobs |
@@ -43,6 +44,7 @@ pub mod bench;
 pub mod cases;
 pub mod chart;
 pub mod cli;
+pub mod cluster;
 pub mod input;
 pub mod job;
 pub mod platform;

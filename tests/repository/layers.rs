@@ -36,6 +36,7 @@ const ROOMS: [(&str, &[&str]); 2] = [
             "study",
             "store",
             "run",
+            "cluster",
             "scene",
             "analysis",
             "render",

@@ -30,6 +30,7 @@ mod instruction_set;
 mod keys;
 mod legend;
 mod memory;
+mod merge;
 mod notes;
 mod opened;
 pub mod options;
@@ -38,6 +39,7 @@ mod picture;
 mod plan;
 mod points;
 pub mod print;
+mod queue;
 mod range;
 mod rank;
 pub mod reference;
@@ -51,6 +53,7 @@ mod stability;
 mod status;
 mod stored;
 mod study_keys;
+mod submit;
 mod table;
 mod target;
 mod usage;
@@ -87,6 +90,10 @@ pub enum Command {
     Run(run::Args),
     /// Run finished jobs again and check that they give the same bits.
     Rerun(rerun::Args),
+    /// Give the unfinished jobs of a study to a cluster.
+    Submit(submit::Args),
+    /// Join what several runs have stored: parts of a study, or runs that shared a folder.
+    Merge(merge::Args),
     /// Show the progress of a study, during a run and afterwards.
     Status(status::Args),
     /// Explain why a job ended as it did.
@@ -157,6 +164,8 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Advise(args) => advise::run(args, out),
         Command::Run(args) => run::run(args, out),
         Command::Rerun(args) => rerun::run(args, out),
+        Command::Submit(args) => submit::run(args, out),
+        Command::Merge(args) => merge::run(args, out),
         Command::Status(args) => status::run(args, out),
         Command::Why(args) => why::run(args, out),
         Command::Show(args) => show::run(args, out),

@@ -8,6 +8,11 @@ use std::path::{Path, PathBuf};
 use billow_solver::models::film::LadderState;
 use billow_solver::output::outcome::FailureKind;
 
+mod scope;
+
+pub(super) use scope::Scope;
+use scope::ScopeOptions;
+
 use super::memory::Memory;
 use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
@@ -25,7 +30,7 @@ use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
-use crate::run::progress;
+use crate::run::{merge, progress};
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Rerun, Run, Summary};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
@@ -44,6 +49,8 @@ pub struct Args {
     results: ResultsOption,
     #[command(flatten)]
     set: SetOption,
+    #[command(flatten)]
+    scope: ScopeOptions,
     #[command(flatten)]
     options: RunOptions,
 }
@@ -86,14 +93,15 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
             eprintln!("note: {note}");
         }
     }
-    run_study(&study, &root, None, &args.options, out)
+    let scope = args.scope.scope(&Results::new(&Disk, &root))?;
+    run_study(&study, &root, None, scope, &args.options, out)
 }
 
 /// The study file that an argument names, and its results folder if it is that folder or its study.json.
 ///
 /// # Errors
 /// [`Error::Disk`] for a damaged study.json.
-fn study_of_results(path: &Path) -> Result<(PathBuf, Option<PathBuf>)> {
+pub(super) fn study_of_results(path: &Path) -> Result<(PathBuf, Option<PathBuf>)> {
     let is_stored = path.file_name().is_some_and(|name| name == "study.json");
     let folder = if path.is_dir() {
         path
@@ -118,6 +126,7 @@ pub(super) fn run_study(
     study: &Study,
     root: &Path,
     again: Option<Rerun<'_>>,
+    scope: Scope,
     options: &RunOptions,
     out: &mut dyn Write,
 ) -> Result<()> {
@@ -139,6 +148,7 @@ pub(super) fn run_study(
     }
     let stop = Stop::on_signals().map_err(|error| disk_error(Path::new("signals"), &error))?;
     let results = Results::new(&Disk, root);
+    let (shared, is_task) = (scope.shared.is_some(), scope.is_task);
     let summary = runner::run(
         &Run {
             name: &study.name,
@@ -156,12 +166,21 @@ pub(super) fn run_study(
             checkpoint_interval: CHECKPOINT_INTERVAL,
             stop,
             rerun: again,
+            selection: scope.selection,
+            shared: scope.shared,
         },
         progress::reporter(options.progress.loudness(), threads).as_mut(),
     )?;
     if let Some(error) = interrupted(&summary) {
         // The program ends soon after a signal, whatever the size of the study.
         return Err(error);
+    }
+    if is_task {
+        // The task that merges says the rest, and the table has the jobs that failed.
+        return print_task(&study.name, &summary, out).map_err(output_error);
+    }
+    if shared && merge::is_last(&results)? {
+        merge::finish(&results)?;
     }
     let mut stored = Stored::read(results)?;
     stored.units = units;
@@ -175,6 +194,12 @@ pub(super) fn run_study(
 fn interrupted(summary: &Summary) -> Option<Error> {
     let open = summary.counts.of(Status::Pending) > 0;
     summary.signal.filter(|_| open).map(Error::Signal)
+}
+
+/// Prints what a task of a submission did.
+fn print_task(study: &str, summary: &Summary, out: &mut dyn Write) -> io::Result<()> {
+    let elsewhere = count(summary.ended_elsewhere, "job");
+    writeln!(out, "{study}: {} run, {elsewhere} ended by other tasks meanwhile", count(summary.ran, "job"))
 }
 
 /// The static references that can be used. Says on stderr which files are damaged.
@@ -315,6 +340,14 @@ impl Ended<'_> {
                 new => format!(", {new} of them now"),
             };
             writeln!(out, "  remedy   {jobs} with other numerical settings (column remedy){new}")?;
+        }
+        if summary.ended_elsewhere > 0 {
+            let jobs = count(summary.ended_elsewhere, "job");
+            writeln!(out, "  shared   {jobs} ended by other runs meanwhile")?;
+        }
+        if summary.not_selected > 0 {
+            let jobs = count(summary.not_selected, "unfinished job");
+            writeln!(out, "  parts    {jobs} in other parts (--points); billow merge joins their folders")?;
         }
         if summary.same > 0 {
             writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;

@@ -9,6 +9,7 @@ use serde_json::json;
 use super::answer::{auto, judged};
 use super::options::{OutputOptions, ThreadsOption};
 use super::print::{count, duration, points_of_runs, print_rows};
+use super::queue::Workers;
 use super::remedies::{Applicable, Line};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
@@ -51,6 +52,7 @@ struct Status<'a> {
     threads: usize,
     /// Jobs with a checkpoint, and its simulated time, s.
     checkpoints: Vec<(JobId, Option<f64>)>,
+    workers: Workers,
 }
 
 /// Runs `billow status`. It only reads, and takes no lock.
@@ -65,7 +67,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let health = doctor::examine(&results, Depth::Names);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);
-    let status = Status::new(&stored, &health, threads);
+    let status = Status::new(&stored, &health, threads)?;
     match args.output.format() {
         Format::Table => status.print(out),
         Format::Json => writeln!(out, "{}", status.json()).map_err(output_error),
@@ -77,7 +79,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 }
 
 impl<'a> Status<'a> {
-    fn new(stored: &'a Stored<'a>, health: &'a Health, threads: usize) -> Self {
+    fn new(stored: &'a Stored<'a>, health: &'a Health, threads: usize) -> Result<Self> {
         let mut counts = Counts::default();
         let (mut seconds, mut timed) = (0.0, 0);
         for point in &stored.points {
@@ -93,7 +95,8 @@ impl<'a> Status<'a> {
         let checkpoints = with_checkpoint.map(|id| (id.clone(), results.checkpoint_time(&id)));
         let checkpoints = checkpoints.collect();
         let remedies = Applicable::of(stored);
-        Self { stored, health, counts, remedies, seconds, timed, threads, checkpoints }
+        let workers = Workers::of(results)?;
+        Ok(Self { stored, health, counts, remedies, seconds, timed, threads, checkpoints, workers })
     }
 
     /// Numbers of finished jobs of other versions of the physics, by version.
@@ -141,6 +144,7 @@ impl<'a> Status<'a> {
             "checkpoints": self.checkpoints.iter()
                 .map(|(id, time)| json!({"job": id.as_str(), "time": time}))
                 .collect::<Vec<_>>(),
+            "workers": self.workers.json(),
             "broken": self.health.faults(),
             "findings": self.health.findings.iter()
                 .map(|finding| format!("{}: {}", finding.path.display(), finding.problem))
@@ -162,6 +166,7 @@ impl<'a> Status<'a> {
         lines.extend(self.job_lines());
         lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
         lines.extend(self.time_lines());
+        lines.extend(self.workers.lines());
         lines.extend(self.checkpoint_line());
         lines.push(("broken", self.broken()));
         lines.push(("results", self.stored.results.root().display().to_string()));

@@ -24,7 +24,7 @@ pub fn read(root: &Path) -> Result<Stored<'static>> {
 
 /// Names the lines of the journal that are not valid. A torn last line is what a running process writes.
 pub fn note_faults(journal: &Journal, results: &Results<'_>) {
-    let running = results.is_locked().unwrap_or(false);
+    let running = results.is_running().unwrap_or(false);
     let shown: Vec<&Fault> =
         journal.faults.iter().filter(|fault| !(fault.torn && running)).collect();
     let mut faults = shown.iter();
@@ -79,7 +79,7 @@ pub fn table(results: &Results<'_>, journal: &Journal) -> Result<Table> {
                 path.display()
             );
         }
-        Ok(_) if journal.faults.is_empty() && !results.is_locked()? => {
+        Ok(_) if journal.faults.is_empty() && !results.is_running()? => {
             let path = results.table_path();
             eprintln!(
                 "billow: {}: differs from the journal; the journal is read instead\n  next: billow doctor \

@@ -2,6 +2,7 @@
 
 pub mod attempt;
 pub mod control;
+pub mod cost;
 pub mod executor;
 pub mod id;
 pub mod limits;

@@ -1,8 +1,11 @@
-//! Runs jobs in parallel: the runner, its events, the progress display.
+//! Runs jobs in parallel: which jobs, the runner, its events, the progress display, the merge of
+//! what several runs stored.
 
 pub mod event;
 #[cfg(test)]
 pub(crate) mod fixture;
+pub mod merge;
 pub mod progress;
 pub mod reservation;
 pub mod runner;
+pub mod selection;

@@ -1,8 +1,9 @@
-//! What a study stores on disk: journal, history files, static references, checkpoints, summary table;
+//! What a study stores on disk: journal, history files, static references, checkpoints, claims, summary table;
 //! and the check of a results folder.
 
 pub mod attempts;
 pub mod checkpoint_file;
+pub mod claims;
 pub mod damaged;
 pub mod doctor;
 pub mod exact_scenes;

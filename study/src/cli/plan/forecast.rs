@@ -7,19 +7,17 @@
 //! The first sum runs over the film jobs, the second one over the designs whose static states are not
 //! known yet.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use billow_solver::models::{self, Cost};
+use billow_solver::models;
 use billow_solver::scene::ModelKind;
 
 use crate::cli::print::{count, duration};
 use crate::input::value::short_number;
+use crate::job::JobId;
+use crate::job::cost::{Costs, NS_PER_ELEMENT_STEP};
 use crate::job::point::Point;
-use crate::job::{JobId, canonical_json};
 
-/// Time per element and step on one core, ns, while the film is not quiescent. Source: measured on the
-/// capsule of the paper, n = 4 to 8, 0.5 s.
-const NS_PER_ELEMENT_STEP: f64 = 17.0;
 /// Time of the static states of a design on one core: coefficient, s, and exponent of the number of
 /// elements. Source: measured at n = 8, 16, 32; the factors of sparse matrices grow faster than the
 /// matrices.
@@ -36,7 +34,7 @@ pub(super) fn forecast(
     of_search: bool,
 ) -> Option<String> {
     let title = if of_search { "forecast of the first generation" } else { "forecast" };
-    let mut costs: BTreeMap<String, Cost> = BTreeMap::new();
+    let mut costs = Costs::default();
     let mut static_seconds = 0.0;
     let (mut jobs, mut element_steps) = (0_usize, 0.0);
     for point in points {
@@ -44,16 +42,10 @@ pub(super) fn forecast(
         if scene.solver.model != ModelKind::Film {
             continue;
         }
-        // The cost depends on these parts of the scene only.
-        let parts = (&scene.design, &scene.film, &scene.solver, scene.outputs.sample_interval);
-        let key = canonical_json(&parts);
-        if !costs.contains_key(&key) {
-            if costs.len() == MAX_MESHES {
-                return Some(format!("{title}: no estimate for more than {MAX_MESHES} meshes"));
-            }
-            costs.insert(key.clone(), models::cost(scene).ok()?);
+        if costs.meshes() > MAX_MESHES {
+            return Some(format!("{title}: no estimate for more than {MAX_MESHES} meshes"));
         }
-        let cost = costs[&key];
+        let cost = costs.of(scene)?;
         if let Some(reference) = models::reference_scene(scene)
             && known_states.insert(JobId::of(&reference))
         {

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use super::Format;
 use super::options::ResultsOption;
 use super::print::{count, print_rows};
-use super::run::{RunOptions, run_study};
+use super::run::{RunOptions, Scope, run_study};
 use super::target::{StudyArgs, filtered, folder};
 use crate::input::value::Value;
 use crate::job::point::Point;
@@ -79,7 +79,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         eprintln!("{} to run again", count(jobs.len(), "job"));
     }
     let again = Rerun { jobs: &jobs, remedy: false };
-    run_study(&stored.study, &root, Some(again), &args.options, out)
+    run_study(&stored.study, &root, Some(again), Scope::default(), &args.options, out)
 }
 
 /// Job ids, and the results: a last argument that cannot be an id. A folder whose name could be an id is

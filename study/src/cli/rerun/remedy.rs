@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{Args, Last, print_points};
 use crate::cli::print::count;
 use crate::cli::remedies::{NONE, proposed};
-use crate::cli::run::run_study;
+use crate::cli::run::{Scope, run_study};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::point::{Point, Remedied};
@@ -78,7 +78,7 @@ pub(super) fn run(
         )));
     }
     let again = Rerun { jobs: &with_remedy, remedy: true };
-    run_study(&stored.study, root, Some(again), options, out)
+    run_study(&stored.study, root, Some(again), Scope::default(), options, out)
 }
 
 /// Why no remedy can be applied to a failed point, and what is proposed instead.

@@ -1,7 +1,7 @@
 //! The real disk.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
@@ -65,14 +65,13 @@ impl Files for Disk {
     }
 
     fn try_lock(&self, path: &Path) -> io::Result<Option<Lock>> {
-        let mut options = OpenOptions::new();
-        options.write(true).create(true).truncate(false).custom_flags(libc::O_NOFOLLOW);
-        let file = options.open(path).map_err(|error| no_link(&error))?;
-        match file.try_lock() {
-            Ok(()) => Ok(Some(Lock { file })),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(error)) => Err(error),
-        }
+        let file = open_lock(path)?;
+        taken(file.try_lock(), file)
+    }
+
+    fn try_lock_shared(&self, path: &Path) -> io::Result<Option<Lock>> {
+        let file = open_lock(path)?;
+        taken(file.try_lock_shared(), file)
     }
 
     fn is_locked(&self, path: &Path) -> io::Result<bool> {
@@ -87,6 +86,41 @@ impl Files for Disk {
             Err(TryLockError::WouldBlock) => Ok(true),
             Err(TryLockError::Error(error)) => Err(error),
         }
+    }
+
+    fn link(&self, existing: &Path, name: &Path) -> io::Result<()> {
+        fs::hard_link(existing, name)
+    }
+
+    fn overwrite(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut file = OpenOptions::new().write(true).open(path)?;
+        file.write_all(bytes)?;
+        file.sync_all()
+    }
+
+    fn read_from(&self, path: &Path, start: u64) -> io::Result<Vec<u8>> {
+        let mut file = File::open(path)?;
+        file.seek(SeekFrom::Start(start))?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+/// Opens the file of a lock; creates it if it is missing.
+fn open_lock(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    // NFS gives a shared lock to a file open for reading only, and the other one to a file open for writing.
+    options.read(true).write(true).create(true).truncate(false).custom_flags(libc::O_NOFOLLOW);
+    options.open(path).map_err(|error| no_link(&error))
+}
+
+/// The lock, if it was taken.
+fn taken(result: Result<(), TryLockError>, file: File) -> io::Result<Option<Lock>> {
+    match result {
+        Ok(()) => Ok(Some(Lock { file })),
+        Err(TryLockError::WouldBlock) => Ok(None),
+        Err(TryLockError::Error(error)) => Err(error),
     }
 }
 
@@ -149,5 +183,18 @@ mod tests {
         assert!(!Disk.is_locked(&path).unwrap());
         assert!(!Disk.is_locked(&folder.path().join("none")).unwrap());
         assert!(Disk.try_lock(&path).unwrap().is_some());
+    }
+
+    #[test]
+    fn a_shared_lock_is_held_by_several_and_keeps_out_one_that_wants_it_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lock");
+        let first = Disk.try_lock_shared(&path).unwrap();
+        let second = Disk.try_lock_shared(&path).unwrap();
+        assert!(first.is_some() && second.is_some());
+        assert!(Disk.try_lock(&path).unwrap().is_none());
+        drop((first, second));
+        let alone = Disk.try_lock(&path).unwrap();
+        assert!(alone.is_some() && Disk.try_lock_shared(&path).unwrap().is_none());
     }
 }

@@ -1,22 +1,26 @@
-//! What workers write themselves: the line of an attempt before it starts, and checkpoints. So a worker
+//! What workers write themselves: the claim and the line of an attempt before it starts, and checkpoints. So a worker
 //! does not wait for the storing thread, which may be writing the table of a large study when a signal
 //! arrives.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::job::JobId;
 use crate::platform::error::Result;
+use super::sharing::Sharing;
 use crate::platform::files::Lock;
 use crate::store::attempts::{self, Attempts};
-use crate::store::journal::{Journal, Writer};
+use crate::store::journal::{Journal, Record, Writer};
 use crate::store::results::Results;
 
 /// Attempts and checkpoints of this process.
 pub struct AttemptLog<'a> {
     results: &'a Results<'a>,
-    lock: &'a Lock,
+    /// `None` for a shared folder on a file system without locks.
+    lock: Option<&'a Lock>,
+    /// Claims; `None` for a run that is alone.
+    sharing: Option<Mutex<Sharing<'a>>>,
     writer: Mutex<Writer<'a>>,
     attempts: Mutex<Attempts<'a>>,
     /// Jobs with a checkpoint on disk.
@@ -26,22 +30,98 @@ pub struct AttemptLog<'a> {
 }
 
 impl<'a> AttemptLog<'a> {
-    /// The log of a process that holds the lock of the results. Adds to the journal the deaths of the
-    /// process before it.
+    /// The log of a process that holds the lock of the results alone. Adds to the journal the deaths of the
+    /// processes before it.
     ///
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
-    pub fn new(results: &'a Results<'a>, lock: &'a Lock, journal: &mut Journal) -> Result<Self> {
+    pub fn alone(results: &'a Results<'a>, lock: &'a Lock, journal: &mut Journal) -> Result<Self> {
         let mut writer = Writer::new(results.files(), results.journal_path());
         attempts::take_deaths(results, journal, &mut writer)?;
+        Self::new(results, Some(lock), writer, None)
+    }
+
+    /// The log of a process that shares the results with others. The deaths of other processes are left to the next one
+    /// that is alone.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn shared(
+        results: &'a Results<'a>,
+        lock: Option<&'a Lock>,
+        sharing: Sharing<'a>,
+    ) -> Result<Self> {
+        let writer = Writer::new(results.files(), results.journal_path());
+        Self::new(results, lock, writer, Some(sharing))
+    }
+
+    fn new(
+        results: &'a Results<'a>,
+        lock: Option<&'a Lock>,
+        writer: Writer<'a>,
+        sharing: Option<Sharing<'a>>,
+    ) -> Result<Self> {
+        let attempts = match &sharing {
+            Some(sharing) => Attempts::at(results, sharing.claims().attempts_path()),
+            None => Attempts::new(results),
+        };
         Ok(Self {
             results,
             lock,
+            sharing: sharing.map(Mutex::new),
             writer: Mutex::new(writer),
-            attempts: Mutex::new(Attempts::new(results)),
+            attempts: Mutex::new(attempts),
             stored: Mutex::new(results.checkpoints()?.into_iter().collect()),
             stopped: AtomicBool::new(false),
         })
+    }
+
+    /// Whether other runs may work in the folder.
+    pub fn is_shared(&self) -> bool {
+        self.sharing.is_some()
+    }
+
+    /// Claims a job where other runs work in the folder. `false` when one of them has it or has ended it.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn claim(&self, id: &JobId) -> Result<bool> {
+        self.sharing.as_ref().map_or(Ok(true), |sharing| locked(sharing).claim(id))
+    }
+
+    /// Gives jobs back, after their records are there.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn release<'j>(&self, mut ids: impl Iterator<Item = &'j JobId>) -> Result<()> {
+        let Some(sharing) = &self.sharing else { return Ok(()) };
+        let mut sharing = locked(sharing);
+        ids.try_for_each(|id| sharing.release(id))
+    }
+
+    /// Says to other runs that this one is alive, when it is time to.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn renew(&self) -> Result<()> {
+        self.sharing.as_ref().map_or(Ok(()), |sharing| locked(sharing).renew())
+    }
+
+    /// The records of the jobs that other runs have ended since this one began.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn ended_elsewhere(&self) -> Result<BTreeMap<JobId, Record>> {
+        self.sharing.as_ref().map_or(Ok(BTreeMap::new()), |sharing| locked(sharing).ended().cloned())
+    }
+
+    /// Jobs that other runs had and that no run has now, and whether some are not known yet.
+    ///
+    /// # Errors
+    /// [`crate::platform::error::Error::Disk`].
+    pub fn free_jobs(&self) -> Result<(BTreeSet<JobId>, bool)> {
+        let none = || Ok((BTreeSet::new(), false));
+        self.sharing.as_ref().map_or_else(none, |sharing| locked(sharing).free_jobs())
     }
 
     /// Checks that the results folder is still the one that was locked.
@@ -49,7 +129,7 @@ impl<'a> AttemptLog<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
     pub fn check_folder(&self) -> Result<()> {
-        self.results.check_lock(self.lock)
+        self.lock.map_or(Ok(()), |lock| self.results.check_lock(lock))
     }
 
     /// The journal of this process.

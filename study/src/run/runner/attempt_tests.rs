@@ -90,6 +90,8 @@ fn run_with(
         checkpoint_interval: interval,
         stop: stop.clone(),
         rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: false }),
+        selection: Selection::All,
+        shared: None,
     };
     let mut notes = Notes(Vec::new());
     let summary = run(&study, &mut notes).unwrap();

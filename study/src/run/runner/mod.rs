@@ -6,6 +6,9 @@
 //! the same bits. A worker writes only the line of its attempt and the checkpoints of its job
 //! (`attempt_log`).
 //!
+//! Where several runs share the folder ([`Run::shared`], `sharing`), a worker claims each job first, nobody repairs the
+//! folder, and nobody writes the table: [`crate::run::merge::finish`] does, when no run is left.
+//!
 //! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
 //! compared with the hash of the old one. A failed job that is run again with a remedy keeps its record without end: the run
 //! with the remedy is another job, and the journal links both (`remedies`).
@@ -24,6 +27,7 @@ use crate::job::row::Counts;
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
 use crate::run::event::{Event, Reporter};
+use crate::run::selection::Selection;
 use crate::store::journal::Record;
 use crate::store::results::Results;
 use crate::store::table::Table;
@@ -32,10 +36,13 @@ use crate::study::plan::Generation;
 
 mod attempt_log;
 mod quarantine;
+mod sharing;
 mod state;
 mod workers;
 
 use attempt_log::AttemptLog;
+pub use sharing::Shared;
+use sharing::Sharing;
 use state::State;
 
 /// Time between two checkpoints of a job, at least. Chosen: a crash loses little, and a short job has none.
@@ -70,6 +77,10 @@ pub struct Run<'a> {
     pub stop: Stop,
     /// Runs only these jobs, also finished ones; `None` runs every job that is not finished.
     pub rerun: Option<Rerun<'a>>,
+    /// The jobs of the plan that this run takes.
+    pub selection: Selection,
+    /// How other runs may work in the folder at the same time; `None` for a run that is alone.
+    pub shared: Option<Shared>,
 }
 
 /// Jobs to run again.
@@ -96,6 +107,10 @@ pub struct Summary {
     pub different: Vec<JobId>,
     /// Number of failed jobs that have a result with a remedy since this run.
     pub remedied: usize,
+    /// Number of unfinished jobs that are not in this run's selection.
+    pub not_selected: usize,
+    /// Number of jobs that other runs have ended while this one ran.
+    pub ended_elsewhere: usize,
 }
 
 /// Runs the jobs of a study that are not finished.
@@ -104,6 +119,14 @@ pub struct Summary {
 /// [`crate::platform::error::Error::Disk`] when results cannot be read or stored. Jobs that were
 /// stored before are kept.
 pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
+    match &run.shared {
+        None => run_alone(run, reporter),
+        Some(shared) => run_shared(run, shared, reporter),
+    }
+}
+
+/// [`run`] with the folder for itself.
+fn run_alone(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let lock = run.results.lock()?;
     run.results.remove_temporary_files()?;
     let mut journal = run.results.journal()?;
@@ -114,10 +137,38 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     run.results.mend_journal(&journal)?;
     run.results.set_aside_references()?;
     journal.faults.clear();
-    let log = AttemptLog::new(&run.results, &lock, &mut journal)?;
+    let log = AttemptLog::alone(&run.results, &lock, &mut journal)?;
     let mut state = State::new(run, &log, journal);
     state.record_study(&study)?;
     state.remove_checkpoints()?;
+    run_generations(run, &mut state, reporter)?;
+    state.write_table()?;
+    reporter.event(&Event::Ended);
+    Ok(state.summary())
+}
+
+/// [`run`] with other runs in the folder: it changes nothing that they may be using.
+fn run_shared(run: &Run<'_>, shared: &Shared, reporter: &mut dyn Reporter) -> Result<Summary> {
+    let lock = run.results.lock_shared()?;
+    let sharing = Sharing::new(&run.results, shared)?;
+    let mut journal = run.results.journal()?;
+    let study = run.results.write_shared_study(run.name, run.study, &journal)?;
+    // Another run may be writing a line that is not complete yet.
+    journal.faults.clear();
+    let log = AttemptLog::shared(&run.results, lock.as_ref(), sharing)?;
+    let mut state = State::new(run, &log, journal);
+    state.record_study(&study)?;
+    run_generations(run, &mut state, reporter)?;
+    reporter.event(&Event::Ended);
+    Ok(state.summary())
+}
+
+/// Runs one generation after another, until a job of one is not finished.
+fn run_generations(
+    run: &Run<'_>,
+    state: &mut State<'_, '_>,
+    reporter: &mut dyn Reporter,
+) -> Result<()> {
     let mut finished = Vec::new();
     let mut last = None;
     while run.stop.requested().is_none()
@@ -130,9 +181,7 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
         state.run_remedies(reporter)?;
         finished = state.finished();
     }
-    state.write_table()?;
-    reporter.event(&Event::Ended);
-    Ok(state.summary())
+    Ok(())
 }
 
 #[cfg(test)]

@@ -106,6 +106,8 @@ fn run_on<S: Fn(&Scene) -> Outcome + Sync>(
         checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
         rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: true }),
+        selection: Selection::All,
+        shared: None,
     };
     let ended = run(&study, &mut Silent);
     let mut executed = executor.executed.into_inner().unwrap();

@@ -48,6 +48,8 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
         rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: false }),
+        selection: Selection::All,
+        shared: None,
     };
     let ended = run(&study, &mut Silent);
     (ended, executor.executed.load(Ordering::SeqCst))

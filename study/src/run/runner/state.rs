@@ -104,13 +104,19 @@ impl<'a, 'w> State<'a, 'w> {
         let mut seen = BTreeSet::new();
         for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
             let id = &point.job.id;
+            let number = seen.len();
             if !seen.insert(id.clone()) || self.records.contains_key(id) {
                 continue;
             }
             let again =
                 self.run.rerun.is_some_and(|rerun| !rerun.remedy && rerun.jobs.contains(id));
-            if self.must_run(id, again, reporter)? {
+            if !self.must_run(id, again, reporter)? {
+                continue;
+            }
+            if self.run.selection.takes(number, id) {
                 missing.push(point.job.clone());
+            } else {
+                self.summary.not_selected += 1;
             }
         }
         match self.run.rerun {
@@ -229,12 +235,13 @@ impl<'a, 'w> State<'a, 'w> {
                     self.log.remove(&record.job)?;
                 }
             }
+            self.log.release(records.iter().map(|record| &record.job))?;
             self.records.extend(records.into_iter().map(|record| (record.job.clone(), record)));
         }
         for event in &events {
             reporter.event(event);
         }
-        if Instant::now() >= self.table_due {
+        if Instant::now() >= self.table_due && !self.log.is_shared() {
             self.write_table()?;
         }
         Ok(())

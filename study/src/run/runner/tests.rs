@@ -74,6 +74,8 @@ fn run_on(
         checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
         rerun: None,
+        selection: Selection::All,
+        shared: None,
     };
     run(&study, reporter)
 }
@@ -300,6 +302,8 @@ fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
         checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: stop.clone(),
         rerun: None,
+        selection: Selection::All,
+        shared: None,
     };
     let summary = run(&study, &mut Silent).unwrap();
     assert_eq!(summary.signal, Some(2));
@@ -339,6 +343,8 @@ fn a_resumed_study_plans_its_generations_again() {
             checkpoint_interval: CHECKPOINT_INTERVAL,
             stop: Stop::new(),
             rerun: None,
+            selection: Selection::All,
+            shared: None,
         };
         run(&study, &mut Silent).unwrap();
         assert_eq!(executed(&executor), expected);

@@ -144,11 +144,11 @@ impl WorkerPool<'_, '_> {
         drop(sender);
     }
 
-    /// Runs the jobs of a batch that are not refused, after their attempts are recorded.
+    /// Runs the jobs of a batch that are not refused and that no other run has, after their attempts are recorded.
     fn run(
         &self,
         jobs: &[Job],
-        refused: Vec<Option<Outcome>>,
+        mut refused: Vec<Option<Outcome>>,
         thread: usize,
         sender: &SyncSender<Message>,
     ) -> Result<Vec<Outcome>> {
@@ -156,9 +156,13 @@ impl WorkerPool<'_, '_> {
             |job| JobControl { workers: self, job, thread, sender, clock: Clock::start() };
         let controls: Vec<_> = jobs.iter().map(control).collect();
         let mut tasks = Vec::with_capacity(jobs.len());
-        for (control, refused) in controls.iter().zip(&refused) {
+        for (control, refused) in controls.iter().zip(&mut refused) {
+            let job = control.job;
+            if refused.is_none() && !self.log.claim(&job.id)? {
+                // Another run has it: here it leaves no row.
+                *refused = Some(Outcome::Cancelled);
+            }
             if refused.is_none() {
-                let job = control.job;
                 self.log.start(&job.id)?;
                 let checkpoint = self.log.checkpoint(&job.id).unwrap_or_else(|error| {
                     control.note(format!("{error}; the job starts from its beginning"));

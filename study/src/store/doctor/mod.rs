@@ -124,7 +124,7 @@ fn examined(results: &Results<'_>, depth: Depth) -> Health {
         health.fault(results.root(), "no results here", next);
         return health;
     }
-    match results.is_locked() {
+    match results.is_running() {
         Ok(running) => health.running = running,
         Err(error) => health.error(results.root(), &error),
     }

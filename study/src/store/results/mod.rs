@@ -9,7 +9,9 @@
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 charts/           pictures (crate::chart)
 //!                 exact_scenes.json runs of scenes with an exact answer (crate::store::exact_scenes)
+//!                 claims/           during runs that share the folder: which of them has which job (crate::store::claims)
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
+//!                 submissions/      what was given to a scheduler (`crate::cluster`)
 //!                 damaged/          files that were damaged, as they were found (crate::store::damaged)
 //!                 lock              held while a command changes the folder
 //! ```
@@ -34,10 +36,12 @@ mod study_json;
 
 /// Name of the file of a run's attempts.
 const ATTEMPTS: &str = "attempts.jsonl";
+/// Name of the folder of what was given to a scheduler.
+const SUBMISSIONS: &str = "submissions";
 /// Name of the file of the runs of exact scenes.
 const EXACT_SCENES: &str = "exact_scenes.json";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 11] = [
+pub const RESULT_NAMES: [&str; 13] = [
     "study.json",
     "journal",
     "jobs",
@@ -47,6 +51,8 @@ pub const RESULT_NAMES: [&str; 11] = [
     "charts",
     EXACT_SCENES,
     ATTEMPTS,
+    "claims",
+    SUBMISSIONS,
     "damaged",
     "lock",
 ];
@@ -121,6 +127,11 @@ impl<'a> Results<'a> {
     /// Path of the attempts of a running process.
     pub fn attempts_path(&self) -> PathBuf {
         self.root.join(ATTEMPTS)
+    }
+
+    /// Path of what was given to a scheduler.
+    pub fn submissions_path(&self) -> PathBuf {
+        self.root.join(SUBMISSIONS)
     }
 
     /// Path of the folder of damaged files.

@@ -166,6 +166,20 @@ impl Results<'_> {
         Ok(text)
     }
 
+    /// Writes study.json as [`Self::write_study`] does, for a run that shares the folder: a folder that holds another version
+    /// of the study is refused, since other runs may be working on it.
+    ///
+    /// # Errors
+    /// As [`Self::write_study`].
+    pub fn write_shared_study(&self, name: &str, study: &Json, journal: &Journal) -> Result<String> {
+        if self.owner()?.is_some_and(|owner| owner == name) && !self.holds(name, study)? {
+            return Err(self.refused(
+                "the folder holds another version of this study, and other runs may be working on it",
+            ));
+        }
+        self.write_study(name, study, journal)
+    }
+
     /// Writes study.json again as the journal has it, if it is damaged or missing and the journal has it. The
     /// damaged file is kept in the folder `damaged`. Returns whether it was written.
     ///

@@ -1,0 +1,276 @@
+//! `billow submit`: gives the unfinished jobs of a study to a cluster.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::options::{OutputOptions, ResultsOption, SetOption};
+use super::print::{count, duration};
+use super::run::study_of_results;
+use super::target::results_folder;
+use super::{Format, output_error};
+use crate::cluster::chunks::{self, CostedJob};
+use crate::cluster::script::{Needs, Scripts};
+use crate::cluster::slurm;
+use crate::cluster::submission::{Queued, Submission};
+use crate::input::units::{self, Dimension};
+use crate::job::Job;
+use crate::job::cost::Costs;
+use crate::job::memory::estimate;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::{Disk, disk_error};
+use crate::run::merge;
+use crate::store::results::Results;
+use crate::store::stored;
+use crate::study::Study;
+
+/// Memory of a task beside its jobs, bytes. Chosen: the program with the plan of a large study.
+const PROGRAM_MEMORY: u64 = 500_000_000;
+
+/// A scheduler.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    /// Slurm.
+    Slurm,
+}
+
+/// Arguments of `billow submit`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Study file, or a results folder.
+    study: PathBuf,
+    /// The scheduler.
+    #[arg(long, value_enum, default_value = "slurm")]
+    engine: Engine,
+    /// Partition of the tasks [default: that of the cluster].
+    #[arg(long, value_name = "NAME")]
+    partition: Option<String>,
+    /// Wall time of a task. A task stops before its end; what it has not finished is in the next submission.
+    #[arg(long, value_name = "TIME", default_value = "1 h")]
+    time: String,
+    /// Cores of a task: so many jobs run side by side in it.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    cpus: usize,
+    /// Memory of a task, as in --mem "4 GB" [default: the estimate of its largest jobs].
+    #[arg(long, value_name = "MEMORY")]
+    mem: Option<String>,
+    /// Number of tasks [default: tasks of about ten minutes].
+    #[arg(long, value_name = "N")]
+    tasks: Option<usize>,
+    /// Give this option to sbatch too, as in --sbatch=--account=film; can be repeated.
+    #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
+    sbatch: Vec<String>,
+    /// Print the scripts; write and submit nothing.
+    #[arg(long)]
+    dry_run: bool,
+    #[command(flatten)]
+    results: ResultsOption,
+    #[command(flatten)]
+    set: SetOption,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// What is submitted.
+struct Tasks {
+    chunks: Vec<Vec<crate::job::JobId>>,
+    needs: Needs,
+    jobs: usize,
+    /// Estimated time on one core, s.
+    seconds: f64,
+}
+
+/// Runs `billow submit`. Jobs that have ended are left out, so the same command submits what is missing.
+///
+/// # Errors
+/// An invalid study; a folder in which runs work, or whose last submission is still in the queue; what Slurm refuses.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let (file, folder) = study_of_results(&args.study)?;
+    let study = Study::load(&file, &args.set.set)?;
+    let root = folder
+        .filter(|_| args.results.results.is_none())
+        .unwrap_or_else(|| results_folder(&args.results, &study));
+    let root = std::path::absolute(&root).map_err(|error| disk_error(&root, &error))?;
+    let Engine::Slurm = args.engine;
+    let results = Results::new(&Disk, &root);
+    if !args.dry_run {
+        refuse_queued(&results)?;
+    }
+    let missing = missing(&study, &results)?;
+    let tasks = tasks(args, &missing)?;
+    let program = std::env::current_exe().map_err(|error| disk_error(Path::new("billow"), &error))?;
+    let scripts = |submission: &str| {
+        let (tasks, needs) = (tasks.chunks.len(), &tasks.needs);
+        let (program, root) = (program.clone(), root.clone());
+        let scripts = Scripts { program, root, study: &study.name, submission, tasks, needs };
+        (scripts.array(), scripts.merge())
+    };
+    if args.dry_run || missing.is_empty() {
+        if !missing.is_empty() {
+            let (array, merge) = scripts("0001");
+            write!(out, "# array.sh\n{array}\n# merge.sh\n{merge}").map_err(output_error)?;
+        }
+        eprintln!("{}", tasks.summary(&study.name));
+        return Ok(());
+    }
+    let submission = merge::prepare(&results, (&study.name, &study.resolved()), &|results| {
+        Submission::create(results, &tasks.chunks)
+    })?;
+    let (array, merge) = scripts(&submission.name);
+    let array = submission.write(&results, "array.sh", &array)?;
+    let merge = submission.write(&results, "merge.sh", &merge)?;
+    let queued = slurm::submit(&array, &merge)?;
+    submission.write_queued(&results, &queued)?;
+    print(&tasks, &study.name, &submission, &queued, args.output.format(), out)
+}
+
+/// Refuses a submission while the last one is in the queue.
+fn refuse_queued(results: &Results<'_>) -> Result<()> {
+    let Some((last, queued)) = Submission::last_queued(results)? else { return Ok(()) };
+    let tasks: usize = match slurm::queue(&queued) {
+        Ok(states) => states.values().sum(),
+        Err(problem) => {
+            eprintln!("note: squeue does not say whether submission {} has ended: {problem}", last.name);
+            0
+        }
+    };
+    if tasks == 0 {
+        return Ok(());
+    }
+    Err(Error::Disk {
+        path: last.folder,
+        problem: format!(
+            "{} of this submission are still in the queue\n  next: billow status {}; or scancel {} {}, then submit again",
+            count(tasks, "task"),
+            results.root().display(),
+            queued.array,
+            queued.merge
+        ),
+    })
+}
+
+/// The jobs that have not ended, in plan order.
+fn missing(study: &Study, results: &Results<'_>) -> Result<Vec<Job>> {
+    let journal = results.journal()?;
+    let mut jobs = Vec::new();
+    for point in stored::planned(study, &journal) {
+        let id = &point.job.id;
+        let record = journal.records.get(id);
+        let is_missing = match record {
+            Some(record) => results.damage(record)?.is_some(),
+            None => true,
+        };
+        if point.infeasible.is_none() && is_missing {
+            jobs.push(point.job);
+        }
+    }
+    Ok(jobs)
+}
+
+/// Shares the jobs out among tasks.
+fn tasks(args: &Args, missing: &[Job]) -> Result<Tasks> {
+    let wall_time = quantity("--time", &args.time, Dimension::Time)?;
+    let positive = |option: &str, number: usize| match number {
+        0 => Err(Error::invalid_option(option, "0", "is too few", "1 or more", "")),
+        number => Ok(number),
+    };
+    let cores = positive("--cpus", args.cpus)?;
+    let mut costs = Costs::default();
+    let mut memory: BTreeMap<u64, usize> = BTreeMap::new();
+    let costed: Vec<CostedJob> = missing
+        .iter()
+        .map(|job| {
+            *memory.entry(estimate(&job.scene).total).or_default() += 1;
+            CostedJob { id: job.id.clone(), seconds: costs.seconds(&job.scene) }
+        })
+        .collect();
+    let most = slurm::max_tasks();
+    let number = match args.tasks {
+        None => chunks::number(&costed, cores, wall_time, most),
+        Some(number) if positive("--tasks", number)? <= most => number.min(missing.len().max(1)),
+        Some(number) => {
+            let allowed = format!("1 to {most}: MaxArraySize of the cluster less one");
+            let value = number.to_string();
+            return Err(Error::invalid_option("--tasks", &value, "is too many", allowed, ""));
+        }
+    };
+    let memory = match &args.mem {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
+        Some(text) => quantity("--mem", text, Dimension::Memory)? as u64,
+        None => PROGRAM_MEMORY + largest(&memory, cores),
+    };
+    let needs = Needs {
+        partition: args.partition.clone(),
+        wall_time,
+        cores,
+        memory,
+        options: args.sbatch.clone(),
+    };
+    let chunks = if missing.is_empty() { Vec::new() } else { chunks::share(&costed, number) };
+    let seconds = costed.iter().map(|job| job.seconds).sum();
+    Ok(Tasks { chunks, needs, jobs: missing.len(), seconds })
+}
+
+/// Memory of this number of jobs side by side at most, bytes: of the jobs with these sizes.
+fn largest(sizes: &BTreeMap<u64, usize>, cores: usize) -> u64 {
+    let all = sizes.iter().rev().flat_map(|(size, number)| std::iter::repeat_n(*size, *number));
+    all.take(cores).sum()
+}
+
+/// A quantity of the command line, in SI, above zero.
+fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64> {
+    let read = units::parse(text, dimension).ok().filter(|value| *value > 0.0 && value.is_finite());
+    read.ok_or_else(|| {
+        let example = if dimension == Dimension::Time { "\"2 h\"" } else { "\"4 GB\"" };
+        let allowed = format!("a {} above zero with its unit, as in {option} {example}", dimension.name());
+        Error::invalid_option(option, text, "is no such quantity", allowed, "")
+    })
+}
+
+impl Tasks {
+    fn summary(&self, study: &str) -> String {
+        if self.jobs == 0 {
+            return format!("{study}: nothing to submit, all jobs are finished");
+        }
+        format!(
+            "{study}: {} in {}, about {} on one core",
+            count(self.jobs, "job"),
+            count(self.chunks.len(), "task"),
+            duration(libm::ceil(self.seconds))
+        )
+    }
+}
+
+fn print(
+    tasks: &Tasks,
+    study: &str,
+    submission: &Submission,
+    queued: &Queued,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let folder = submission.folder.display();
+    let Queued { array, merge } = queued;
+    let written = if format == Format::Json {
+        let json = serde_json::json!({
+            "study": study,
+            "submission": submission.name,
+            "folder": folder.to_string(),
+            "jobs": tasks.jobs,
+            "tasks": tasks.chunks.len(),
+            "estimated_seconds": tasks.seconds,
+            "array": array,
+            "merge": merge,
+        });
+        writeln!(out, "{json}")
+    } else {
+        writeln!(
+            out,
+            "{}\n  slurm    array {array}, then {merge} writes the table\n  folder   {folder}\n  next     billow status",
+            tasks.summary(study)
+        )
+    };
+    written.map_err(output_error)
+}

@@ -1,0 +1,259 @@
+//! Joins what several runs have stored: the end of runs that shared a folder, and folders of parts of one study.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use crate::input::study_file::Json;
+use crate::job::JobId;
+use crate::job::row::ColumnId;
+use crate::platform::error::{Error, Result};
+use crate::platform::files::disk_error;
+use crate::platform::stop::Stop;
+use crate::store::attempts;
+use crate::store::history_file;
+use crate::store::journal::{Journal, Record, RemedyLink, Writer};
+use crate::store::results::Results;
+use crate::store::stored::Stored;
+use crate::store::table::Table;
+
+/// Time between two looks at runs that share a folder. Chosen: a signal still ends the command within 2 s.
+const WAIT: Duration = Duration::from_millis(500);
+/// Records that are written with one sync. Chosen: few syncs, little memory.
+const RECORDS_PER_SYNC: usize = 256;
+
+/// Waits until no run shares the folder any more, at most for `limit`; returns early at a stop request.
+///
+/// # Errors
+/// [`Error::Disk`] when runs are still alive then.
+pub fn wait_for_runs(results: &Results<'_>, limit: Duration, stop: &Stop) -> Result<()> {
+    let start = Instant::now();
+    while stop.requested().is_none() && start.elapsed() < limit && !results.live_runs()?.is_empty() {
+        std::thread::sleep(WAIT);
+    }
+    if stop.requested().is_some() { Ok(()) } else { results.refuse_live_runs() }
+}
+
+/// Whether no run shares the folder any more.
+///
+/// # Errors
+/// [`Error::Disk`].
+pub fn is_last(results: &Results<'_>) -> Result<bool> {
+    Ok(results.live_runs()?.is_empty())
+}
+
+/// Repairs what runs that shared the folder left, and writes the table.
+///
+/// # Errors
+/// [`Error::Disk`], also when another command holds the lock.
+pub fn finish(results: &Results<'_>) -> Result<()> {
+    let _lock = results.lock()?;
+    results.remove_temporary_files()?;
+    let mut journal = results.journal()?;
+    results.mend_journal(&journal)?;
+    let mut writer = Writer::new(results.files(), results.journal_path());
+    attempts::take_deaths(results, &mut journal, &mut writer)?;
+    write_table(results)
+}
+
+fn write_table(results: &Results<'_>) -> Result<()> {
+    let stored = Stored::read(results.clone())?;
+    let Stored { study, points, journal, .. } = &stored;
+    results.write_table(&Table::of_study(study, points, &journal.records)).map(|_| ())
+}
+
+/// Makes a folder ready for runs that share it, and writes more into it under the same lock: nothing of dead runs remains,
+/// and study.json is that of this study.
+///
+/// # Errors
+/// [`Error::Disk`], also when another command holds the lock.
+pub fn prepare<T>(
+    results: &Results<'_>,
+    (name, study): (&str, &Json),
+    write: &dyn Fn(&Results<'_>) -> Result<T>,
+) -> Result<T> {
+    let _lock = results.lock()?;
+    open_alone(results, name, study)?;
+    write(results)
+}
+
+/// The journal of a folder whose lock this process holds, repaired, and its writer. study.json is written.
+fn open_alone<'a>(
+    results: &Results<'a>,
+    name: &str,
+    study: &Json,
+) -> Result<(Journal, Writer<'a>)> {
+    results.remove_temporary_files()?;
+    let mut journal = results.journal()?;
+    let text = results.write_study(name, study, &journal)?;
+    results.mend_journal(&journal)?;
+    let mut writer = Writer::new(results.files(), results.journal_path());
+    attempts::take_deaths(results, &mut journal, &mut writer)?;
+    if journal.study.as_deref() != Some(&text) {
+        writer.study(&text)?;
+    }
+    Ok((journal, writer))
+}
+
+/// What a merge of folders did.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Merged {
+    /// Number of jobs that were copied.
+    pub copied: usize,
+    /// Number of jobs that the folder had already, with the same bits.
+    pub same: usize,
+    /// Jobs that the folder had already with other bits, and kept.
+    pub different: Vec<JobId>,
+    /// Jobs whose history is damaged in its folder; they were left out.
+    pub damaged: Vec<PathBuf>,
+}
+
+/// Copies the jobs of folders into another one, and writes its table. Every folder belongs to this study; the other one
+/// may be new. A job that is there already stays: a later merge, or the same one again after an interruption, copies what is missing.
+///
+/// # Errors
+/// [`Error::Disk`]; [`Error::Input`] for a folder of another study.
+pub fn merge(
+    sources: &[Results<'_>],
+    target: &Results<'_>,
+    (name, study): (&str, &Json),
+    stop: &Stop,
+) -> Result<Merged> {
+    for source in sources {
+        if source.owner()?.is_none_or(|owner| owner != name) || !source.holds(name, study)? {
+            return Err(other_study(source, name));
+        }
+    }
+    let lock = target.lock()?;
+    let (mut journal, mut writer) = open_alone(target, name, study)?;
+    let mut merged = Merged::default();
+    for source in sources {
+        copy(source, target, &mut journal, &mut writer, stop, &mut merged)?;
+        copy_references(source, target)?;
+    }
+    if stop.requested().is_none() {
+        target.check_lock(&lock)?;
+        write_table(target)?;
+    }
+    Ok(merged)
+}
+
+/// Copies the jobs of one folder.
+fn copy(
+    source: &Results<'_>,
+    target: &Results<'_>,
+    journal: &mut Journal,
+    writer: &mut Writer<'_>,
+    stop: &Stop,
+    merged: &mut Merged,
+) -> Result<()> {
+    let found = source.journal()?;
+    let mut records = Vec::new();
+    for (id, record) in &found.records {
+        if stop.requested().is_some() {
+            break;
+        }
+        // A job that a limit ended may have a result in another folder.
+        if let Some(known) = journal.records.get(id)
+            && (!known.reached_limit() || record.reached_limit())
+        {
+            if record.reached_limit() || is_same(known, record) {
+                merged.same += 1;
+            } else {
+                merged.different.push(id.clone());
+            }
+            continue;
+        }
+        match copied(source, target, record)? {
+            Some(record) => records.push(record),
+            None => merged.damaged.push(source.job_path(id)),
+        }
+        if records.len() == RECORDS_PER_SYNC {
+            append(&mut records, journal, writer, merged)?;
+        }
+    }
+    append(&mut records, journal, writer, merged)?;
+    copy_links(&found.remedies, journal, writer)
+}
+
+/// Copies a history and returns its record; `None` where the history is damaged or missing.
+fn copied(source: &Results<'_>, target: &Results<'_>, record: &Record) -> Result<Option<Record>> {
+    let Some(hash) = &record.file_hash else { return Ok(Some(record.clone())) };
+    let path = source.job_path(&record.job);
+    let bytes = match source.files().read(&path) {
+        Ok(bytes) if history_file::bytes_hash(&bytes) == *hash => bytes,
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(disk_error(&path, &error));
+        }
+        _ => return Ok(None),
+    };
+    let stamp = target.write_job(&record.job, &bytes)?;
+    Ok(Some(Record { file_stamp: Some(stamp), ..record.clone() }))
+}
+
+/// Appends copied records to the journal.
+fn append(
+    records: &mut Vec<Record>,
+    journal: &mut Journal,
+    writer: &mut Writer<'_>,
+    merged: &mut Merged,
+) -> Result<()> {
+    if records.is_empty() {
+        return Ok(());
+    }
+    writer.append(records)?;
+    merged.copied += records.len();
+    journal.records.extend(records.drain(..).map(|record| (record.job.clone(), record)));
+    Ok(())
+}
+
+/// Copies the links of runs with remedies that the folder does not have.
+fn copy_links(
+    found: &BTreeMap<JobId, Vec<RemedyLink>>,
+    journal: &mut Journal,
+    writer: &mut Writer<'_>,
+) -> Result<()> {
+    let known = |link: &RemedyLink| {
+        let links = journal.remedies.get(&link.planned);
+        links.is_some_and(|links| links.iter().any(|known| known.by == link.by))
+    };
+    let new: Vec<RemedyLink> =
+        found.values().flatten().filter(|link| !known(link)).cloned().collect();
+    if !new.is_empty() {
+        writer.append_remedies(&[], &new)?;
+    }
+    for link in new {
+        crate::store::journal::add_link(&mut journal.remedies, link);
+    }
+    Ok(())
+}
+
+/// Copies the static references that the folder does not have.
+fn copy_references(source: &Results<'_>, target: &Results<'_>) -> Result<()> {
+    let known = target.references().states;
+    for (id, states) in source.references().states {
+        if known.iter().all(|(known, _)| *known != id) {
+            target.write_reference(&id, &states)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether two records of one job have the same status and the same history.
+fn is_same(one: &Record, other: &Record) -> bool {
+    let hash = |record: &Record| record.cells.text(ColumnId::ContentHash).to_owned();
+    one.cells.status() == other.cells.status() && hash(one) == hash(other)
+}
+
+fn other_study(source: &Results<'_>, name: &str) -> Error {
+    Error::invalid_option(
+        "billow merge",
+        &source.root().display().to_string(),
+        format!("not results of the study {name:?} with these keys and grid"),
+        "folders of the same study file, run with the same --set (units and job limits may differ)",
+        "run the same study in each: billow run STUDY --points K/N --results FOLDER",
+    )
+}
+
+#[cfg(test)]
+mod tests;
