@@ -7,6 +7,7 @@
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
+# make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents (root only)
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
@@ -21,8 +22,9 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
+SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps slurm slurm-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -42,7 +44,7 @@ test: deps
 	$(CARGO) test $(FLAGS)
 	$(BILLOW) validate --quick
 
-test-all: test test-long readers
+test-all: test test-long readers slurm
 
 # Tests marked `#[ignore]` are the long tier; so are the cases `validate --quick` leaves out.
 test-long: deps reader-deps
@@ -69,6 +71,10 @@ readers: build reader-deps
 build: deps
 	$(CARGO) build $(FLAGS)
 
+# Says so where it cannot run: exit code 77 of the script.
+slurm: build slurm-deps
+	tests/slurm/run.sh $(BILLOW) || [ $$? -eq 77 ]
+
 bench: build
 	$(BILLOW) bench
 
@@ -85,6 +91,9 @@ check: deps
 
 deps:
 	@.ci/install.sh $(PACKAGES)
+
+slurm-deps:
+	@[ "$$(id -u)" -ne 0 ] || .ci/install.sh $(SLURM_PACKAGES)
 
 reader-deps:
 	@.ci/install.sh $(READER_PACKAGES)

@@ -35,6 +35,7 @@ mod results_folder;
 mod run_and_table;
 mod scene_files;
 mod search;
+mod several_runs;
 mod solve;
 mod stability;
 mod status_why_show;

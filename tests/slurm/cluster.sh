@@ -69,6 +69,10 @@ stop_cluster() {
   done
   # What a killed node left.
   pkill -9 -f "slurmstepd: \[.*\]" 2> /dev/null
+  # The daemons write their state as they end.
+  for file in "$cluster"/*.pid; do
+    while [ -e "$file" ] && kill -0 "$(cat "$file")" 2> /dev/null; do sleep 0.2; done
+  done
   rm -rf "$cluster"
 }
 

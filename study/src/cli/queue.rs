@@ -45,7 +45,10 @@ impl Workers {
                 names.push("…");
             }
             let runs = count(self.runs.len(), "run");
-            lines.push(("shared", format!("{runs} at work on {}: {}", count(jobs, "job"), names.join(", "))));
+            lines.push((
+                "shared",
+                format!("{runs} at work on {}: {}", count(jobs, "job"), names.join(", ")),
+            ));
         }
         if let Some((submission, queued)) = &self.submission {
             let Queued { array, merge } = queued;
@@ -55,7 +58,10 @@ impl Workers {
                 Err(problem) => format!("the queue cannot be asked: {problem}"),
             };
             let name = &submission.name;
-            lines.push(("slurm", format!("submission {name} (array {array}, merge {merge}) {state}")));
+            lines.push((
+                "slurm",
+                format!("submission {name} (array {array}, merge {merge}) {state}"),
+            ));
         }
         lines
     }

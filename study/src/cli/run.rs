@@ -30,8 +30,8 @@ use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
-use crate::run::{merge, progress};
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Rerun, Run, Summary};
+use crate::run::{merge, progress};
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -199,7 +199,11 @@ fn interrupted(summary: &Summary) -> Option<Error> {
 /// Prints what a task of a submission did.
 fn print_task(study: &str, summary: &Summary, out: &mut dyn Write) -> io::Result<()> {
     let elsewhere = count(summary.ended_elsewhere, "job");
-    writeln!(out, "{study}: {} run, {elsewhere} ended by other tasks meanwhile", count(summary.ran, "job"))
+    writeln!(
+        out,
+        "{study}: {} run, {elsewhere} ended by other tasks meanwhile",
+        count(summary.ran, "job")
+    )
 }
 
 /// The static references that can be used. Says on stderr which files are damaged.
@@ -347,7 +351,10 @@ impl Ended<'_> {
         }
         if summary.not_selected > 0 {
             let jobs = count(summary.not_selected, "unfinished job");
-            writeln!(out, "  parts    {jobs} in other parts (--points); billow merge joins their folders")?;
+            writeln!(
+                out,
+                "  parts    {jobs} in other parts (--points); billow merge joins their folders"
+            )?;
         }
         if summary.same > 0 {
             writeln!(out, "  bits     {} the same as before", count(summary.same, "job"))?;

@@ -100,7 +100,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     let missing = missing(&study, &results)?;
     let tasks = tasks(args, &missing)?;
-    let program = std::env::current_exe().map_err(|error| disk_error(Path::new("billow"), &error))?;
+    let program =
+        std::env::current_exe().map_err(|error| disk_error(Path::new("billow"), &error))?;
     let scripts = |submission: &str| {
         let (tasks, needs) = (tasks.chunks.len(), &tasks.needs);
         let (program, root) = (program.clone(), root.clone());
@@ -132,7 +133,10 @@ fn refuse_queued(results: &Results<'_>) -> Result<()> {
     let tasks: usize = match slurm::queue(&queued) {
         Ok(states) => states.values().sum(),
         Err(problem) => {
-            eprintln!("note: squeue does not say whether submission {} has ended: {problem}", last.name);
+            eprintln!(
+                "note: squeue does not say whether submission {} has ended: {problem}",
+                last.name
+            );
             0
         }
     };
@@ -197,7 +201,11 @@ fn tasks(args: &Args, missing: &[Job]) -> Result<Tasks> {
         }
     };
     let memory = match &args.mem {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "positive, and saturates"
+        )]
         Some(text) => quantity("--mem", text, Dimension::Memory)? as u64,
         None => PROGRAM_MEMORY + largest(&memory, cores),
     };
@@ -224,7 +232,8 @@ fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64> {
     let read = units::parse(text, dimension).ok().filter(|value| *value > 0.0 && value.is_finite());
     read.ok_or_else(|| {
         let example = if dimension == Dimension::Time { "\"2 h\"" } else { "\"4 GB\"" };
-        let allowed = format!("a {} above zero with its unit, as in {option} {example}", dimension.name());
+        let allowed =
+            format!("a {} above zero with its unit, as in {option} {example}", dimension.name());
         Error::invalid_option(option, text, "is no such quantity", allowed, "")
     })
 }

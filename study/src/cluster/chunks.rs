@@ -27,7 +27,11 @@ pub struct CostedJob {
 pub fn number(jobs: &[CostedJob], cores: usize, wall_time: f64, most: usize) -> usize {
     let seconds: f64 = jobs.iter().map(|job| job.seconds).sum();
     let each = TASK_SECONDS.min(WALL_TIME_SHARE * wall_time) * cores as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1, and saturates")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at least 1, and saturates"
+    )]
     let wanted = libm::ceil(seconds / each).max(1.0) as usize;
     wanted.min(jobs.len().div_ceil(cores)).min(most).max(1)
 }
@@ -39,9 +43,8 @@ pub fn share(jobs: &[CostedJob], tasks: usize) -> Vec<Vec<JobId>> {
     dearest.sort_by(|a, b| jobs[*b].seconds.total_cmp(&jobs[*a].seconds).then(a.cmp(b)));
     let mut chunks: Vec<(f64, Vec<usize>)> = vec![(0.0, Vec::new()); tasks];
     for job in dearest {
-        let cheapest = chunks.iter_mut().min_by(|a, b| {
-            a.0.total_cmp(&b.0).then(a.1.len().cmp(&b.1.len()))
-        });
+        let cheapest =
+            chunks.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.len().cmp(&b.1.len())));
         if let Some((seconds, chunk)) = cheapest {
             *seconds += jobs[job].seconds;
             chunk.push(job);
@@ -76,7 +79,8 @@ mod tests {
         ids.sort();
         assert!(ids.iter().copied().eq(all.iter().map(|job| &job.id)));
         let cost = |chunk: &Vec<JobId>| -> f64 {
-            let of = |id: &JobId| all.iter().find(|job| job.id == *id).map_or(0.0, |job| job.seconds);
+            let of =
+                |id: &JobId| all.iter().find(|job| job.id == *id).map_or(0.0, |job| job.seconds);
             chunk.iter().map(of).sum()
         };
         let found: Vec<f64> = chunks.iter().map(cost).collect();

@@ -99,7 +99,11 @@ impl Scripts<'_> {
 
 /// A time (s) as Slurm reads it, rounded up: "1-02:30:00", "00:05:00".
 fn slurm_time(seconds: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive, and saturates"
+    )]
     let seconds = libm::ceil(seconds) as u64;
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
     let clock = format!("{:02}:{:02}:{:02}", rest / 3600, rest / 60 % 60, rest % 60);

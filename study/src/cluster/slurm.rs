@@ -83,7 +83,9 @@ fn states(output: &str) -> BTreeMap<String, usize> {
 fn command(name: &str, arguments: &[&str]) -> std::result::Result<String, String> {
     let output = Command::new(name).args(arguments).output();
     let output = output.map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => format!("no program {name} here: is this a machine of a Slurm cluster?"),
+        std::io::ErrorKind::NotFound => {
+            format!("no program {name} here: is this a machine of a Slurm cluster?")
+        }
         _ => format!("{name}: {error}"),
     })?;
     if output.status.success() {

@@ -89,7 +89,9 @@ impl Submission {
             };
             let queued = serde_json::from_slice(&bytes).map_err(|error| Error::Disk {
                 path,
-                problem: format!("not the numbers of a scheduler: {error}\n  next: delete the file"),
+                problem: format!(
+                    "not the numbers of a scheduler: {error}\n  next: delete the file"
+                ),
             })?;
             return Ok(Some((Self { name, folder }, queued)));
         }
@@ -129,7 +131,8 @@ pub fn chunk(results: &Results<'_>, name: &str) -> Result<Vec<JobId>> {
     };
     let parts = name.split_once('/');
     let parts = parts.and_then(|(submission, task)| {
-        let is_name = !submission.is_empty() && submission.bytes().all(|byte| byte.is_ascii_digit());
+        let is_name =
+            !submission.is_empty() && submission.bytes().all(|byte| byte.is_ascii_digit());
         Some((submission, task.parse::<usize>().ok().filter(|task| *task > 0 && is_name)?))
     });
     let (submission, task) = parts.ok_or_else(|| refuse("is no chunk".to_owned()))?;
@@ -139,9 +142,9 @@ pub fn chunk(results: &Results<'_>, name: &str) -> Result<Vec<JobId>> {
         Err(ReadError::Other(error)) => return Err(error),
         Ok(chunks) => chunks.chunks,
     };
-    let chunk = chunks.get(task - 1).ok_or_else(|| {
-        refuse(format!("submission {submission} has {} tasks", chunks.len()))
-    })?;
+    let chunk = chunks
+        .get(task - 1)
+        .ok_or_else(|| refuse(format!("submission {submission} has {} tasks", chunks.len())))?;
     let ids = chunk.iter().map(|digits| JobId::from_digits(digits));
     let ids: Option<Vec<JobId>> = ids.collect();
     ids.ok_or_else(|| damaged(&path, "a text in it is no job id"))
@@ -160,7 +163,8 @@ fn read(results: &Results<'_>, path: &Path) -> std::result::Result<Chunks, ReadE
     let damaged = |problem: &str| ReadError::Other(damaged(path, problem));
     let text = String::from_utf8(bytes).map_err(|_| damaged("not UTF-8 text"))?;
     let object = seal::open(text.trim_end()).map_err(|error| damaged(&error.to_string()))?;
-    let chunks: Chunks = serde_json::from_str(&object).map_err(|error| damaged(&error.to_string()))?;
+    let chunks: Chunks =
+        serde_json::from_str(&object).map_err(|error| damaged(&error.to_string()))?;
     if chunks.format != FORMAT || chunks.version > VERSION {
         return Err(damaged("a newer billow wrote it"));
     }
@@ -170,7 +174,9 @@ fn read(results: &Results<'_>, path: &Path) -> std::result::Result<Chunks, ReadE
 fn damaged(path: &Path, problem: &str) -> Error {
     Error::Disk {
         path: path.to_owned(),
-        problem: format!("damaged: {problem}\n  next: billow submit again: it submits what is missing"),
+        problem: format!(
+            "damaged: {problem}\n  next: billow submit again: it submits what is missing"
+        ),
     }
 }
 

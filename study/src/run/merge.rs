@@ -28,7 +28,8 @@ const RECORDS_PER_SYNC: usize = 256;
 /// [`Error::Disk`] when runs are still alive then.
 pub fn wait_for_runs(results: &Results<'_>, limit: Duration, stop: &Stop) -> Result<()> {
     let start = Instant::now();
-    while stop.requested().is_none() && start.elapsed() < limit && !results.live_runs()?.is_empty() {
+    while stop.requested().is_none() && start.elapsed() < limit && !results.live_runs()?.is_empty()
+    {
         std::thread::sleep(WAIT);
     }
     if stop.requested().is_some() { Ok(()) } else { results.refuse_live_runs() }

@@ -283,7 +283,11 @@ impl Results<'_> {
             problem: format!(
                 "{} in this folder with --shared (the first is {})\n  next: wait until they have ended, at most {} s \
                  after one was killed; or use billow run --shared too",
-                if runs.len() == 1 { "a run works".to_owned() } else { format!("{} runs work", runs.len()) },
+                if runs.len() == 1 {
+                    "a run works".to_owned()
+                } else {
+                    format!("{} runs work", runs.len())
+                },
                 first.owner,
                 LEASE.as_secs(),
             ),
@@ -333,7 +337,8 @@ fn read(files: &dyn Files, path: &Path) -> Result<Option<(Option<Owner>, Stamp)>
     let read = files.read(path).and_then(|bytes| Ok((bytes, files.stamp(path)?)));
     match read {
         Ok((bytes, stamp)) => {
-            let object = String::from_utf8(bytes).ok().and_then(|text| seal::open(text.trim_end()).ok());
+            let object =
+                String::from_utf8(bytes).ok().and_then(|text| seal::open(text.trim_end()).ok());
             Ok(Some((object.and_then(|object| serde_json::from_str(&object).ok()), stamp)))
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),

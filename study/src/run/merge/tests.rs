@@ -55,7 +55,8 @@ fn part(text: &str) -> Selection {
 fn table(root: &Path) -> Vec<(String, Vec<String>)> {
     let table = Results::new(&Disk, root).read_table().unwrap();
     let columns = table.columns.iter().filter(|column| !column.name.contains("seconds"));
-    let cells = |cells: &[crate::input::value::Value]| cells.iter().map(ToString::to_string).collect();
+    let cells =
+        |cells: &[crate::input::value::Value]| cells.iter().map(ToString::to_string).collect();
     columns.map(|column| (column.name.clone(), cells(&column.cells))).collect()
 }
 
@@ -67,7 +68,8 @@ fn parts_in_folders_of_their_own_give_the_table_of_the_whole() {
     run_part(&study, &path("whole"), Selection::All, None);
     let mut ran = 0;
     for number in 1..=3 {
-        let summary = run_part(&study, &path(&number.to_string()), part(&format!("{number}/3")), None);
+        let summary =
+            run_part(&study, &path(&number.to_string()), part(&format!("{number}/3")), None);
         assert_eq!(summary.ran + summary.not_selected, 8);
         ran += summary.ran;
     }
@@ -112,7 +114,10 @@ fn other_studies_other_bits_and_damaged_histories_are_named() {
     fs::write(sources[0].job_path(damaged), "x").unwrap();
     let merged = merge(&sources, &target, (&study.name, &resolved), &Stop::new()).unwrap();
     assert_eq!((merged.copied, merged.same), (3, 3));
-    assert_eq!((merged.different, merged.damaged), (vec![changed], vec![sources[0].job_path(damaged)]));
+    assert_eq!(
+        (merged.different, merged.damaged),
+        (vec![changed], vec![sources[0].job_path(damaged)])
+    );
 }
 
 #[test]

@@ -6,9 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::sharing::Sharing;
 use crate::job::JobId;
 use crate::platform::error::Result;
-use super::sharing::Sharing;
 use crate::platform::files::Lock;
 use crate::store::attempts::{self, Attempts};
 use crate::store::journal::{Journal, Record, Writer};
@@ -112,7 +112,9 @@ impl<'a> AttemptLog<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
     pub fn ended_elsewhere(&self) -> Result<BTreeMap<JobId, Record>> {
-        self.sharing.as_ref().map_or(Ok(BTreeMap::new()), |sharing| locked(sharing).ended().cloned())
+        self.sharing
+            .as_ref()
+            .map_or(Ok(BTreeMap::new()), |sharing| locked(sharing).ended().cloned())
     }
 
     /// Jobs that other runs had and that no run has now, and whether some are not known yet.

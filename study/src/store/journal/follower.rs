@@ -26,8 +26,12 @@ impl<'a> Follower<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
     pub fn new(files: &'a dyn Files, folder: &Path) -> Result<Self> {
-        let mut follower =
-            Self { files, folder: folder.to_owned(), read: BTreeMap::new(), ended: BTreeMap::new() };
+        let mut follower = Self {
+            files,
+            folder: folder.to_owned(),
+            read: BTreeMap::new(),
+            ended: BTreeMap::new(),
+        };
         for (path, size) in follower.sizes()? {
             follower.read.insert(path, size);
         }

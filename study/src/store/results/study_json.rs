@@ -171,7 +171,12 @@ impl Results<'_> {
     ///
     /// # Errors
     /// As [`Self::write_study`].
-    pub fn write_shared_study(&self, name: &str, study: &Json, journal: &Journal) -> Result<String> {
+    pub fn write_shared_study(
+        &self,
+        name: &str,
+        study: &Json,
+        journal: &Journal,
+    ) -> Result<String> {
         if self.owner()?.is_some_and(|owner| owner == name) && !self.holds(name, study)? {
             return Err(self.refused(
                 "the folder holds another version of this study, and other runs may be working on it",
