@@ -54,6 +54,7 @@ fn what_cannot_be_merged_or_run_in_parts_is_refused() {
 }
 
 #[test]
+#[ignore = "waits two minutes for the lease of a dead run"]
 fn runs_that_share_a_folder_give_one_table_although_one_is_killed() {
     let flows: Vec<f64> = (1..=40).map(|flow| 0.0002 * f64::from(flow)).collect();
     let mut study =
