@@ -63,7 +63,8 @@ readers: build reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
 	for study in piston film; do \
 	    $(BILLOW) run tests/readers/$$study.json --results "$$results/$$study" --quiet > /dev/null; \
-	    tests/readers/check.sh "$$results/$$study"; \
+	    $(BILLOW) export "$$results/$$study" --cube "$$results/$$study.nc" > /dev/null; \
+	    tests/readers/check.sh "$$results/$$study" "$$results/$$study.nc"; \
 	done
 
 build: deps
