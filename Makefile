@@ -7,6 +7,7 @@
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
+# make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
@@ -20,9 +21,10 @@ FLAGS := --release --workspace --locked
 BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 
 PACKAGES := libhdf5-dev pkg-config
+DIST_PACKAGES := g++ binutils git python3 python3-venv
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: dist study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps dist-deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -73,6 +75,10 @@ build: deps
 bench: build
 	$(BILLOW) bench
 
+# For machines without libhdf5. It is compiled in a folder of its own and checked by tests/dist/check.sh.
+dist: deps dist-deps
+	.ci/dist.sh
+
 # Which room imports which, and that none imports from above.
 layers: deps
 	$(CARGO) test $(FLAGS) --test repository layers -- --nocapture
@@ -86,6 +92,9 @@ check: deps
 
 deps:
 	@.ci/install.sh $(PACKAGES)
+
+dist-deps:
+	@.ci/install.sh $(DIST_PACKAGES)
 
 reader-deps:
 	@.ci/install.sh $(READER_PACKAGES)
