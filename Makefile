@@ -8,6 +8,7 @@
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents (root only)
+# make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
@@ -21,10 +22,11 @@ FLAGS := --release --workspace --locked
 BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 
 PACKAGES := libhdf5-dev pkg-config
+DIST_PACKAGES := g++ binutils git python3 python3-venv
 READER_PACKAGES := python3 python3-venv
 SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps slurm slurm-deps fresh-check
+.PHONY: dist study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -65,7 +67,8 @@ readers: build reader-deps
 	results=$$(mktemp -d); trap 'rm -rf "$$results"' EXIT; \
 	for study in piston film; do \
 	    $(BILLOW) run tests/readers/$$study.json --results "$$results/$$study" --quiet > /dev/null; \
-	    tests/readers/check.sh "$$results/$$study"; \
+	    $(BILLOW) export "$$results/$$study" --cube "$$results/$$study.nc" > /dev/null; \
+	    tests/readers/check.sh "$$results/$$study" "$$results/$$study.nc"; \
 	done
 
 build: deps
@@ -77,6 +80,10 @@ slurm: build slurm-deps
 
 bench: build
 	$(BILLOW) bench
+
+# For machines without libhdf5. It is compiled in a folder of its own and checked by tests/dist/check.sh.
+dist: deps dist-deps
+	.ci/dist.sh
 
 # Which room imports which, and that none imports from above.
 layers: deps
@@ -94,6 +101,9 @@ deps:
 
 slurm-deps:
 	@[ "$$(id -u)" -ne 0 ] || .ci/install.sh $(SLURM_PACKAGES)
+
+dist-deps:
+	@.ci/install.sh $(DIST_PACKAGES)
 
 reader-deps:
 	@.ci/install.sh $(READER_PACKAGES)

@@ -12,6 +12,7 @@ mod contact_scenes;
 mod determinism;
 mod doctor_and_rerun;
 mod edge_of_physics;
+mod export;
 mod fault_injection;
 mod film_study;
 mod fold;

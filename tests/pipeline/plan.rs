@@ -411,7 +411,10 @@ fn ten_thousand_jobs_are_planned() {
     }
     let many: Vec<i64> = (0..1000).collect();
     let huge = with_grid(json!({"seed": many, "step_limit": (1..1000).collect::<Vec<i64>>()}));
-    assert!(try_study(&huge, &[]).unwrap_err().problem.contains("999000 points"));
+    let error = try_study(&huge, &[]).unwrap_err();
+    assert!(error.problem.contains("999000 points"), "{error}");
+    assert!(error.allowed.contains("250000"), "{error}");
+    assert!(error.hint.contains("seed (1000 values) and step_limit (999 values)"), "{error}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
 """Checks that common tools read what billow stores: values, units, types.
 
-    tests/readers/check.sh RESULTS
+    tests/readers/check.sh RESULTS [CUBE]
 
-RESULTS is the results folder of a finished study. Every history file is opened with h5py and with xarray
-(h5netcdf), its frames with the reader of VTK and ParaView, summary.parquet with pandas and with pyarrow.
+RESULTS is the results folder of a finished study, CUBE what `billow export --cube` wrote of it. Every history file is opened with h5py and with xarray
+(h5netcdf), the cube with xarray, its frames with the reader of VTK and ParaView, summary.parquet with pandas and with pyarrow.
 All of them are compared. The film of no frame intersects itself, as CGAL finds. The first difference ends the program with exit code 1.
 """
 
@@ -222,6 +222,39 @@ def check_history(path, row):
     return check_frames(path, values, dict(frames)) if film else 0
 
 
+def check_cube(path, results, frame):
+    """Compares the cube with the table and every history."""
+    study = json.loads((results / "study.json").read_text())
+    names = [name for axis in study["grid"]["zip"] for name in axis]
+    with xr.open_dataset(path, engine="h5netcdf") as cube:
+        check(cube.attrs["format"] == "billow-cube" and cube.attrs["complete"] == 1, f"{path}: {cube.attrs['format']}")
+        check(cube.attrs["study"] == (results / "study.json").read_text(), f"{path}: another study")
+        check(list(cube["z_max"].dims) == names + ["time"], f"{path}: z_max along {cube['z_max'].dims}")
+        check(set(cube.coords) == set(names + ["time"]), f"{path}: coordinates {list(cube.coords)}")
+        for name, variable in cube.variables.items():
+            check(variable.attrs["units"] in UNITS, f"{path}: {name} in {variable.attrs['units']}")
+            check(variable.attrs["long_name"], f"{path}: {name} without long_name")
+        for name in names:
+            check(cube[name].attrs["units"] == ("kg/s" if name == "mass_flow_rate" else "1"), f"{path}: {name}")
+        check(cube["time"].dtype == np.float64 and cube["time"].attrs["units"] == "s", f"{path}: time")
+        check(cube["status"].size == len(frame), f"{path}: {cube['status'].size} points, {len(frame)} rows")
+        for _, row in frame.iterrows():
+            point = cube.sel({name: row[name] for name in names})
+            for name in ["job", "status", "final_volume", "t_90_z_rim"]:
+                check(same(point[name].item(), row[name]), f"{path}: {name} of {row['job']} is {point[name].item()}")
+            check(point["verdict"].item() == ("" if pd.isna(row["verdict"]) else row["verdict"]), f"{path}: verdict")
+            if row["status"] != "done":
+                check(bool(np.isnan(point["pressure"]).all()), f"{path}: {row['job']} is {row['status']} and has values")
+                continue
+            history = xr.open_dataset(
+                results / "jobs" / row["job"][:2] / f"{row['job']}.h5", engine="h5netcdf", group="history")
+            with history:
+                check(np.array_equal(point["time"], history["time"]), f"{path}: other times")
+                for name, values in history.items():
+                    check(np.array_equal(point[name], values, equal_nan=True), f"{path}: {name} of {row['job']}")
+        print(f"{path}: {dict(cube.sizes)}, {len(cube.data_vars)} variables read by xarray like the histories")
+
+
 def check_frames(path, values, stored):
     """Compares the frames of VTK's reader with the arrays and the history; returns their number."""
     reader = vtkHDFReader()
@@ -281,6 +314,8 @@ def main():
         check_history(results / "jobs" / row["job"][:2] / f"{row['job']}.h5", row) for _, row in ran.iterrows()
     )
     check(len(ran) > 0, f"{results}: no history")
+    for cube in sys.argv[2:]:
+        check_cube(cube, results, frame)
     print(f"{results}: {len(frame)} rows and {len(ran)} histories with {frames} frames read alike by"
           f" h5py {h5py.__version__}, xarray {xr.__version__}, pandas {pd.__version__}, pyarrow {pa.__version__},"
           f" vtk {vtkVersion.GetVTKVersion()}; no frame intersects itself")

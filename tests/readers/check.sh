@@ -1,5 +1,5 @@
 #!/bin/sh
-# Opens a results folder with h5py, xarray, pandas, pyarrow and vtk:  tests/readers/check.sh RESULTS
+# Opens a results folder with h5py, xarray, pandas, pyarrow and vtk:  tests/readers/check.sh RESULTS [CUBE]
 # The packages are installed once, into .venv next to this script.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)

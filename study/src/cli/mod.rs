@@ -24,6 +24,7 @@ mod compare;
 mod completions;
 mod converge;
 mod doctor;
+mod export;
 mod fold;
 mod frames;
 mod instruction_set;
@@ -118,6 +119,8 @@ pub enum Command {
     Borders(borders::Args),
     /// Draw charts of a study's results, as SVG and PNG.
     Chart(chart::Args),
+    /// Write all results of a study into one file that xarray opens.
+    Export(export::Args),
     /// Draw work-precision diagrams: what each model, mesh and step costs, and how large its error is.
     Pareto(pareto::Args),
     /// Map where each method of integration fails, by real runs of small scenes.
@@ -178,6 +181,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Rank(args) => rank::run(args, out),
         Command::Borders(args) => borders::run(args, out),
         Command::Chart(args) => chart::run(args, out),
+        Command::Export(args) => export::run(args, out),
         Command::Pareto(args) => pareto::run(args, out),
         Command::Stability(args) => stability::run(args, out),
         Command::Keys(args) => keys::run(args, out),

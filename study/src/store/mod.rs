@@ -1,9 +1,10 @@
 //! What a study stores on disk: journal, history files, static references, checkpoints, claims, summary table;
-//! and the check of a results folder.
+//! the cube, which is all of them in one file; and the check of a results folder.
 
 pub mod attempts;
 pub mod checkpoint_file;
 pub mod claims;
+pub mod cube;
 pub mod damaged;
 pub mod doctor;
 pub mod exact_scenes;

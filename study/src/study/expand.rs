@@ -130,8 +130,25 @@ fn count(grid: &Grid, source: &Source, size: PlanSize) -> Result<(usize, usize),
     let size = all.map_or_else(|| "more than 10^19".to_owned(), |count| count.to_string());
     let allowed = format!("up to {max} points");
     let mut error = source.error("grid", "", format!("has {size} points"), allowed);
-    "give the axes fewer values, or make several studies".clone_into(&mut error.hint);
+    error.hint = format!(
+        "give {} fewer values; a search finds a border with few points ({{\"bisect\": [low, high], \"on\": …}}); a \
+         filter counts after this; or make several studies",
+        longest_axes(grid)
+    );
     Err(error)
+}
+
+/// The axes with the most values, two at most: "film.thickness (1000 values) and N (500 values)".
+fn longest_axes(grid: &Grid) -> String {
+    let mut axes: Vec<&Axis> = grid.axes.iter().collect();
+    axes.sort_by_key(|axis| std::cmp::Reverse(axis.rows.len()));
+    let text = |axis: &&Axis| {
+        let names: Vec<&str> =
+            axis.columns.iter().map(|column| grid.columns[*column].name.as_str()).collect();
+        format!("{} ({} values)", names.join(", "), axis.rows.len())
+    };
+    let texts: Vec<String> = axes.iter().take(2).map(text).collect();
+    if texts.is_empty() { "grid.points".to_owned() } else { texts.join(" and ") }
 }
 
 struct Expansion<'a> {

@@ -8,6 +8,7 @@
 
 mod accuracy;
 pub mod auto;
+mod axes;
 mod base;
 mod expand;
 pub mod finished;
@@ -46,6 +47,7 @@ use crate::job::result_limit::ResultLimit;
 use crate::platform::error::{InputError, Result as BillowResult};
 use accuracy::{ACCURACY, Accuracy};
 use auto::Auto;
+pub use axes::{GridAxis, NoProduct};
 use base::Base;
 use expand::Points;
 use grid::{Context, Grid};

@@ -1,10 +1,12 @@
 //! Whole files: written completely or not at all.
 
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::Files;
+use super::{Files, disk_error};
+use crate::platform::error::Result;
 
 /// End of the name of a temporary file.
 const TEMPORARY: &str = ".tmp";
@@ -21,12 +23,8 @@ pub fn is_temporary(path: &Path) -> bool {
 /// # Errors
 /// The error of the system. The temporary file is then removed if possible.
 pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    static COUNTER: AtomicU64 = AtomicU64::new(0);
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
     let temporary = loop {
-        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let temporary =
-            path.with_file_name(format!(".{name}.{}-{number}{TEMPORARY}", std::process::id()));
+        let temporary = temporary_path(path);
         match files.write_new(&temporary, bytes) {
             Ok(()) => break temporary,
             // A dead process with the same number left it.
@@ -38,13 +36,60 @@ pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<
             }
         }
     };
-    if let Err(error) = files.rename(&temporary, path) {
-        let _ = files.remove(&temporary);
+    publish(files, &temporary, path)
+}
+
+/// A name for a temporary file of this process beside a path; each call returns another one.
+fn temporary_path(path: &Path) -> PathBuf {
+    static COUNTER: AtomicU64 = AtomicU64::new(0);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+    path.with_file_name(format!(".{name}.{}-{number}{TEMPORARY}", std::process::id()))
+}
+
+/// Gives a synced temporary file its name.
+fn publish(files: &dyn Files, temporary: &Path, path: &Path) -> io::Result<()> {
+    if let Err(error) = files.rename(temporary, path) {
+        let _ = files.remove(temporary);
         return Err(error);
     }
     // The parent of a bare name is the empty path, which cannot be opened.
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     files.sync_folder(folder.unwrap_or(Path::new(".")))
+}
+
+/// Writes a whole file that the user named and that does not fit in memory: `build` writes it under a
+/// temporary name, which then is synced and renamed. On an error the old file stays.
+///
+/// # Errors
+/// The error of `build`; [`crate::platform::error::Error::Disk`].
+pub fn build_output<T>(
+    files: &dyn Files,
+    path: &Path,
+    build: &mut dyn FnMut(&Path) -> Result<T>,
+) -> Result<T> {
+    remove_stale_files_of(files, path);
+    let mut temporary = temporary_path(path);
+    // A dead process with the same number left it.
+    while temporary.exists() {
+        temporary = temporary_path(path);
+    }
+    let built = build(&temporary).and_then(|built| {
+        let sync = || File::open(&temporary)?.sync_all();
+        sync().map_err(|error| disk_error(path, &error))?;
+        Ok(built)
+    });
+    match built {
+        Ok(built) => {
+            publish(files, &temporary, path).map_err(|error| disk_error(path, &error))?;
+            Ok(built)
+        }
+        Err(error) => {
+            // The error of the build is reported, not an error of this removal.
+            let _ = files.remove(&temporary);
+            Err(error)
+        }
+    }
 }
 
 /// Writes a whole file that the user named, as [`write_atomic`]. Temporary files of this name that dead
@@ -53,6 +98,13 @@ pub fn write_atomic(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<
 /// # Errors
 /// As [`write_atomic`].
 pub fn write_output(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    remove_stale_files_of(files, path);
+    write_atomic(files, path, bytes)
+}
+
+/// Removes the temporary files of this name that dead processes left. What cannot be removed is no
+/// obstacle: the new temporary file has another name.
+fn remove_stale_files_of(files: &dyn Files, path: &Path) {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let begin = format!(".{name}.");
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -63,10 +115,8 @@ pub fn write_output(files: &dyn Files, path: &Path, bytes: &[u8]) -> io::Result<
         name.starts_with(&begin) && is_stale(path)
     });
     for path in stale {
-        // What cannot be removed is no obstacle: the new temporary file has another name.
         let _ = files.remove(&path);
     }
-    write_atomic(files, path, bytes)
 }
 
 /// Whether a temporary file belongs to a process that does not run: `.NAME.PROCESS-NUMBER.tmp`.
@@ -167,6 +217,26 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert!(!dead.exists() && other.exists());
         assert_eq!(remove_stale_files(&Disk, folder.path()).unwrap(), [other]);
+    }
+
+    #[test]
+    fn a_file_that_is_built_replaces_the_old_one_only_when_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cube.nc");
+        fs::write(&path, "old").unwrap();
+        let failed: Result<()> = build_output(&Disk, &path, &mut |temporary| {
+            fs::write(temporary, "half").unwrap();
+            Err(disk_error(temporary, &io::Error::from(io::ErrorKind::StorageFull)))
+        });
+        failed.unwrap_err();
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        build_output(&Disk, &path, &mut |temporary| {
+            fs::write(temporary, "new").unwrap();
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]

@@ -21,8 +21,8 @@ pub mod failing;
 pub mod scratch;
 
 pub use atomic::{
-    is_temporary, remove_stale_files, remove_temporary_files, write_atomic, write_if_changed,
-    write_output,
+    build_output, is_temporary, remove_stale_files, remove_temporary_files, write_atomic,
+    write_if_changed, write_output,
 };
 pub use disk::Disk;
 

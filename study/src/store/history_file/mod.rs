@@ -1,4 +1,5 @@
-//! History files, HDF5: one per job, or per scene that is solved alone. No other module uses HDF5.
+//! History files, HDF5: one per job, or per scene that is solved alone. Beside it only
+//! [`crate::store::cube`] uses HDF5, through the calls of this module.
 //!
 //! ```text
 //! /            format, version, program_version, commit, physics_version, job, scene, status,
@@ -29,13 +30,15 @@ use crate::platform::error::{Error, Result};
 
 mod content_hash;
 mod events;
-mod raw;
+mod outline;
+pub(in crate::store) mod raw;
 mod read;
 mod sha256;
 mod vtkhdf;
 mod write;
 
 pub use content_hash::{content_hash, hash_of};
+pub use outline::{ColumnOutline, Outline, outline};
 pub use read::{StoredHistory, read};
 pub use sha256::bytes_hash;
 pub use vtkhdf::StoredFrames;
@@ -49,12 +52,12 @@ const VERSION: u32 = 1;
 /// of the chunks takes more space than the compression saves.
 const MIN_CHUNKED_SAMPLES: usize = 512;
 /// Number of samples in a chunk, at most. Chosen: 128 KiB of `f64`.
-const MAX_CHUNK_SAMPLES: usize = 16_384;
+pub(in crate::store) const MAX_CHUNK_SAMPLES: usize = 16_384;
 /// Deflate level. Chosen: on shuffled time series, level 1 is nearly as small as 9 and much faster.
-const DEFLATE_LEVEL: u8 = 1;
+pub(in crate::store) const DEFLATE_LEVEL: u8 = 1;
 
 /// HDF5 has global state: one thread at a time uses it.
-static HDF5_LOCK: Mutex<()> = Mutex::new(());
+pub(in crate::store) static HDF5_LOCK: Mutex<()> = Mutex::new(());
 
 /// Opens the frames of a history file, to be read one at a time; `None` for a file without frames.
 ///
@@ -107,7 +110,8 @@ fn damaged(path: &Path, error: &hdf5::Error) -> Error {
     }
 }
 
-fn number_attribute<T: hdf5::H5Type + Copy>(
+/// Writes a number as an attribute.
+pub(in crate::store) fn number_attribute<T: hdf5::H5Type + Copy>(
     location: &Location,
     name: &str,
     number: T,

@@ -20,7 +20,7 @@ use hdf5_sys::h5d::{H5Dcreate2, H5Dwrite};
 use hdf5_sys::h5f::H5Fget_file_image;
 use hdf5_sys::h5i::hid_t;
 use hdf5_sys::h5p::H5P_DEFAULT;
-use hdf5_sys::h5s::H5S_ALL;
+use hdf5_sys::h5s::{H5S_ALL, H5S_seloper_t, H5Sselect_hyperslab};
 use hdf5_sys::h5t::{H5T_C_S1, H5Tclose, H5Tcopy, H5Tset_size, hvl_t};
 
 /// Writes attributes: holds the type and the space that they share.
@@ -63,33 +63,56 @@ impl Writer {
         })
     }
 
-    /// Makes `scale` the dimension scale of the first axis of `datasets`. The names are relative to
-    /// `group`.
+    /// Makes datasets dimension scales and attaches them: `along` gives, for each axis of a dataset, the
+    /// number of its scale. The names are relative to `group`.
     pub fn attach(
         &self,
         group: &Group,
-        (name, scale): (&str, &Dataset),
-        datasets: &[(&str, Dataset)],
+        scales: &[(&str, &Dataset)],
+        datasets: &[Scaled<'_>],
     ) -> hdf5::Result<()> {
-        self.fixed_text(scale, "CLASS", "DIMENSION_SCALE")?;
-        self.fixed_text(scale, "NAME", name)?;
         let axes_type = Datatype::from_type::<VarLenArray<ObjectReference1>>()?;
-        let single = Dataspace::try_new([1])?;
-        let mut reference = ObjectReference1::create(group, name)?;
-        let axes = hvl_t { len: 1, p: (&raw mut reference).cast() };
-        let mut attached = Vec::with_capacity(datasets.len());
-        for (name, dataset) in datasets {
-            // SAFETY: `axes_type` is "length and pointer to references", and `axes` is one such value.
+        let mut references = Vec::with_capacity(scales.len());
+        for (name, scale) in scales {
+            self.fixed_text(scale, "CLASS", "DIMENSION_SCALE")?;
+            self.fixed_text(scale, "NAME", name)?;
+            references.push(ObjectReference1::create(group, name)?);
+        }
+        let mut attached: Vec<Vec<Attached>> = vec![Vec::new(); scales.len()];
+        for Scaled { name, dataset, along } in datasets.iter().filter(|one| !one.along.is_empty()) {
+            let axes: Vec<hvl_t> = along
+                .iter()
+                .map(|scale| hvl_t { len: 1, p: (&raw const references[*scale]).cast_mut().cast() })
+                .collect();
+            let space = Dataspace::try_new([axes.len()])?;
+            // SAFETY: `axes_type` is "length and pointer to references", and `axes` has one such value for
+            // each axis; the references live as long as the call.
             unsafe {
-                let value = (&raw const axes).cast();
-                attribute(dataset, "DIMENSION_LIST", axes_type.id(), &single, value)?;
+                let value = axes.as_ptr().cast();
+                attribute(dataset, "DIMENSION_LIST", axes_type.id(), &space, value)?;
             }
             let dataset = ObjectReference1::create(group, name)?;
-            attached.push(Attached { dataset, dimension: 0 });
+            for (dimension, scale) in (0..).zip(*along) {
+                attached[*scale].push(Attached { dataset, dimension });
+            }
         }
-        scale.new_attr_builder().with_data(&attached).create("REFERENCE_LIST")?;
+        for ((_, scale), attached) in scales.iter().zip(&attached) {
+            if !attached.is_empty() {
+                scale.new_attr_builder().with_data(attached).create("REFERENCE_LIST")?;
+            }
+        }
         Ok(())
     }
+}
+
+/// A dataset, and the number of the dimension scale of each of its axes.
+pub struct Scaled<'a> {
+    /// Name, relative to the group.
+    pub name: &'a str,
+    /// The dataset.
+    pub dataset: &'a Dataset,
+    /// Number of the scale of each axis.
+    pub along: &'a [usize],
 }
 
 /// One entry of `REFERENCE_LIST`.
@@ -149,6 +172,42 @@ impl Columns {
             }
         })
     }
+}
+
+/// Writes numbers into a block of a dataset: `start` and `count` have one number for each axis.
+pub fn write_block(
+    dataset: &Dataset,
+    start: &[u64],
+    count: &[u64],
+    values: &[f64],
+) -> hdf5::Result<()> {
+    let size: u64 = count.iter().product();
+    if start.len() != dataset.ndim()
+        || start.len() != count.len()
+        || u64::try_from(values.len()).ok() != Some(size)
+    {
+        return Err("a block of another shape than its dataset or its values".into());
+    }
+    let number = Datatype::from_type::<f64>()?;
+    let (space, memory) = (dataset.space()?, Dataspace::try_new([values.len()])?);
+    hdf5::sync::sync(|| {
+        // SAFETY: every id is open; `start` and `count` are as long as the rank of the dataset; `values` has
+        // as many numbers as the block.
+        unsafe {
+            let set = H5S_seloper_t::H5S_SELECT_SET;
+            let (start, count) = (start.as_ptr(), count.as_ptr());
+            let none = std::ptr::null();
+            check(
+                H5Sselect_hyperslab(space.id(), set, start, none, count, none),
+                "choose a block",
+            )?;
+            let values = values.as_ptr().cast();
+            check(
+                H5Dwrite(dataset.id(), number.id(), memory.id(), space.id(), H5P_DEFAULT, values),
+                "write a block",
+            )
+        }
+    })
 }
 
 fn check(status: herr_t, what: &str) -> hdf5::Result<()> {

@@ -106,8 +106,7 @@ fn write_history(
         writer.text(&dataset, "long_name", meaning)?;
         datasets.push((name, dataset));
     }
-    if let Some(((name, time), others)) = datasets.split_first() {
-        writer.attach(group, (name, time), others)?;
-    }
-    Ok(())
+    let Some(((name, time), others)) = datasets.split_first() else { return Ok(()) };
+    let others = others.iter().map(|(name, dataset)| raw::Scaled { name, dataset, along: &[0] });
+    writer.attach(group, &[(name, time)], &others.collect::<Vec<_>>())
 }

@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""Prints the man page of a program `billow`, from the help of its commands:  man_page.py BILLOW"""
+
+import subprocess
+import sys
+
+
+def output(*arguments):
+    return subprocess.run([sys.argv[1], *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def verbatim(text):
+    lines = (line.replace("\\", "\\e") for line in text.rstrip().splitlines())
+    # A line that begins with a dot or a quote would be a request.
+    return ".nf\n" + "\n".join(f"\\&{line}" if line[:1] in (".", "'") else line for line in lines) + "\n.fi"
+
+
+def main():
+    version = output("--version").split()[1]
+    overview = output("--help")
+    about = overview.splitlines()[0].rstrip(".").replace("\\", "\\e")
+    listed = overview.split("Commands:\n")[1].split("\n\n")[0].splitlines()
+    commands = [line.split()[0] for line in listed if line.startswith("  ") and not line.startswith("   ")]
+    print(f'.TH BILLOW 1 "" "billow {version}" "User Commands"')
+    print(f".SH NAME\nbillow \\- {about}")
+    print(".SH OVERVIEW\n" + verbatim(overview))
+    for command in commands:
+        if command != "help":
+            print(f".SH BILLOW {command.upper()}\n" + verbatim(output(command, "--help")))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+//! `billow export`: writes all results of a study into one file, for other programs.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::options::{OutputOptions, QuietOption};
+use super::print::print_rows;
+use super::stored;
+use super::target::{StudyArgs, folder};
+use crate::input::value::Value;
+use crate::platform::error::{Error, Result};
+use crate::store::cube::{self, Written};
+
+/// Extensions of the file.
+const EXTENSIONS: [&str; 2] = ["nc", "h5"];
+
+/// Arguments of `billow export`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Write the cube of the study: every history over the axes of the grid and time, and every column of the
+    /// table over the axes, as one file that xarray opens (netCDF-4 in HDF5). FILE ends in .nc or .h5.
+    #[arg(long, value_name = "FILE", required = true)]
+    pub cube: PathBuf,
+    /// Only these columns of the histories, comma-separated [default: all].
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
+}
+
+/// Runs `billow export`: prints one row for the file.
+///
+/// # Errors
+/// As [`cube::write`]; a file name with another extension.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    check_extension(&args.cube)?;
+    let stored = stored::read(&folder(&args.study, &[])?)?;
+    let written = cube::write(&stored, &args.columns, &args.cube)?;
+    if let Some(reason) = written.no_product.filter(|_| !args.quiet.quiet) {
+        eprintln!(
+            "billow: the study {}, so its points are no grid: the cube has the dimension `point`",
+            reason.text()
+        );
+    }
+    let Written { dimensions, variables, jobs, .. } = written;
+    let dimensions: Vec<String> =
+        dimensions.iter().map(|(name, length)| format!("{name} {length}")).collect();
+    let number = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
+    let row = vec![
+        Value::Text(args.cube.display().to_string()),
+        Value::Text(dimensions.join(", ")),
+        number(variables),
+        number(jobs),
+    ];
+    print_rows(&["file", "dimensions", "variables", "jobs"], &[row], args.output.format(), out)
+}
+
+fn check_extension(path: &Path) -> Result<()> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    if extension.is_some_and(|extension| EXTENSIONS.contains(&extension.as_str())) {
+        return Ok(());
+    }
+    let value = path.display().to_string();
+    let allowed = "a file name that ends in .nc or .h5";
+    Err(Error::invalid_option("--cube", &value, "not a format of cubes", allowed, ""))
+}
