@@ -7,6 +7,7 @@
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
+# make scale    what the commands cost with 100,000 finished piston jobs: a quarter of an hour, one table (SCALE="--jobs 1000")
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
@@ -22,7 +23,7 @@ BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
 PACKAGES := libhdf5-dev pkg-config
 READER_PACKAGES := python3 python3-venv
 
-.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps reader-deps fresh-check
+.PHONY: study paper pareto stability test test-all test-long torture contact-matrix readers build bench scale layers check deps reader-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -71,6 +72,9 @@ build: deps
 
 bench: build
 	$(BILLOW) bench
+
+scale: build
+	python3 tests/scale/scale.py --billow $(BILLOW) $(SCALE)
 
 # Which room imports which, and that none imports from above.
 layers: deps
