@@ -75,8 +75,9 @@ def measure(arguments, folder):
     path = folder / "scale.json"
     if not path.exists():
         path.write_text(json.dumps(study(arguments.jobs), indent=2) + "\n")
+    is_new = not (folder / "results").exists()
     seconds, processor, memory, code, _ = measured([billow, "run", "scale.json", "-q"], folder)
-    rows = [("run (first)", seconds, processor, memory, None)]
+    rows = [("run (first)", seconds, processor, memory, None)] if is_new else []
     if code != 0:
         sys.exit(f"billow run ended with {code}")
     results = "results/scale"
@@ -108,7 +109,9 @@ def measure(arguments, folder):
     for name, seconds, processor, memory, bound in rows:
         text = f"{bound} s, {MAX_MEGABYTES} MB" if bound else "-"
         print(f"{name:<12}  {seconds:8.2f}  {processor:13.2f}  {memory:16.0f}  {text}")
-    print(f"processor time of a job, with planning, storing and the table: {1e3 * rows[0][2] / max(jobs, 1):.2f} ms")
+    if is_new:
+        each = 1e3 * rows[0][2] / max(jobs, 1)
+        print(f"processor time of a job, with planning, storing and the table: {each:.2f} ms")
     for problem in failed:
         print(problem)
     return 1 if failed else 0
