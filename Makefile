@@ -9,6 +9,7 @@
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
+# make scale    what the commands cost with 100,000 finished piston jobs: a quarter of an hour, one table (SCALE="--jobs 1000")
 # make layers   which folder imports which: none from above, no circle
 # make check    formatting, lints, layers of the folders, avoided words, docs
 # make fresh-check  both README commands in a bare Debian 12 root (root only)
@@ -26,7 +27,7 @@ DIST_PACKAGES := g++ binutils git python3 python3-venv
 READER_PACKAGES := python3 python3-venv
 SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: dist study paper pareto stability test test-all test-long torture contact-matrix readers build bench layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
+.PHONY: dist study paper pareto stability test test-all test-long torture contact-matrix readers build bench scale layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -84,6 +85,9 @@ bench: build
 # For machines without libhdf5. It is compiled in a folder of its own and checked by tests/dist/check.sh.
 dist: deps dist-deps
 	.ci/dist.sh
+
+scale: build
+	python3 tests/scale/scale.py --billow $(BILLOW) $(SCALE)
 
 # Which room imports which, and that none imports from above.
 layers: deps

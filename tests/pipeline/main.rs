@@ -17,6 +17,7 @@ mod fault_injection;
 mod film_study;
 mod fold;
 mod frames;
+mod index;
 mod instruction_sets;
 mod interruption;
 mod invalid_studies;

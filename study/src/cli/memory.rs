@@ -48,7 +48,12 @@ impl Memory {
 
     /// Whether a job of this scene fits, if it runs alone.
     pub fn fits(&self, scene: &Scene) -> bool {
-        memory::estimate(scene).total <= self.usable()
+        self.has_room_for(memory::estimate(scene).total)
+    }
+
+    /// Whether a job that needs so many bytes fits, if it runs alone.
+    pub fn has_room_for(&self, bytes: u64) -> bool {
+        bytes <= self.usable()
     }
 
     /// A note on the jobs that do not fit; `None` without one.
@@ -113,6 +118,11 @@ fn limited_note(study: &Study) -> Option<String> {
         size(limit),
         size(*largest),
     ))
+}
+
+/// What the largest job of a study needs, bytes; 0 without a job.
+pub fn largest(study: &Study) -> u64 {
+    feasible(study).map(|point| memory::estimate(&point.scene).total).max().unwrap_or(0)
 }
 
 /// Memory of a job below which `plan` says nothing, bytes. Chosen: every machine has it.

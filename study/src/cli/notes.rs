@@ -19,14 +19,23 @@ pub fn print_warnings(study: &Study) {
 
 /// Prints the notes.
 pub fn print(study: &Study) {
-    for line in lines(study) {
+    print_of_file(study);
+    for line in of_points(study) {
         eprintln!("{line}");
     }
 }
 
-fn lines(study: &Study) -> Vec<String> {
+/// Prints the notes on the file of the study.
+pub fn print_of_file(study: &Study) {
+    for note in study.notes() {
+        eprintln!("note: {note}");
+    }
+}
+
+/// The notes on the points of the study: equal for equal resolved studies.
+pub fn of_points(study: &Study) -> Vec<String> {
     let has = |model| study.points().iter().any(|point| point.scene.solver.model == model);
-    let mut lines: Vec<String> = study.notes().iter().map(|note| format!("note: {note}")).collect();
+    let mut lines: Vec<String> = Vec::new();
     if let Some(meshes) = study.chosen_meshes() {
         let method = Method { model: ModelKind::Film, meshes: meshes.to_vec() };
         let how = "the cheapest that keeps its errors at every point";

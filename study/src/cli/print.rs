@@ -13,7 +13,7 @@ use crate::study::Study;
 /// points fewer. `planned` counts every run.
 pub fn points_of_runs(study: &Study, planned: usize) -> String {
     let runs = study.replicate_count();
-    let points = if planned == study.points().len() {
+    let points = if planned == study.run_count() {
         study.point_count()
     } else if planned.is_multiple_of(runs) {
         planned / runs

@@ -32,6 +32,7 @@ use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::runner::{self, CHECKPOINT_INTERVAL, Rerun, Run, Summary};
 use crate::run::{merge, progress};
+use crate::store::index::Key;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -39,6 +40,8 @@ use crate::store::table::Table;
 use crate::study::Study;
 use crate::study::job_limits::with_options;
 use crate::study::plan;
+
+mod finished;
 
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]
@@ -72,6 +75,13 @@ pub(super) struct RunOptions {
     pub(super) progress: ProgressOptions,
 }
 
+impl RunOptions {
+    /// Whether quantities are shown in other units than those of the study.
+    fn changes_units(&self) -> bool {
+        self.units.si || !self.units.units.is_empty()
+    }
+}
+
 /// Runs `billow run`. Finished jobs are kept; the others run. After a stop at any moment the same
 /// command resumes. A study whose grid has changed keeps the jobs that are still in its plan.
 ///
@@ -79,6 +89,11 @@ pub(super) struct RunOptions {
 /// An invalid study, a disk error, jobs that failed, a signal.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let (file, folder) = study_of_results(&args.study)?;
+    if args.scope.is_none()
+        && let Some(result) = finished::run(args, &file, folder.as_deref(), out)
+    {
+        return result;
+    }
     let study = Study::load(&file, &args.set.set)?;
     let root = folder
         .filter(|_| args.results.results.is_none())
@@ -182,11 +197,14 @@ pub(super) fn run_study(
     if shared && merge::is_last(&results)? {
         merge::finish(&results)?;
     }
+    let key = Key::of(&results);
     let mut stored = Stored::read(results)?;
     stored.units = units;
-    let answer = Answer::of(&stored);
+    let table = stored.table();
+    let answer = Answer::of(&stored, &table);
     let ended = Ended { study, root, summary: &summary, points: stored.planned_runs() };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
+    finished::write_index(study, (&stored, &table), key, &answer, options);
     result(study, &summary, &limits, root, &Applicable::of(&stored))
 }
 

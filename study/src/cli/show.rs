@@ -75,8 +75,7 @@ pub struct Args {
 /// An unknown job; a history or results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(&args.job, &args.study)?;
-    let stored = super::stored::read(&root)?;
-    let id = stored.job(&args.job)?;
+    let (stored, id) = super::stored::read_job(&root, &args.job)?;
     if args.scene {
         let scene = scene(&stored, &id)?;
         return writeln!(out, "{scene:#}").map_err(output_error);

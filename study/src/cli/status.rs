@@ -22,9 +22,11 @@ use crate::platform::error::Result;
 use crate::platform::files::Disk;
 use crate::platform::quote;
 use crate::scene::summary;
-use crate::store::doctor::{self, Depth, Health};
+use crate::store::doctor::{self, Health};
+use crate::store::index::Index;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
+use crate::study::Study;
 
 /// Arguments of `billow status`.
 #[derive(Debug, clap::Args)]
@@ -39,9 +41,17 @@ pub struct Args {
 
 /// The progress of a study.
 struct Status<'a> {
-    stored: &'a Stored<'a>,
+    results: &'a Results<'a>,
+    study: &'a Study,
     health: &'a Health,
+    /// Number of runs planned.
+    runs: usize,
+    auto: Option<AutoAnswer>,
     counts: Counts,
+    /// Number of jobs that must run again.
+    invalidated: usize,
+    /// Numbers of finished jobs of other versions of the physics, by version.
+    other_physics: BTreeMap<i64, usize>,
     /// The failed jobs that can run with a remedy.
     remedies: Applicable,
     /// Sum of the wall times of the jobs, s.
@@ -55,6 +65,12 @@ struct Status<'a> {
     workers: Workers,
 }
 
+/// The jobs with a checkpoint, and its simulated time, s.
+fn checkpoints(results: &Results<'_>) -> Vec<(JobId, Option<f64>)> {
+    let ids = results.checkpoints().unwrap_or_default().into_iter();
+    ids.map(|id| (id.clone(), results.checkpoint_time(&id))).collect()
+}
+
 /// Runs `billow status`. It only reads, and takes no lock.
 ///
 /// # Errors
@@ -62,12 +78,22 @@ struct Status<'a> {
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder(&args.study, &[])?;
     let results = Results::new(&Disk, &root);
-    // Damage is part of the answer, not an error.
-    let stored = Stored::read(results.clone())?;
-    let health = doctor::examine(&results, Depth::Names);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);
-    let status = Status::new(&stored, &health, threads)?;
+    if let Some(index) = Index::read(&results)
+        && let Some(failed) = index.stored(&results, &index.failed)
+    {
+        let health = doctor::examine_indexed(&results, &index);
+        return print(&Status::indexed(&index, &failed, &health, threads)?, args, out);
+    }
+    // Damage is part of the answer, not an error.
+    let stored = Stored::read(results)?;
+    let health = doctor::examine_stored(&stored);
+    print(&Status::new(&stored, &health, threads)?, args, out)
+}
+
+/// Prints the progress in the format asked for.
+fn print(status: &Status<'_>, args: &Args, out: &mut dyn Write) -> Result<()> {
     match args.output.format() {
         Format::Table => status.print(out),
         Format::Json => writeln!(out, "{}", status.json()).map_err(output_error),
@@ -90,18 +116,48 @@ impl<'a> Status<'a> {
                 timed += 1;
             }
         }
-        let results = &stored.results;
-        let with_checkpoint = results.checkpoints().unwrap_or_default().into_iter();
-        let checkpoints = with_checkpoint.map(|id| (id.clone(), results.checkpoint_time(&id)));
-        let checkpoints = checkpoints.collect();
-        let remedies = Applicable::of(stored);
-        let workers = Workers::of(results)?;
-        Ok(Self { stored, health, counts, remedies, seconds, timed, threads, checkpoints, workers })
+        Ok(Self {
+            results: &stored.results,
+            study: &stored.study,
+            health,
+            runs: stored.planned_runs(),
+            auto: AutoAnswer::of(stored),
+            counts,
+            invalidated: stored.journal.invalidated.len(),
+            other_physics: other_physics(&stored.points, &stored.journal.records),
+            remedies: Applicable::of(stored),
+            seconds,
+            timed,
+            threads,
+            checkpoints: checkpoints(&stored.results),
+            workers: Workers::of(&stored.results)?,
+        })
     }
 
-    /// Numbers of finished jobs of other versions of the physics, by version.
-    fn other_physics(&self) -> BTreeMap<i64, usize> {
-        other_physics(&self.stored.points, &self.stored.journal.records)
+    /// The same from an index; `failed` are the results of the failed jobs. An index has neither pilots nor jobs that
+    /// are invalidated or of another physics.
+    fn indexed(
+        index: &Index,
+        failed: &'a Stored<'a>,
+        health: &'a Health,
+        threads: usize,
+    ) -> Result<Self> {
+        Ok(Self {
+            results: &failed.results,
+            study: &failed.study,
+            health,
+            runs: index.runs,
+            auto: None,
+            counts: index.counts.clone(),
+            invalidated: 0,
+            other_physics: BTreeMap::new(),
+            remedies: Applicable::of(failed),
+            seconds: index.seconds,
+            timed: index.timed,
+            threads,
+            checkpoints: checkpoints(&failed.results),
+            workers: Workers::of(&failed.results)?,
+        })
     }
 
     /// Mean wall time of a job, s.
@@ -117,21 +173,21 @@ impl<'a> Status<'a> {
     }
 
     fn json(&self) -> serde_json::Value {
-        let (stored, counts) = (self.stored, &self.counts);
+        let counts = &self.counts;
         json!({
-            "study": stored.study.name,
-            "question": stored.study.question,
-            "results": stored.results.root().display().to_string(),
+            "study": self.study.name,
+            "question": self.study.question,
+            "results": self.results.root().display().to_string(),
             "running": self.health.running,
-            "points": stored.planned_runs(),
-            "auto": AutoAnswer::of(stored).as_ref().map(judged::auto),
+            "points": self.runs,
+            "auto": self.auto.as_ref().map(judged::auto),
             "jobs": counts.jobs(),
             "done": counts.of(JobStatus::Done),
             "failed": counts.failed(),
             "pending": counts.of(JobStatus::Pending),
             "infeasible": counts.of(JobStatus::Infeasible),
-            "other_physics": self.other_physics(),
-            "invalidated": stored.journal.invalidated.len(),
+            "other_physics": self.other_physics,
+            "invalidated": self.invalidated,
             "with_remedy": counts.remedied,
             "can_run_with_remedy": self.remedies.jobs(),
             "status": counts.status,
@@ -158,18 +214,18 @@ impl<'a> Status<'a> {
             (false, 0) => "finished",
             (false, _) => "not running",
         };
-        writeln!(out, "{}: {state}", self.stored.study.name).map_err(output_error)?;
+        writeln!(out, "{}: {state}", self.study.name).map_err(output_error)?;
         let mut lines: Vec<Line> = Vec::new();
-        if !self.stored.study.question.is_empty() {
-            lines.push(("question", quote::printable(&self.stored.study.question)));
+        if !self.study.question.is_empty() {
+            lines.push(("question", quote::printable(&self.study.question)));
         }
         lines.extend(self.job_lines());
-        lines.extend(changes::other_physics(&self.other_physics()).map(|text| ("physics", text)));
+        lines.extend(changes::other_physics(&self.other_physics).map(|text| ("physics", text)));
         lines.extend(self.time_lines());
         lines.extend(self.workers.lines());
         lines.extend(self.checkpoint_line());
         lines.push(("broken", self.broken()));
-        lines.push(("results", self.stored.results.root().display().to_string()));
+        lines.push(("results", self.results.root().display().to_string()));
         for (topic, text) in &lines {
             writeln!(out, "  {topic:<9} {text}").map_err(output_error)?;
         }
@@ -182,21 +238,19 @@ impl<'a> Status<'a> {
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
         let jobs = count(counts.jobs(), "job");
-        let rows = self.stored.planned_runs();
-        let points = points_of_runs(&self.stored.study, rows);
-        let duplicates = match rows.saturating_sub(counts.rows()) {
+        let points = points_of_runs(self.study, self.runs);
+        let duplicates = match self.runs.saturating_sub(counts.rows()) {
             0 => String::new(),
             number => format!(", {}", count(number, "duplicate")),
         };
         let mut lines =
             vec![("points", format!("{points}: {jobs}, {infeasible} infeasible{duplicates}"))];
-        let chosen = AutoAnswer::of(self.stored);
         let mut topic = "auto";
-        for text in chosen.iter().flat_map(auto::lines) {
+        for text in self.auto.iter().flat_map(auto::lines) {
             lines.push((topic, text));
             topic = "";
         }
-        let invalidated = match self.stored.journal.invalidated.len() {
+        let invalidated = match self.invalidated {
             0 => String::new(),
             number => format!(" ({number} invalidated)"),
         };
@@ -214,7 +268,7 @@ impl<'a> Status<'a> {
             lines.push(("failed", format!("{}; billow why JOB explains one", listed(&failures))));
         }
         if self.remedies.jobs() > 0 {
-            let root = self.stored.results.root().display();
+            let root = self.results.root().display();
             let text = format!("{}: billow rerun {root} --remedy", self.remedies.named());
             lines.push(("remedy", text));
         }
@@ -275,7 +329,7 @@ impl<'a> Status<'a> {
 
     /// The first fault, or that there is none.
     fn broken(&self) -> String {
-        let root = self.stored.results.root().display();
+        let root = self.results.root().display();
         let findings = &self.health.findings;
         match (self.health.faults(), findings.first()) {
             (0, None) => "nothing".to_owned(),

@@ -15,6 +15,7 @@ use crate::job::status::{RENAMED_STATUSES, Status};
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{self, Disk, Files};
 use crate::platform::nearest::did_you_mean;
+use crate::store::index::Index;
 use crate::store::journal::Record;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
@@ -128,6 +129,12 @@ pub fn folder(given: &StudyArgs, set: &[String]) -> Result<PathBuf> {
             ),
         })
     } else {
+        if let Ok(Some(sketch)) = Study::sketch(study, set) {
+            let root = results_folder(&given.results, &sketch);
+            if Index::of_study(&Results::new(&Disk, &root), &sketch).is_some() {
+                return Ok(root);
+            }
+        }
         Ok(results_folder(&given.results, &Study::load(study, set)?))
     }
 }

@@ -8,7 +8,7 @@ use std::fmt::{self, Write as _};
 
 use billow_solver::PHYSICS_VERSION;
 use billow_solver::scene::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 /// Bytes of the hash that an id keeps.
@@ -18,7 +18,7 @@ const FIRST_INEXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Id of a job: 32 lower-case hexadecimal digits, the first half of the SHA-256 of the canonical
 /// JSON of its scene and the physics version.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct JobId(String);
 
 impl JobId {

@@ -10,6 +10,7 @@ pub mod doctor;
 pub mod exact_scenes;
 pub mod finished;
 pub mod history_file;
+pub mod index;
 pub mod journal;
 pub mod reference_file;
 pub mod remedied;

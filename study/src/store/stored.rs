@@ -184,7 +184,7 @@ impl<'a> Stored<'a> {
     /// # Errors
     /// [`Error::Input`] when no id or several ids begin so. The message lists the nearest ids.
     pub fn job(&self, prefix: &str) -> Result<JobId> {
-        let wanted = prefix.trim().to_ascii_lowercase();
+        let wanted = wanted(prefix);
         let planned = self.points.iter().flat_map(Point::jobs);
         let recorded = self.journal.records.keys().chain(self.journal.invalidated.keys());
         let known: BTreeSet<&JobId> = planned.chain(recorded).collect();
@@ -234,6 +234,11 @@ impl<'a> Stored<'a> {
             _ => id.short().to_owned(),
         }
     }
+}
+
+/// The digits that a prefix of a job id asks for.
+pub fn wanted(prefix: &str) -> String {
+    prefix.trim().to_ascii_lowercase()
 }
 
 /// Numbers of finished jobs of other versions of the physics, by version. A planned job does not count,

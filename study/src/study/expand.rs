@@ -47,9 +47,11 @@ pub(super) fn points(
     for number in 0..product {
         let mut point = base.clone();
         set_axes(&mut point, grid, &axes, number);
+        expansion.number = number;
         filtered += usize::from(!expansion.add(&point, grid.filter.as_ref())?);
     }
     let searched = grid.search.as_ref().map(|search| search.column);
+    expansion.number = product;
     for values in &grid.points {
         let mut point = base.clone();
         for (column, value) in values {
@@ -73,6 +75,40 @@ pub(super) fn points(
         return Err(source.error("grid.filter", text, problem, allowed));
     }
     Ok(Points { points: expansion.points, filtered })
+}
+
+/// The points with these numbers ([`super::sketch`]), also those that the filter removes.
+///
+/// # Errors
+/// A number that no point has; a point that is not valid.
+pub(super) fn numbered(
+    base: &Base,
+    grid: &Grid,
+    source: &Source,
+    numbers: &[usize],
+) -> Result<Vec<StudyPoint>, InputError> {
+    let (product, _) = count(grid, source, PlanSize { points: usize::MAX })?;
+    let axes: Vec<&Axis> = grid.axes.iter().collect();
+    let repeated: Vec<&Axis> = grid.replicates().collect();
+    let mut expansion = Expansion::new(base, grid, source);
+    for number in numbers {
+        let mut point = base.clone();
+        if let Some(single) = number.checked_sub(product) {
+            let runs = grid.replicate_count();
+            let Some(values) = grid.points.get(single / runs) else {
+                return Err(source.error("grid", "", format!("has no point {number}"), ""));
+            };
+            for (column, value) in values {
+                grid.columns[*column].target.set(&mut point, value.clone());
+            }
+            set_axes(&mut point, grid, &repeated, single % runs);
+        } else {
+            set_axes(&mut point, grid, &axes, *number);
+        }
+        expansion.number = *number;
+        expansion.add(&point, None)?;
+    }
+    Ok(expansion.points)
 }
 
 /// The runs of one searched point, with these values by column; those of replicates are not used.
@@ -157,6 +193,8 @@ struct Expansion<'a> {
     source: &'a Source,
     /// Whether a search runs along the points that are added.
     searched: Searched,
+    /// The number of the next point.
+    number: usize,
     /// Designs already solved: points that share a design share its fold.
     folds: HashMap<DesignKey, Rc<Fold>>,
     points: Vec<StudyPoint>,
@@ -169,6 +207,7 @@ impl<'a> Expansion<'a> {
             grid,
             source,
             searched: Searched::No,
+            number: 0,
             folds: HashMap::new(),
             points: Vec::new(),
         }
@@ -185,6 +224,7 @@ impl<'a> Expansion<'a> {
             let mut point = point.clone();
             set_axes(&mut point, self.grid, &axes, number);
             self.add(&point, filter)?;
+            self.number += 1;
         }
         Ok(())
     }
@@ -216,8 +256,8 @@ impl<'a> Expansion<'a> {
             })
             .map_err(|error| self.at_point(point, error))?;
         let parameters = self.parameters(point);
-        let searched = self.searched;
-        self.points.push(StudyPoint { parameters, scene, infeasible, solved, searched });
+        let (number, searched) = (self.number, self.searched);
+        self.points.push(StudyPoint { parameters, number, scene, infeasible, solved, searched });
         Ok(true)
     }
 

@@ -27,6 +27,7 @@ mod resolve;
 mod result_limits;
 mod schedule;
 mod search;
+mod sketch;
 mod strategy;
 mod target;
 mod units;
@@ -34,6 +35,7 @@ mod variables;
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use crate::accuracy::Tolerances;
 use crate::input::keys::{KEYS, STUDY, position};
@@ -80,6 +82,8 @@ pub struct Study {
     renamed: Vec<String>,
     /// Warnings about its values.
     warnings: Vec<String>,
+    /// Whether one of them is about points.
+    warns_of_points: bool,
     /// The units in which its quantities are shown.
     units: DisplayUnits,
     base: Base,
@@ -90,7 +94,10 @@ pub struct Study {
     accuracy: Option<Accuracy>,
     /// The plan of pilots and coarse runs, if it asks for one.
     auto: Option<Auto>,
-    points: Points,
+    /// Its points, resolved when something asks for them.
+    points: OnceLock<Points>,
+    /// Numbers of runs and of points, where they are known without these.
+    known: Option<[usize; 2]>,
 }
 
 impl Study {
@@ -130,11 +137,23 @@ impl Study {
     /// # Errors
     /// As [`Study::from_text`].
     pub fn from_tree(
+        tree: Json,
+        file: &str,
+        stem: &str,
+        sets: &[String],
+        size: PlanSize,
+    ) -> Result<Self, InputError> {
+        Self::read_tree(tree, file, stem, sets, size, true)
+    }
+
+    /// Reads a study, with its points or as a [sketch](Study::sketch).
+    fn read_tree(
         mut tree: Json,
         file: &str,
         stem: &str,
         sets: &[String],
         size: PlanSize,
+        with_points: bool,
     ) -> Result<Self, InputError> {
         let mut source = Source::new(file);
         if !matches!(tree, Json::Object(_)) {
@@ -160,9 +179,29 @@ impl Study {
         let mut grid = Grid::read(&tree, context)?;
         grid::refuse_varied(&grid, &source)?;
         let units = units::read(&tree, &base, &source)?;
-        let mut points = expand::points(&base, &grid, &source, size)?;
         let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
         let mut base = base;
+        let by_scenes = is_auto || accuracy.is_some() || grid.search.is_some();
+        if !with_points && !by_scenes {
+            let name = study_name(&base, stem, &source)?;
+            let (question, warnings) = (question(&base), source.warnings());
+            return Ok(Self {
+                name,
+                question,
+                renamed,
+                warnings,
+                warns_of_points: false,
+                units,
+                base,
+                grid,
+                result_limits,
+                accuracy,
+                auto: None,
+                points: OnceLock::new(),
+                known: None,
+            });
+        }
+        let mut points = expand::points(&base, &grid, &source, size)?;
         let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty() && !is_auto);
         if let Some(accuracy) = chooses {
             accuracy::refuse_given_mesh(&tree, &source)?;
@@ -181,21 +220,22 @@ impl Study {
             None
         };
         let name = study_name(&base, stem, &source)?;
-        let question = base.settings.text(const { position(KEYS, "question") });
-        let question = question.unwrap_or_default().to_owned();
-        let warnings = source.warnings();
+        let (question, warnings) = (question(&base), source.warnings());
+        let warns_of_points = source.warns_of_points();
         Ok(Self {
             name,
             question,
             renamed,
             warnings,
+            warns_of_points,
             units,
             base,
             grid,
             result_limits,
             accuracy,
             auto,
-            points,
+            points: points.into(),
+            known: None,
         })
     }
 
@@ -298,6 +338,11 @@ impl Study {
         &self.warnings
     }
 
+    /// Whether one of the warnings is about points, and not about a value of a key.
+    pub(crate) fn warns_of_points(&self) -> bool {
+        self.warns_of_points
+    }
+
     /// What a reader of the plan must know: keys given by an old name.
     pub(crate) fn notes(&self) -> &[String] {
         &self.renamed
@@ -306,7 +351,16 @@ impl Study {
     /// The points of the study, in plan order: those of the product that the filter keeps, and the single
     /// points.
     pub(crate) fn points(&self) -> &[StudyPoint] {
-        &self.points.points
+        &self.expanded().points
+    }
+
+    /// The points, resolved.
+    fn expanded(&self) -> &Points {
+        self.points.get_or_init(|| {
+            // Those of a sketch are known to be valid.
+            let (source, size) = (Source::new(&self.name), PlanSize { points: usize::MAX });
+            expand::points(&self.base, &self.grid, &source, size).unwrap_or_default()
+        })
     }
 
     /// The runs of one searched point, with these values by column of the grid. Empty where the filter
@@ -319,6 +373,9 @@ impl Study {
 
     /// Number of points that differ in more than replicates.
     pub(crate) fn point_count(&self) -> usize {
+        if let Some([_, points]) = self.known {
+            return points;
+        }
         let replicates = self.replicates();
         let key = |point: &StudyPoint| -> Vec<String> {
             let fixed = point.parameters.iter().filter(|(name, _)| !replicates.contains(name));
@@ -329,8 +386,14 @@ impl Study {
 
     /// Number of points of the product that the filter removed.
     pub fn filtered(&self) -> usize {
-        self.points.filtered
+        self.expanded().filtered
     }
+}
+
+/// The question of a study.
+fn question(base: &Base) -> String {
+    let question = base.settings.text(const { position(KEYS, "question") });
+    question.unwrap_or_default().to_owned()
 }
 
 /// The study's name: the given one, or that of its file; always one that a folder can have.

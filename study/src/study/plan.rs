@@ -135,7 +135,7 @@ pub fn shown(study: &Study, finished: &[FinishedRow]) -> Option<(Vec<Point>, Out
 }
 
 /// A generation of these points. Points with the same job are merged into the first of them.
-fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
+pub(super) fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
     let mut points: Vec<Point> = Vec::with_capacity(planned.len());
     let mut positions: HashMap<JobId, usize> = HashMap::new();
     for point in planned {

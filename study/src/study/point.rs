@@ -22,6 +22,8 @@ pub(crate) enum Searched {
 pub(crate) struct StudyPoint {
     /// The varied parameters.
     pub parameters: Parameters,
+    /// Its number: [`super::sketch`].
+    pub number: usize,
     /// The scene of its job.
     pub scene: Scene,
     /// Why it has no job; `None` for a feasible point.

@@ -11,6 +11,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::output::measures::Verdict;
+use serde::{Deserialize, Serialize};
 
 use super::medians::{Extremes, Set, block, extremes};
 use super::points::Points;
@@ -24,7 +25,7 @@ use crate::store::table::{Column, Table};
 use crate::study::Zipped;
 
 /// The parameters that vary, and their effects.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Effects {
     /// Parameters that can be compared, in the order of the study.
     pub effects: Vec<Effect>,
@@ -33,7 +34,7 @@ pub struct Effects {
 }
 
 /// The effect of one parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Effect {
     /// The parameter.
     pub parameter: String,
@@ -54,7 +55,7 @@ pub struct Effect {
 }
 
 /// The effect of one parameter on one measure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasureEffect {
     /// The measure.
     pub measure: ColumnId,

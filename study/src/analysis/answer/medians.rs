@@ -6,6 +6,8 @@
 //! (values − 1) · sets → max
 //! ```
 
+use serde::{Deserialize, Serialize};
+
 use crate::analysis::compare::{Measure, Range};
 use crate::job::row::BetterSide;
 
@@ -14,7 +16,7 @@ pub(in crate::analysis) type Set = Vec<Option<usize>>;
 
 /// The best and the worst values of a parameter by one measure: positions in `Effect::values`, the
 /// extreme one first, then those that are equal to it up to the tolerance.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Extremes {
     /// All medians are equal up to the tolerance.
     Equal,

@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 
 use billow_solver::output::measures::Verdict;
+use serde::{Deserialize, Serialize};
 
 use crate::accuracy::error_column;
 use crate::analysis::compare;
@@ -37,8 +38,8 @@ pub use safety::{PointMargin, SafeBy, SafeCounts, SafeValue, Safety};
 pub use searches::{Found, Searches};
 pub use trust::Trust;
 
-/// The answer of a study.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// The answer of a study. It is stored without `auto` and `searches`, for studies that have neither.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Answer {
     /// The question, as the study file has it.
     pub question: String,
@@ -68,13 +69,15 @@ pub struct Answer {
     /// Each pair of its values.
     pub pairwise: Vec<Versus>,
     /// Which mesh the points of a study with `"model": "auto"` have, and whether that keeps its promise.
+    #[serde(skip)]
     pub auto: Option<AutoAnswer>,
     /// What the searches of borders found.
+    #[serde(skip)]
     pub searches: Option<Searches>,
 }
 
 /// The job with the smallest or largest value of a measure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     /// Id of the job.
     pub job: String,
@@ -93,29 +96,28 @@ pub struct Extreme {
 }
 
 impl Answer {
-    /// The answer of a results folder.
-    pub fn of(stored: &Stored<'_>) -> Self {
-        let table = stored.table();
-        let mut answer = Self::of_jobs(&table, &stored.study.replicates());
+    /// The answer of a results folder. `table` is its table.
+    pub fn of(stored: &Stored<'_>, table: &Table) -> Self {
+        let mut answer = Self::of_jobs(table, &stored.study.replicates());
         answer.question.clone_from(&stored.study.question);
         answer.largest_strain = largest_strain(stored);
         let rows: Vec<usize> = (0..table.rows()).collect();
         let (study, replicates) = (&stored.study, stored.study.replicates());
         let zipped = |name: &str| study.zipped_with(name);
-        answer.effects = Effects::of(&table, &rows, &replicates, &HEADLINE, &zipped);
-        let jobs = Points::of(&table, &table.one_row_per_job(&rows), &replicates);
+        answer.effects = Effects::of(table, &rows, &replicates, &HEADLINE, &zipped);
+        let jobs = Points::of(table, &table.one_row_per_job(&rows), &replicates);
         answer.points = (!replicates.is_empty()).then(|| PointCounts::of(&jobs, &replicates));
-        answer.depends = Depends::of(&table, &jobs);
-        let choice = pairwise::choice(&table, &rows);
+        answer.depends = Depends::of(table, &jobs);
+        let choice = pairwise::choice(table, &rows);
         let choice = choice.filter(|column| !replicates.contains(&column.name));
-        answer.safety = Safety::of(&table, study.result_limits(), &rows, &replicates, choice);
+        answer.safety = Safety::of(table, study.result_limits(), &rows, &replicates, choice);
         if let Some(choice) = choice {
-            let points = Points::of(&table, &rows, &replicates);
+            let points = Points::of(table, &rows, &replicates);
             answer.choice = Some(choice.name.clone());
             answer.pairwise = pairwise::pairwise(&points, &choice.name, &zipped);
         }
         answer.auto = AutoAnswer::of(stored);
-        answer.searches = Searches::of(stored, &table);
+        answer.searches = Searches::of(stored, table);
         answer
     }
 

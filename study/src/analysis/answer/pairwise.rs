@@ -1,6 +1,8 @@
 //! The values of one choice, each pair of them over the points that are equal in all else: which is gentler,
 //! and which deploys where the other does not.
 
+use serde::{Deserialize, Serialize};
+
 use super::points::Points;
 use crate::analysis::compare::{self, Better, Measure, Pair, Sets, Tally, Tolerance, canonical};
 use crate::input::value::Value;
@@ -25,7 +27,7 @@ const MEASURES: [ColumnId; 4] = [
 const LOADS: usize = 2;
 
 /// Two values of a choice, all other parameters being equal.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Versus {
     /// The value that is lower in more of the loads.
     pub value: Value,
@@ -44,7 +46,7 @@ pub struct Versus {
 }
 
 /// What the loads of a pair of values say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Loads {
     /// Each load is lower, or equal, in every pair.
     Gentler,
@@ -59,7 +61,7 @@ pub enum Loads {
 }
 
 /// One measure of two values.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasureVersus {
     /// The measure.
     pub measure: ColumnId,

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::replicates::{Condensed, Runs};
 use crate::input::value::Value;
@@ -71,7 +72,7 @@ pub fn worst_margin(table: &Table, runs: &Runs) -> Option<(f64, String, usize)> 
 }
 
 /// How the points of a study with replicates end.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PointCounts {
     /// Number of points with a job.
     pub points: usize,
@@ -106,7 +107,7 @@ impl PointCounts {
 }
 
 /// Points whose verdict depends on a numerical choice.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Depends {
     /// Number of such points.
     pub points: usize,

@@ -1,5 +1,7 @@
 //! Which points are safe: all limits of the study met in all their runs.
 
+use serde::{Deserialize, Serialize};
+
 use super::Extreme;
 use super::points::{Points, worst_margin};
 use crate::analysis::compare::{self, canonical};
@@ -9,7 +11,7 @@ use crate::job::result_limit::ResultLimit;
 use crate::store::table::{Column, Table};
 
 /// The points by the limits of the study.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Safety {
     /// The limits, as in `peak_vz < 25 m/s`.
     pub limits: Vec<String>,
@@ -24,7 +26,7 @@ pub struct Safety {
 }
 
 /// Numbers of points with a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct SafeCounts {
     /// All.
     pub points: usize,
@@ -37,7 +39,7 @@ pub struct SafeCounts {
 }
 
 /// The points by value of a parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SafeBy {
     /// The parameter.
     pub parameter: String,
@@ -48,7 +50,7 @@ pub struct SafeBy {
 }
 
 /// The points with one value of a parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SafeValue {
     /// The value.
     pub value: Value,
@@ -59,7 +61,7 @@ pub struct SafeValue {
 }
 
 /// A point and its smallest margin.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointMargin {
     /// The run with the smallest margin, and the parameters of the point; `value` is the margin.
     pub point: Extreme,

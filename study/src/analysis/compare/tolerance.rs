@@ -12,6 +12,8 @@
 //! that are lower or higher, not better. A margin is the distance of a measure from its
 //! limit over the limit: near the limit its spread is the relative spread of the measure.
 
+use serde::{Deserialize, Serialize};
+
 use super::Sets;
 use crate::accuracy::error_column;
 use crate::analysis::replicates::Condensed;
@@ -28,7 +30,7 @@ pub const ROUNDING: f64 = 1e-9;
 const SEED: &str = "seed";
 
 /// Up to which difference two values of a measure are equal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
     /// The limit: relative, for a signed measure absolute.
     pub limit: f64,
@@ -39,7 +41,7 @@ pub struct Tolerance {
 }
 
 /// Where a tolerance comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ToleranceSource {
     /// The user gave it.
     Given,

@@ -16,6 +16,7 @@ use crate::platform::nearest::did_you_mean;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
+mod needed;
 mod notes;
 mod pairs;
 mod summary;
@@ -86,21 +87,34 @@ struct Comparison<'a> {
 /// # Errors
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    if args.summary {
+        let mut text = Vec::new();
+        // An error lists what the whole table has.
+        let indexed = needed::open(args);
+        if indexed.is_some_and(|(stored, table)| print(args, &stored, &table, &mut text).is_ok()) {
+            return out.write_all(&text).map_err(output_error);
+        }
+    }
     let condition = args.condition.as_deref();
     let (stored, table, _) = open_stored(&args.study, &args.set.set, &args.units, condition)?;
-    let by = parameter(&table, &args.by)?;
-    let base = base(&stored, by, &args.base)?;
+    print(args, &stored, &table, out)
+}
+
+/// Compares the rows of a table, and prints the result.
+fn print(args: &Args, stored: &Stored<'_>, table: &Table, out: &mut dyn Write) -> Result<()> {
+    let by = parameter(table, &args.by)?;
+    let base = base(stored, by, &args.base)?;
     let format = args.output.format();
     let zipped = |name: &str| stored.study.zipped_with(name);
     let varied = stored.study.replicates();
     let single = args.runs || varied.contains(&by.name);
     let replicates = if single { Vec::new() } else { varied.clone() };
-    let rows = chosen_runs(&table, args.condition.as_deref(), &replicates)?;
-    let points = (!replicates.is_empty()).then(|| Points::of(&table, &rows, &replicates));
+    let rows = chosen_runs(table, args.condition.as_deref(), &replicates)?;
+    let points = (!replicates.is_empty()).then(|| Points::of(table, &rows, &replicates));
     let given = args.tie.as_deref().map(tie).transpose()?.map(Tolerance::given);
     // A compared replicate is no repetition.
     let repeated: Vec<String> = varied.iter().filter(|name| **name != by.name).cloned().collect();
-    let paired = points.as_ref().map_or(&table, |points| &points.condensed.table);
+    let paired = points.as_ref().map_or(table, |points| &points.condensed.table);
     let paired_rows: Vec<usize> = match &points {
         Some(points) => (0..points.condensed.runs.len()).collect(),
         None => rows.clone(),
@@ -115,8 +129,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
                 Measure::of_points(&points.condensed, &paired_rows, column, &zipped("seed"))
             }
             (None, None) => {
-                let over = Tolerance::over(&table, &rows, column, &repeated, &zipped("seed"));
-                Measure::of_runs(column, over).with_errors(&table)
+                let over = Tolerance::over(table, &rows, column, &repeated, &zipped("seed"));
+                Measure::of_runs(column, over).with_errors(table)
             }
         })
         .collect();
@@ -142,7 +156,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     }
     if !args.quiet.quiet {
         comparison.print_notes(&base, &alone);
-        if let Some(note) = legend::corrected(&stored.study, &table) {
+        if let Some(note) = legend::corrected(&stored.study, table) {
             eprintln!("{note}");
         }
     }

@@ -49,6 +49,9 @@ pub struct Args {
     /// come last.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sort: Vec<String>,
+    /// Print the first N rows only, in the order of the plan or of --sort.
+    #[arg(long, value_name = "N")]
+    pub limit: Option<usize>,
     /// One row per run in a study with replicates [default: one row per point, with the medians, ranges
     /// and proportions of its runs].
     #[arg(long)]
@@ -99,12 +102,18 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let rows = by_search(&table, rows, study);
     let format = args.output.format();
     let meshes = study.map(Study::meshes).unwrap_or_default();
-    let listing = if replicates.is_empty() {
+    let mut listing = if replicates.is_empty() {
         runs(args, &table, &rows, all_columns)?
     } else {
         points(args, &table, &rows, &replicates, &meshes)?
     };
+    let all_rows = listing.cells.len();
+    listing.cells.truncate(args.limit.unwrap_or(all_rows));
     print_quantities(&listing.headings, &listing.cells, format, out)?;
+    let left_out = all_rows - listing.cells.len();
+    if left_out > 0 && !args.quiet.quiet {
+        eprintln!("{} of {all_rows} rows: --limit leaves out {left_out}", listing.cells.len());
+    }
     if format == Format::Table && !args.quiet.quiet {
         if let Some(note) = &listing.noisy {
             eprintln!("{note}");

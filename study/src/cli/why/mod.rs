@@ -39,8 +39,7 @@ pub struct Args {
 /// An unknown job; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let root = folder_of_job(&args.job, &args.study)?;
-    let stored = super::stored::read(&root)?;
-    let id = stored.job(&args.job)?;
+    let (stored, id) = super::stored::read_job(&root, &args.job)?;
     let cells = stored.cells_of_job(&id);
     let lines = explanation(&stored, &id, &cells)?;
     match args.output.format() {

@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::symbol::{self, Scale};
 use super::{CELSIUS, ZERO_CELSIUS, decimal, dimension, split};
 use crate::input::value::{Value, brief_number};
@@ -11,7 +13,7 @@ use crate::input::value::{Value, brief_number};
 const RESOLVED: &str = "_resolved";
 
 /// The unit in which one quantity is shown.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DisplayUnit {
     /// As the user writes it; "1" for a pure number, empty for what has no unit.
     symbol: String,
@@ -21,7 +23,7 @@ pub struct DisplayUnit {
 }
 
 /// How an SI number becomes the shown one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 enum Conversion {
     /// It stays as it is.
     Identity,

@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use super::dimension::Powers;
 
 /// A unit in base units: `factor` × 10^`exponent` / `divisor` × (π/180)^`degrees`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Scale {
     pub powers: Powers,
     pub exponent: i32,

@@ -124,7 +124,7 @@ macro_rules! columns {
     ($($id:ident $name:literal $type:ident [$unit:literal] $group:ident $better:ident $($signed:ident)?
        $meaning:literal $end:ident => $value:expr;)+) => {
         /// Identifies a column of [`COLUMNS`]. A wrong name does not compile.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
         pub enum ColumnId {
             $(#[doc = concat!("The column `", $name, "`.")] $id),+
         }

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use billow_solver::output::measures::Verdict;
+use serde::{Deserialize, Serialize};
 
 use super::{Cells, ColumnId};
 use crate::input::value::Value;
 use crate::job::Status;
 
 /// Numbers of rows by how they ended.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Rows by name of their status.
     pub status: BTreeMap<String, usize>,

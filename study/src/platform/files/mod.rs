@@ -12,6 +12,8 @@ use std::io::{self, Read};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use crate::platform::error::Error;
 use crate::platform::nearest::nearest;
 
@@ -39,6 +41,12 @@ pub trait Files: Send + Sync {
     /// # Errors
     /// The error of the system.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// Reads `length` bytes of a file from the byte `offset` on.
+    ///
+    /// # Errors
+    /// The error of the system; a file that ends before.
+    fn read_part(&self, path: &Path, offset: u64, length: usize) -> io::Result<Vec<u8>>;
 
     /// Size and time of a file.
     ///
@@ -124,7 +132,7 @@ pub trait Files: Send + Sync {
 }
 
 /// Size and time of a file: when both are those of its writing, it was hardly changed since.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     /// Size, bytes.
     pub size: u64,

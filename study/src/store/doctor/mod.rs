@@ -11,6 +11,7 @@ use crate::job::JobId;
 use crate::job::point::Point;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
+use crate::store::index::Index;
 use crate::store::journal::Journal;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
@@ -101,7 +102,54 @@ impl Health {
 
 /// Checks a results folder.
 pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
-    let mut health = examined(results, depth);
+    examined(results, &|health, paths| {
+        let study = check_study(results, health);
+        let journal = check_journal(results, health);
+        let points = study.as_ref().map(|study| stored::planned(study, &journal));
+        if let Some(points) = &points {
+            note_unplanned(results, points, &journal, health);
+        }
+        check_files(results, &journal, depth, paths, health);
+        if let (Some(study), Some(points)) = (study, points) {
+            let units = study.display_units().clone();
+            let stored = Stored { results: results.clone(), study, units, journal, points };
+            check_table(&stored, health);
+        }
+    })
+}
+
+/// The same at [`Depth::Names`], of results that were read.
+pub fn examine_stored(stored: &Stored<'_>) -> Health {
+    let Stored { results, journal, points, .. } = stored;
+    examined(results, &|health, paths| {
+        note_journal(results, journal, health);
+        note_unplanned(results, points, journal, health);
+        check_files(results, journal, Depth::Names, paths, health);
+        check_table(stored, health);
+    })
+}
+
+/// The same at [`Depth::Names`], of results with an index that is up to date. Then study.json, journals and table have no
+/// faults.
+pub fn examine_indexed(results: &Results<'_>, index: &Index) -> Health {
+    let mut with_file: Vec<&JobId> = index.files().map(|(id, _)| id).collect();
+    with_file.sort_unstable();
+    examined(results, &|health, paths| {
+        histories::check_names(results, with_file.iter().copied(), health);
+        let is_known = |id: &JobId| with_file.binary_search(&id).is_ok();
+        unknown_files::check(results, &is_known, paths, health);
+        check_derived(results, health);
+        health.records = index.records();
+    })
+}
+
+/// What `check` finds in a results folder in which every file and folder is in its place.
+fn examined(results: &Results<'_>, check: &dyn Fn(&mut Health, &[PathBuf])) -> Health {
+    let mut health = Health::default();
+    if let Some(paths) = begin(results, &mut health) {
+        check(&mut health, &paths);
+        health.findings.sort_by_key(|finding| !finding.fault);
+    }
     let root = results.root().display();
     for finding in &mut health.findings {
         let repair = format!("`billow doctor --repair {root}`");
@@ -110,19 +158,19 @@ pub fn examine(results: &Results<'_>, depth: Depth) -> Health {
     health
 }
 
-fn examined(results: &Results<'_>, depth: Depth) -> Health {
-    let mut health = Health::default();
+/// The entries of a results folder; `None` where nothing more can be checked.
+fn begin(results: &Results<'_>, health: &mut Health) -> Option<Vec<PathBuf>> {
     let paths = match results.files().list(results.root()) {
         Ok(paths) => paths,
         Err(error) => {
             health.error(results.root(), &disk_error(results.root(), &error));
-            return health;
+            return None;
         }
     };
     if paths.is_empty() {
         let next = "run `billow run STUDY` first, or name the folder of its results";
         health.fault(results.root(), "no results here", next);
-        return health;
+        return None;
     }
     match results.is_running() {
         Ok(running) => health.running = running,
@@ -136,23 +184,44 @@ fn examined(results: &Results<'_>, depth: Depth) -> Health {
             let next = if needed.contains(&path) { "move it away" } else { REPAIR_ONLY };
             health.fault(&path, format!("{problem}; other files are not checked"), next);
         }
-        return health;
+        return None;
     }
-    let study = check_study(results, &mut health);
-    let journal = check_journal(results, &mut health);
-    let points = study.as_ref().map(|study| stored::planned(study, &journal));
-    if let Some(points) = &points {
-        let planned: BTreeSet<&JobId> = points.iter().flat_map(Point::jobs).collect();
-        let unplanned = journal.records.keys().filter(|id| !planned.contains(id)).count();
-        if unplanned > 0 {
-            let problem = format!("{unplanned} finished jobs are not in the study as it is now");
-            let next = "nothing; they are used again when the grid has their points, except those of \
-                        another physics version";
-            health.note(&results.journal_path(), problem, next);
-        }
+    Some(paths)
+}
+
+/// Notes the finished jobs that the study does not plan.
+fn note_unplanned(results: &Results<'_>, points: &[Point], journal: &Journal, health: &mut Health) {
+    let planned: BTreeSet<&JobId> = points.iter().flat_map(Point::jobs).collect();
+    let unplanned = journal.records.keys().filter(|id| !planned.contains(id)).count();
+    if unplanned > 0 {
+        let problem = format!("{unplanned} finished jobs are not in the study as it is now");
+        let next = "nothing; they are used again when the grid has their points, except those of \
+                    another physics version";
+        health.note(&results.journal_path(), problem, next);
     }
-    histories::check(results, &journal, depth, &mut health);
-    unknown_files::check(results, &journal, &paths, &mut health);
+}
+
+/// Checks the files beside study.json, journals and table.
+fn check_files(
+    results: &Results<'_>,
+    journal: &Journal,
+    depth: Depth,
+    paths: &[PathBuf],
+    health: &mut Health,
+) {
+    histories::check(results, journal, depth, health);
+    let is_known = |id: &JobId| {
+        let record = journal.records.get(id);
+        record.is_some_and(|record| record.file_hash.is_some())
+            || journal.invalidated.contains_key(id)
+    };
+    unknown_files::check(results, &is_known, paths, health);
+    check_derived(results, health);
+    health.records = journal.records.len();
+}
+
+/// Checks static references and checkpoints.
+fn check_derived(results: &Results<'_>, health: &mut Health) {
     for (path, problem) in results.references().unread {
         let next = "nothing; a run that needs it computes it again";
         match problem {
@@ -172,14 +241,6 @@ fn examined(results: &Results<'_>, depth: Depth) -> Health {
         }
         Err(error) => health.error(&results.checkpoints_path(), &error),
     }
-    health.records = journal.records.len();
-    if let (Some(study), Some(points)) = (study, points) {
-        let units = study.display_units().clone();
-        let stored = Stored { results: results.clone(), study, units, journal, points };
-        check_table(&stored, &mut health);
-    }
-    health.findings.sort_by_key(|finding| !finding.fault);
-    health
 }
 
 fn check_study(results: &Results<'_>, health: &mut Health) -> Option<Study> {
@@ -214,6 +275,13 @@ fn check_journal(results: &Results<'_>, health: &mut Health) -> Journal {
             return Journal::default();
         }
     };
+    note_journal(results, &journal, health);
+    journal
+}
+
+/// Says what is wrong with the journals, and what remains to be done.
+fn note_journal(results: &Results<'_>, journal: &Journal, health: &mut Health) {
+    let folder = results.journal_path();
     for fault in &journal.faults {
         let problem = format!("line {}: {}; its job counts as not run", fault.line, fault.problem);
         if !fault.torn {
@@ -240,7 +308,6 @@ fn check_journal(results: &Results<'_>, health: &mut Health) -> Journal {
             "nothing; `billow rerun` of a job writes its record with one",
         );
     }
-    journal
 }
 
 /// Compares the summary table with plan and journal.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Health;
 use crate::job::JobId;
 use crate::platform::files::{self, disk_error};
-use crate::store::journal::{self, Journal, Record};
+use crate::store::journal;
 use crate::store::results::{OTHER_NAMES, RESULT_NAMES, Results};
 
 /// The problem of a file of another program.
@@ -28,10 +28,13 @@ fn incomplete_next(health: &Health) -> &'static str {
     }
 }
 
+/// Whether a job may have a history file: its record names one, or the job must run again.
+pub(super) type IsKnown<'a> = dyn Fn(&JobId) -> bool + 'a;
+
 /// Checks the files of a results folder. `paths` are the entries of the folder itself.
 pub(super) fn check(
     results: &Results<'_>,
-    journal: &Journal,
+    is_known: &IsKnown<'_>,
     paths: &[PathBuf],
     health: &mut Health,
 ) {
@@ -52,12 +55,17 @@ pub(super) fn check(
         Err(error) => return health.error(results.root(), &disk_error(results.root(), &error)),
     };
     for folder in folders {
-        check_job_folder(results, journal, &folder, health);
+        check_job_folder(results, is_known, &folder, health);
     }
 }
 
 /// Checks one of the folders of histories.
-fn check_job_folder(results: &Results<'_>, journal: &Journal, folder: &Path, health: &mut Health) {
+fn check_job_folder(
+    results: &Results<'_>,
+    is_known: &IsKnown<'_>,
+    folder: &Path,
+    health: &mut Health,
+) {
     let folder_name = name(folder);
     if folder_name.len() != 2 || !folder_name.bytes().all(|byte| byte.is_ascii_hexdigit()) {
         return health.note(folder, FOREIGN, FOREIGN_NEXT);
@@ -70,7 +78,6 @@ fn check_job_folder(results: &Results<'_>, journal: &Journal, folder: &Path, hea
         Ok(paths) => paths,
         Err(error) => return health.error(folder, &disk_error(folder, &error)),
     };
-    let has_file = |record: &Record| record.file_hash.is_some();
     for path in paths {
         let id = name(&path).strip_suffix(".h5").and_then(JobId::from_digits);
         match id.filter(|id| results.job_path(id) == path) {
@@ -78,8 +85,7 @@ fn check_job_folder(results: &Results<'_>, journal: &Journal, folder: &Path, hea
                 health.note(&path, INCOMPLETE, incomplete_next(health));
             }
             None => health.note(&path, FOREIGN, FOREIGN_NEXT),
-            Some(id) if journal.records.get(&id).is_some_and(has_file) => {}
-            Some(id) if journal.invalidated.contains_key(&id) => {}
+            Some(id) if is_known(&id) => {}
             Some(_) if health.running => {}
             Some(_) => health.note(
                 &path,

@@ -24,6 +24,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use crate::job::JobId;
 use crate::job::point::Point;
 use crate::job::remedy::Change;
@@ -61,6 +63,17 @@ impl Record {
         // A run that used up solver.step_limit has a history.
         self.file_hash.is_none() && self.cells.status().is_limit()
     }
+}
+
+/// Where the line of a record is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Place {
+    /// Position of its file among the journals of the folder, in the order of their names.
+    pub journal: usize,
+    /// Position of its first byte in that file.
+    pub offset: u64,
+    /// Number of its bytes, with the end of the line.
+    pub length: usize,
 }
 
 /// A job that ran for another one, which had failed.
@@ -136,6 +149,8 @@ pub struct Journal {
     pub unsealed: usize,
     /// Lines that are not valid, in the order of the files.
     pub faults: Vec<Fault>,
+    /// Where the last record of every job is.
+    pub places: BTreeMap<JobId, Place>,
 }
 
 impl Journal {
@@ -158,7 +173,8 @@ impl Journal {
 
     /// Whether there is no line at all.
     pub fn is_empty(&self) -> bool {
-        let Self { records, invalidated, deaths, study, remedies, faults, unsealed: _ } = self;
+        let Self { records, invalidated, deaths, study, remedies, faults, unsealed: _, places: _ } =
+            self;
         records.is_empty()
             && invalidated.is_empty()
             && deaths.is_empty()
@@ -204,16 +220,21 @@ pub fn add_link(remedies: &mut BTreeMap<JobId, Vec<RemedyLink>>, link: RemedyLin
 /// [`Error::Disk`] when the folder or a journal cannot be read, and for a journal of a newer version.
 pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
     let mut journal = Journal::default();
-    let paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
-    for path in paths.iter().filter(|path| is_journal(path)) {
+    for (number, path) in paths(files, folder)?.iter().enumerate() {
         let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
         let lines = scan(path, &bytes)?;
         let sealed = lines.iter().filter(|line| line::is_sealed(line.bytes)).count();
+        let mut offset = 0;
         for line in lines {
+            let length = line.bytes.len();
+            let place = Place { journal: number, offset, length };
+            offset += length as u64;
             match line.entry {
                 Ok(Some(entry)) => {
-                    let is_record = matches!(entry, Entry::Ended(_));
-                    journal.unsealed += usize::from(is_record && sealed == 0);
+                    if let Entry::Ended(record) = &entry {
+                        journal.unsealed += usize::from(sealed == 0);
+                        journal.places.insert(record.job.clone(), place);
+                    }
                     journal.take(entry);
                 }
                 Ok(None) => {}
@@ -222,6 +243,24 @@ pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
         }
     }
     Ok(journal)
+}
+
+/// The journals of a folder, in the order of their names.
+///
+/// # Errors
+/// [`Error::Disk`] when the folder cannot be listed.
+pub fn paths(files: &dyn Files, folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
+    paths.retain(|path| is_journal(path));
+    Ok(paths)
+}
+
+/// The record in one line of a sealed journal; `None` for any other line.
+pub fn record_in(line: &[u8]) -> Option<Record> {
+    match line::parse(line, true) {
+        Ok(Entry::Ended(record)) => Some(*record),
+        _ => None,
+    }
 }
 
 /// Whether a file has the name of a journal.

@@ -7,6 +7,7 @@
 //!                 references/*.json static references of the designs (crate::job::references)
 //!                 checkpoints/*.json states of jobs that have not ended (crate::store::checkpoint_file)
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
+//!                 index.json        what commands need without planning again (crate::store::index)
 //!                 charts/           pictures (crate::chart)
 //!                 exact_scenes.json runs of scenes with an exact answer (crate::store::exact_scenes)
 //!                 claims/           during runs that share the folder: which of them has which job (crate::store::claims)
@@ -36,18 +37,21 @@ mod study_json;
 
 /// Name of the file of a run's attempts.
 const ATTEMPTS: &str = "attempts.jsonl";
+/// Name of the file of the index.
+const INDEX: &str = "index.json";
 /// Name of the folder of what was given to a scheduler.
 const SUBMISSIONS: &str = "submissions";
 /// Name of the file of the runs of exact scenes.
 const EXACT_SCENES: &str = "exact_scenes.json";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 13] = [
+pub const RESULT_NAMES: [&str; 14] = [
     "study.json",
     "journal",
     "jobs",
     "references",
     "checkpoints",
     "summary.parquet",
+    INDEX,
     "charts",
     EXACT_SCENES,
     ATTEMPTS,
@@ -117,6 +121,11 @@ impl<'a> Results<'a> {
     /// Path of the summary table.
     pub fn table_path(&self) -> PathBuf {
         self.root.join("summary.parquet")
+    }
+
+    /// Path of the index.
+    pub fn index_path(&self) -> PathBuf {
+        self.root.join(INDEX)
     }
 
     /// Path of the runs of exact scenes.

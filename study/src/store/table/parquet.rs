@@ -72,7 +72,7 @@ pub fn encode(table: &Table) -> std::result::Result<Vec<u8>, String> {
 }
 
 /// SHA-256 of the names, units, meanings and cells of a table, in lower-case hexadecimal digits.
-fn checksum(table: &Table) -> String {
+pub fn checksum(table: &Table) -> String {
     let mut hash = Sha256::new();
     let mut add = |bytes: &[u8]| {
         hash.update((bytes.len() as u64).to_le_bytes());
@@ -141,6 +141,54 @@ fn to_polars(column: &Column) -> PolarsColumn {
     }
 }
 
+/// The checksum that a file says its table has; `None` for a file that is no table with one.
+pub fn stored_checksum(bytes: &[u8]) -> Option<String> {
+    metadata(&mut ParquetReader::new(Cursor::new(bytes))).ok()?.checksum
+}
+
+/// The metadata of a table's file.
+///
+/// # Errors
+/// What is wrong with them.
+fn metadata(reader: &mut ParquetReader<Cursor<&[u8]>>) -> std::result::Result<Metadata, String> {
+    let stored = reader
+        .get_metadata()
+        .map_err(|error| format!("not a Parquet file: {error}"))?
+        .key_value_metadata()
+        .iter()
+        .flatten()
+        .find(|pair| pair.key == KEY)
+        .and_then(|pair| pair.value.clone())
+        .ok_or_else(|| "a Parquet file, but not a billow table".to_owned())?;
+    let metadata: Metadata =
+        serde_json::from_str(&stored).map_err(|error| format!("not a billow table: {error}"))?;
+    if metadata.format != FORMAT {
+        return Err(format!("format {:?} is not {FORMAT:?}", metadata.format));
+    }
+    Ok(metadata)
+}
+
+/// Some columns of a table from the bytes of its file: those of which `wanted` holds for the current name, and all before
+/// the status, which are the job and the parameters. Their cells are not checked against the checksum of the table: the
+/// caller knows that the file is as it was written. `None` for anything but a table of this version.
+pub fn decode_columns(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Option<Table> {
+    let mut reader = ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None);
+    let metadata = metadata(&mut reader).ok().filter(|metadata| metadata.version == VERSION)?;
+    let labels = &metadata.columns;
+    let status = labels.iter().position(|label| label.name == ColumnId::Status.name())?;
+    let chosen = labels.iter().enumerate().filter(|(index, label)| {
+        *index <= status || wanted(row_column_name(&label.name)) || wanted(&label.name)
+    });
+    let chosen = chosen.map(|(_, label)| label.name.clone()).collect();
+    let frame = reader.with_columns(Some(chosen)).finish().ok()?;
+    let column = |column: &PolarsColumn| {
+        let label = labels.iter().find(|label| label.name == column.name().as_str());
+        from_polars(column, label).ok()
+    };
+    let columns = frame.columns().iter().map(column).collect::<Option<_>>()?;
+    Some(Table { columns })
+}
+
 /// Reads a table from the bytes of its file; `path` names it in errors.
 ///
 /// # Errors
@@ -153,20 +201,7 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
         ),
     };
     let mut reader = ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None);
-    let stored = reader
-        .get_metadata()
-        .map_err(|error| broken(format!("not a Parquet file: {error}")))?
-        .key_value_metadata()
-        .iter()
-        .flatten()
-        .find(|pair| pair.key == KEY)
-        .and_then(|pair| pair.value.clone())
-        .ok_or_else(|| broken("a Parquet file, but not a billow table".to_owned()))?;
-    let metadata: Metadata = serde_json::from_str(&stored)
-        .map_err(|error| broken(format!("not a billow table: {error}")))?;
-    if metadata.format != FORMAT {
-        return Err(broken(format!("format {:?} is not {FORMAT:?}", metadata.format)));
-    }
+    let metadata = metadata(&mut reader).map_err(broken)?;
     if metadata.version > VERSION {
         return Err(Error::Disk {
             path: path.to_owned(),
