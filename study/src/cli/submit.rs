@@ -50,7 +50,7 @@ pub struct Args {
     /// Wall time of a task. A task stops before its end; what it has not finished is in the next submission.
     #[arg(long, value_name = "TIME", default_value = "1 h")]
     time: String,
-    /// Cores of a task: so many jobs run side by side in it.
+    /// Cores of a task, and number of jobs that run side by side in it.
     #[arg(long, value_name = "N", default_value_t = 1)]
     cpus: usize,
     /// Memory of a task, as in --mem "4 GB" [default: the estimate of its largest jobs].

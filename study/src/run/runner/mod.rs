@@ -6,8 +6,8 @@
 //! the same bits. A worker writes only the line of its attempt and the checkpoints of its job
 //! (`attempt_log`).
 //!
-//! Where several runs share the folder ([`Run::shared`], `sharing`), a worker claims each job first, nobody repairs the
-//! folder, and nobody writes the table: [`crate::run::merge::finish`] does, when no run is left.
+//! Where several runs share the folder ([`Run::shared`], `sharing`), a worker claims each job first, and no run repairs
+//! the folder or writes the table: [`crate::run::merge::finish`] does, when no run is left.
 //!
 //! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
 //! compared with the hash of the old one. A failed job that is run again with a remedy keeps its record without end: the run
