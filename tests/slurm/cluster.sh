@@ -5,12 +5,16 @@
 cluster=$(mktemp -d)
 export SLURM_CONF=$cluster/slurm.conf
 
+munge_answers() {
+  munge -n > /dev/null 2>&1
+}
+
 start_munge() {
-  munge -n > /dev/null 2>&1 && return
+  munge_answers && return
   mkdir -p /run/munge
   chown munge:munge /run/munge
   runuser -u munge -- munged
-  until munge -n > /dev/null 2>&1; do sleep 0.1; done
+  wait_for "munge" 10 munge_answers
 }
 
 # start_node NAME
@@ -83,8 +87,8 @@ wait_for() {
   until "$@"; do
     if [ "$SECONDS" -ge "$end" ]; then
       echo "slurm: no $what in time" >&2
-      squeue --array >&2
-      tail -n 20 "$cluster"/*.log >&2
+      squeue --array >&2 || true
+      tail -n 20 "$cluster"/*.log >&2 || true
       return 1
     fi
     sleep 0.5
