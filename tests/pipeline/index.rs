@@ -48,7 +48,9 @@ fn no_output_depends_on_the_index() {
     check(&folder, &ids(&folder, "done")[0].clone(), &["--by", "N", "--base", "6"]);
     check_infeasible(&folder);
 
-    let mut study = grid(&json!({"N": [5, 6], "M": [2, 3], "alpha1_over_phi": [0.8]}));
+    let mut study = grid(&json!({
+        "N": [5, 6], "M": [2, 3], "alpha1_over_phi": [0.8], "mass_flow_rate": ["2 g/s"]
+    }));
     study["replicates"] = json!({"seed": 3});
     study["limits"] = json!({"peak_vz": "< 20 m/s"});
     let replicates = TestFolder::new(&study);

@@ -26,7 +26,7 @@ DESIGNS = 20
 
 
 def study(jobs):
-    """A grid of so many piston jobs: 20 designs, each with as many mass flow rates."""
+    """A grid of this number of piston jobs: 20 designs, each with as many mass flow rates."""
     rates = max(1, jobs // DESIGNS)
     return {
         "question": f"What do the commands cost with {rates * DESIGNS} finished jobs?",

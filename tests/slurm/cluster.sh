@@ -1,6 +1,6 @@
 # Starts a Slurm cluster of two nodes on this machine, and stops it. Sourced by run.sh.
 #
-# Without accounting (no slurmdbd), as small sites have it: squeue knows what is in the queue, nobody knows what was.
+# Without accounting (no slurmdbd), as small sites have it: squeue knows what is in the queue, and no program what was.
 
 cluster=$(mktemp -d)
 export SLURM_CONF=$cluster/slurm.conf

@@ -51,7 +51,7 @@ impl Memory {
         self.has_room_for(memory::estimate(scene).total)
     }
 
-    /// Whether a job that needs so many bytes fits, if it runs alone.
+    /// Whether a job that needs this memory (bytes) fits, if it runs alone.
     pub fn has_room_for(&self, bytes: u64) -> bool {
         bytes <= self.usable()
     }

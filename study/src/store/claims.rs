@@ -6,9 +6,9 @@
 //!                        <process>.attempts   its attempts (crate::store::attempts)
 //! ```
 //!
-//! A run writes its own file again every [`RENEWAL`]. All its claims are that file, so its time is the time at which
+//! A run writes its file again every [`RENEWAL`]. All its claims are that file, so its time is the time at which
 //! the run was last known to be alive. A claim is over when its time is older than [`LEASE`], by the clock of the
-//! file server: a run knows it from the time of its own file. A run takes over what is over,
+//! file server: a run knows it from the time of its file. A run takes over what is over,
 //! and what its owner left in an earlier attempt (a task that Slurm starts again).
 //!
 //! Claims only save work. When two runs take over one claim at the same moment, or a run is held up for longer than the lease,
@@ -32,7 +32,7 @@ use crate::store::results::Results;
 pub const LEASE: Duration = Duration::from_secs(120);
 /// Time between two renewals. Chosen: several may fail before a claim is over.
 pub const RENEWAL: Duration = Duration::from_secs(15);
-/// End of the name of a run's own file.
+/// End of the name of the file of a run.
 const RUN: &str = "run";
 /// End of the name of a run's attempts.
 const ATTEMPTS: &str = "attempts";
@@ -66,7 +66,7 @@ pub struct Claims<'a> {
     owner: Owner,
     text: String,
     held: BTreeSet<JobId>,
-    /// Time of the own file at its last renewal, and when that was.
+    /// Time of the file of this run at its last renewal, and when that was.
     renewed: Option<(Duration, Instant)>,
 }
 
@@ -87,7 +87,7 @@ impl<'a> Claims<'a> {
         let text = seal::seal(&object) + "\n";
         let (files, held) = (results.files(), BTreeSet::new());
         let claims = Self { files, folder, owner, text, held, renewed: None };
-        claims.write_own_file()?;
+        claims.write_run_file()?;
         Ok(claims)
     }
 
@@ -96,12 +96,12 @@ impl<'a> Claims<'a> {
         self.folder.join(format!("{}.{ATTEMPTS}", self.owner.process))
     }
 
-    fn own_path(&self) -> PathBuf {
+    fn run_path(&self) -> PathBuf {
         self.folder.join(format!("{}.{RUN}", self.owner.process))
     }
 
-    fn write_own_file(&self) -> Result<()> {
-        let path = self.own_path();
+    fn write_run_file(&self) -> Result<()> {
+        let path = self.run_path();
         let write = || {
             self.files.create_folder(&self.folder)?;
             self.files.write_new(&path, self.text.as_bytes())
@@ -116,12 +116,12 @@ impl<'a> Claims<'a> {
     pub fn take(&mut self, id: &JobId) -> Result<Claim> {
         let path = self.folder.join(id.as_str());
         for _ in 0..MAX_ATTEMPTS {
-            match self.files.link(&self.own_path(), &path) {
+            match self.files.link(&self.run_path(), &path) {
                 Ok(()) => return Ok(self.taken(id)),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 // Another command removed this run's file, because it seemed dead.
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                    self.write_own_file()?;
+                    self.write_run_file()?;
                     continue;
                 }
                 Err(error) => return Err(no_links(&path, &error)),
@@ -137,7 +137,7 @@ impl<'a> Claims<'a> {
             }
             self.take_away(&path)?;
         }
-        let stamp = self.files.stamp(&self.own_path());
+        let stamp = self.files.stamp(&self.run_path());
         stamp.map(Claim::Held).map_err(|error| disk_error(&path, &error))
     }
 
@@ -202,10 +202,10 @@ impl<'a> Claims<'a> {
     /// # Errors
     /// [`Error::Disk`].
     pub fn renew(&mut self) -> Result<()> {
-        let path = self.own_path();
+        let path = self.run_path();
         match self.files.overwrite(&path, self.text.as_bytes()) {
             // Another command removed it, because this run seemed dead.
-            Err(error) if error.kind() == io::ErrorKind::NotFound => self.write_own_file()?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => self.write_run_file()?,
             result => result.map_err(|error| disk_error(&path, &error))?,
         }
         let stamp = self.files.stamp(&path).map_err(|error| disk_error(&path, &error))?;
@@ -221,7 +221,7 @@ impl Drop for Claims<'_> {
         for id in std::mem::take(&mut self.held) {
             let _ = remove(self.files, &self.folder.join(id.as_str()));
         }
-        let _ = remove(self.files, &self.own_path());
+        let _ = remove(self.files, &self.run_path());
     }
 }
 
@@ -246,15 +246,15 @@ impl Results<'_> {
     /// [`Error::Disk`].
     pub fn live_runs(&self) -> Result<Vec<LiveRun>> {
         let mut runs: Vec<(Owner, LiveRun)> = Vec::new();
-        let (mut own, mut claimed) = (Vec::new(), Vec::new());
+        let (mut files, mut claimed) = (Vec::new(), Vec::new());
         for path in self.claim_files()? {
             match path.extension() {
-                Some(end) if end == RUN => own.push(path),
+                Some(end) if end == RUN => files.push(path),
                 Some(_) => {}
                 None => claimed.push(path),
             }
         }
-        for path in own {
+        for path in files {
             if let Some(owner) = self.live_owner(&path)? {
                 let run = LiveRun { owner: owner.owner.clone(), jobs: Vec::new() };
                 runs.push((owner, run));
@@ -303,8 +303,8 @@ impl Results<'_> {
         let (mut dead, mut attempts) = (Vec::new(), Vec::new());
         for path in self.claim_files()? {
             if path.extension().is_some_and(|end| end == ATTEMPTS) {
-                let own = path.with_extension(RUN);
-                if self.live_owner(&own)?.is_none() {
+                let run = path.with_extension(RUN);
+                if self.live_owner(&run)?.is_none() {
                     attempts.push(path);
                 }
             } else if files::is_temporary(&path) || self.live_owner(&path)?.is_none() {
@@ -373,7 +373,7 @@ fn no_links(path: &Path, error: &io::Error) -> Error {
     }
     let problem = format!(
         "{error}: this file system has no hard links, with which runs claim their jobs\n  next: put the results on another \
-         file system, or run parts into folders of their own: billow run --points K/N, then billow merge"
+         file system, or run each part into another folder: billow run --points K/N, then billow merge"
     );
     Error::Disk { path: path.to_owned(), problem }
 }

@@ -206,8 +206,8 @@ impl<'a> Expansion<'a> {
             base,
             grid,
             source,
-            searched: Searched::No,
             number: 0,
+            searched: Searched::No,
             folds: HashMap::new(),
             points: Vec::new(),
         }

@@ -72,7 +72,8 @@ mod tests {
 
     /// Two axes, replicates, a filter and a single point.
     const TEXT: &str = r#"{
-        "design": {"fit": "height", "bottom_radius": 0.5, "height": 1},
+        "design": {"fit": "height", "bottom_radius": 0.5, "height": 1, "alpha1_over_phi": 0.8},
+        "gas": {"mass_flow_rate": 0.002},
         "solver": {"model": "piston", "end_time": 0.3},
         "replicates": {"seed": 2},
         "grid": {"N": [5, 6, 7], "M": [2, 3], "filter": "N != 6 or M == 3", "points": [{"N": 9, "M": 2}]}

@@ -15,7 +15,7 @@ fn claims<'a>(results: &Results<'a>, owner: &str) -> Claims<'a> {
 
 /// Moves the time of a process into the past, as if it had not renewed its claims.
 fn grow_old(claims: &Claims<'_>, by: Duration) {
-    let file = fs::OpenOptions::new().write(true).open(claims.own_path()).unwrap();
+    let file = fs::OpenOptions::new().write(true).open(claims.run_path()).unwrap();
     file.set_modified(SystemTime::now() - by).unwrap();
 }
 

@@ -8,7 +8,8 @@ use crate::study::{PlanSize, plan};
 /// Two axes, an infeasible ratio, replicates; one ratio is written twice, so points share jobs.
 const TEXT: &str = r#"{
     "name": "a",
-    "design": {"fit": "height", "bottom_radius": 0.5, "height": 1},
+    "design": {"fit": "height", "M": 2, "bottom_radius": 0.5, "height": 1},
+    "gas": {"mass_flow_rate": 0.002},
     "solver": {"model": "piston", "end_time": 0.3},
     "replicates": {"seed": 2},
     "grid": {"N": [5, 6], "alpha1_over_phi": [0.8, 9, 0.8]}

@@ -52,7 +52,7 @@ impl<'a> Follower<'a> {
             let bytes = bytes.map_err(|error| disk_error(&path, &error))?;
             let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
             for line in bytes[..complete].split_inclusive(|byte| *byte == b'\n') {
-                // The header and damaged lines are those of who reads the journal.
+                // The reader of the whole journal names its header and damaged lines.
                 match line::parse(line, true) {
                     Ok(Entry::Ended(record)) => {
                         self.ended.insert(record.job.clone(), *record);
