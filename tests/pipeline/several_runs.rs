@@ -45,7 +45,7 @@ fn what_cannot_be_merged_or_run_in_parts_is_refused() {
     ];
     for (arguments, expected) in cases {
         let output = folder.run(arguments);
-        let text = stderr(&output).replace('"', "\"");
+        let text = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
         let found = text.contains(expected) || text.contains(&expected.replace('"', ""));
         assert!(found && text.contains("\n  "), "{arguments:?}: {text}");
@@ -66,7 +66,7 @@ fn runs_that_share_a_folder_give_one_table_although_one_is_killed() {
     let mut killed = folder.billow(&shared).spawn().unwrap();
     let start = Instant::now();
     while fs::read_dir(folder.results().join("claims")).map_or(0, Iterator::count) < 2 {
-        assert!(start.elapsed() < Duration::from_secs(60), "no claim was made");
+        assert!(start.elapsed() < Duration::from_mins(1), "no claim was made");
         sleep(Duration::from_millis(1));
     }
     let other = folder.billow(&shared).spawn().unwrap();

@@ -128,20 +128,23 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
         });
         return writeln!(out, "{json}").map_err(output_error);
     }
-    let mut text = format!("{}: {} copied", stored.study.name, count(merged.copied, "job"));
-    if merged.same > 0 {
-        text += &format!(", {} there already with the same bits", merged.same);
-    }
-    text += &format!("\n  status   {}\n", listed(&counts.status));
-    if !counts.verdict.is_empty() {
-        text += &format!("  verdict  {}\n", listed(&counts.verdict));
-    }
-    text += &format!("  results  {root}\n");
     let next = match counts.of(Status::Pending) {
         0 => format!("billow table {root}"),
         pending => format!("billow run {root} runs the {} that are missing", count(pending, "job")),
     };
-    write!(out, "{text}  next     {next}\n").map_err(output_error)
+    let same = match merged.same {
+        0 => String::new(),
+        same => format!(", {same} there already with the same bits"),
+    };
+    let copied = count(merged.copied, "job");
+    let mut lines = vec![format!("{}: {copied} copied{same}", stored.study.name)];
+    lines.push(format!("  status   {}", listed(&counts.status)));
+    if !counts.verdict.is_empty() {
+        lines.push(format!("  verdict  {}", listed(&counts.verdict)));
+    }
+    lines.push(format!("  results  {root}"));
+    lines.push(format!("  next     {next}"));
+    writeln!(out, "{}", lines.join("\n")).map_err(output_error)
 }
 
 /// The error of a merge, if it has one.

@@ -24,7 +24,8 @@ const QUEUE: &str = "queue.json";
 struct Chunks {
     format: String,
     version: u64,
-    chunks: Vec<Vec<String>>,
+    #[serde(rename = "chunks")]
+    tasks: Vec<Vec<String>>,
 }
 
 /// The numbers that the scheduler gave.
@@ -59,7 +60,7 @@ impl Submission {
         let text = Chunks {
             format: FORMAT.to_owned(),
             version: VERSION,
-            chunks: chunks
+            tasks: chunks
                 .iter()
                 .map(|chunk| chunk.iter().map(|id| id.as_str().to_owned()).collect())
                 .collect(),
@@ -140,7 +141,7 @@ pub fn chunk(results: &Results<'_>, name: &str) -> Result<Vec<JobId>> {
     let chunks = match read(results, &path) {
         Err(ReadError::Missing) => return Err(refuse(format!("there is no {}", path.display()))),
         Err(ReadError::Other(error)) => return Err(error),
-        Ok(chunks) => chunks.chunks,
+        Ok(chunks) => chunks.tasks,
     };
     let chunk = chunks
         .get(task - 1)
@@ -211,8 +212,9 @@ mod tests {
             assert!(error.contains("--chunk") && error.contains("next:"), "{name}: {error}");
         }
         let path = first.folder.join(CHUNKS);
-        let text = std::fs::read_to_string(&path).unwrap().replace("0001\"", "0009\"");
-        std::fs::write(&path, text).unwrap();
+        let text = String::from_utf8(results.files().read(&path).unwrap()).unwrap();
+        let changed = text.replace("0001\"", "0009\"");
+        files::write_atomic(&Disk, &path, changed.as_bytes()).unwrap();
         assert!(chunk(&results, "0001/1").unwrap_err().to_string().contains("damaged"));
     }
 

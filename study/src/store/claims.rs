@@ -29,7 +29,7 @@ use crate::store::results::Results;
 
 /// Time after which a claim that was not renewed is over. Chosen: longer than a file server or a paused machine
 /// usually holds a write up; a job waits as long after its run was killed.
-pub const LEASE: Duration = Duration::from_secs(120);
+pub const LEASE: Duration = Duration::from_mins(2);
 /// Time between two renewals. Chosen: several may fail before a claim is over.
 pub const RENEWAL: Duration = Duration::from_secs(15);
 /// End of the name of the file of a run.
@@ -43,7 +43,8 @@ const MAX_ATTEMPTS: u32 = 5;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 struct Owner {
     /// Whose run it is: the same when Slurm starts a task again.
-    owner: String,
+    #[serde(rename = "owner")]
+    name: String,
     /// Name of the process, unique in the folder.
     process: String,
     /// Time after which a claim is over, s.
@@ -80,7 +81,7 @@ impl<'a> Claims<'a> {
         let nanoseconds = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
         let nanoseconds = nanoseconds.map_or(0, |time| time.as_nanos());
         let process = format!("{owner}-{}-{nanoseconds}", std::process::id());
-        let owner = Owner { owner: owner.to_owned(), process, lease: lease.as_secs() };
+        let owner = Owner { name: owner.to_owned(), process, lease: lease.as_secs() };
         let folder = results.claims_path();
         let object = serde_json::to_string(&owner)
             .map_err(|error| disk_error(&folder, &io::Error::other(error)))?;
@@ -131,7 +132,7 @@ impl<'a> Claims<'a> {
             if owner.as_ref() == Some(&self.owner) {
                 return Ok(self.taken(id));
             }
-            let is_earlier = owner.as_ref().is_some_and(|other| other.owner == self.owner.owner);
+            let is_earlier = owner.as_ref().is_some_and(|other| other.name == self.owner.name);
             if !is_earlier && !self.is_over(owner.as_ref(), &stamp)? {
                 return Ok(Claim::Held(stamp));
             }
@@ -256,7 +257,7 @@ impl Results<'_> {
         }
         for path in files {
             if let Some(owner) = self.live_owner(&path)? {
-                let run = LiveRun { owner: owner.owner.clone(), jobs: Vec::new() };
+                let run = LiveRun { owner: owner.name.clone(), jobs: Vec::new() };
                 runs.push((owner, run));
             }
         }

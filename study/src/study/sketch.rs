@@ -90,7 +90,10 @@ mod tests {
         let numbers = whole.point_numbers();
         assert_eq!(numbers.len(), 12);
         for (number, point) in numbers.iter().zip(&planned) {
-            assert_eq!(sketch.generation_of(&[*number]).unwrap().points, [point.clone()]);
+            assert_eq!(
+                sketch.generation_of(&[*number]).unwrap().points,
+                std::slice::from_ref(point)
+            );
         }
         assert_eq!(sketch.resolved(), whole.resolved());
         assert_eq!(sketch.generation_of(&[14]), None, "there are 14 numbers");

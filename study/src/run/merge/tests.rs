@@ -1,3 +1,7 @@
+//! Parts of a study, runs that share a folder, and what cannot be merged.
+
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
+
 use std::fs;
 use std::path::Path;
 

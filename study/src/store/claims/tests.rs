@@ -1,3 +1,7 @@
+//! Claims of runs that are alive, dead, held up and started again.
+
+#![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
+
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;

@@ -17,8 +17,8 @@
 //! - Only done jobs have values over time. Other points, and times after the end of a job, are NaN; a result
 //!   that a point does not have is NaN or an empty text. `status` says why, [`NOT_PLANNED`] where a filter
 //!   removes the point. True is 1, false 0.
-//! - A name that a parameter has already ends in [`OF_HISTORY`] for a column of the histories, and in
-//!   [`OF_JOB`] for a column of the table that the histories, or a parameter, have as well.
+//! - A name that a parameter has already ends in `OF_HISTORY` for a column of the histories, and in
+//!   `OF_JOB` for a column of the table that the histories, or a parameter, have as well.
 //!
 //! The file is written job by job: memory holds one history, one column of the table, and the chunks that HDF5
 //! has not written yet.

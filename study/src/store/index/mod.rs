@@ -10,7 +10,7 @@
 //! `billow run` writes it at its end. A reader uses it only if its [`Key`] is that of the folder as it is now; else, also
 //! where it is damaged or missing, the reader plans the study and reads the journals as without it, with the same
 //! result. An index is written for a plain grid ([`Study::is_plain_grid`]) whose journals have no faults, no remedies,
-//! and no jobs that are invalidated or that the study does not plan ([`build`]).
+//! and no jobs that are invalidated or that the study does not plan (`build`).
 
 use std::path::PathBuf;
 

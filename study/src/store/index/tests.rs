@@ -60,7 +60,7 @@ fn an_entry_gives_the_point_and_the_record_of_the_whole_folder() {
         let id = point.job.id.as_str();
         assert_eq!(read.position(id), Some(position));
         let one = read.stored(&results, &[position]).unwrap();
-        assert_eq!(one.points, [point.clone()]);
+        assert_eq!(one.points, std::slice::from_ref(point));
         assert_eq!(one.record(&point.job.id), whole.record(&point.job.id));
         assert_eq!(one.units, whole.units);
     }
