@@ -8,14 +8,13 @@ use super::options::{OutputOptions, QuietOption};
 use super::print::count;
 use super::run::listed;
 use super::{Format, output_error};
-use crate::job::row::{Cells, Counts};
+use crate::job::row::Counts;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::merge::{self, Merged};
 use crate::store::claims::{LEASE, RENEWAL};
-use crate::store::journal;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::study::Study;
@@ -111,8 +110,7 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
     let stored = Stored::read(existing(folder)?)?;
     let mut counts = Counts::default();
     for point in &stored.points {
-        let cells = journal::cells_of(point, &stored.journal.records);
-        counts.add_cells(&cells.unwrap_or_else(|| Cells::new(Status::Pending)));
+        counts.add_cells(&stored.cells(point));
     }
     let root = folder.display();
     if format == Format::Json {

@@ -1,17 +1,10 @@
 //! `billow run`: runs the jobs of a study that are not finished.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use billow_solver::models::film::LadderState;
-use billow_solver::output::outcome::FailureKind;
-
-mod scope;
-
-pub(super) use scope::Scope;
-use scope::ScopeOptions;
 
 use super::memory::Memory;
 use super::options::{
@@ -23,7 +16,6 @@ use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
-use crate::job::limits::JobLimits;
 use crate::job::references::References;
 use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
@@ -41,7 +33,13 @@ use crate::study::Study;
 use crate::study::job_limits::with_options;
 use crate::study::plan;
 
+mod failures;
 mod finished;
+mod scope;
+
+use failures::result;
+pub(super) use scope::Scope;
+use scope::ScopeOptions;
 
 /// Arguments of `billow run`.
 #[derive(Debug, clap::Args)]
@@ -194,8 +192,8 @@ pub(super) fn run_study(
         // The task that merges says the rest, and the table has the jobs that failed.
         return print_task(&study.name, &summary, out).map_err(output_error);
     }
-    if shared && merge::is_last(&results)? {
-        merge::finish(&results)?;
+    if shared {
+        merge::finish_if_last(&results)?;
     }
     let key = Key::of(&results);
     let mut stored = Stored::read(results)?;
@@ -233,79 +231,6 @@ fn known_references(results: &Results<'_>) -> Vec<(JobId, Vec<LadderState>)> {
         }
     }
     found.states
-}
-
-/// The error of a run, if it has one.
-fn result(
-    study: &Study,
-    summary: &Summary,
-    limits: &JobLimits,
-    root: &Path,
-    remedies: &Applicable,
-) -> Result<()> {
-    if !summary.different.is_empty() {
-        return Err(Error::JobsFailed(format!(
-            "{} gave different bits than before: {}\n  next: billow show JOB; compare \
-             program_version, commit and physics_version",
-            count(summary.different.len(), "job"),
-            summary.different.iter().map(JobId::short).collect::<Vec<_>>().join(", ")
-        )));
-    }
-    match summary.counts.failed() {
-        0 => Ok(()),
-        failed => Err(Error::JobsFailed(format!(
-            "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow why JOB {}{}{}",
-            count(failed, "job"),
-            limited(&summary.counts.failures()),
-            root.display(),
-            // A point of several runs has no job.
-            if study.replicate_count() > 1 { " --runs" } else { "" },
-            root.display(),
-            next_with_remedy(remedies, root),
-            next_of_limited(summary, limits, root),
-        ))),
-    }
-}
-
-/// Statuses of jobs that can go on or run again, with the option that changes what stopped them.
-const RERUN: [(Status, &str); 4] = [
-    (Status::Timeout, " --job-limit wall_time=…"),
-    (Status::Failed(FailureKind::StepLimit), " --job-limit steps=…"),
-    (Status::OutOfMemory, " --job-limit memory=…"),
-    (Status::Crashed, ""),
-];
-
-/// The failures by status, where a limit or a crash is one of them.
-fn limited(failures: &BTreeMap<String, usize>) -> String {
-    let step_limit = Status::Failed(FailureKind::StepLimit);
-    let names = RERUN.iter().filter(|(status, _)| *status != step_limit);
-    let any = names.map(|(status, _)| status.name()).any(|name| failures.contains_key(name));
-    if any { format!(" ({})", listed(failures)) } else { String::new() }
-}
-
-/// The command that runs failed jobs with remedies, and what it would change.
-fn next_with_remedy(remedies: &Applicable, root: &Path) -> String {
-    match remedies.jobs() {
-        0 => String::new(),
-        _ => format!("\n  {}:\n        billow rerun {} --remedy", remedies.named(), root.display()),
-    }
-}
-
-/// The commands that run such jobs again.
-fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String {
-    let mut text = String::new();
-    for (status, option) in RERUN {
-        // Without job_limits.steps it is solver.step_limit that was reached.
-        let by_limit = status != Status::Failed(FailureKind::StepLimit) || limits.steps.is_some();
-        if by_limit && summary.counts.of(status) > 0 {
-            let root = root.display();
-            // Without job_limits.memory it is the machine's memory, or a limit of the process.
-            let by_machine = status == Status::OutOfMemory && limits.memory.is_none();
-            let option = if by_machine { ", with more memory or a coarser mesh" } else { option };
-            let _ = write!(text, "\n        billow rerun {root} --status {status}{option}");
-        }
-    }
-    text
 }
 
 /// A run that ended.

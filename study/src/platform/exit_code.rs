@@ -40,9 +40,10 @@ pub const EXIT_CODES: [ExitCode; 4] = [
         number: "1",
         name: "failure",
         brief: "a job, scene, case or expected outcome failed, or stored results are broken",
-        meaning: "A job failed, `rerun` gave different bits, `doctor` found a fault, a scene of \
-                  `solve` has no result, a case of `validate` is out of tolerance, or an outcome of \
-                  `stability` is not as expected. The output names each of them.",
+        meaning: "A job failed, `rerun` gave different bits, `merge` found different bits or a damaged \
+                  history, `doctor` found a fault, a scene of `solve` has no result, a case of `validate` is \
+                  out of tolerance, or an outcome of `stability` is not as expected. The output names each of \
+                  them.",
     },
     ExitCode {
         number: "2",

@@ -10,7 +10,7 @@ use crate::job::row::ColumnId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::disk_error;
 use crate::platform::stop::Stop;
-use crate::store::attempts;
+use crate::run::alone::{self, Alone};
 use crate::store::history_file;
 use crate::store::journal::{Journal, Record, RemedyLink, Writer};
 use crate::store::results::Results;
@@ -35,25 +35,23 @@ pub fn wait_for_runs(results: &Results<'_>, limit: Duration, stop: &Stop) -> Res
     if stop.requested().is_some() { Ok(()) } else { results.refuse_live_runs() }
 }
 
-/// Whether no run shares the folder any more.
-///
-/// # Errors
-/// [`Error::Disk`].
-pub fn is_last(results: &Results<'_>) -> Result<bool> {
-    Ok(results.live_runs()?.is_empty())
-}
-
 /// Repairs what runs that shared the folder left, and writes the table.
 ///
 /// # Errors
 /// [`Error::Disk`], also when another command holds the lock.
 pub fn finish(results: &Results<'_>) -> Result<()> {
     let _lock = results.lock()?;
-    results.remove_temporary_files()?;
-    let mut journal = results.journal()?;
-    results.mend_journal(&journal)?;
-    let mut writer = Writer::new(results.files(), results.journal_path());
-    attempts::take_deaths(results, &mut journal, &mut writer)?;
+    alone::open(results, None)?;
+    write_table(results)
+}
+
+/// [`finish`] for a run that has ended, unless other runs or commands work in the folder: the last of them does it.
+///
+/// # Errors
+/// [`Error::Disk`].
+pub fn finish_if_last(results: &Results<'_>) -> Result<()> {
+    let Some(_lock) = results.lock_if_free()? else { return Ok(()) };
+    alone::open(results, None)?;
     write_table(results)
 }
 
@@ -70,30 +68,12 @@ fn write_table(results: &Results<'_>) -> Result<()> {
 /// [`Error::Disk`], also when another command holds the lock.
 pub fn prepare<T>(
     results: &Results<'_>,
-    (name, study): (&str, &Json),
+    study: (&str, &Json),
     write: &dyn Fn(&Results<'_>) -> Result<T>,
 ) -> Result<T> {
     let _lock = results.lock()?;
-    open_alone(results, name, study)?;
+    alone::open(results, Some(study))?;
     write(results)
-}
-
-/// The journal of a folder whose lock this process holds, repaired, and its writer. study.json is written.
-fn open_alone<'a>(
-    results: &Results<'a>,
-    name: &str,
-    study: &Json,
-) -> Result<(Journal, Writer<'a>)> {
-    results.remove_temporary_files()?;
-    let mut journal = results.journal()?;
-    let text = results.write_study(name, study, &journal)?;
-    results.mend_journal(&journal)?;
-    let mut writer = Writer::new(results.files(), results.journal_path());
-    attempts::take_deaths(results, &mut journal, &mut writer)?;
-    if journal.study.as_deref() != Some(&text) {
-        writer.study(&text)?;
-    }
-    Ok((journal, writer))
 }
 
 /// What a merge of folders did.
@@ -126,7 +106,7 @@ pub fn merge(
         }
     }
     let lock = target.lock()?;
-    let (mut journal, mut writer) = open_alone(target, name, study)?;
+    let Alone { mut journal, mut writer, .. } = alone::open(target, Some((name, study)))?;
     let mut merged = Merged::default();
     for source in sources {
         copy(source, target, &mut journal, &mut writer, stop, &mut merged)?;

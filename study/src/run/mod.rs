@@ -1,6 +1,7 @@
-//! Runs jobs in parallel: which jobs, the runner, its events, the progress display, the merge of
+//! Runs jobs in parallel: which jobs, a folder for one process, the runner, its events, the progress display, the merge of
 //! what several runs stored.
 
+pub mod alone;
 pub mod event;
 #[cfg(test)]
 pub(crate) mod fixture;

@@ -1,7 +1,7 @@
 //! The real disk.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::{FileExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
@@ -102,14 +102,6 @@ impl Files for Disk {
         let mut file = OpenOptions::new().write(true).open(path)?;
         file.write_all(bytes)?;
         file.sync_all()
-    }
-
-    fn read_from(&self, path: &Path, start: u64) -> io::Result<Vec<u8>> {
-        let mut file = File::open(path)?;
-        file.seek(SeekFrom::Start(start))?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
-        Ok(bytes)
     }
 }
 

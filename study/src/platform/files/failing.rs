@@ -117,10 +117,6 @@ impl Files for FailingFiles {
         self.step()?;
         Disk.overwrite(path, bytes)
     }
-
-    fn read_from(&self, path: &Path, start: u64) -> io::Result<Vec<u8>> {
-        Disk.read_from(path, start)
-    }
 }
 
 struct FailingAppend {

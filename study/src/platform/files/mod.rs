@@ -123,12 +123,6 @@ pub trait Files: Send + Sync {
     /// # Errors
     /// The error of the system.
     fn overwrite(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
-
-    /// Reads a file from this byte on.
-    ///
-    /// # Errors
-    /// The error of the system.
-    fn read_from(&self, path: &Path, start: u64) -> io::Result<Vec<u8>>;
 }
 
 /// Size and time of a file: when both are those of its writing, it was hardly changed since.

@@ -141,7 +141,7 @@ fn runs_that_share_a_folder_run_each_job_once_and_give_the_table_of_one() {
     });
     assert_eq!(ran, 8);
     let results = Results::new(&Disk, &root);
-    assert!(!results.table_path().exists() && is_last(&results).unwrap());
+    assert!(!results.table_path().exists() && results.live_runs().unwrap().is_empty());
     assert!(results.journal().unwrap().faults.is_empty());
     finish(&results).unwrap();
     assert_eq!(table(&root), table(&path("whole")));
@@ -179,4 +179,6 @@ fn a_run_takes_over_the_jobs_of_a_dead_one_and_leaves_those_of_a_live_one() {
     let journal = results.journal().unwrap();
     assert!(journal.records.contains_key(&id(0)) && !journal.records.contains_key(&id(1)));
     assert!(finish(&results).unwrap_err().to_string().contains("live"));
+    finish_if_last(&results).unwrap();
+    assert!(!results.table_path().exists(), "another run is alive");
 }

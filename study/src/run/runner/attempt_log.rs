@@ -10,8 +10,8 @@ use super::sharing::Sharing;
 use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::platform::files::Lock;
-use crate::store::attempts::{self, Attempts};
-use crate::store::journal::{Journal, Record, Writer};
+use crate::store::attempts::Attempts;
+use crate::store::journal::{Record, Writer};
 use crate::store::results::Results;
 
 /// Attempts and checkpoints of this process.
@@ -30,14 +30,11 @@ pub struct AttemptLog<'a> {
 }
 
 impl<'a> AttemptLog<'a> {
-    /// The log of a process that holds the lock of the results alone. Adds to the journal the deaths of the
-    /// processes before it.
+    /// The log of a process that holds the lock of the results alone, with the writer of its journal.
     ///
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
-    pub fn alone(results: &'a Results<'a>, lock: &'a Lock, journal: &mut Journal) -> Result<Self> {
-        let mut writer = Writer::new(results.files(), results.journal_path());
-        attempts::take_deaths(results, journal, &mut writer)?;
+    pub fn alone(results: &'a Results<'a>, lock: &'a Lock, writer: Writer<'a>) -> Result<Self> {
         Self::new(results, Some(lock), writer, None)
     }
 

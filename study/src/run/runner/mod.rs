@@ -26,6 +26,7 @@ use crate::job::result_limit::ResultLimit;
 use crate::job::row::Counts;
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
+use crate::run::alone;
 use crate::run::event::{Event, Reporter};
 use crate::run::selection::Selection;
 use crate::store::journal::Record;
@@ -128,18 +129,12 @@ pub fn run(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
 /// [`run`] with the folder for itself.
 fn run_alone(run: &Run<'_>, reporter: &mut dyn Reporter) -> Result<Summary> {
     let lock = run.results.lock()?;
-    run.results.remove_temporary_files()?;
-    let mut journal = run.results.journal()?;
-    let study = run.results.write_study(run.name, run.study, &journal)?;
-    for fault in &journal.faults {
+    let alone = alone::open(&run.results, Some((run.name, run.study)))?;
+    for fault in &alone.faults {
         reporter.event(&Event::Note(fault.to_string()));
     }
-    run.results.mend_journal(&journal)?;
-    run.results.set_aside_references()?;
-    journal.faults.clear();
-    let log = AttemptLog::alone(&run.results, &lock, &mut journal)?;
-    let mut state = State::new(run, &log, journal);
-    state.record_study(&study)?;
+    let log = AttemptLog::alone(&run.results, &lock, alone.writer)?;
+    let mut state = State::new(run, &log, alone.journal);
     state.remove_checkpoints()?;
     run_generations(run, &mut state, reporter)?;
     state.write_table()?;

@@ -28,18 +28,6 @@ pub struct Sharing<'a> {
     held: BTreeMap<JobId, Stamp>,
 }
 
-/// What became of a job that another run had.
-enum Held {
-    /// It ended.
-    Ended,
-    /// Its run is alive, and keeps it.
-    Kept,
-    /// No run has it.
-    Free,
-    /// Not known yet.
-    Unknown,
-}
-
 impl<'a> Sharing<'a> {
     /// The claims of a run. Made before the journals are read.
     ///
@@ -105,33 +93,27 @@ impl<'a> Sharing<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`].
     pub fn free_jobs(&mut self) -> Result<(BTreeSet<JobId>, bool)> {
-        let held = std::mem::take(&mut self.held);
-        let (mut free, mut waits) = (BTreeSet::new(), false);
-        for (id, alive) in held {
-            match self.state(&id, &alive)? {
-                Held::Ended | Held::Kept => {}
-                Held::Free => {
+        let mut holders = Vec::with_capacity(self.held.len());
+        for (id, alive) in std::mem::take(&mut self.held) {
+            let holder = self.claims.holder(&id)?;
+            holders.push((id, alive, holder));
+        }
+        // After the claims: a run gives a job back when its record is there.
+        let ended = self.follower.ended()?;
+        holders.retain(|(id, _, _)| !ended.contains_key(id));
+        let mut free = BTreeSet::new();
+        for (id, alive, holder) in holders {
+            match holder {
+                None => {
                     free.insert(id);
                 }
-                Held::Unknown => {
-                    waits = true;
+                Some(now) if now == alive => {
                     self.held.insert(id, alive);
                 }
+                // Its run is alive, and keeps it.
+                Some(_) => {}
             }
         }
-        Ok((free, waits))
-    }
-
-    fn state(&mut self, id: &JobId, alive: &Stamp) -> Result<Held> {
-        // The claim first: a run gives a job back after its record is there.
-        let holder = self.claims.holder(id)?;
-        if self.follower.ended()?.contains_key(id) {
-            return Ok(Held::Ended);
-        }
-        Ok(match holder {
-            None => Held::Free,
-            Some(now) if now != *alive => Held::Kept,
-            Some(_) => Held::Unknown,
-        })
+        Ok((free, !self.held.is_empty()))
     }
 }

@@ -48,7 +48,8 @@ impl<'a> Follower<'a> {
             if size <= start {
                 continue;
             }
-            let bytes = self.files.read_from(&path, start);
+            let length = usize::try_from(size - start).unwrap_or(usize::MAX);
+            let bytes = self.files.read_part(&path, start, length);
             let bytes = bytes.map_err(|error| disk_error(&path, &error))?;
             let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
             for line in bytes[..complete].split_inclusive(|byte| *byte == b'\n') {

@@ -31,6 +31,16 @@ impl Results<'_> {
         Ok(lock)
     }
 
+    /// The lock alone, as [`Self::lock`]; `None` where another command or a live run works in the folder.
+    ///
+    /// # Errors
+    /// As [`Self::lock`], for other reasons.
+    pub fn lock_if_free(&self) -> Result<Option<Lock>> {
+        self.prepare_lock()?;
+        let lock = self.take_lock(&|path| self.files.try_lock(path))?;
+        Ok(if self.live_runs()?.is_empty() { lock } else { None })
+    }
+
     /// The lock, as [`Self::lock`], together with other runs that share the folder; `None` on a file system without locks:
     /// then claims alone keep runs apart.
     ///

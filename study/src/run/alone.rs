@@ -1,0 +1,44 @@
+//! A results folder that this process has for itself: what dead processes left is cleared before anything is written.
+
+use crate::input::study_file::Json;
+use crate::platform::error::Result;
+use crate::store::attempts;
+use crate::store::journal::{Fault, Journal, Writer};
+use crate::store::results::Results;
+
+/// The repaired journal of a folder.
+pub struct Alone<'a> {
+    /// What it holds, without faults.
+    pub journal: Journal,
+    /// Appends to it.
+    pub writer: Writer<'a>,
+    /// The lines that were not valid; they are removed.
+    pub faults: Vec<Fault>,
+}
+
+/// Clears a folder whose lock this process holds alone: temporary files, claims of dead runs, invalid journal lines,
+/// damaged references. Jobs that ran in a process that died are noted in the journal. With a study, its name and its
+/// resolved text, study.json and the journal are those of this study.
+///
+/// # Errors
+/// [`crate::platform::error::Error::Disk`], also for a folder of another study.
+pub fn open<'a>(results: &Results<'a>, study: Option<(&str, &Json)>) -> Result<Alone<'a>> {
+    results.remove_temporary_files()?;
+    let mut journal = results.journal()?;
+    let text = match study {
+        Some((name, study)) => Some(results.write_study(name, study, &journal)?),
+        None => None,
+    };
+    results.mend_journal(&journal)?;
+    results.set_aside_references()?;
+    let faults = std::mem::take(&mut journal.faults);
+    let mut writer = Writer::new(results.files(), results.journal_path());
+    attempts::take_deaths(results, &mut journal, &mut writer)?;
+    if let Some(text) = text
+        && journal.study.as_deref() != Some(&text)
+    {
+        writer.study(&text)?;
+        journal.study = Some(text);
+    }
+    Ok(Alone { journal, writer, faults })
+}
