@@ -23,7 +23,7 @@ fn study() -> Value {
         "strategy": "packed",
         "gas": {"mass_flow_rate": "5 g/s"},
         "outputs": {"frames": 5},
-        "grid": {"end_time": ["20 ms", "600 ms"]}
+        "grid": {"end_time": ["20 ms", "1.8 s"]}
     })
 }
 

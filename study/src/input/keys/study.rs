@@ -319,7 +319,7 @@ pub static KEYS: &[Key] = &[
         "Wall time of one attempt at a job; then its status is timeout.")
         .study_only(),
     key("job_limits.steps", KeyKind::Integer(1, MAX_EXACT_INTEGER), Absent("no limit"), "1000000",
-        "Steps of a job; then its status is step_limit. A job within 50 steps of its end may finish.")
+        "Steps of a job; then its status is step_limit. A job within 128 steps of its end may finish.")
         .study_only(),
     key("job_limits.memory", likely(above(Dimension::Memory, 0.0, 1e15), 1e6, 1e13), Absent("no limit"), "\"2 GB\"",
         "Memory of a job, by its estimate; a job that needs more has the status out_of_memory.")
