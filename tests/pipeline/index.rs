@@ -10,7 +10,7 @@ use crate::support::{TestFolder, failed, grid, ids, ran, small_grid};
 /// Checks that these results have an index, and that no output of a command that it serves depends on it.
 fn check(folder: &TestFolder, job: &str, by: &[&str]) {
     let compare = [&["compare", "results/grid", "--summary"], by].concat();
-    let commands: [&[&str]; 11] = [
+    let commands: [&[&str]; 18] = [
         &["status"],
         &["status", "grid.json", "--json"],
         &["why", job],
@@ -20,6 +20,13 @@ fn check(folder: &TestFolder, job: &str, by: &[&str]) {
         &compare,
         &[&compare[..], &["--json"]].concat(),
         &[&compare[..], &["--where", "N == 6 or N == 5", "--measures", "peak_vz"]].concat(),
+        &["table"],
+        &["table", "grid.json", "--runs", "--limit", "2"],
+        &["table", "--format", "csv", "--si"],
+        &["table", "--columns", "design.N,film.thickness,first_minimum_z_rim,close"],
+        &["table", "--sort", "peak_vz:desc", "--where", "volume_ratio > 0.1 and M == 2"],
+        &["table", "--columns", "peak_v"],
+        &["table", "--where", "N = 6"],
         &["run", "grid.json"],
         &["run", "results/grid", "--json"],
     ];

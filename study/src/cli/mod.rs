@@ -32,6 +32,7 @@ mod keys;
 mod legend;
 mod memory;
 mod merge;
+mod needed_columns;
 mod notes;
 mod opened;
 pub mod options;

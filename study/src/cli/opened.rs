@@ -12,27 +12,35 @@ use crate::store::stored::Stored;
 use crate::store::table::{Table, parquet};
 use crate::study::Study;
 
-/// The same from the index of the results, with the columns alone of which `wanted` holds, the job and the parameters,
-/// and without points and records; `None` where the index cannot serve them, and for what is an error.
+/// Results with some columns of their table, and without points and records.
+pub struct Opened {
+    pub stored: Stored<'static>,
+    pub table: Table,
+    /// Number of columns of the whole table.
+    pub all_columns: usize,
+}
+
+/// The same as [`open_stored`] from the index of the results, with the columns alone of which `wanted` holds (given the name,
+/// and all names), the job, the parameters and the `keys` of the study; `None` where the index cannot serve them, and for what is an error.
 pub fn open_indexed(
     given: &StudyArgs,
     set: &[String],
     units: &UnitsOption,
-    condition: Option<&str>,
-    wanted: &dyn Fn(&str) -> bool,
-) -> Option<(Stored<'static>, Table)> {
+    keys: &[String],
+    wanted: &dyn Fn(&str, &[&str]) -> bool,
+) -> Option<Opened> {
     let results = Results::new(&Disk, &folder(given, set).ok()?);
     let index = match given.study.as_deref().filter(|path| path.is_file()) {
         Some(file) => Index::of_study(&results, &Study::sketch(file, set).ok()??)?,
         None => Index::read(&results)?,
     };
     let bytes = results.files().read(&results.table_path()).ok()?;
-    let table = parquet::decode_columns(&bytes, wanted)?;
+    let (table, all_columns) = parquet::decode_columns(&bytes, wanted)?;
     let stored = index.is_current(&results).then(|| index.stored(&results, &[]))??;
     let units = units.of_table(&table, stored.study.display_units()).ok()?;
     let mut table = table.shown_in(&units);
-    study_keys::add(&stored.study, &mut table, &units, &study_keys::names_in(condition));
-    Some((stored, table))
+    study_keys::add(&stored.study, &mut table, &units, keys);
+    Some(Opened { stored, table, all_columns })
 }
 
 /// Reads stored results with their study, for commands that need both. Returns them, their table in the units to

@@ -91,7 +91,8 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         let mut text = Vec::new();
         // An error lists what the whole table has.
         let indexed = needed::open(args);
-        if indexed.is_some_and(|(stored, table)| print(args, &stored, &table, &mut text).is_ok()) {
+        if indexed.is_some_and(|found| print(args, &found.stored, &found.table, &mut text).is_ok())
+        {
             return out.write_all(&text).map_err(output_error);
         }
     }

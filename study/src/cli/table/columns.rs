@@ -14,6 +14,9 @@ use crate::store::table::{Column, Table};
 /// The parameter whose values are compared for how gentle they are.
 const STRATEGY: &str = "strategy";
 
+/// Start of the name of the margin to the limit of a measure.
+pub const MARGIN: &str = "margin_";
+
 /// Columns shown after the parameters by default, in this order, as far as they fit. Where strategies are
 /// compared, the speed stands beside the energy, although it is noisy: both measure the impact.
 pub fn main_names(table: &Table) -> Vec<&str> {
@@ -38,25 +41,30 @@ pub fn main_names(table: &Table) -> Vec<&str> {
 
 /// The measures among them.
 pub fn main_measures(table: &Table) -> Vec<&'static str> {
-    let impact: &[ColumnId] = if compares_strategies(table) {
-        &[ColumnId::PeakKineticEnergy, ColumnId::PeakVz]
-    } else {
-        &[ColumnId::PeakKineticEnergy]
-    };
-    let end = [
+    let with_speed = compares_strategies(table);
+    let measures = any_main_measures();
+    let shown = measures.filter(|column| with_speed || *column != ColumnId::PeakVz);
+    shown.map(ColumnId::name).collect()
+}
+
+/// The measures among them, whatever the study compares.
+pub fn any_main_measures() -> impl Iterator<Item = ColumnId> {
+    let measures = [
+        ColumnId::T90ZRim,
+        ColumnId::PeakKineticEnergy,
+        ColumnId::PeakVz,
         ColumnId::FinalPressure,
         ColumnId::TDeployed,
         ColumnId::VolumeRatio,
         ColumnId::HeightRatio,
         ColumnId::Overshoot,
     ];
-    let measures = [ColumnId::T90ZRim].iter().chain(impact).chain(&end);
-    measures.map(|column| column.name()).collect()
+    measures.into_iter()
 }
 
 /// The measures that have a limit.
 pub fn limited(table: &Table) -> Vec<&str> {
-    let names = table.columns.iter().filter_map(|column| column.name.strip_prefix("margin_"));
+    let names = table.columns.iter().filter_map(|column| column.name.strip_prefix(MARGIN));
     names.filter(|name| ColumnId::from_name(name).is_some()).collect()
 }
 

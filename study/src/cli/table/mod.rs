@@ -2,11 +2,12 @@
 
 use std::io::Write;
 
+use super::opened::Opened;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::print::{Heading, print_quantities};
 use super::target::{self, StudyArgs, Target};
-use super::{Format, best, legend};
+use super::{Format, best, changes, legend, output_error};
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
@@ -17,6 +18,7 @@ use columns::{chosen, heading, shown};
 use sort::{by_search, sorted};
 
 mod columns;
+mod needed;
 mod point_columns;
 mod sort;
 
@@ -81,31 +83,54 @@ struct Listing {
 /// # Errors
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let asked = asked(args);
+    if let Some(Opened { stored, table, all_columns, .. }) = needed::open(args, &asked) {
+        let mut text = Vec::new();
+        // An error lists what the whole table has.
+        if print(args, Some(&stored.study), &table, all_columns, &mut text).is_ok() {
+            changes::note_other_physics(&table);
+            return out.write_all(&text).map_err(output_error);
+        }
+    }
     let mut target = target::open(&args.study, &args.set.set, &args.units)?;
     let all_columns = target.table.columns.len();
-    let sorts = args.sort.iter().map(|key| key.split(':').next().unwrap_or_default());
-    let asked = args.columns.iter().map(String::as_str).chain(sorts);
-    let asked: Vec<String> = asked.map(|name| name.trim().to_owned()).collect();
     if args.runs && target.study.as_ref().is_some_and(|study| study.auto().is_some()) {
         target.table = Stored::read(target.results.clone())?.runs_table();
     }
     target.add_keys(&asked, args.condition.as_deref())?;
     let Target { study, table, .. } = target;
-    let study = study.as_ref();
-    let corrected = study.and_then(|study| legend::corrected(study, &table));
+    print(args, study.as_ref(), &table, all_columns, out)
+}
+
+/// The columns that the options name.
+fn asked(args: &Args) -> Vec<String> {
+    let sorts = args.sort.iter().map(|key| key.split(':').next().unwrap_or_default());
+    let names = args.columns.iter().map(String::as_str).chain(sorts);
+    names.map(|name| name.trim().to_owned()).collect()
+}
+
+/// Prints a table, of whose results `all_columns` is the number of columns.
+fn print(
+    args: &Args,
+    study: Option<&Study>,
+    table: &Table,
+    all_columns: usize,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let corrected = study.and_then(|study| legend::corrected(study, table));
     let corrected = corrected.filter(|_| !args.runs);
     let replicates = match study {
         Some(study) if !args.runs => study.replicates(),
         _ => Vec::new(),
     };
-    let rows = chosen_runs(&table, args.condition.as_deref(), &replicates)?;
-    let rows = by_search(&table, rows, study);
+    let rows = chosen_runs(table, args.condition.as_deref(), &replicates)?;
+    let rows = by_search(table, rows, study);
     let format = args.output.format();
     let meshes = study.map(Study::meshes).unwrap_or_default();
     let mut listing = if replicates.is_empty() {
-        runs(args, &table, &rows, all_columns)?
+        runs(args, table, &rows, all_columns)?
     } else {
-        points(args, &table, &rows, &replicates, &meshes)?
+        points(args, table, &rows, &replicates, &meshes)?
     };
     let all_rows = listing.cells.len();
     listing.cells.truncate(args.limit.unwrap_or(all_rows));
@@ -130,10 +155,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         }
         let shown = listing.cells.iter().flatten().any(legend::has_mesh_error);
         let meshes = if args.runs { Vec::new() } else { meshes };
-        for note in legend::mesh_errors(shown, &table, &meshes).into_iter().chain(corrected) {
+        for note in legend::mesh_errors(shown, table, &meshes).into_iter().chain(corrected) {
             eprintln!("{note}");
         }
-        best::print(study, &table, &rows);
+        best::print(study, table, &rows);
     }
     Ok(())
 }

@@ -168,16 +168,23 @@ fn metadata(reader: &mut ParquetReader<Cursor<&[u8]>>) -> std::result::Result<Me
     Ok(metadata)
 }
 
-/// Some columns of a table from the bytes of its file: those of which `wanted` holds for the current name, and all before
+/// Some columns of a table from the bytes of its file: those of which `wanted` holds for the name, given all names, and all before
 /// the status, which are the job and the parameters. Their cells are not checked against the checksum of the table: the
-/// caller knows that the file is as it was written. `None` for anything but a table of this version.
-pub fn decode_columns(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Option<Table> {
+/// caller knows that the file is as it was written. The number is that of all columns. `None` for anything but a table of
+/// this version.
+pub fn decode_columns(
+    bytes: &[u8],
+    wanted: &dyn Fn(&str, &[&str]) -> bool,
+) -> Option<(Table, usize)> {
     let mut reader = ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None);
     let metadata = metadata(&mut reader).ok().filter(|metadata| metadata.version == VERSION)?;
     let labels = &metadata.columns;
     let status = labels.iter().position(|label| label.name == ColumnId::Status.name())?;
+    let names: Vec<&str> = labels.iter().map(|label| label.name.as_str()).collect();
     let chosen = labels.iter().enumerate().filter(|(index, label)| {
-        *index <= status || wanted(row_column_name(&label.name)) || wanted(&label.name)
+        *index <= status
+            || wanted(row_column_name(&label.name), &names)
+            || wanted(&label.name, &names)
     });
     let chosen = chosen.map(|(_, label)| label.name.clone()).collect();
     let frame = reader.with_columns(Some(chosen)).finish().ok()?;
@@ -186,7 +193,7 @@ pub fn decode_columns(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Option<Tab
         from_polars(column, label).ok()
     };
     let columns = frame.columns().iter().map(column).collect::<Option<_>>()?;
-    Some(Table { columns })
+    Some((Table { columns }, labels.len()))
 }
 
 /// Reads a table from the bytes of its file; `path` names it in errors.
