@@ -7,7 +7,7 @@
 # make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
 # make bench    what billow costs on this machine, a few minutes
-# make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents (root only)
+# make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents, with the program of make dist (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
 # make scale    what the commands cost with 100,000 finished piston jobs: a quarter of an hour, one table (SCALE="--jobs 1000")
 # make layers   which folder imports which: none from above, no circle
@@ -75,9 +75,9 @@ readers: build reader-deps
 build: deps
 	$(CARGO) build $(FLAGS)
 
-# Says so where it cannot run: exit code 77 of the script.
-slurm: build slurm-deps
-	tests/slurm/run.sh $(BILLOW) || [ $$? -eq 77 ]
+# With the program of `make dist`, as on nodes without libhdf5. Says so where it cannot run: exit code 77 of the script.
+slurm: dist slurm-deps
+	tests/slurm/run.sh "$$(ls -t "$${CARGO_TARGET_DIR:-target}"/dist/billow-*.tar.gz | head -1)" || [ $$? -eq 77 ]
 
 bench: build
 	$(BILLOW) bench

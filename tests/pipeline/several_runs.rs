@@ -23,6 +23,9 @@ fn parts_are_merged_into_the_table_of_the_whole() {
     assert!(text.contains("copied") && text.contains("next     billow run all"), "{text}");
     folder.stdout(&["merge", "1", "2", "3", "--results", "all"]);
     assert_eq!(without_costs(folder.rows("all")), without_costs(folder.rows("results/grid")));
+    let status = folder.stdout(&["status", "all", "--json"]);
+    fs::remove_file(folder.path().join("all/index.json")).unwrap();
+    assert_eq!(folder.stdout(&["status", "all", "--json"]), status);
     assert!(
         folder.stdout(&["run", "grid.json", "--results", "all", "-q"]).contains("nothing to run")
     );

@@ -4,6 +4,8 @@
 #
 # usage: tests/slurm/run.sh [BILLOW [STUDY]]
 #
+# BILLOW is a program, or an archive of `make dist`, of which the program is taken.
+#
 # Needs root (it starts munge and the daemons of Slurm) and the packages slurmctld, slurmd, slurm-client, munge. Exit code 77 where
 # it cannot run.
 set -euo pipefail
@@ -25,6 +27,10 @@ done
 . "$here/cluster.sh"
 work=$(mktemp -d)
 trap 'stop_cluster || true; rm -rf "$work"' EXIT
+if [[ $billow == *.tar.gz ]]; then
+  tar -xzf "$billow" -C "$work"
+  billow=$(realpath "$work"/billow-*/billow)
+fi
 direct=$work/direct
 shared=$work/shared
 

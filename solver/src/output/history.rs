@@ -215,6 +215,15 @@ impl History {
         &self.columns[index.unwrap_or_else(|| panic!("no history column {name:?}"))]
     }
 
+    /// Leaves out the columns that are not named, and frees their memory.
+    pub fn keep(&mut self, names: &[&str]) {
+        for (column, values) in COLUMNS.iter().zip(&mut self.columns) {
+            if !names.contains(&column.name) {
+                *values = Vec::new();
+            }
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)

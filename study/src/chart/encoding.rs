@@ -92,19 +92,13 @@ impl<'a> Encoding<'a> {
         } else {
             return Ok(());
         };
-        let varying: Vec<&str> = self
-            .panels
-            .parameters
-            .iter()
-            .chain(self.lines.parameters())
-            .map(Parameter::name)
-            .collect();
+        let varying = self.panels.parameters.iter().chain(self.lines.parameters());
         Err(invalid_option(
             option,
             value,
             format!("the chart needs {number} {noun}; nothing is averaged"),
             format!("{limit} {noun} at most"),
-            format!("fix some of {} with --where CONDITION", varying.join(", ")),
+            parameters::fix(varying),
         ))
     }
 

@@ -157,7 +157,7 @@ fn too_many_panels(asked: &str, facets: &Facets<'_>) -> Error {
         asked,
         format!("the map needs {} panels; nothing is averaged", facets.panels.len()),
         format!("{MAX_PANELS} panels at most"),
-        format!("fix some of {} with --where CONDITION", parameters::heading(&facets.parameters)),
+        parameters::fix(facets.parameters.iter()),
     )
 }
 

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::names::{self, Name};
 use super::number;
 use crate::analysis::compare::{self, canonical};
+use crate::input::keys::numerical::SEED;
 use crate::input::value::{Value, short_number};
 use crate::job::row::CellType;
 use crate::render::figure::ticks::minus;
@@ -255,6 +256,18 @@ pub fn facets<'a>(parameters: Vec<Parameter<'a>>, rows: &[usize]) -> Facets<'a> 
         panels.push((String::new(), Vec::new()));
     }
     Facets { panels, parameters }
+}
+
+/// What to do about a chart in which too many values of these parameters need lines or panels of their own.
+pub fn fix<'a>(parameters: impl Iterator<Item = &'a Parameter<'a>>) -> String {
+    let names: Vec<&str> = parameters.map(Parameter::name).collect();
+    let repeats = if names.contains(&SEED) {
+        "; runs that differ in seed alone become a median with a range where the study has seed under \
+         replicates, not under grid (no job runs again), and without --runs"
+    } else {
+        ""
+    };
+    format!("fix some of {} with --where CONDITION{repeats}", names.join(", "))
 }
 
 /// Names of parameters, as a heading.

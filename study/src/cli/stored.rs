@@ -46,6 +46,14 @@ fn indexed_job(results: &Results<'static>, prefix: &str) -> Option<(Stored<'stat
     Some((index.stored(results, &[position])?, id))
 }
 
+/// Writes the index of results. A failure costs time later and no result: it is a message.
+pub fn write_index_file(index: &Index, results: &Results<'_>) {
+    if let Err(problem) = index.write(results) {
+        let path = results.index_path();
+        eprintln!("billow: {}: {problem}; commands read the journals instead", path.display());
+    }
+}
+
 /// Names the lines of the journal that are not valid. A torn last line is what a running process writes.
 pub fn note_faults(journal: &Journal, results: &Results<'_>) {
     let running = results.is_running().unwrap_or(false);

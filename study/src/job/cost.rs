@@ -1,31 +1,45 @@
 //! Estimated cost of jobs, without running them.
 //!
 //! ```text
-//! time on one core ≈ 17 ns · elements · steps                film
-//!                  ≈ 5 ms                                    without film
+//! time on one core ≈ elements · (40 ns · steps of the first 0.3 s + 13 ns · later steps)      film
+//!                  ≈ 4.3e-7 s · elements^1.75                 static states of a design, for its first job
+//!                  ≈ 2 ms                                     job without film
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use billow_solver::models::{self, Cost};
 use billow_solver::scene::{ModelKind, Scene};
 
-use super::canonical_json;
+use super::{JobId, canonical_json};
 
-/// Time per element and step on one core, ns, while the film is not quiescent. Source: measured on the
-/// capsule of the paper, n = 4 to 8, 0.5 s.
-pub const NS_PER_ELEMENT_STEP: f64 = 17.0;
+/// Time per element and step on one core, ns: while film unfolds, and afterwards. Source: measured on the capsule of the
+/// paper, n = 4 to 16 (docs/performance.md).
+const NS_PER_ELEMENT_STEP: [f64; 2] = [40.0, 13.0];
+/// Simulated time in which film unfolds, s. Source: the same.
+const UNFOLDING: f64 = 0.3;
+/// Time of the static states of a design on one core: coefficient, s, and exponent of the number of
+/// elements. Source: measured at n = 8, 16, 32; the factors of sparse matrices grow faster than the
+/// matrices.
+const STATIC_SECONDS: [f64; 2] = [4.3e-7, 1.75];
 /// Time of a job without film on one core, s. Source: measured, with its files.
-const SECONDS_WITHOUT_FILM: f64 = 5e-3;
+const SECONDS_WITHOUT_FILM: f64 = 2e-3;
 
 /// Costs of scenes. The mesh of each kind is built once.
 #[derive(Debug, Default)]
 pub struct Costs {
     /// By the parts of a scene on which they depend; `None` for a scene without a mesh.
     known: BTreeMap<String, Option<Cost>>,
+    /// Designs whose static states are computed before.
+    states: BTreeSet<JobId>,
 }
 
 impl Costs {
+    /// Costs where the static states of these reference scenes are known.
+    pub fn with_states(states: BTreeSet<JobId>) -> Self {
+        Self { known: BTreeMap::new(), states }
+    }
+
     /// Elements and steps of a scene of film; `None` without film, and where no mesh can be built.
     pub fn of(&mut self, scene: &Scene) -> Option<Cost> {
         if scene.solver.model != ModelKind::Film {
@@ -42,11 +56,17 @@ impl Costs {
         self.known.len()
     }
 
-    /// Time of a scene on one core, s.
+    /// Time of a scene on one core, s, after those that were asked for before.
     pub fn seconds(&mut self, scene: &Scene) -> f64 {
-        let cost = self.of(scene);
-        cost.map_or(SECONDS_WITHOUT_FILM, |cost| {
-            cost.elements as f64 * cost.steps as f64 * NS_PER_ELEMENT_STEP * 1e-9
-        })
+        let Some(cost) = self.of(scene) else { return SECONDS_WITHOUT_FILM };
+        let unfolding = (UNFOLDING / scene.solver.end_time).min(1.0);
+        let [first, later] = NS_PER_ELEMENT_STEP;
+        let step = 1e-9 * (first * unfolding + later * (1.0 - unfolding));
+        let elements = cost.elements as f64;
+        let is_new = models::reference_scene(scene)
+            .is_some_and(|reference| self.states.insert(JobId::of(&reference)));
+        let [coefficient, exponent] = STATIC_SECONDS;
+        let states = if is_new { coefficient * libm::pow(elements, exponent) } else { 0.0 };
+        elements * cost.steps as f64 * step + states
     }
 }

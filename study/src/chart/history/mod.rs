@@ -31,8 +31,11 @@ use quantity::{Drawn, Quantity, drawn, quantity};
 pub const MAX_JOBS: usize = 48;
 /// Most lines in a panel of a quantity that rings. Chosen: more cover each other.
 const MAX_RINGING_LINES: usize = 3;
-/// Most runs behind the lines of a figure. Chosen: their histories are in memory together.
-const MAX_RUNS: usize = 240;
+/// Most runs behind the lines of a figure. Chosen: what is drawn of their histories is in memory together, some 200 kB of a
+/// run with 6000 samples.
+const MAX_RUNS: usize = 2000;
+/// Columns that the time axis reads.
+const AXIS: [&str; 3] = ["time", "z_rim", "z_max"];
 
 /// A job of the figure.
 struct Run {
@@ -162,9 +165,13 @@ fn runs<'a>(
         return too_many(first.len(), noun, limit);
     }
     let mut runs = BTreeMap::new();
+    let names = columns.iter().map(|name| name.trim());
+    let names: Vec<&str> = names.chain(AXIS).collect();
     for (job, row) in first {
         if let Some(id) = JobId::from_digits(job) {
-            runs.insert(job, Run { row, history: read(&id)? });
+            let mut history = read(&id)?;
+            history.keep(&names);
+            runs.insert(job, Run { row, history });
         }
     }
     Ok(runs)

@@ -11,6 +11,7 @@ use super::{Args, Ended, RunOptions, result};
 use crate::analysis::answer::Answer;
 use crate::cli::memory::{self, Memory};
 use crate::cli::remedies::Applicable;
+use crate::cli::stored::write_index_file;
 use crate::cli::target::results_folder;
 use crate::cli::{instruction_set, notes, output_error};
 use crate::job::{JobId, Status};
@@ -103,7 +104,7 @@ fn is_intact(results: &Results<'_>, index: &Index) -> bool {
 }
 
 /// Writes the index of results that were read whole. `key` is that of the folder before they were read, `table` their
-/// table. A failure costs time later and no result: it is a message.
+/// table.
 pub(super) fn write_index(
     study: &Study,
     (stored, table): (&Stored<'_>, &Table),
@@ -124,8 +125,5 @@ pub(super) fn write_index(
             Finished { notes: notes::of_points(study), largest_memory, answer: answer.clone() };
         index.finished = serde_json::to_value(finished).unwrap_or_default();
     }
-    if let Err(problem) = index.write(results) {
-        let path = results.index_path();
-        eprintln!("billow: {}: {problem}; commands read the journals instead", path.display());
-    }
+    write_index_file(&index, results);
 }

@@ -34,6 +34,14 @@ pub struct StoredHistory {
     pub labels: BTreeMap<String, (String, String)>,
 }
 
+impl StoredHistory {
+    /// Leaves out the columns that are not named, and frees their memory. Labels stay.
+    pub fn keep(&mut self, names: &[&str]) {
+        self.history.keep(names);
+        self.tracks.retain(|name, _| names.contains(&name.as_str()));
+    }
+}
+
 /// Reads a history file.
 ///
 /// # Errors
