@@ -127,11 +127,7 @@ const MAX_GROWTH: u64 = 20;
 /// The block of the monitor is longer than the run.
 #[test]
 fn a_step_with_contact_allocates_nothing() {
-    let mut film = settled_sheets(MonitorSettings {
-        block: 50_000,
-        quiet_block: 50_000,
-        ..MonitorSettings::FRAMES
-    });
+    let mut film = settled_sheets(MonitorSettings { block: 50_000, ..MonitorSettings::FRAMES });
     let contacts = &film.view().state.contact.contacts;
     let pressed = contacts.iter().filter(|contact| contact.energy > 0.0).count();
     assert!(pressed > 10, "{pressed} pairs in contact");

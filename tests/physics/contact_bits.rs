@@ -17,7 +17,7 @@ fn capsule_in_contact(instruction_set: InstructionSet) -> FilmSimulation {
     scene.design.subdivisions = 3;
     scene.film.compression = 1.0;
     let mut film = stowed(instruction_set, &scene, 0.45);
-    let monitor = MonitorSettings { dense_block_period: 2, seed: 1, ..MonitorSettings::FRAMES };
+    let monitor = MonitorSettings { block: 50, dense_block_period: 2, seed: 1 };
     film.contact = Some(FilmContact { friction: 0.2, monitor, ..FilmContact::default() });
     capsule::start(&film, &[]).unwrap()
 }

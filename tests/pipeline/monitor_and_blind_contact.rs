@@ -28,7 +28,7 @@ const DISTANCE: f64 = 1e-3;
 /// The monitor tests every step with the list of near pairs that it keeps from step to step; no block is
 /// tested step by step from its positions alone.
 const MONITOR: MonitorSettings =
-    MonitorSettings { dense_block_period: u64::MAX, seed: 1, ..MonitorSettings::EVERY_STEP };
+    MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
 
 /// Faults of contact. The number of the motion cluster is chosen: without it, film passes in most scenes. The path
 /// length after which queues stop, m, is a part of that of a run.

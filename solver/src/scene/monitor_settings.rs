@@ -8,8 +8,6 @@
 pub struct MonitorSettings {
     /// Steps in a block, at least 1.
     pub block: u32,
-    /// Steps in a block of film that hardly moves, at least [`Self::block`].
-    pub quiet_block: u32,
     /// One block in this number is dense; 1 for all blocks.
     pub dense_block_period: u64,
     /// Seed of the choice of dense blocks.
@@ -18,9 +16,9 @@ pub struct MonitorSettings {
 
 impl MonitorSettings {
     /// Every step, for small scenes.
-    pub const EVERY_STEP: Self = Self { block: 1, quiet_block: 1, dense_block_period: 1, seed: 0 };
-    /// Blocks of 50 steps, of 128 where film hardly moves; one block in a hundred is dense.
-    pub const FRAMES: Self = Self { block: 50, quiet_block: 128, dense_block_period: 100, seed: 0 };
+    pub const EVERY_STEP: Self = Self { block: 1, dense_block_period: 1, seed: 0 };
+    /// Blocks of 128 steps, one in a hundred of them dense.
+    pub const FRAMES: Self = Self { block: 128, dense_block_period: 100, seed: 0 };
 
     /// Whether the block that starts after `steps` steps is dense. The choice is the hash `SplitMix64`
     /// (G. L. Steele et al., "Fast splittable pseudorandom number generators", 2014) of seed and number.

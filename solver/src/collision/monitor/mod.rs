@@ -9,7 +9,7 @@
 //! A block is a number of steps between two frames. On the straight motion from one frame to the next
 //! only pairs that may pass are tested; a pair that passes on it is then tested in each step. In film
 //! that hardly moves these pairs come from a near list, found once around a reference frame
-//! (`near_list`), and blocks are longer; else from a search of the two frames ([`search`]). Some blocks, or all where every
+//! (`near_list`); else from a search of the two frames ([`search`]). Some blocks, or all where every
 //! step is asked for, are tested step by step from their positions alone, without the near list. So an
 //! error in that list is found.
 //!
@@ -52,8 +52,6 @@ pub struct TunnellingMonitor {
     frames: Vec<Field>,
     /// Number of frames recorded in the block.
     recorded: usize,
-    /// Number of steps in the block.
-    length: usize,
     tracker: PairTracker,
     // Scratch memory: pairs that may pass in a dense block, and those that no plane separates.
     pairs: Pairs,
@@ -88,7 +86,6 @@ impl TunnellingMonitor {
             block_start: steps,
             frames,
             recorded: 1,
-            length: settings.block as usize,
             tracker,
             pairs: Pairs::default(),
             close,
@@ -113,7 +110,7 @@ impl TunnellingMonitor {
     pub fn record_step(&mut self, topology: &Topology, positions: &Field) {
         self.frames[self.recorded].copy_from(positions);
         self.recorded += 1;
-        if self.recorded > self.length {
+        if self.recorded == self.frames.len() {
             self.test_block(topology);
         }
     }
@@ -144,18 +141,6 @@ impl TunnellingMonitor {
         self.block_start += steps as u64;
         self.frames.swap(0, steps);
         self.recorded = 1;
-        self.choose_length();
-    }
-
-    /// Number of steps in the next block.
-    fn choose_length(&mut self) {
-        let Self { settings, frames, length, tracker, .. } = self;
-        let steps = if tracker.is_quiet() { settings.quiet_block } else { settings.block };
-        *length = steps as usize;
-        if frames.len() <= *length {
-            let frame = frames[0].clone();
-            frames.resize(*length + 1, frame);
-        }
     }
 
     /// Passages in a block: tests the straight motion from its first to its last frame, and each step
@@ -237,7 +222,7 @@ mod tests {
             };
             let each: Vec<(usize, Passage)> = frames.windows(2).enumerate().flat_map(each).collect();
             let block = u32::try_from(frames.len()).unwrap();
-            let settings = MonitorSettings { block, quiet_block: block, ..MonitorSettings::EVERY_STEP };
+            let settings = MonitorSettings { block, ..MonitorSettings::EVERY_STEP };
             let mut monitor =
                 TunnellingMonitor::new(settings, &topology, &frames[0], 0, InstructionSet::detect());
             for frame in &frames[1..] {
@@ -296,7 +281,7 @@ mod tests {
             let topology = Topology::new(18, &triangles);
             let mut x: Vec<Vector3<f64>> = positions.into_iter().map(Vector3::from).collect();
             // No block is tested step by step.
-            let settings = MonitorSettings { dense_block_period: u64::MAX, seed: 1, ..MonitorSettings::EVERY_STEP };
+            let settings = MonitorSettings { block: 1, dense_block_period: u64::MAX, seed: 1 };
             let start = Field::of(&x);
             let mut monitor =
                 TunnellingMonitor::new(settings, &topology, &start, 0, InstructionSet::detect());

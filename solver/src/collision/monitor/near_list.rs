@@ -88,11 +88,6 @@ impl NearList {
         }
     }
 
-    /// Whether the film hardly moves: the list has served so many blocks that it pays.
-    pub fn pays(&self) -> bool {
-        self.reach > 0.0 && self.served > MIN_SERVED
-    }
-
     /// Whether the list has every pair that can meet on the last motion, which is that between two frames; makes a
     /// new list if need be. `false` if the film moves too far for a list. `paths`: of the positions, this motion
     /// included.

@@ -59,11 +59,6 @@ impl PairTracker {
         }
     }
 
-    /// Whether the film hardly moves: its near list has served many frames.
-    pub fn is_quiet(&self) -> bool {
-        self.near.pays()
-    }
-
     /// Takes account of the motion from one frame to the next. Call it for every motion.
     pub fn advance(&mut self, topology: &Topology, from: &Field, to: &Field) {
         self.paths.add(self.search.instruction_set, &topology.triangles, from, to);

@@ -5,7 +5,7 @@
 //! after    static equilibria + history file
 //! job      the larger of the two, and of the mesh that gives the default contact distance
 //!
-//! contact  5 MB + (5.0 + 2.2 log2(1 + M/4) + 0.13 (N - 6)) kB e
+//! contact  5 MB + (5.7 + 2.2 log2(1 + M/4) + 0.13 (N - 6)) kB e
 //! statics  (2.8 + 0.19 log2(e/48)) kB e
 //! ```
 //!
@@ -22,9 +22,9 @@ const MESH: f64 = 800.0;
 const CHECKPOINT: [f64; 2] = [300.0, 900.0];
 /// Queues of contact, whatever the mesh, bytes.
 const CONTACT_QUEUES: f64 = 5e6;
-/// Contact of a film that is not folded, bytes per element; 1200 of them are the frames that the monitor keeps of film
-/// that hardly moves.
-const CONTACT: f64 = 5000.0;
+/// Contact of a film that is not folded, bytes per element; 1600 of them are the frames of a block of the
+/// monitor.
+const CONTACT: f64 = 5700.0;
 /// Contact for each doubling of the number of layers, bytes per element.
 const CONTACT_LAYERS: f64 = 2200.0;
 /// The mesh of 4 subdivisions that gives the default contact distance, bytes per element of it.
