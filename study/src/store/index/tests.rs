@@ -87,6 +87,8 @@ fn an_index_of_other_files_or_of_another_program_is_not_used() {
         }),
         ("a table that was written again", |results| {
             let bytes = Disk.read(&results.table_path()).unwrap();
+            // Times of files have a resolution of some milliseconds.
+            std::thread::sleep(std::time::Duration::from_millis(50));
             write_atomic(&Disk, &results.table_path(), &bytes).unwrap();
         }),
         ("another study", |results| {
