@@ -258,16 +258,19 @@ pub fn facets<'a>(parameters: Vec<Parameter<'a>>, rows: &[usize]) -> Facets<'a> 
     Facets { panels, parameters }
 }
 
-/// What to do about a chart in which too many values of these parameters need lines or panels of their own.
+/// What to do about a chart in which too many values of these parameters need a line or a panel each.
 pub fn fix<'a>(parameters: impl Iterator<Item = &'a Parameter<'a>>) -> String {
     let names: Vec<&str> = parameters.map(Parameter::name).collect();
-    let repeats = if names.contains(&SEED) {
-        "; runs that differ in seed alone become a median with a range where the study has seed under \
-         replicates, not under grid (no job runs again), and without --runs"
-    } else {
-        ""
-    };
-    format!("fix some of {} with --where CONDITION{repeats}", names.join(", "))
+    format!("fix some of {} with --where CONDITION{}", names.join(", "), fix_seeds(&names))
+}
+
+/// The same about seeds, where `names` has them: after a semicolon. Empty without seeds.
+pub fn fix_seeds(names: &[&str]) -> &'static str {
+    if !names.contains(&SEED) {
+        return "";
+    }
+    "; to have runs that differ in seed alone as a median with a range, write seed under replicates instead of grid, \
+     then `billow run`, which computes no job again (and leave out --runs)"
 }
 
 /// Names of parameters, as a heading.

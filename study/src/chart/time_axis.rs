@@ -24,6 +24,9 @@ const MARGIN: f64 = 0.2;
 /// The whole run is shown if the axis would be at least this fraction of it.
 const WHOLE: f64 = 0.85;
 
+/// Columns of a history that the time axis reads.
+pub const TIME_AXIS_COLUMNS: [&str; 3] = ["time", "z_rim", "z_max"];
+
 /// The time axis: its ends, s, and the unit in which it is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeAxis {

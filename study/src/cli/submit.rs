@@ -109,12 +109,9 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
         (scripts.array(), scripts.merge())
     };
     if args.dry_run || missing.is_empty() {
-        if !missing.is_empty() {
-            let (array, merge) = scripts("0001");
-            write!(out, "# array.sh\n{array}\n# merge.sh\n{merge}").map_err(output_error)?;
-        }
-        eprintln!("{}", tasks.summary(&study.name));
-        return Ok(());
+        let (array, merge) = scripts("0001");
+        let texts = (!missing.is_empty()).then_some([array.as_str(), merge.as_str()]);
+        return print_scripts(&tasks, &study.name, texts, args.output.format(), out);
     }
     let submission = merge::prepare(&results, (&study.name, &study.resolved()), &|results| {
         Submission::create(results, &tasks.chunks)
@@ -233,7 +230,7 @@ fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64> {
     read.ok_or_else(|| {
         let example = if dimension == Dimension::Time { "\"2 h\"" } else { "\"4 GB\"" };
         let allowed =
-            format!("a {} above zero with its unit, as in {option} {example}", dimension.name());
+            format!("{} above zero with its unit, as in {option} {example}", dimension.name());
         Error::invalid_option(option, text, "is no such quantity", allowed, "")
     })
 }
@@ -250,6 +247,38 @@ impl Tasks {
             duration(libm::ceil(self.seconds))
         )
     }
+}
+
+/// Prints what a submission would write; `None` where nothing is to be submitted.
+fn print_scripts(
+    tasks: &Tasks,
+    study: &str,
+    scripts: Option<[&str; 2]>,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<()> {
+    if format == Format::Json {
+        let [array, merge] = scripts.map_or([None; 2], |scripts| scripts.map(Some));
+        let json = serde_json::json!({
+            "study": study,
+            "jobs": tasks.jobs,
+            "tasks": tasks.chunks.len(),
+            "estimated_seconds": tasks.seconds,
+            "array_script": array,
+            "merge_script": merge,
+        });
+        return writeln!(out, "{json}").map_err(output_error);
+    }
+    if let Some([array, merge]) = scripts {
+        write!(
+            out,
+            "# array.sh\n{array}\n# merge.sh\n{merge}\n# billow submit gives them to Slurm, after it has written the jobs of each \
+             task (chunks.json):\n#   sbatch --parsable array.sh\n#   sbatch --parsable --dependency=afterany:NUMBER merge.sh\n"
+        )
+        .map_err(output_error)?;
+    }
+    eprintln!("{}", tasks.summary(study));
+    Ok(())
 }
 
 fn print(

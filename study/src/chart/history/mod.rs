@@ -9,7 +9,7 @@ use billow_solver::output::measures::Verdict;
 use super::encoding::{Encoding, PREFERRED_LINES};
 use super::names;
 use super::parameters;
-use super::time_axis::TimeAxis;
+use super::time_axis::{TIME_AXIS_COLUMNS, TimeAxis};
 use super::{Source, invalid_option, outcome};
 use crate::input::value::Value;
 use crate::job::{JobId, Status};
@@ -34,8 +34,6 @@ const MAX_RINGING_LINES: usize = 3;
 /// Most runs behind the lines of a figure. Chosen: what is drawn of their histories is in memory together, some 200 kB of a
 /// run with 6000 samples.
 const MAX_RUNS: usize = 2000;
-/// Columns that the time axis reads.
-const AXIS: [&str; 3] = ["time", "z_rim", "z_max"];
 
 /// A job of the figure.
 struct Run {
@@ -148,13 +146,16 @@ fn runs<'a>(
     for row in single.rows.iter().filter(|row| has_history(&single, **row)) {
         first.entry(single.job(*row)).or_insert(*row);
     }
+    let (varying, _) = parameters::varying(source.table, rows, &[]);
+    let varying: Vec<&str> = varying.iter().map(parameters::Parameter::name).collect();
+    let seeds = if source.runs.is_some() { "" } else { parameters::fix_seeds(&varying) };
     let too_many = |number: usize, noun: &str, limit: usize| {
         Err(invalid_option(
             "--history",
             &columns.join(","),
             format!("{number} {noun} in one figure"),
             format!("{limit} {noun} at most"),
-            "choose some with --jobs ID,ID or --where CONDITION",
+            format!("choose some with --jobs ID,ID or --where CONDITION{seeds}"),
         ))
     };
     if source.runs.is_some() && rows.len() > MAX_JOBS {
@@ -166,7 +167,7 @@ fn runs<'a>(
     }
     let mut runs = BTreeMap::new();
     let names = columns.iter().map(|name| name.trim());
-    let names: Vec<&str> = names.chain(AXIS).collect();
+    let names: Vec<&str> = names.chain(TIME_AXIS_COLUMNS).collect();
     for (job, row) in first {
         if let Some(id) = JobId::from_digits(job) {
             let mut history = read(&id)?;
