@@ -4,9 +4,9 @@
 use billow_solver::scene::ModelKind;
 
 use crate::accuracy::{MeshErrors, Method, Tolerances, all_but_peak_vz, choice};
-use crate::input::keys::numerical::MESH_PARAMETER;
+use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
 use crate::input::keys::{MODELS, Model};
-use crate::input::value::brief_number;
+use crate::input::value::{Value, brief_number};
 use crate::study::ground::pressure_below_ambient;
 use crate::study::{Study, StudyPoint};
 
@@ -140,6 +140,16 @@ fn below_ambient(study: &Study) -> Option<String> {
             brief_number(smallest)
         )
     })
+}
+
+/// Whether the seed of a study changes its results: `false` for a study of one model that ignores it.
+pub fn seed_matters(study: Option<&Study>) -> bool {
+    let model = study.and_then(|study| {
+        let key = study.key("solver.model")?;
+        let varies = study.parameter_names().contains(&key.name);
+        MODELS.iter().find(|model| !varies && key.value == Value::Text(model.name.to_owned()))
+    });
+    model.is_none_or(|model| !model.ignores.contains(&SEED))
 }
 
 fn ignored(study: &Study, model: &Model) -> Option<String> {

@@ -1,5 +1,6 @@
 //! What a reader of a comparison must know, on stderr.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::Comparison;
@@ -8,6 +9,7 @@ use crate::analysis::replicates::is_mesh;
 use crate::cli::print::count;
 use crate::cli::{best, legend, remedies};
 use crate::input::value::Value;
+use crate::job::Status;
 use crate::job::row::BetterSide;
 
 /// What a cell of a point holds.
@@ -61,6 +63,9 @@ impl Comparison<'_> {
         if let Some(note) = remedies::note(self.table) {
             eprintln!("{note}");
         }
+        if let (None, Some(note)) = (self.points, self.not_trusted()) {
+            eprintln!("{note}");
+        }
         let jobs = pairs_of_jobs(self.table, &self.pairs).len();
         if jobs < self.pairs.len() {
             eprintln!(
@@ -76,6 +81,22 @@ impl Comparison<'_> {
                 self.labels(alone)
             );
         }
+    }
+
+    /// A note with the number of paired rows of done jobs that cannot be trusted; `None` without any.
+    fn not_trusted(&self) -> Option<String> {
+        let marked = |row: &usize| {
+            self.table.status(*row) == Some(Status::Done) && self.table.audit_mark(*row).is_some()
+        };
+        let rows = self.pairs.iter().flat_map(|pair| [pair.base, pair.other]);
+        let rows: BTreeSet<usize> = rows.filter(marked).collect();
+        (!rows.is_empty()).then(|| {
+            format!(
+                "note: {} with a passage, an intersection or numerically_damped: a ratio with one of them is not to be \
+                 trusted; --where numerically_damped == false leaves those out",
+                count(rows.len(), "paired row")
+            )
+        })
     }
 
     /// Parameters of some rows, of the first three at most.

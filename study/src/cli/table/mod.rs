@@ -7,7 +7,8 @@ use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::print::{Heading, print_quantities};
 use super::target::{self, StudyArgs, Target};
-use super::{Format, best, changes, legend, output_error};
+use super::{Format, best, changes, legend, notes, output_error};
+use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
 use crate::platform::error::Result;
@@ -30,9 +31,6 @@ const MAX_WIDE_LINE_WIDTH: usize = 160;
 
 /// What a cell of a point holds.
 const OF_POINTS: &str = "median [least to largest], smallest margin, k of n (95 % interval)";
-
-/// The replicate that shows how much a noisy measure varies.
-const SEED: &str = "seed";
 
 /// Arguments of `billow table`.
 #[derive(Debug, clap::Args)]
@@ -128,7 +126,7 @@ fn print(
     let format = args.output.format();
     let meshes = study.map(Study::meshes).unwrap_or_default();
     let mut listing = if replicates.is_empty() {
-        runs(args, table, &rows, all_columns)?
+        runs(args, table, &rows, all_columns, notes::seed_matters(study))?
     } else {
         points(args, table, &rows, &replicates, &meshes)?
     };
@@ -164,7 +162,13 @@ fn print(
 }
 
 /// One row per run.
-fn runs(args: &Args, table: &Table, rows: &[usize], all_columns: usize) -> Result<Listing> {
+fn runs(
+    args: &Args,
+    table: &Table,
+    rows: &[usize],
+    all_columns: usize,
+    seed_matters: bool,
+) -> Result<Listing> {
     let format = args.output.format();
     let rows = sorted(table, rows.to_vec(), &args.sort)?;
     let columns = chosen(table, &args.columns, &args.sort, format)?;
@@ -182,7 +186,8 @@ fn runs(args: &Args, table: &Table, rows: &[usize], all_columns: usize) -> Resul
     Ok(Listing {
         headings: columns.iter().map(|column| heading(column)).collect(),
         cells: rows.iter().map(row).collect(),
-        noisy: noisy_note(columns.iter().map(|column| column.name.as_str())),
+        noisy: noisy_note(columns.iter().map(|column| column.name.as_str()))
+            .filter(|_| seed_matters),
         notes,
         all_columns,
     })
