@@ -26,7 +26,8 @@ done
 
 . "$here/cluster.sh"
 work=$(mktemp -d)
-trap 'stop_cluster || true; rm -rf "$work"' EXIT
+# Programs of tasks outlive a cluster that is stopped by force.
+trap 'stop_cluster || true; pkill -9 -f -- "$work/shared --shared" || true; rm -rf "$work"' EXIT
 if [[ $billow == *.tar.gz ]]; then
   tar -xzf "$billow" -C "$work"
   billow=$(realpath "$work"/billow-*/billow)
@@ -49,8 +50,21 @@ for row in json.load(sys.stdin):
 queue_is_empty() { [ -z "$(squeue --noheader)" ]; }
 tasks_run() { [ "$(squeue --noheader --states=running | wc -l)" -ge 2 ]; }
 pending() { "$billow" status "$shared" --json | python3 -c 'import json, sys; print(json.load(sys.stdin)["pending"])'; }
-# The process of a task of the first submission.
-task() { pgrep -f -- "--chunk 0001/$1 " | head -1; }
+# The number of the first task of the first submission that has a process, other than one that was killed.
+killed=0
+running_task() {
+  pgrep -af -- "$work/shared --shared --chunk 0001/" | grep -o '0001/[0-9]*' | cut -d / -f 2 | sort -n | grep -vx "$killed" | head -1
+}
+# Kills the process of a task; a task may end before it is killed.
+kill_task() {
+  killed=$(running_task)
+  [ -n "$killed" ] && pkill -9 -f -- "--chunk 0001/$killed "
+}
+# Asks a task to stop. scancel gives the signal, and then ends with an error of its array.
+ask_task_to_stop() {
+  asked=$(running_task)
+  [ -n "$asked" ] && { scancel --batch --signal=USR1 "${array}_$asked" || true; }
+}
 
 "$billow" run "$study" --results "$direct" --quiet > "$work/direct.txt"
 say "the study has run on this machine: $("$billow" table "$direct" --runs --format json -q | python3 -c 'import json, sys; print(len(json.load(sys.stdin)))') jobs"
@@ -71,13 +85,12 @@ fi
 grep -q "still in the queue" "$work/refused.txt"
 
 wait_for "running tasks" 60 tasks_run
-sleep 2
 "$billow" status "$shared" | grep -E "^  (shared|slurm)"
-kill -9 "$(task 1)"
-say "task 1 was killed"
+wait_for "task to kill" 60 kill_task
+say "task $killed was killed"
 array=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["array"])' "$shared/submissions/0001/queue.json")
-scancel --batch --signal=USR1 "${array}_2" || true
-say "task 2 was asked to stop"
+wait_for "task to ask" 60 ask_task_to_stop
+say "task $asked was asked to stop"
 wait_for "running tasks" 60 tasks_run
 sleep 1
 # A node goes down with everything that runs on it.
@@ -101,6 +114,7 @@ for submission in 1 2 3 4 5; do
   "$billow" submit "$study" --results "$shared" --tasks 6
 done
 [ "$(pending)" -eq 0 ]
+grep -q "stopped by signal" "$shared/submissions/0001/task-$asked.txt"
 "$billow" doctor "$shared"
 table "$direct" > "$work/direct.json"
 table "$shared" > "$work/shared.json"
