@@ -47,9 +47,9 @@ pub struct Answer {
     pub counts: Counts,
     /// The trusted, deployed job with the smallest `t_90_z_rim_since_release`.
     pub fastest: Option<Extreme>,
-    /// The done job with the largest `peak_vz`.
+    /// The job with the largest `peak_vz`: a trusted one, or a done one where none can be trusted.
     pub hardest: Option<Extreme>,
-    /// The done job with the largest `peak_kinetic_energy`.
+    /// The job with the largest `peak_kinetic_energy`, chosen so too.
     pub most_energy: Option<Extreme>,
     /// The audit of the done jobs.
     pub trust: Option<Trust>,
@@ -93,6 +93,8 @@ pub struct Extreme {
     pub within_error: usize,
     /// Whether the value is extrapolated from several meshes.
     pub extrapolated: bool,
+    /// Whether the job can be trusted.
+    pub trusted: bool,
 }
 
 impl Answer {
@@ -139,7 +141,12 @@ impl Answer {
         };
         let best: Vec<usize> = rows.iter().copied().filter(can_be_best).collect();
         let least = |measure| extreme(table, &best, replicates, measure, |a, b| a < b);
-        let most = |measure| extreme(table, &rows, replicates, measure, |a, b| a > b);
+        let trusted: Vec<usize> =
+            rows.iter().copied().filter(|row| table.is_trusted(*row)).collect();
+        let most = |measure| {
+            let most = |rows: &[usize]| extreme(table, rows, replicates, measure, |a, b| a > b);
+            most(&trusted).or_else(|| most(&rows))
+        };
         answer.fastest = least(HEADLINE[0]);
         answer.hardest = most(ColumnId::PeakVz);
         answer.most_energy = most(ColumnId::PeakKineticEnergy);
@@ -191,6 +198,7 @@ fn extreme(
         others,
         within_error: equal.len(),
         extrapolated: column.name != raw.name,
+        trusted: table.is_trusted(row),
     })
 }
 

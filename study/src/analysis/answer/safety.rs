@@ -170,6 +170,7 @@ fn margin(table: &Table, points: &Points, point: usize) -> Option<PointMargin> {
         others: 0,
         within_error: 0,
         extrapolated: false,
+        trusted: table.is_trusted(row),
     };
     Some(PointMargin { point, measure })
 }

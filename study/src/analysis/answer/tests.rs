@@ -83,6 +83,23 @@ fn only_done_jobs_enter_extremes_and_audit() {
     let trust = answer.trust.unwrap();
     assert_eq!((trust.jobs, trust.ledger_residual, trust.passages), (6, 3e-9, None));
     assert_eq!(trust.numerically_damped, 1, "failed jobs do not count");
+    assert_eq!(trust.not_trusted, 1);
+}
+
+#[test]
+fn the_hardest_job_can_be_trusted_where_any_can() {
+    let mut table = table();
+    let energy = table.columns.iter().position(|column| column.name == "peak_kinetic_energy");
+    table.columns[energy.unwrap()].cells[1] = Value::Number(400.0);
+    let most = Answer::of_jobs(&table, &[]).most_energy.unwrap();
+    assert_eq!((most.job.as_str(), most.trusted), ("d", true), "job b is damped");
+
+    let damped = table.columns.iter_mut().find(|column| column.name == "numerically_damped");
+    damped.unwrap().cells.fill(Value::Bool(true));
+    let answer = Answer::of_jobs(&table, &[]);
+    let most = answer.most_energy.unwrap();
+    assert_eq!((most.job.as_str(), most.trusted), ("b", false), "no job can be trusted");
+    assert_eq!(answer.trust.unwrap().not_trusted, 6);
 }
 
 fn effects(table: &Table) -> Effects {

@@ -27,6 +27,8 @@ pub struct Trust {
     pub counted: usize,
     /// Number of jobs marked `numerically_damped`.
     pub numerically_damped: usize,
+    /// Number of jobs that cannot be trusted: damped so, or with a passage or an intersection.
+    pub not_trusted: usize,
 }
 
 /// The audit of the done jobs in some rows; `None` without any.
@@ -62,5 +64,6 @@ pub(super) fn trust(table: &Table, rows: &[usize]) -> Option<Trust> {
                 table.value(ColumnId::NumericallyDamped, **row) == Some(&Value::Bool(true))
             })
             .count(),
+        not_trusted: done.iter().filter(|row| !table.is_trusted(**row)).count(),
     })
 }

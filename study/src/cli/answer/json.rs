@@ -67,6 +67,7 @@ fn extreme_json(
     keys.insert("others".to_owned(), extreme.others.into());
     keys.insert("within_mesh_error".to_owned(), extreme.within_error.into());
     keys.insert("extrapolated".to_owned(), extreme.extrapolated.into());
+    keys.insert("trusted".to_owned(), extreme.trusted.into());
     Some(keys)
 }
 
@@ -79,6 +80,7 @@ fn trust_json(trust: &Trust, largest_strain: f64) -> serde_json::Value {
         "intersections": trust.intersections,
         "counted": trust.counted,
         "numerically_damped": trust.numerically_damped,
+        "not_trusted": trust.not_trusted,
         "film_stress_over_modulus": largest_strain,
     })
 }

@@ -213,6 +213,9 @@ fn value_text(measure: ColumnId, extreme: &Extreme) -> String {
     if extreme.extrapolated {
         notes.push("extrapolated".to_owned());
     }
+    if !extreme.trusted {
+        notes.push("not trusted".to_owned());
+    }
     if extreme.within_error > 0 {
         let points = count(extreme.within_error, "other point");
         notes.push(format!("{points} within the mesh error"));
@@ -254,9 +257,16 @@ fn audit(trust: &Trust) -> String {
         0 => String::new(),
         jobs => format!("; {} numerically_damped", count(jobs, "job")),
     };
+    let not_trusted = match trust.not_trusted {
+        0 => String::new(),
+        jobs if jobs == trust.jobs => "; no job can be trusted".to_owned(),
+        jobs => {
+            format!("; {} cannot be trusted and is no fastest or hardest one", count(jobs, "job"))
+        }
+    };
     format!(
         "{} done; ledger residual at most {} (energy_drift above {MAX_LEDGER_RESIDUAL}); \
-         {film}{damped}",
+         {film}{damped}{not_trusted}",
         count(trust.jobs, "job"),
         brief_number(trust.ledger_residual)
     )

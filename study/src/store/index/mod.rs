@@ -2,7 +2,7 @@
 //! its journals. It is derived from study.json, the journals and the table, and can be deleted at any time.
 //!
 //! ```text
-//! index.json   {"checksum":"…","format":"billow-index","version":1,
+//! index.json   {"checksum":"…","format":"billow-index","version":2,
 //!               "key":{study, program, physics, journals and table with size and time},
 //!               "counts":…,"entries":[[job, numbers of its points, [journal, offset, length], [size, time]], …]}
 //! ```
@@ -33,7 +33,7 @@ pub use key::Key;
 /// Name of the format.
 const FORMAT: &str = "billow-index";
 /// Version of the format; an index of another one is ignored.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// What is known of a study without reading it whole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
