@@ -345,8 +345,11 @@ fn a_filter_keeps_single_points_and_every_point_is_counted() {
     std::fs::write(folder.path().join("study.json"), json.to_string()).unwrap();
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_billow"));
     command.args(["plan", "study.json", "--summary", "--json"]).current_dir(folder.path());
-    let printed: Json = serde_json::from_slice(&command.output().unwrap().stdout).unwrap();
+    let output = command.output().unwrap();
+    let printed: Json = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&printed["points"], &printed["filtered"]), (&json!(3), &json!(3)));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains(": 3 points: ") && said.contains("1 duplicate, "), "{said}");
 }
 
 #[test]

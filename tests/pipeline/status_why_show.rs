@@ -118,6 +118,41 @@ fn why_explains_a_verdict_with_its_numbers() {
 }
 
 #[test]
+fn why_and_show_judge_a_job_by_the_limits_as_the_table_does() {
+    let mut study = grid(&json!({"N": [6], "M": [3], "alpha1_over_phi": [1],
+        "mass_flow_rate": ["1 g/s", "2 g/s"]}));
+    study["limits"] = json!({"peak_vz": "< 24 m/s", "verdict": "deployed"});
+    let folder = TestFolder::new(&study);
+    folder.stdout(&["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
+    let safe: Vec<bool> = rows.iter().map(|row| row["safe"].as_bool().unwrap()).collect();
+    assert_eq!(safe, [true, false], "{rows:?}");
+    for row in &rows {
+        let id = row["job"].as_str().unwrap();
+        let why = json_of(&folder, &["why", id]);
+        let limit = &why["limits"][0];
+        assert_eq!(
+            (&limit["measure"], &limit["condition"]),
+            (&json!("peak_vz"), &json!("< 24 m/s"))
+        );
+        assert_eq!(
+            (&why["safe"], &limit["met"], &limit["value"], &limit["margin"]),
+            (&row["safe"], &row["safe"], &row["peak_vz"], &row["margin_peak_vz"])
+        );
+        let said = folder.stdout(&["why", id]);
+        let flow = if row["safe"] == true { "1 g/s): done" } else { "2 g/s): done" };
+        let met = if row["safe"] == true { ": met, margin 0." } else { ": not met, margin -0." };
+        assert!(said.contains("m/s, asked < 24 m/s") && said.contains(met), "{said}");
+        assert!(said.contains(flow), "parameters have the units of the study: {said}");
+        let shown = json_of(&folder, &["show", id]);
+        for name in ["safe", "smallest_margin", "smallest_margin_of", "margin_peak_vz"] {
+            let shown = shown.as_array().unwrap().iter().find(|shown| shown["name"] == name);
+            assert_eq!(shown.unwrap()["value"], row[name], "{name}");
+        }
+    }
+}
+
+#[test]
 fn why_reports_failures_and_infeasible_points_with_time_place_and_nearest() {
     let folder = failed();
     let failed = ids(&folder, "step_limit").remove(0);

@@ -6,7 +6,7 @@ use std::num::NonZero;
 use billow_solver::scene::Scene;
 
 use super::print::count;
-use crate::job::{self, memory};
+use crate::job::memory;
 use crate::platform::error::{Error, Result};
 use crate::platform::memory::{Limit, limits, size, smallest};
 use crate::study::{Study, StudyPoint};
@@ -67,7 +67,7 @@ impl Memory {
             feasible(study).filter(|point| !self.fits(&point.scene)).collect();
         let needs = large.iter().map(|point| memory::estimate(&point.scene).total).max()?;
         let mut names: Vec<String> =
-            large.iter().take(MAX_NAMES).map(|point| job::label(&point.parameters)).collect();
+            large.iter().take(MAX_NAMES).map(|point| study.label(&point.parameters)).collect();
         if large.len() > MAX_NAMES {
             names.push(format!("{} more", large.len() - MAX_NAMES));
         }

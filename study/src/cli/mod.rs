@@ -30,6 +30,7 @@ mod frames;
 mod instruction_set;
 mod keys;
 mod legend;
+mod limits;
 mod memory;
 mod merge;
 mod needed_columns;

@@ -1,7 +1,7 @@
 //! Warnings about the values of a study, and notes on its results, on stderr: limits of the models, and
 //! keys that a model ignores.
 
-use billow_solver::scene::ModelKind;
+use billow_solver::scene::{IntegratorKind, ModelKind};
 
 use crate::accuracy::{MeshErrors, Method, Tolerances, all_but_peak_vz, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
@@ -62,6 +62,7 @@ pub fn of_points(study: &Study) -> Vec<String> {
         ));
     }
     lines.extend(below_ambient(study));
+    lines.extend(refused_by_integrators(study));
     lines.extend(
         MODELS.iter().filter(|model| has(model.kind)).filter_map(|model| ignored(study, model)),
     );
@@ -138,6 +139,26 @@ fn below_ambient(study: &Study) -> Option<String> {
              the capsule together; residual_gas ambient fills the folds at ambient pressure",
             study.points().len(),
             brief_number(smallest)
+        )
+    })
+}
+
+/// A note on points whose integrator lacks a force of contact that the point has: each ends as invalid.
+fn refused_by_integrators(study: &Study) -> Option<String> {
+    let refused = |point: &&StudyPoint| {
+        let (solver, contact) = (&point.scene.solver, &point.scene.contact);
+        let without_friction = solver.integrator != IntegratorKind::Explicit;
+        let without_adhesion = solver.integrator == IntegratorKind::Xpbd;
+        solver.model == ModelKind::Film
+            && (without_friction && contact.friction > 0.0
+                || without_adhesion && contact.adhesion > 0.0)
+    };
+    let count = study.points().iter().filter(refused).count();
+    (count > 0).then(|| {
+        format!(
+            "note: {count} of {} points will end as invalid: of the integrators only explicit has friction, and xpbd \
+             has no adhesion\n  next: solver.integrator explicit, or contact.friction 0",
+            study.points().len()
         )
     })
 }

@@ -10,8 +10,11 @@ use crate::platform::error::Result;
 use crate::study::Study;
 
 /// A number of points with several runs each: "30 points of 5 runs", or "57 points, 256 runs" where a filter leaves some
-/// points fewer. `planned` counts every run.
+/// points fewer. `planned` counts every run. A study without replicates has points only, also one that gives a value twice.
 pub fn points_of_runs(study: &Study, planned: usize) -> String {
+    if study.replicates().is_empty() {
+        return count(planned, "point");
+    }
     let runs = study.replicate_count();
     let points = if planned == study.run_count() {
         study.point_count()

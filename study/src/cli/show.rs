@@ -5,6 +5,7 @@ use std::io::Write;
 use billow_solver::output::events::Event;
 use billow_solver::output::history::COLUMNS;
 
+use super::limits;
 use super::options::{OutputOptions, QuietOption, UnitsOption};
 use super::print::{Heading, print_quantities, print_rows};
 use super::remedies;
@@ -156,6 +157,9 @@ fn rows(stored: &Stored<'_>, id: &JobId) -> Vec<Vec<Value>> {
             vec![text(group.name()), text(column.name), value.clone(), unit, meaning]
         }));
     }
+    let outcomes = rows.iter().rposition(|row| row[0] == text(ColumnGroup::Outcome.name()));
+    let after = outcomes.map_or(rows.len(), |last| last + 1);
+    rows.splice(after..after, limits::rows(stored, &cells));
     let about = remedies::lines(stored, id, &cells).into_iter();
     rows.extend(about.map(|(topic, about)| vec![text("remedies"), text(topic), text(&about)]));
     rows.extend(mesh_errors(stored, id));

@@ -60,6 +60,15 @@ impl ResultLimit {
         format!("margin_{}", self.measure.name())
     }
 
+    /// Meaning of that column.
+    pub fn margin_meaning(&self) -> String {
+        format!(
+            "distance of {} from its limit ({}) over the limit; negative beyond it",
+            self.measure.name(),
+            self.text
+        )
+    }
+
     /// Whether the limit is met, and by which margin. `value` gives the cell of a column. `None` unless
     /// the job is done and has the measure. A time without a value was never reached: it is not met
     /// below a bound.

@@ -8,6 +8,7 @@ use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
+use crate::job::point::{self, Parameters};
 
 /// A key of a study.
 #[derive(Debug, Clone)]
@@ -88,6 +89,11 @@ impl Study {
     /// under `units`.
     pub fn display_units(&self) -> &DisplayUnits {
         &self.units
+    }
+
+    /// Parameters as text, in the units in which they are shown.
+    pub fn label(&self, parameters: &Parameters) -> String {
+        point::label_in(parameters, &|name| self.units.of(name, self.unit(name)))
     }
 
     /// Whether a name may be that of a key, as `film.thickness`, `thickness` or one of a strategy.

@@ -175,11 +175,7 @@ fn row(point: &Point, short: bool, unit: &dyn Fn(&str) -> DisplayUnit) -> Vec<Va
             });
         }
     }
-    row.push(if point.merged.is_empty() {
-        Value::Null
-    } else {
-        Value::Text(note(&point.merged, unit))
-    });
+    row.push(if point.merged.is_empty() { Value::Null } else { Value::Text(note(point, unit)) });
     row
 }
 
@@ -191,17 +187,21 @@ fn solved(point: &Point) -> [Value; SOLVED.len()] {
 }
 
 /// The points that are the same job as this one: the first three, and the number of the others.
-fn note(merged: &[Parameters], unit: &dyn Fn(&str) -> DisplayUnit) -> String {
+fn note(point: &Point, unit: &dyn Fn(&str) -> DisplayUnit) -> String {
     const MAX_SHOWN: usize = 3;
+    let merged: &[Parameters] = &point.merged;
     let mut texts: Vec<String> = merged
         .iter()
         .take(MAX_SHOWN)
         .map(|parameters| {
+            if *parameters == point.job.parameters {
+                return "this point, which the study gives again".to_owned();
+            }
             let values: Vec<String> = parameters
                 .iter()
                 .map(|(name, value)| format!("{name} = {}", unit(name).quantity(value)))
                 .collect();
-            if values.is_empty() { "the same point".to_owned() } else { values.join(", ") }
+            values.join(", ")
         })
         .collect();
     if merged.len() > MAX_SHOWN {

@@ -6,6 +6,7 @@ use std::io::Write;
 use billow_solver::output::audit::{MAX_LEDGER_RESIDUAL, MAX_NUMERICAL_FRACTION};
 use serde_json::{Map, json};
 
+use super::limits;
 use super::options::OutputOptions;
 use super::print::print_rows;
 use super::remedies::{self, Line};
@@ -78,6 +79,7 @@ fn explanation(stored: &Stored<'_>, id: &JobId, cells: &Cells) -> Result<Vec<Lin
         Status::Pending => pending(stored, id),
         status => failure::explanation(cells, status, id.short(), &root.to_string()),
     };
+    lines.extend(limits::lines(stored, cells));
     lines.extend(audit(cells));
     lines.extend(damping(cells));
     lines.extend(remedies::lines(stored, id, cells));
@@ -192,6 +194,9 @@ fn keys(stored: &Stored<'_>, id: &JobId, cells: &Cells, lines: &[Line]) -> serde
         "checks": verdict::checks(cells),
         "why": texts.collect::<Vec<_>>(),
     });
+    for (name, value) in limits::keys(stored, cells) {
+        keys[name] = value;
+    }
     let attempt = remedies::next(stored, id);
     keys["next_remedy"] = attempt.as_ref().map(|next| next.text.as_str()).into();
     let point = stored.point(id).filter(|point| point.job.id == *id);

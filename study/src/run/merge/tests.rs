@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use super::*;
+use crate::job;
 use crate::job::limits::JobLimits;
 use crate::platform::files::Disk;
 use crate::run::event::Silent;
@@ -37,6 +38,7 @@ fn run_part(study: &Study, root: &Path, selection: Selection, shared: Option<Sha
         study: &study.resolved(),
         planner: &|finished: &[FinishedRow]| plan::next_jobs(study, finished),
         result_limits: &[],
+        label: &job::label,
         table: &|points, records| Table::of_study(study, points, records),
         executor: &executor,
         results: Results::new(&Disk, root),

@@ -8,7 +8,7 @@ use super::*;
 use crate::job::control::{Order, Task};
 use crate::job::executor::Outcome;
 use crate::job::limits::Limit;
-use crate::job::{Job, Status};
+use crate::job::{self, Job, Status};
 use crate::platform::files::Disk;
 use crate::run::fixture::{self, ran};
 use crate::store::attempts::Attempts;
@@ -82,6 +82,7 @@ fn run_with(
         study: &serde_json::json!({}).into(),
         planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
         result_limits: &[],
+        label: &job::label,
         table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor,
         results: Results::new(&Disk, root),

@@ -18,12 +18,12 @@ use std::num::NonZero;
 use std::time::Duration;
 
 use crate::input::study_file::Json;
-use crate::job::JobId;
 use crate::job::executor::Executor;
 use crate::job::limits::JobLimits;
 use crate::job::point::Point;
 use crate::job::result_limit::ResultLimit;
 use crate::job::row::Counts;
+use crate::job::{JobId, Parameters};
 use crate::platform::error::Result;
 use crate::platform::stop::Stop;
 use crate::run::alone;
@@ -64,6 +64,8 @@ pub struct Run<'a> {
     pub result_limits: &'a [ResultLimit],
     /// The table of the points planned so far, from the records of their jobs.
     pub table: &'a TableOf<'a>,
+    /// The parameters of a job as text, for messages.
+    pub label: &'a dyn Fn(&Parameters) -> String,
     /// Computes the jobs.
     pub executor: &'a dyn Executor,
     /// Folder of the results.

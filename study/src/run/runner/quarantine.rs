@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::job::executor::Outcome;
 use crate::job::row::Cells;
-use crate::job::{self, Job, JobId};
+use crate::job::{Job, JobId, Parameters};
 use crate::store::journal::{Death, Record};
 
 /// Attempts in which the process died, from which a job is in quarantine. Chosen: one death may have had
@@ -50,14 +50,21 @@ pub fn record(job: &Job) -> Option<Record> {
 }
 
 /// The note about suspects; `None` without one.
-pub fn suspects_note<'a>(jobs: impl Iterator<Item = &'a Job>) -> Option<String> {
-    let names = named(jobs)?;
+pub fn suspects_note<'a>(
+    jobs: impl Iterator<Item = &'a Job>,
+    label: &dyn Fn(&Parameters) -> String,
+) -> Option<String> {
+    let names = named(jobs, label)?;
     Some(format!("the process died while these jobs ran: {names}; they run last and one at a time"))
 }
 
 /// The note about jobs in quarantine; `None` without one.
-pub fn quarantine_note<'a>(jobs: impl Iterator<Item = &'a Job>, root: &str) -> Option<String> {
-    let names = named(jobs)?;
+pub fn quarantine_note<'a>(
+    jobs: impl Iterator<Item = &'a Job>,
+    label: &dyn Fn(&Parameters) -> String,
+    root: &str,
+) -> Option<String> {
+    let names = named(jobs, label)?;
     Some(format!(
         "the process died in two attempts at these jobs: {names}; they are not run again (status crashed); \
          to run them: billow rerun {root} --status crashed"
@@ -65,9 +72,12 @@ pub fn quarantine_note<'a>(jobs: impl Iterator<Item = &'a Job>, root: &str) -> O
 }
 
 /// The names of jobs: short ids and parameters.
-fn named<'a>(jobs: impl Iterator<Item = &'a Job>) -> Option<String> {
+fn named<'a>(
+    jobs: impl Iterator<Item = &'a Job>,
+    label: &dyn Fn(&Parameters) -> String,
+) -> Option<String> {
     let all: Vec<&Job> = jobs.collect();
-    let name = |job: &&Job| match job::label(&job.parameters) {
+    let name = |job: &&Job| match label(&job.parameters) {
         label if label.is_empty() => job.id.short().to_owned(),
         label => format!("{} ({label})", job.id.short()),
     };

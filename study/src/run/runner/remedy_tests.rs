@@ -16,7 +16,7 @@ use crate::job::executor::Outcome;
 use crate::job::limits::Limit;
 use crate::job::remedy;
 use crate::job::row::ColumnId;
-use crate::job::{Job, Status};
+use crate::job::{self, Job, Status};
 use crate::platform::files::failing::FailingFiles;
 use crate::platform::files::{Disk, Files};
 use crate::run::event::Silent;
@@ -98,6 +98,7 @@ fn run_on<S: Fn(&Scene) -> Outcome + Sync>(
             finished.is_empty().then(|| Generation { number: 0, points: points() })
         },
         result_limits: &[],
+        label: &job::label,
         table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor: &executor,
         results: Results::new(files, root),

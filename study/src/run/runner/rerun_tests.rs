@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use super::*;
+use crate::job;
 use crate::job::executor::Outcome;
 use crate::job::limits::Limit;
 use crate::platform::files::failing::FailingFiles;
@@ -40,6 +41,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         study: &serde_json::json!({}).into(),
         planner: &|finished| finished.is_empty().then(|| fixture::generation(JOBS)),
         result_limits: &[],
+        label: &job::label,
         table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor: &executor,
         results: Results::new(files, root),

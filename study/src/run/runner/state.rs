@@ -129,7 +129,7 @@ impl<'a, 'w> State<'a, 'w> {
             None => self.quarantine(&mut missing, reporter)?,
         }
         let suspects = missing.iter().filter(|job| self.deaths.is_suspect(&job.id));
-        if let Some(note) = quarantine::suspects_note(suspects) {
+        if let Some(note) = quarantine::suspects_note(suspects, self.run.label) {
             reporter.event(&Event::Note(note));
         }
         let to_run: BTreeSet<&JobId> = missing.iter().map(|job| &job.id).collect();

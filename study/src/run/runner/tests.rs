@@ -13,6 +13,7 @@ use billow_solver::platform::seal;
 
 use super::*;
 use crate::input::value::Value;
+use crate::job;
 use crate::job::executor::Outcome;
 use crate::platform::error::Error;
 use crate::platform::files::failing::FailingFiles;
@@ -66,6 +67,7 @@ fn run_on(
         study: &serde_json::json!({ "jobs": jobs }).into(),
         planner: &generation_zero(jobs),
         result_limits: &[],
+        label: &job::label,
         table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor,
         results: Results::new(files, root),
@@ -294,6 +296,7 @@ fn a_stop_keeps_finished_jobs_and_shows_the_others_as_pending() {
         study: &serde_json::json!({}).into(),
         planner: &generation_zero(12),
         result_limits: &[],
+        label: &job::label,
         table: &|points, records| Table::build(points, records, &|_| String::new()),
         executor: &executor,
         results: Results::new(&Disk, folder.path()),
@@ -335,6 +338,7 @@ fn a_resumed_study_plans_its_generations_again() {
             study: &serde_json::json!({}).into(),
             planner: &planner,
             result_limits: &[],
+            label: &job::label,
             table: &|points, records| Table::build(points, records, &|_| String::new()),
             executor: &executor,
             results: Results::new(&Disk, folder.path()),

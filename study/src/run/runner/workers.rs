@@ -15,7 +15,7 @@ use crate::job::executor::{Executor, Outcome, execute_guarded};
 use crate::job::limits::{JobLimits, Limit};
 use crate::job::memory::estimate;
 use crate::job::row::Cells;
-use crate::job::{self, Job};
+use crate::job::{Job, Parameters};
 use crate::platform::error::{Error, Result};
 use crate::run::event::Event;
 use crate::run::reservation::{Reservation, Reservations};
@@ -66,11 +66,15 @@ pub struct Ended {
 }
 
 /// The event of a message; `None` for an ended job, whose event follows when it is stored.
-pub fn event(message: &Message, jobs: &[Job]) -> Option<Event> {
+pub fn event(
+    message: &Message,
+    jobs: &[Job],
+    label: &dyn Fn(&Parameters) -> String,
+) -> Option<Event> {
     match message {
         Message::Started { index, thread } => {
             let job = &jobs[*index];
-            let label = job::label(&job.parameters);
+            let label = label(&job.parameters);
             Some(Event::JobStarted { id: job.id.clone(), label, thread: *thread })
         }
         Message::Sample { thread, progress } => {

@@ -62,11 +62,7 @@ impl Table {
             cell_type: CellType::Number,
             unit: "1".to_owned(),
             shown: DisplayUnit::si("1"),
-            meaning: format!(
-                "distance of {} from its limit ({}) over the limit; negative beyond it",
-                limit.measure.name(),
-                limit.text
-            ),
+            meaning: limit.margin_meaning(),
             cells: (0..self.rows()).map(|row| margin(row).unwrap_or(Value::Null)).collect(),
         }
     }

@@ -36,7 +36,8 @@ impl State<'_, '_> {
         let quarantined: Vec<Job> =
             missing.extract_if(.., |job| self.deaths.is_quarantined(&job.id)).collect();
         let root = self.run.results.root().display().to_string();
-        let Some(note) = quarantine::quarantine_note(quarantined.iter(), &root) else {
+        let Some(note) = quarantine::quarantine_note(quarantined.iter(), self.run.label, &root)
+        else {
             return Ok(());
         };
         reporter.event(&Event::Note(note));
@@ -142,7 +143,7 @@ impl State<'_, '_> {
             let mut stored = Ok(());
             while let Some((messages, ended)) = receive(&receiver) {
                 for message in messages {
-                    if let Some(event) = workers::event(&message, jobs) {
+                    if let Some(event) = workers::event(&message, jobs, self.run.label) {
                         reporter.event(&event);
                     }
                     if let (Message::Failed(error), Ok(())) = (message, &stored) {
