@@ -12,6 +12,7 @@ use super::run::study_of_results;
 use super::target::results_folder;
 use super::{Format, output_error};
 use crate::cluster::chunks::{self, CostedJob};
+use crate::cluster::notation;
 use crate::cluster::script::{Needs, Scripts};
 use crate::cluster::slurm;
 use crate::cluster::submission::{Queued, Submission};
@@ -47,13 +48,13 @@ pub struct Args {
     /// Partition of the tasks [default: that of the cluster].
     #[arg(long, value_name = "NAME")]
     partition: Option<String>,
-    /// Wall time of a task. A task stops before its end; what it has not finished is in the next submission.
+    /// Wall time of a task, as in --time "2 h" or 2:00:00. A task stops before its end; what it has not finished is in the next submission.
     #[arg(long, value_name = "TIME", default_value = "1 h")]
     time: String,
     /// Cores of a task, and number of jobs that run side by side in it.
     #[arg(long, value_name = "N", default_value_t = 1)]
     cpus: usize,
-    /// Memory of a task, as in --mem "4 GB" [default: the estimate of its largest jobs].
+    /// Memory of a task, as in --mem "4 GB" or 4G [default: the estimate of its largest jobs].
     #[arg(long, value_name = "MEMORY")]
     mem: Option<String>,
     /// Number of tasks [default: tasks of about ten minutes].
@@ -224,13 +225,18 @@ fn largest(sizes: &BTreeMap<u64, usize>, cores: usize) -> u64 {
     all.take(cores).sum()
 }
 
-/// A quantity of the command line, in SI, above zero.
+/// A quantity of the command line, in SI, above zero: with its unit, or as Slurm writes it.
 fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64> {
-    let read = units::parse(text, dimension).ok().filter(|value| *value > 0.0 && value.is_finite());
-    read.ok_or_else(|| {
-        let example = if dimension == Dimension::Time { "\"2 h\"" } else { "\"4 GB\"" };
-        let allowed =
-            format!("{} above zero with its unit, as in {option} {example}", dimension.name());
+    let is_time = dimension == Dimension::Time;
+    let of_slurm =
+        if is_time { notation::time(text.trim()) } else { notation::memory(text.trim()) };
+    let read = of_slurm.or_else(|| units::parse(text, dimension).ok());
+    read.filter(|value| *value > 0.0 && value.is_finite()).ok_or_else(|| {
+        let [example, of_slurm] = if is_time { ["2 h", "2:00:00"] } else { ["4 GB", "4G"] };
+        let allowed = format!(
+            "{} above zero with its unit, as in {option} \"{example}\", or as Slurm writes it, as in {option} {of_slurm}",
+            dimension.name()
+        );
         Error::invalid_option(option, text, "is no such quantity", allowed, "")
     })
 }

@@ -12,6 +12,7 @@
 //! run beside others: no result depends on it. What is missing afterwards is in the next submission.
 
 pub mod chunks;
+pub mod notation;
 pub mod script;
 pub mod slurm;
 pub mod submission;
