@@ -60,9 +60,15 @@ fn sheet() -> FilmSimulation {
 
 /// A sphere of film with the full stiffness and nitrogen of 1 kPa, released without stress.
 fn sphere() -> FilmSimulation {
+    sphere_with_loss(0.0)
+}
+
+/// The same with this largest loss factor.
+fn sphere_with_loss(loss_factor: f64) -> FilmSimulation {
     let shell = icosphere(2, 0.5);
     let gas = nitrogen_gas();
-    let film = Film { compression: 1.0, numerical_damping: 0.0, ..Film::PAPER_ELASTIC };
+    let film =
+        Film { compression: 1.0, numerical_damping: 0.0, loss_factor, ..Film::PAPER_ELASTIC };
     let mass = 1000.0 * 0.5 / (296.8 * 293.0);
     let load = (PressureLoad::Gas(gas), gas.at_temperature(mass, 293.0));
     let still = Field::zeros(shell.positions.len());
@@ -106,6 +112,22 @@ fn a_breathing_sphere_with_inflow_converges_with_order_two() {
     let orders = orders(&errors);
     println!("{errors:?} {orders:?}");
     assert!(orders[1..].iter().all(|order| (1.7..2.3).contains(order)), "{orders:?}");
+}
+
+#[test]
+fn creep_lags_no_step_behind_where_steps_are_long_against_it() {
+    // Film that is filled over a thousand relaxation times has the modulus of film without loss.
+    let (step, time) = (0.02, 0.4);
+    let radius = |loss_factor: f64, time: f64| {
+        let film = with_implicit_steps(sphere_with_loss(loss_factor), step);
+        let end = end_of(film, time, &INFLOW);
+        end.iter().map(|x| x.norm()).sum::<f64>() / end.len() as f64
+    };
+    let elastic = radius(0.0, time);
+    let growth = elastic - radius(0.0, time - step);
+    assert!(growth > 1e-6, "{growth}");
+    let lag = (elastic - radius(0.1, time)) / growth;
+    assert!(lag.abs() < 0.01, "{lag} of the growth of a step");
 }
 
 /// Sphere with loss, mass damping and a rigid plane on top: positions, gas and works against central differences.

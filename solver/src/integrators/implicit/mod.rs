@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Pressure, gas (as a stiffness of rank one), contact, plates and further terms are implicit; inflow, leak, heat and
-//! creep are split off (`step`). The length of a step follows from its error ([`step_control`]). Steps end at samples;
+//! creep follow the motion (`increment`, `step`). The length of a step follows from its error ([`step_control`]). Steps end at samples;
 //! those of the hybrid may go beyond, within their phase, and the state is interpolated (`dense_output`). No film passes through film: every
 //! Newton step and the whole motion of a step are bounded by the safe step of contact. Numerical damping is not needed,
 //! and not used. Friction, moving supports and moving plates are refused ([`refusal`]).
@@ -28,6 +28,7 @@ pub(super) use newton::Newton;
 use step::Stepped;
 
 mod dense_output;
+mod increment;
 mod linear_system;
 mod method;
 pub mod motion;

@@ -6,8 +6,10 @@
 //! ```
 //!
 //! Symbols: Π energy of film, gas, contact and loads; w and x̂ from the method (`super::method`). α is at most the
-//! share of d that brings no film into film, from the first positions on.
+//! share of d that brings no film into film, from the first positions on. In long steps gas and creep strain of Π are
+//! those at the positions found so far ([`Increment::follow`]).
 
+use super::increment::Increment;
 use super::linear_system::{LinearSystem, dot};
 use crate::geometry::field::Field;
 use crate::system::{Evaluation, FilmState, FilmSystem, Workspace};
@@ -24,20 +26,6 @@ const MAX_HALVINGS: u32 = 10;
 const MAX_DISPLACEMENT: f64 = 0.1;
 /// Smallest α: shorter steps do not arrive. Chosen.
 const MIN_SHARE: f64 = 1e-3;
-
-/// What a step minimises.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Increment<'a> {
-    pub(super) system: &'a FilmSystem,
-    /// State at the start of the step: gas, creep strain and contacts.
-    pub(super) state: &'a FilmState,
-    /// Time at the end of the step, s.
-    pub(super) end: f64,
-    /// w, 1/s².
-    pub(super) weight: f64,
-    /// x̂, m.
-    pub(super) target: &'a Field,
-}
 
 /// What ends the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,54 +50,6 @@ pub(in crate::integrators) struct Newton {
     moves: Field,
 }
 
-impl Increment<'_> {
-    fn evaluate(&self, positions: &mut Field, workspace: &mut Workspace) -> (Evaluation, f64) {
-        let system = self.system;
-        system.place_closing_nodes(positions);
-        let evaluation = system.evaluate(self.state, positions, self.end, workspace);
-        let mut inertia = 0.0;
-        for (node, mass) in system.model.mass.iter().enumerate() {
-            inertia += mass * (positions.get(node) - self.target.get(node)).norm_squared();
-        }
-        for body in &system.supports.bodies {
-            let Some(node) = body.nodes.first() else { continue };
-            let node = *node as usize;
-            let travel = body.plane.normal.dot(&(positions.get(node) - self.target.get(node)));
-            inertia += body.plane.mass * travel * travel;
-        }
-        let potential = evaluation.energy() + 0.5 * self.weight * inertia;
-        let valid = evaluation.volume > 0.0 || !system.is_gas();
-        (evaluation, if valid { potential } else { f64::NAN })
-    }
-
-    /// −∂Φ/∂x along the unknowns, N.
-    fn residual(
-        &self,
-        linear: &LinearSystem,
-        positions: &Field,
-        evaluation: &Evaluation,
-        workspace: &Workspace,
-    ) -> Vec<f64> {
-        let system = self.system;
-        let overpressure = system.overpressure_at(evaluation.gas_pressure);
-        let mut forces = Field::zeros(positions.len());
-        for (node, mass) in system.model.mass.iter().enumerate() {
-            let force = system.node_force(&workspace.forces, overpressure, node);
-            let away = positions.get(node) - self.target.get(node);
-            forces.set(node, force - away * (self.weight * mass));
-        }
-        let mut along = linear.unknowns.gather(&forces);
-        let planes = along[linear.unknowns.first_plane as usize..].iter_mut();
-        for (along, body) in planes.zip(&system.supports.bodies) {
-            let Some(node) = body.nodes.first() else { continue };
-            let node = *node as usize;
-            let travel = body.plane.normal.dot(&(positions.get(node) - self.target.get(node)));
-            *along -= self.weight * body.plane.mass * travel;
-        }
-        along
-    }
-}
-
 impl Newton {
     /// For film whose order of elimination is that of some positions (m).
     pub(in crate::integrators) fn new(
@@ -126,23 +66,30 @@ impl Newton {
     /// smaller there. Returns their evaluation and the number of Newton steps; `None` if it finds none.
     pub(super) fn solve(
         &mut self,
-        increment: &Increment<'_>,
+        increment: &mut Increment<'_>,
         guess: &Field,
         limits: Limits,
         workspace: &mut Workspace,
     ) -> Option<(Evaluation, u32)> {
-        let Increment { system, state, end, weight, .. } = *increment;
-        self.positions.copy_from(&state.positions);
+        let Increment { system, end, weight, .. } = *increment;
+        increment.load_at_start();
+        self.positions.copy_from(&increment.from.positions);
         let (_, before) = increment.evaluate(&mut self.positions, workspace);
         self.moves.copy_from(guess);
         let (mut evaluation, mut potential) = self.guess(increment, before, workspace);
         let at_guess = potential < before;
+        let is_long = increment.is_long();
+        let fewest = if is_long { 2 } else { 1 };
+        if at_guess && is_long {
+            (evaluation, potential) =
+                increment.follow(&mut self.positions, evaluation.volume, workspace);
+        }
         for iteration in 1..=limits.iterations {
             let at = (&self.positions, end);
             let here = (&evaluation, &*workspace);
             let residual =
                 increment.residual(&self.system, &self.positions, &evaluation, workspace);
-            if !self.system.prepare(system, state, at, here, weight) {
+            if !self.system.prepare(system, &increment.state, at, here, weight) {
                 return None;
             }
             let step = self.system.solve(system.instruction_set, &residual);
@@ -164,12 +111,17 @@ impl Newton {
             if share < MIN_SHARE {
                 return None;
             }
-            let last = mean <= limits.displacement && share >= 1.0;
+            let small = mean <= limits.displacement && share >= 1.0;
             let found = self.line_search(increment, (potential, slope, share), &step, workspace)?;
-            (evaluation, potential) = found;
             core::mem::swap(&mut self.positions, &mut self.trial);
-            if last {
+            if small && iteration >= fewest {
+                let evaluation = found.0;
                 return self.is_safe(increment, workspace).then_some((evaluation, iteration));
+            }
+            (evaluation, potential) = found;
+            if is_long {
+                (evaluation, potential) =
+                    increment.follow(&mut self.positions, evaluation.volume, workspace);
             }
         }
         None
@@ -210,14 +162,14 @@ impl Newton {
     /// Whether the straight motion from the start to the positions brings no film into film. Leaves the workspace with
     /// the forces of the positions.
     fn is_safe(&mut self, increment: &Increment<'_>, workspace: &mut Workspace) -> bool {
-        let Increment { system, state, end, .. } = *increment;
+        let Increment { system, from, end, .. } = *increment;
         if system.contact.is_none() {
             return true;
         }
         for node in 0..self.moves.len() {
-            self.moves.set(node, self.positions.get(node) - state.positions.get(node));
+            self.moves.set(node, self.positions.get(node) - from.positions.get(node));
         }
-        let share = system.safe_step((&state.positions, end), &self.moves, workspace);
+        let share = system.safe_step((&from.positions, end), &self.moves, workspace);
         let _ = increment.evaluate(&mut self.positions, workspace);
         share >= 1.0
     }

@@ -1,23 +1,21 @@
-//! One step: gas and creep at the positions of its start, motion, then gas and creep along the motion.
+//! One step: motion with the gas and the creep of its end ([`Increment`]), then gas and creep along the motion.
 //!
 //! ```text
-//! p(V) = p* (V₀/V)^γ      p* after inflow, leak and heat of the step at the volume V₀ of its start       while film moves
-//! P  = P*                 creep of the step at the positions x of its start                              while film moves
-//! then gas and creep of the step again from its start, along x → x'
+//! motion:              p(V) = p* (V*/V)^γ,  P = P*
+//! gas and creep:       the step again from its start, along x → x'
 //!
 //! work of a force = ∫ f·dx along the straight motion, by Simpson's rule on four parts
 //! material loss   = Σ ψ(x, P) − ψ(x, P + ΔP) in the middle of each part
 //! numerical dissipation = work of all forces − Δ(kinetic energy)
 //! ```
 //!
-//! So a step that is long against inflow, heat and creep ends nearly in balance with them: p and P miss only what the
-//! motion of the step itself changes in heat and creep, which is of second order in the step. Works are integrals of
-//! forces, with a pressure that is linear in time, and stored energies are functions of the state: the ledger compares
-//! the two.
+//! So a step that is long against inflow and creep ends in balance with them. Works are integrals of forces, with a pressure that is linear in time, and stored
+//! energies are functions of the state: the ledger compares the two.
 
 use super::Implicit;
+use super::increment::Increment;
 use super::method::Method;
-use super::newton::{Increment, Limits};
+use super::newton::Limits;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::mechanics::forces::membrane::CreepStrain;
@@ -70,14 +68,16 @@ impl Implicit {
         let method = Method::new(from, self.motion.last.as_ref(), length);
         let weight = method.inertia(system.mass_damping, &mut self.target);
         method.predict(&mut self.predicted);
-        load_at_start(system, &mut state, length, inflow);
         let size = system.model.size();
         let displacement = self.motion.control.newton_displacement(size);
         let first = self.motion.control.first_displacement();
         let limits = Limits { displacement, first, iterations };
-        let increment = Increment { system, state: &state, end, weight, target: &self.target };
+        let target = &self.target;
+        let mut increment = Increment { system, from, state, inflow, end, weight, target };
         let workspace = &mut self.workspace;
-        let (after, count) = self.newton.solve(&increment, &self.predicted, limits, workspace)?;
+        let (after, count) =
+            self.newton.solve(&mut increment, &self.predicted, limits, workspace)?;
+        let mut state = increment.state;
         self.iterations = count;
 
         let positions = core::mem::take(&mut self.newton.positions);
@@ -211,15 +211,5 @@ impl Implicit {
             power.contact += forces.contact.get(node).dot(&moved);
         }
         power
-    }
-}
-
-/// Gives the state at the start of a step the gas and the creep strain that it would have at the end of the step if
-/// the film did not move.
-fn load_at_start(system: &FilmSystem, state: &mut FilmState, length: f64, inflow: Inflow) {
-    let path = (&state.positions, &state.positions);
-    CreepStrain::relax(&system.model, path, length, &mut state.creep);
-    if let Some(gas) = system.gas_step(state, state.volume, length, inflow) {
-        state.gas = gas.state;
     }
 }
