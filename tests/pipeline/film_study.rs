@@ -36,6 +36,29 @@ fn the_amplitude_of_the_imperfection_belongs_to_a_job_only_with_a_seed() {
 }
 
 #[test]
+fn a_plan_counts_the_points_that_an_integrator_refuses_and_they_end_so() {
+    let mut study = study();
+    study["solver"]["end_time"] = json!("1 ms");
+    study["gas"]["mass_flow_rate"] = json!("5 g/s");
+    study["contact"] = json!({"adhesion": "1 kPa"});
+    study["grid"] = json!({
+        "N": [6], "integrator": ["explicit", "implicit", "hybrid", "xpbd"], "contact.friction": [0, 0.2]
+    });
+    let folder = TestFolder::new(&study);
+    let planned = stderr(&folder.run(&["plan", "grid.json"]));
+    let note = "note: 4 of 8 points will end as invalid: hybrid has no friction, implicit has no friction, \
+                xpbd has no adhesion, xpbd has no friction";
+    assert!(
+        planned.contains(note) && planned.contains("or solver.integrator explicit"),
+        "{planned}"
+    );
+    folder.run(&["run", "grid.json", "-q"]);
+    let rows = folder.rows("results/grid");
+    let invalid = rows.iter().filter(|row| row["status"] == "invalid");
+    assert_eq!(invalid.count(), 4, "{rows:?}");
+}
+
+#[test]
 fn a_film_study_gives_sound_rows_and_the_same_bits_on_any_threads() {
     let folder = TestFolder::new(&study());
     let planned = stderr(&folder.run(&["plan", "grid.json"]));

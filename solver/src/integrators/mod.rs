@@ -40,8 +40,42 @@ pub struct IntegratorEntry {
     pub meaning: &'static str,
     /// The integrator of a state, with the workspace that evaluated it, at a CFL number.
     pub start: fn(&FilmSystem, &FilmState, Workspace, f64) -> Box<dyn Integrator>,
-    /// Why it cannot move a system; `None` if it can.
+    /// Forces of contact that it lacks.
+    pub lacks: &'static [ContactForce],
+    /// Why it cannot move a system, but for contact; `None` if it can.
     pub refuses: fn(&FilmSystem) -> Option<Refusal>,
+}
+
+/// A force of contact that an integrator may lack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactForce {
+    /// Coulomb friction.
+    Friction,
+    /// Adhesion.
+    Adhesion,
+}
+
+impl IntegratorEntry {
+    /// Why it cannot move film with this friction coefficient and this pull-off pressure (Pa); `None` if it can.
+    pub fn refuses_contact(&self, friction: f64, pull_off_pressure: f64) -> Option<Refusal> {
+        let refused = |force: &ContactForce| {
+            let (value, unknown, allowed) = match force {
+                ContactForce::Friction => (friction, "friction", "contact.friction 0"),
+                ContactForce::Adhesion => (pull_off_pressure, "adhesion", "contact.adhesion 0"),
+            };
+            (value > 0.0).then_some(Refusal { unknown, allowed })
+        };
+        self.lacks.iter().find_map(refused)
+    }
+
+    /// Why it cannot move a system; `None` if it can.
+    pub fn refusal(&self, system: &FilmSystem) -> Option<Refusal> {
+        let contact = system
+            .contact
+            .as_ref()
+            .and_then(|model| self.refuses_contact(model.friction, model.adhesion.pressure));
+        contact.or_else(|| (self.refuses)(system))
+    }
 }
 
 /// Why an integrator cannot move a system.

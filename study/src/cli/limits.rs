@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::result_limit::{Condition, Judged, ResultLimit, Safety};
-use crate::job::row::{Cells, ColumnGroup, DERIVED_COLUMNS};
+use crate::job::row::{Cells, ColumnGroup, DerivedColumn};
 use crate::store::stored::Stored;
 
 /// One limit and the value of a job.
@@ -90,11 +90,12 @@ pub(super) fn rows(stored: &Stored<'_>, cells: &Cells) -> Vec<Vec<Value>> {
     if let Some(known) = safety(stored, cells) {
         let of = &stored.study.result_limits()[known.limit];
         let values = [
-            Value::Bool(known.safe),
-            Value::Number(known.smallest_margin),
-            text(of.measure.name()),
+            (DerivedColumn::Safe, Value::Bool(known.safe)),
+            (DerivedColumn::SmallestMargin, Value::Number(known.smallest_margin)),
+            (DerivedColumn::SmallestMarginOf, text(of.measure.name())),
         ];
-        rows.extend(DERIVED_COLUMNS.iter().zip(values).map(|(column, value)| {
+        rows.extend(values.map(|(column, value)| {
+            let column = column.row();
             vec![text(group), text(column.name), value, text(column.unit), text(column.meaning)]
         }));
     }

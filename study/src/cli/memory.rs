@@ -66,8 +66,9 @@ impl Memory {
         let large: Vec<&StudyPoint> =
             feasible(study).filter(|point| !self.fits(&point.scene)).collect();
         let needs = large.iter().map(|point| memory::estimate(&point.scene).total).max()?;
+        let label = |point: &StudyPoint| study.label(&point.parameters, study.display_units());
         let mut names: Vec<String> =
-            large.iter().take(MAX_NAMES).map(|point| study.label(&point.parameters)).collect();
+            large.iter().take(MAX_NAMES).map(|point| label(point)).collect();
         if large.len() > MAX_NAMES {
             names.push(format!("{} more", large.len() - MAX_NAMES));
         }

@@ -1,7 +1,10 @@
 //! Warnings about the values of a study, and notes on its results, on stderr: limits of the models, and
 //! keys that a model ignores.
 
-use billow_solver::scene::{IntegratorKind, ModelKind};
+use std::collections::BTreeSet;
+
+use billow_solver::integrators::{self, Refusal};
+use billow_solver::scene::ModelKind;
 
 use crate::accuracy::{MeshErrors, Method, Tolerances, all_but_peak_vz, choice};
 use crate::input::keys::numerical::{MESH_PARAMETER, SEED};
@@ -143,22 +146,27 @@ fn below_ambient(study: &Study) -> Option<String> {
     })
 }
 
-/// A note on points whose integrator lacks a force of contact that the point has: each ends as invalid.
+/// A note on points whose integrator lacks a force of contact that they have: each ends as invalid.
 fn refused_by_integrators(study: &Study) -> Option<String> {
-    let refused = |point: &&StudyPoint| {
+    let refusal = |point: &StudyPoint| {
         let (solver, contact) = (&point.scene.solver, &point.scene.contact);
-        let without_friction = solver.integrator != IntegratorKind::Explicit;
-        let without_adhesion = solver.integrator == IntegratorKind::Xpbd;
-        solver.model == ModelKind::Film
-            && (without_friction && contact.friction > 0.0
-                || without_adhesion && contact.adhesion > 0.0)
+        let entry =
+            (solver.model == ModelKind::Film).then(|| integrators::entry(solver.integrator))?;
+        let Refusal { unknown, allowed } =
+            entry.refuses_contact(contact.friction, contact.adhesion)?;
+        Some((format!("{} has no {unknown}", entry.name), allowed))
     };
-    let count = study.points().iter().filter(refused).count();
-    (count > 0).then(|| {
+    let refused: Vec<(String, &str)> = study.points().iter().filter_map(refusal).collect();
+    let reasons: BTreeSet<&str> = refused.iter().map(|(reason, _)| reason.as_str()).collect();
+    let allowed: BTreeSet<&str> = refused.iter().map(|(_, allowed)| *allowed).collect();
+    let list = |texts: BTreeSet<&str>| texts.into_iter().collect::<Vec<_>>().join(", ");
+    (!refused.is_empty()).then(|| {
         format!(
-            "note: {count} of {} points will end as invalid: of the integrators only explicit has friction, and xpbd \
-             has no adhesion\n  next: solver.integrator explicit, or contact.friction 0",
-            study.points().len()
+            "note: {} of {} points will end as invalid: {}\n  next: {}, or solver.integrator explicit",
+            refused.len(),
+            study.points().len(),
+            list(reasons),
+            list(allowed)
         )
     })
 }

@@ -16,7 +16,6 @@ use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
 use crate::job::executor::Solver;
-use crate::job::point;
 use crate::job::references::References;
 use crate::job::row::COLUMNS;
 use crate::job::{JobId, Status};
@@ -170,9 +169,7 @@ pub(super) fn run_study(
             planner: &|finished| plan::next_jobs(study, finished),
             result_limits: study.result_limits(),
             table: &|points, records| Table::of_study(study, points, records),
-            label: &|parameters| {
-                point::label_in(parameters, &|name| units.of(name, study.unit(name)))
-            },
+            label: &|parameters| study.label(parameters, &units),
             executor: &Solver {
                 instruction_set,
                 references: References::known(known_references(&results)),

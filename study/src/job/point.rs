@@ -3,7 +3,6 @@
 use billow_solver::geometry::fold::{FoldPattern, Nearest};
 use billow_solver::scene::{Scene, Solver};
 
-use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
 use crate::job::{JobId, Status};
 
@@ -15,12 +14,6 @@ pub fn label(parameters: &Parameters) -> String {
     let texts: Vec<String> =
         parameters.iter().map(|(name, value)| format!("{name}={}", value.short())).collect();
     texts.join(" ")
-}
-
-/// Parameters as text, each in the unit that `unit` gives for its name: "N=5 height=1 m".
-pub fn label_in(parameters: &Parameters, unit: &dyn Fn(&str) -> DisplayUnit) -> String {
-    let text = |(name, value): &(String, Value)| format!("{name}={}", unit(name).quantity(value));
-    parameters.iter().map(text).collect::<Vec<_>>().join(" ")
 }
 
 /// One scene to run.

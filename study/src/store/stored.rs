@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::id::common_prefix_length;
-use crate::job::point::{self, Parameters, Point};
+use crate::job::point::Point;
 use crate::job::row::{Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, InputError, Result};
@@ -226,14 +226,10 @@ impl<'a> Stored<'a> {
         .into()
     }
 
-    /// Parameters as text, in the units in which this folder is shown.
-    fn label_of(&self, parameters: &Parameters) -> String {
-        point::label_in(parameters, &|name| self.units.of(name, self.study.unit(name)))
-    }
-
     /// Short id and parameters of a job, for messages.
     pub fn label(&self, id: &JobId) -> String {
-        let parameters = self.point(id).map(|point| self.label_of(&point.job.parameters));
+        let label = |point: &Point| self.study.label(&point.job.parameters, &self.units);
+        let parameters = self.point(id).map(label);
         match parameters {
             Some(text) if !text.is_empty() => format!("{} ({text})", id.short()),
             _ => id.short().to_owned(),

@@ -8,7 +8,7 @@ use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
-use crate::job::point::{self, Parameters};
+use crate::job::Parameters;
 
 /// A key of a study.
 #[derive(Debug, Clone)]
@@ -91,9 +91,12 @@ impl Study {
         &self.units
     }
 
-    /// Parameters as text, in the units in which they are shown.
-    pub fn label(&self, parameters: &Parameters) -> String {
-        point::label_in(parameters, &|name| self.units.of(name, self.unit(name)))
+    /// Parameters as text, in these units: "N=5 height=1 m".
+    pub fn label(&self, parameters: &Parameters, units: &DisplayUnits) -> String {
+        let text = |(name, value): &(String, Value)| {
+            format!("{name}={}", units.of(name, self.unit(name)).quantity(value))
+        };
+        parameters.iter().map(text).collect::<Vec<_>>().join(" ")
     }
 
     /// Whether a name may be that of a key, as `film.thickness`, `thickness` or one of a strategy.

@@ -2,8 +2,7 @@
 
 use billow_solver::geometry::field::Field;
 use billow_solver::geometry::shapes::{grid, joined, moved};
-use billow_solver::integrators::FilmSimulation;
-use billow_solver::integrators::xpbd;
+use billow_solver::integrators::{self, FilmSimulation};
 use billow_solver::mechanics::supports::Supports;
 use billow_solver::models::film::{FilmRun, capsule};
 use billow_solver::output::outcome::FailureKind;
@@ -255,7 +254,8 @@ fn what_the_method_does_not_have_is_refused() {
     let support =
         FilmSupport { name: String::new(), nodes: vec![0], hold: Hold::Body(plane), motion: None };
     system.supports = Supports::new(&[support], &Field::zeros(system.model.nodes()));
-    let refused = xpbd::refusal(&system).map(|refusal| refusal.unknown);
+    let refused =
+        integrators::entry(IntegratorKind::Xpbd).refusal(&system).map(|refusal| refusal.unknown);
     assert_eq!(refused, Some("rigid planes"));
 }
 

@@ -34,7 +34,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     name: "hybrid",
     meaning: "explicit while film moves, implicit while it hardly does",
     start: |system, state, workspace, cfl| Box::new(Hybrid::start(system, state, workspace, cfl)),
-    refuses: implicit::refusal,
+    lacks: implicit::ENTRY.lacks,
+    refuses: implicit::ENTRY.refuses,
 };
 
 /// Upper bound of the kinetic energy over its largest value at which film hardly moves. Chosen.

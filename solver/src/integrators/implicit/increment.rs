@@ -7,8 +7,8 @@
 //! ```
 //!
 //! x₀ positions at the start of the step. x*, V*: in a step shorter than the relaxation time of the creep those of the
-//! start, which is right to second order; in a longer one, whose end is nearly in balance with its creep, those found so far. Gas
-//! and creep change little from one Newton step to the next: creep by g/(1 + g) of what the strain does
+//! start, which is right to second order; in a longer one, whose end is nearly in balance with its creep, those found so
+//! far. Gas and creep change little from one Newton step to the next: creep by g/(1 + g) of what the strain does
 //! ([`crate::mechanics::material_loss`]).
 
 use super::linear_system::LinearSystem;

@@ -5,16 +5,16 @@
 //! ```
 //!
 //! Pressure, gas (as a stiffness of rank one), contact, plates and further terms are implicit; inflow, leak, heat and
-//! creep follow the motion (`increment`, `step`). The length of a step follows from its error ([`step_control`]). Steps end at samples;
-//! those of the hybrid may go beyond, within their phase, and the state is interpolated (`dense_output`). No film passes through film: every
-//! Newton step and the whole motion of a step are bounded by the safe step of contact. Numerical damping is not needed,
-//! and not used. Friction, moving supports and moving plates are refused ([`refusal`]).
+//! creep follow the motion (`increment`, `step`). The length of a step follows from its error ([`step_control`]). Steps
+//! end at samples; those of the hybrid may go beyond, within their phase, and the state is interpolated
+//! (`dense_output`). No film passes through film: every Newton step and the whole motion of a step are bounded by the
+//! safe step of contact. Numerical damping is not needed, and not used. Friction, moving supports and moving plates are refused.
 
 use crate::collision::contact::SearchProgress;
 use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::integrators::interface::{Advance, Budget, Integrator, Interval, StepAudit, StepMotion};
-use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
+use crate::integrators::{ContactForce, IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stress_on_fraction};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
@@ -48,7 +48,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         let control = StepControl::error(cfl, system.model.size(), 1.0);
         Box::new(Implicit::start(system, state, workspace, control))
     },
-    refuses: refusal,
+    lacks: &[ContactForce::Friction],
+    refuses,
 };
 
 /// First step over the stable step of explicit film: 2/ω. Chosen: its error is far below any tolerance.
@@ -92,12 +93,11 @@ pub struct Implicit {
     predicted: Field,
 }
 
-/// Why film cannot be integrated implicitly; `None` if it can.
-pub fn refusal(system: &FilmSystem) -> Option<Refusal> {
+/// Why film cannot be integrated implicitly, but for contact; `None` if it can.
+fn refuses(system: &FilmSystem) -> Option<Refusal> {
     let contact = system.contact.as_ref();
     let moving = |plates: &[Plate]| plates.iter().any(|plate| plate.motion.is_some());
     let refused = [
-        (contact.is_some_and(|model| model.friction > 0.0), "friction", "contact.friction 0"),
         (contact.is_some_and(|model| moving(&model.plates)), "moving plates", "plates at rest"),
         (!system.supports.movers.is_empty(), "moving supports", "supports at rest"),
     ];

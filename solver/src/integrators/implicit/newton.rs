@@ -114,11 +114,10 @@ impl Newton {
             let small = mean <= limits.displacement && share >= 1.0;
             let found = self.line_search(increment, (potential, slope, share), &step, workspace)?;
             core::mem::swap(&mut self.positions, &mut self.trial);
+            (evaluation, potential) = found;
             if small && iteration >= fewest {
-                let evaluation = found.0;
                 return self.is_safe(increment, workspace).then_some((evaluation, iteration));
             }
-            (evaluation, potential) = found;
             if is_long {
                 (evaluation, potential) =
                     increment.follow(&mut self.positions, evaluation.volume, workspace);

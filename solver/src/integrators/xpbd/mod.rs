@@ -19,8 +19,7 @@
 //! element bears its load only when it is stretched 1 + h² Σ f·W f/(2 U) times as far, so taut film is too soft, and
 //! stores more energy than it was given. The fastest waves lose energy. Further energies are explicit, so they bound h. The
 //! numerical damping ratio is ignored: the method damps by itself. Creep is split off: it advances after each
-//! substep (`sweep`). Film is kept apart by `contacts`. Friction, adhesion and rigid planes are refused
-//! ([`refusal`]).
+//! substep (`sweep`). Film is kept apart by `contacts`. Friction, adhesion and rigid planes are refused.
 //!
 //! Numerical dissipation is what closes the ledger. So no residual of the ledger can fault this method; a
 //! dissipation far below zero does (`unstable`), and so does [`Residual`], which the history file has as a track.
@@ -30,7 +29,7 @@ use crate::geometry::field::Field;
 use crate::integrators::energy_accounting::EnergyAccounting;
 use crate::integrators::explicit::motion::StepInterval;
 use crate::integrators::interface::{Advance, Budget, Integrator, Interval};
-use crate::integrators::{IntegratorEntry, Refusal, StoredIntegrator};
+use crate::integrators::{ContactForce, IntegratorEntry, Refusal, StoredIntegrator};
 use crate::mechanics::forces::membrane::{NodeForces, stored_energy, stress_on_fraction};
 use crate::output::ledger::Ledger;
 use crate::output::outcome::{AuditKind, Failure};
@@ -54,7 +53,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     name: "xpbd",
     meaning: "extended position-based dynamics, one pass a substep: for comparison",
     start: |system, state, workspace, cfl| Box::new(Xpbd::start(system, state, workspace, cfl)),
-    refuses: refusal,
+    lacks: &[ContactForce::Friction, ContactForce::Adhesion],
+    refuses,
 };
 
 /// Substep over the stable step of central differences without gas and contact, at the same CFL number. Chosen: with
@@ -66,17 +66,10 @@ const MAX_EXPLICIT_SHARE: f64 = 0.8;
 /// differences for energy without a source.
 const MAX_ENERGY_GAIN: f64 = 0.1;
 
-/// Why the method cannot move the film of a system; `None` if it can.
-pub fn refusal(system: &FilmSystem) -> Option<Refusal> {
-    let contact = system.contact.as_ref();
-    let adhesion = contact.is_some_and(|model| model.adhesion.pressure > 0.0);
-    let refused = [
-        (!system.supports.bodies.is_empty(), "rigid planes", "no support with a mass"),
-        (contact.is_some_and(|model| model.friction > 0.0), "friction", "contact.friction 0"),
-        (adhesion, "adhesion", "contact.adhesion 0"),
-    ];
-    let refused = refused.into_iter().find(|(present, ..)| *present);
-    refused.map(|(_, unknown, allowed)| Refusal { unknown, allowed })
+/// Why the method cannot move the film of a system, but for contact; `None` if it can.
+fn refuses(system: &FilmSystem) -> Option<Refusal> {
+    let planes = !system.supports.bodies.is_empty();
+    planes.then_some(Refusal { unknown: "rigid planes", allowed: "no support with a mass" })
 }
 
 /// Extended position-based dynamics.
@@ -104,7 +97,7 @@ impl Xpbd {
     /// Starts at a state.
     ///
     /// # Panics
-    /// If [`refusal`] refuses the system.
+    /// If it cannot move the system ([`IntegratorEntry::refusal`]).
     pub fn start(system: &FilmSystem, state: &FilmState, workspace: Workspace, cfl: f64) -> Self {
         let mut accounting = EnergyAccounting::start(system, state);
         accounting.broad_phase_rebuilds = u64::from(system.contact.is_some());
@@ -118,7 +111,7 @@ impl Xpbd {
     /// Resumes at a state with what was stored there. The run continues with the same bits.
     ///
     /// # Panics
-    /// If [`refusal`] refuses the system.
+    /// If it cannot move the system ([`IntegratorEntry::refusal`]).
     pub fn resume(system: &FilmSystem, state: &FilmState, stored: &StoredXpbd, cfl: f64) -> Self {
         let rebuilds = stored.accounting.broad_phase_rebuilds;
         let progress = SearchProgress { path_length: stored.path_length, rebuilds };
@@ -133,7 +126,7 @@ impl Xpbd {
         stored: &StoredXpbd,
         cfl: f64,
     ) -> Self {
-        let refused = refusal(system);
+        let refused = ENTRY.refusal(system);
         assert!(refused.is_none(), "{refused:?}");
         workspace.forces_at(system, state, None);
         let mobility = Mobility::new(system);

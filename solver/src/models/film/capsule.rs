@@ -8,7 +8,7 @@ use crate::geometry::field::Field;
 use crate::geometry::fold::{FoldDesign, FoldPattern};
 use crate::geometry::mesh::{Mesh, Part, Shape};
 use crate::geometry::shell::Shell;
-use crate::integrators::{self, FilmSimulation, IntegratorEntry, Refusal, SimulationSettings};
+use crate::integrators::{self, FilmSimulation, Refusal, SimulationSettings};
 use crate::mechanics::film_model::FilmModel;
 use crate::mechanics::gas::{Gas, GasState};
 use crate::mechanics::supports::{PrescribedNodes, Supports};
@@ -240,8 +240,9 @@ fn contact_model(scene: &FilmScene, model: &FilmModel, positions: &Field) -> Con
 
 /// Checks that an integrator can move a system.
 fn check_integrator(kind: IntegratorKind, system: &FilmSystem) -> Result<(), SceneError> {
-    let IntegratorEntry { name, refuses, .. } = integrators::entry(kind);
-    let Some(Refusal { unknown, allowed }) = refuses(system) else { return Ok(()) };
+    let entry = integrators::entry(kind);
+    let Some(Refusal { unknown, allowed }) = entry.refusal(system) else { return Ok(()) };
+    let name = entry.name;
     let problem = format!("{name} has no {unknown}; allowed: {allowed}, or explicit");
     Err(SceneError::Invalid { key: "solver.integrator".to_owned(), problem })
 }

@@ -261,7 +261,7 @@ fn audit(trust: &Trust) -> String {
         0 => String::new(),
         jobs if jobs == trust.jobs => "; no job can be trusted".to_owned(),
         jobs => {
-            format!("; {} cannot be trusted and is no fastest or hardest one", count(jobs, "job"))
+            format!("; fastest and hardest ignore {} that cannot be trusted", count(jobs, "job"))
         }
     };
     format!(
