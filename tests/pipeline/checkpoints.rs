@@ -138,7 +138,7 @@ fn a_job_that_is_killed_twice_is_quarantined_and_runs_again_on_request() {
     );
     let crashed = ids(&folder, "crashed");
     assert_eq!((crashed.len(), ids(&folder, "done").len()), (1, 1));
-    let why = folder.stdout(&["why", &crashed[0][..8], "results/grid"]);
+    let why = folder.stdout(&["job", &crashed[0][..8], "results/grid"]);
     assert!(why.contains("died in two attempts") && why.contains("billow rerun"), "{why}");
     folder.stdout(&["rerun", "results/grid", "--status", "crashed", "-q"]);
     assert_same_bits(&folder, &whole);
@@ -159,7 +159,7 @@ fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
     let row = folder.rows("results/grid").pop().unwrap();
     assert!(row["reason"].as_str().unwrap().starts_with("job_limits.steps of 2000 is reached"));
     assert!(row["final_volume"].is_null() && row["content_hash"].is_null(), "{row}");
-    let why = folder.stdout(&["why", &failed[0][..8], "results/grid"]);
+    let why = folder.stdout(&["job", &failed[0][..8], "results/grid"]);
     assert!(why.contains("--job-limit steps=…"), "{why}");
 
     // An attempt of a moment; then one without any limit.

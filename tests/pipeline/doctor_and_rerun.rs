@@ -255,7 +255,7 @@ fn files_of_a_newer_version_are_refused() {
         assert_eq!(output.status.code(), Some(1));
         let said = String::from_utf8(output.stdout).unwrap();
         assert!(said.contains(expected), "{said}");
-        for command in [&["show", "00"][..], &["compare", "--by", "N", "--base", "5"]] {
+        for command in [&["job", "00"][..], &["compare", "--by", "N", "--base", "5"]] {
             let refused = folder.run(command);
             assert_eq!(refused.status.code(), Some(2));
             assert!(stderr(&refused).contains(expected), "{}", stderr(&refused));

@@ -1,8 +1,8 @@
-//! `billow keys` finds keys by name and by meaning, and `billow schema` prints small schemas.
+//! `billow keys` finds keys by name and by meaning, and `billow keys --schema` prints small schemas.
 
 use std::process::{Command, Output};
 
-use billow_study::input::keys::listing::{FileKind, entries, reference_page};
+use billow_study::input::keys::listing::{FileKind, entries};
 use serde_json::Value;
 
 fn billow(arguments: &[&str]) -> Output {
@@ -13,11 +13,6 @@ fn stdout(arguments: &[&str]) -> String {
     let output = billow(arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
-}
-
-#[test]
-fn keys_are_printed_as_the_reference_page() {
-    assert_eq!(stdout(&["keys", "--markdown"]), reference_page());
 }
 
 #[test]
@@ -41,11 +36,9 @@ fn keys_are_found_by_name_and_by_meaning() {
     assert_eq!(listed(&["keys", "height", "--json"]), ["design.height"]);
     let mass = listed(&["keys", "mass", "--json"]);
     assert!(mass.iter().all(|key| key.contains("mass")), "{mass:?}");
-    // The new name of an old key; a column of the table.
-    assert_eq!(listed(&["keys", "viscosity", "--json"]), ["film.numerical_damping"]);
+    // A column of the table.
     assert_eq!(listed(&["keys", "peak_vz", "--json"]), ["peak_vz"]);
     for (word, note) in [
-        ("viscosity", "film.viscosity is now called film.numerical_damping; the next version"),
         ("peak_vz", "peak_vz is a column of the table, not a key: billow table --columns peak_vz"),
         ("height", "also in the meaning of design.fit"),
     ] {
@@ -82,7 +75,7 @@ fn the_schemas_are_small() {
     /// Largest size of a printed schema, bytes.
     const MAX_SCHEMA_SIZE: usize = 85_000;
     for file in ["study", "scene"] {
-        let size = stdout(&["schema", file]).len();
+        let size = stdout(&["keys", "--schema", file]).len();
         assert!(size < MAX_SCHEMA_SIZE, "the schema of a {file} has {size} bytes");
     }
 }

@@ -40,7 +40,7 @@ mod search;
 mod several_runs;
 mod solve;
 mod stability;
-mod status_why_show;
+mod status_and_job;
 mod streams;
 mod study_files;
 mod support;

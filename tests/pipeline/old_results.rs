@@ -119,21 +119,21 @@ fn old_rows_have_the_current_names() {
             assert!(!row.contains_key(old) && row.contains_key(current), "{old}");
         }
     }
-    let why = json_of(&folder, &["why", &ids[ENERGY_DRIFT], "old"]);
+    let why = json_of(&folder, &["job", &ids[ENERGY_DRIFT], "old"]);
     assert_eq!(why["status"], "energy_drift");
     assert!(why["stop_location"].as_str().unwrap().starts_with("energy ledger"), "{why}");
-    let shown = folder.stdout(&["show", &ids[ENERGY_DRIFT], "old"]);
+    let shown = folder.stdout(&["job", &ids[ENERGY_DRIFT], "old", "--all"]);
     assert!(shown.contains("energy_drift") && shown.contains("near_threshold_margin"), "{shown}");
 }
 
 #[test]
 fn old_histories_have_the_current_names() {
     let (folder, ids) = folder();
-    let all = json_of(&folder, &["show", &ids[DONE], "old", "--history"]);
+    let all = json_of(&folder, &["job", &ids[DONE], "old", "--history"]);
     let sample = all[0].as_object().unwrap();
     assert!(sample.contains_key("broad_phase_rebuilds"), "{sample:?}");
     assert!(!sample.contains_key("contact_searches"), "{sample:?}");
-    let columns = ["show", &ids[DONE], "old", "--history", "--columns", "time,contact_searches"];
+    let columns = ["job", &ids[DONE], "old", "--history", "--columns", "time,contact_searches"];
     let output = folder.run(&columns);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("is now called \"broad_phase_rebuilds\""));

@@ -125,7 +125,7 @@ fn schema_and_plan_print_json() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         (serde_json::from_slice(&output.stdout).unwrap(), output.stderr)
     };
-    let (schema, _): (serde_json::Value, _) = billow(&["schema"]);
+    let (schema, _): (serde_json::Value, _) = billow(&["keys", "--schema"]);
     assert_eq!(schema, study_schema());
 
     let (plan, stderr): (serde_json::Value, _) = billow(&["plan", "designs.json", "--json"]);

@@ -75,11 +75,11 @@ fn no_reader_trusts_a_history_of_another_job() {
     let folder = ran();
     let done = ids(&folder, "done");
     let (job, other) = (&done[0], &done[1]);
-    let undamaged = folder.stdout(&["show", job, "--history", "--format", "csv"]);
+    let undamaged = folder.stdout(&["job", job, "--history", "--format", "csv"]);
     fs::remove_file(file_of(&folder, job)).unwrap();
     symlink(file_of(&folder, other), file_of(&folder, job)).unwrap();
     for arguments in [
-        &["show", job, "--history", "--format", "csv"][..],
+        &["job", job, "--history", "--format", "csv"][..],
         &["chart", "--history", "z_rim", "--jobs", job, "--out", "a.svg"],
     ] {
         let output = folder.run(arguments);

@@ -242,14 +242,14 @@ fn show_has_the_names_and_units_of_the_study() {
     let folder = TestFolder::new(&study());
     folder.run(&["run", "grid.json", "-q"]);
     let job = folder.rows("results/grid")[1]["job"].as_str().unwrap().to_owned();
-    let shown = folder.stdout(&["show", &job]);
+    let shown = folder.stdout(&["job", &job, "--all"]);
     assert!(shown.contains("scene       film.numerical_damping "), "{shown}");
     assert!(shown.contains("scene       gas.windows[0].mass_flow_rate "), "{shown}");
     assert!(shown.contains("scene       outputs.thresholds.near_threshold_margin "), "{shown}");
     assert!(!shown.contains("viscosity") && !shown.contains("close_margin"), "{shown}");
     let line = shown.lines().find(|line| line.starts_with("parameters  mass_flow_rate")).unwrap();
     assert!(words(line)[0][2..].starts_with(&["5", "g/s"]), "{line}");
-    let history = ["show", &job, "--history", "--every", "1000"];
+    let history = ["job", &job, "--history", "--every", "1000"];
     let output = folder.run(&[&history[..], &["--columns", "gas_residual"]].concat());
     assert!(!stderr(&output).contains("units:"), "{}", stderr(&output));
     let output =

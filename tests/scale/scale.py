@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 # Bounds at 100,000 jobs: seconds, megabytes.
-BOUNDS = {"status": 2, "run": 5, "why": 1, "show": 1, "compare": 5}
+BOUNDS = {"status": 2, "run": 5, "job": 1, "compare": 5}
 MAX_MEGABYTES = 300
 # Values of the axes beside the mass flow rate: N, M.
 DESIGNS = 20
@@ -87,8 +87,7 @@ def measure(arguments, folder):
     commands = {
         "status": ["status", results],
         "run": ["run", "scale.json", "-q"],
-        "why": ["why", job, results],
-        "show": ["show", job, results],
+        "job": ["job", job, results],
         "compare": ["compare", results, "--by", "N", "--base", "6", "--summary", "-q"],
         "table": ["table", results, "--limit", "20", "-q"],
     }

@@ -138,7 +138,7 @@ pub fn other_physics(versions: &BTreeMap<i64, usize>) -> Option<String> {
     (!texts.is_empty()).then(|| {
         format!(
             "finished jobs: {}; this program has version {PHYSICS_VERSION} and other job ids, so \
-             `billow run` computes them again; the old results stay in the folder (billow show JOB)",
+             `billow run` computes them again; the old results stay in the folder (billow job JOB)",
             texts.join(", ")
         )
     })

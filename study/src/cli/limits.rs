@@ -29,7 +29,7 @@ fn safety(stored: &Stored<'_>, cells: &Cells) -> Option<Safety> {
     Safety::of(stored.study.result_limits(), cells.status(), |column| cells.get(column))
 }
 
-/// The lines of `billow why`: whether the job is safe, and each limit; none for a study without limits, or a job that is not done.
+/// The lines of `billow job`: whether the job is safe, and each limit; none for a study without limits, or a job that is not done.
 pub(super) fn lines(stored: &Stored<'_>, cells: &Cells) -> Vec<(&'static str, String)> {
     let all = judged(stored, cells);
     if all.iter().all(|one| one.judged.is_none()) {
@@ -67,7 +67,7 @@ fn text(stored: &Stored<'_>, one: &JudgedLimit<'_>) -> String {
     }
 }
 
-/// The keys of `billow why` as JSON: `safe` (null where it is not known), and `limits`.
+/// The keys of `billow job` as JSON: `safe` (null where it is not known), and `limits`.
 pub(super) fn keys(stored: &Stored<'_>, cells: &Cells) -> [(&'static str, serde_json::Value); 2] {
     let limit = |one: &JudgedLimit<'_>| {
         json!({
@@ -82,7 +82,7 @@ pub(super) fn keys(stored: &Stored<'_>, cells: &Cells) -> [(&'static str, serde_
     [("safe", safety(stored, cells).map(|known| known.safe).into()), ("limits", limits.into())]
 }
 
-/// The rows of `billow show`: group, name, value, unit and meaning, as the table of the study has them.
+/// The rows of `billow job --all`: group, name, value, unit and meaning, as the table of the study has them.
 pub(super) fn rows(stored: &Stored<'_>, cells: &Cells) -> Vec<Vec<Value>> {
     let text = |text: &str| Value::Text(text.to_owned());
     let group = ColumnGroup::Outcome.name();

@@ -165,7 +165,7 @@ fn result(merged: &Merged) -> Result<()> {
     if !merged.different.is_empty() {
         let ids: Vec<&str> = merged.different.iter().map(JobId::short).collect();
         return Err(Error::JobsFailed(format!(
-            "{} with different bits in two folders; the first result was kept: {}\n  next: billow show JOB in each \
+            "{} with different bits in two folders; the first result was kept: {}\n  next: billow job JOB in each \
              folder; compare program_version, commit and physics_version",
             count(ids.len(), "job"),
             ids.join(", ")

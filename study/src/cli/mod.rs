@@ -28,6 +28,7 @@ mod export;
 mod fold;
 mod frames;
 mod instruction_set;
+mod job;
 mod keys;
 mod legend;
 mod limits;
@@ -49,8 +50,6 @@ pub mod reference;
 mod remedies;
 mod rerun;
 mod run;
-mod schema;
-mod show;
 mod solve;
 mod stability;
 mod status;
@@ -61,7 +60,6 @@ mod table;
 mod target;
 mod usage;
 pub mod validate;
-mod why;
 
 pub use options::Format;
 
@@ -99,10 +97,8 @@ pub enum Command {
     Merge(merge::Args),
     /// Show the progress of a study, during a run and afterwards.
     Status(status::Args),
-    /// Explain why a job ended as it did.
-    Why(why::Args),
-    /// Show everything stored for one job: parameters, scene, row, history.
-    Show(show::Args),
+    /// Explain why a job ended as it did, or print what is stored of it.
+    Job(job::Args),
     /// Compare the values of one parameter, all other parameters being equal.
     Compare(compare::Args),
     /// Show to what each measure tends as the mesh is refined.
@@ -129,8 +125,6 @@ pub enum Command {
     Stability(stability::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
     Keys(keys::Args),
-    /// Print the JSON Schema of the study file or the scene file.
-    Schema(schema::Args),
     /// Run the reference cases and check their errors. Exit code 1 if one is out of tolerance.
     Validate(validate::Args),
     /// Measure the speed of billow on this machine, stage by stage, against its targets.
@@ -172,8 +166,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Submit(args) => submit::run(args, out),
         Command::Merge(args) => merge::run(args, out),
         Command::Status(args) => status::run(args, out),
-        Command::Why(args) => why::run(args, out),
-        Command::Show(args) => show::run(args, out),
+        Command::Job(args) => job::run(args, out),
         Command::Compare(args) => compare::run(args, out),
         Command::Converge(args) => converge::run(args, out),
         Command::Doctor(args) => doctor::run(args, out),
@@ -187,7 +180,6 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Pareto(args) => pareto::run(args, out),
         Command::Stability(args) => stability::run(args, out),
         Command::Keys(args) => keys::run(args, out),
-        Command::Schema(args) => schema::run(args, out),
         Command::Validate(args) => validate::run(args, out),
         Command::Bench(args) => bench::run(args, out),
         Command::Completions(args) => completions::run(args, out),

@@ -265,7 +265,7 @@ impl<'a> Status<'a> {
         ));
         let failures = counts.failures();
         if !failures.is_empty() {
-            lines.push(("failed", format!("{}; billow why JOB explains one", listed(&failures))));
+            lines.push(("failed", format!("{}; billow job JOB explains one", listed(&failures))));
         }
         if self.remedies.jobs() > 0 {
             let root = self.results.root().display();

@@ -206,7 +206,12 @@ fn problem_of(refused: &clap::Error) -> (String, String) {
     let text = source.to_string();
     match text.split_once(" is not in ") {
         Some((_, range)) => {
-            ("is out of range".to_owned(), format!("{whole}, {}", range.replace("..=", " to ")))
+            let range = match range.split_once("..=") {
+                // The largest number of the type.
+                Some((least, most)) if most.len() >= 10 => format!("{least} or more"),
+                _ => range.replace("..=", " to "),
+            };
+            ("is out of range".to_owned(), format!("{whole}, {range}"))
         }
         None if text.contains("invalid digit") => ("is not a whole number".to_owned(), whole),
         None => (text, String::new()),

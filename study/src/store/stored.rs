@@ -167,13 +167,13 @@ impl<'a> Stored<'a> {
             }
             (Some(point), None) if point.infeasible.is_some() => (
                 "the point is infeasible, so no job ran",
-                format!("billow why {} {root}", id.short()),
+                format!("billow job {} {root}", id.short()),
             ),
             (_, None) => {
                 ("the job has not run yet", format!("billow run, then billow status {root}"))
             }
             (_, Some(_)) => {
-                ("the job wrote no history", format!("billow why {} {root}", id.short()))
+                ("the job wrote no history", format!("billow job {} {root}", id.short()))
             }
         };
         Err(Error::Disk { path, problem: format!("{why}\n  next: {next}") })

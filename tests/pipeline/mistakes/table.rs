@@ -306,7 +306,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     ),
     mistake(
         "a job that does not exist",
-        "why ffffff grid",
+        "job ffffff grid",
         &[
             "job = ffffff: no job has this id",
             "allowed: the first digits of one id: ",

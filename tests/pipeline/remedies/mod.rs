@@ -60,7 +60,7 @@ fn a_drifting_job_gets_the_result_of_a_smaller_step() {
     assert_eq!(row(&folder, "youngs_modulus", &json!(1e7))["stop_audit"], "energy_ledger");
 
     // Every reader names the remedy and the command.
-    let said = folder.stdout(&["why", &planned]);
+    let said = folder.stdout(&["job", &planned]);
     for words in [
         "audit     energy_ledger",
         "remedy    solver.cfl 0.9 -> 0.45: a step of half the length",
@@ -69,11 +69,11 @@ fn a_drifting_job_gets_the_result_of_a_smaller_step() {
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }
-    assert_eq!(json_of(&folder, &["why", &planned])["next_remedy"], "solver.cfl 0.9 -> 0.45");
+    assert_eq!(json_of(&folder, &["job", &planned])["next_remedy"], "solver.cfl 0.9 -> 0.45");
     let said = folder.stdout(&["status"]);
     assert!(said.contains("remedy    solver.cfl 0.9 -> 0.45 (1 job): billow rerun"), "{said}");
     assert_eq!(json_of(&folder, &["status"])["can_run_with_remedy"], 1);
-    let shown = json_of(&folder, &["show", &planned]);
+    let shown = json_of(&folder, &["job", &planned, "--all"]);
     let of_group = |row: &&Value| row["group"] == "remedies";
     let about: Vec<&Value> = shown.as_array().unwrap().iter().filter(of_group).collect();
     assert!(text(&about[0]["value"]).starts_with("solver.cfl 0.9 -> 0.45"), "{about:?}");
@@ -109,10 +109,10 @@ fn a_drifting_job_gets_the_result_of_a_smaller_step() {
     let after = histories(&folder.results());
     assert_eq!(after.len(), 3);
     assert!(before.iter().all(|(name, bytes)| after[name] == *bytes));
-    let said = folder.stdout(&["why", &planned]);
+    let said = folder.stdout(&["job", &planned]);
     assert!(said.contains(": energy_drift"), "{said}");
     assert!(said.contains(&format!("gives the result of the point: job {}", &id[..8])), "{said}");
-    let said = folder.stdout(&["why", &id]);
+    let said = folder.stdout(&["job", &id]);
     let from = format!("after the planned job {} ended as energy_drift", &planned[..8]);
     assert!(said.contains(&from), "{said}");
     let refused = folder.run(&["rerun", &planned, "-q"]);
@@ -215,7 +215,7 @@ fn a_job_that_no_remedy_helps_keeps_its_status_and_names_what_was_tried() {
     assert_eq!((&row["job"], &row["status"]), (&json!(planned), &json!("unstable")));
     assert_eq!(row["failed_remedies"], "solver.cfl 0.9 -> 0.45: overstretched");
     assert_eq!(row["remedy"], Value::Null);
-    let said = folder.stdout(&["why", &planned]);
+    let said = folder.stdout(&["job", &planned]);
     assert!(said.contains("tried     solver.cfl 0.9 -> 0.45: overstretched, job "), "{said}");
     assert!(said.contains("proposed  less stretch"), "{said}");
     let listed = json_of(&folder, &["rerun", "--remedy", "--dry-run", "-q"]);
@@ -266,7 +266,7 @@ fn storeys_have_a_proposal_and_nothing_to_apply() {
     let ended = folder.run(&["run", "grid.json", "-q"]);
     assert!(!stderr(&ended).contains("--remedy"), "{}", stderr(&ended));
     let failed = ids(&folder, "unstable").remove(0);
-    let said = folder.stdout(&["why", &failed]);
+    let said = folder.stdout(&["job", &failed]);
     assert!(said.contains("proposed  solver.model film"), "{said}");
     let refused = folder.run(&["rerun", &failed, "--remedy"]);
     assert_eq!(refused.status.code(), Some(1), "{}", stderr(&refused));

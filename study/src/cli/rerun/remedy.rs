@@ -73,7 +73,7 @@ pub(super) fn run(
     if with_remedy.is_empty() {
         let root = root.display();
         return Err(Error::JobsFailed(format!(
-            "no remedy can be applied to {}\n  next: billow rerun {root} --remedy --dry-run says why; billow why JOB {root}",
+            "no remedy can be applied to {}\n  next: billow rerun {root} --remedy --dry-run says why; billow job JOB {root}",
             count(failed.len(), "failed job")
         )));
     }

@@ -25,7 +25,7 @@ pub(super) fn result(
 ) -> Result<()> {
     if !summary.different.is_empty() {
         return Err(Error::JobsFailed(format!(
-            "{} gave different bits than before: {}\n  next: billow show JOB; compare \
+            "{} gave different bits than before: {}\n  next: billow job JOB; compare \
              program_version, commit and physics_version",
             count(summary.different.len(), "job"),
             summary.different.iter().map(JobId::short).collect::<Vec<_>>().join(", ")
@@ -34,7 +34,7 @@ pub(super) fn result(
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow why JOB {}{}{}",
+            "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow job JOB {}{}{}",
             count(failed, "job"),
             limited(&summary.counts.failures()),
             root.display(),

@@ -1,5 +1,5 @@
 //! The keys of a study file and of a scene file: tables with one row a key, from which reading,
-//! errors, defaults, `billow schema`, `billow keys`, docs/reference/keys.md and the names of an
+//! errors, defaults, `billow keys --schema`, `billow keys`, docs/reference/keys.md and the names of an
 //! expression follow.
 
 pub mod draft;

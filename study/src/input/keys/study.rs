@@ -1,4 +1,4 @@
-//! The keys of a study file. To add a key, add a row: reading, default, errors, `billow schema`,
+//! The keys of a study file. To add a key, add a row: reading, default, errors, `billow keys --schema`,
 //! `billow keys` and docs/reference/keys.md follow from it.
 //!
 //! Ranges are hard limits. Within them, a plausible range (`likely`) says what an inflatable capsule has;

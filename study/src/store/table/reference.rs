@@ -31,7 +31,7 @@ pub fn page() -> String {
 fn table_columns(page: &mut String) {
     page.push_str(
         "## Summary table\n\n\
-         `summary.parquet`, `billow table`, `billow show`, `billow chart --measure`.\n\n\
+         `summary.parquet`, `billow table`, `billow job --all`, `billow chart --measure`.\n\n\
          The first column is `job`, the job id. The parameters of the study follow, then the columns\n\
          below. A parameter keeps its name when a column below has the same one; that column is then\n\
          called `<name>_resolved`. Points that are one job are rows with the same `job`; `same_job_as` lists\n\
@@ -129,7 +129,7 @@ fn statuses(page: &mut String) {
 fn history_columns(page: &mut String) {
     page.push_str(
         "\n## History\n\n\
-         Group `history` of a job's HDF5 file, `billow show --history`, `billow chart --history`.\n\
+         Group `history` of a job's HDF5 file, `billow job --history`, `billow chart --history`.\n\
          Every column has one value per sample.\n\n\
          | name | unit | present | meaning |\n\
          |---|---|---|---|\n",

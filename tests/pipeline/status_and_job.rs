@@ -1,4 +1,4 @@
-//! `status`, `why` and `show` read what is stored.
+//! `status` and `job` read what is stored.
 
 use std::fs;
 
@@ -80,26 +80,26 @@ fn status_reports_damage_in_one_line_and_counts_the_rest() {
 }
 
 #[test]
-fn why_explains_a_verdict_with_its_numbers() {
+fn job_explains_a_verdict_with_its_numbers() {
     let folder = ran();
     for row in folder.rows("results/grid").iter().filter(|row| row["status"] == "done") {
         let id = row["job"].as_str().unwrap();
-        let why = json_of(&folder, &["why", &id[..7]]);
+        let explained = json_of(&folder, &["job", &id[..7]]);
         for column in ["job", "status", "verdict", "near_threshold", "ledger_residual", "passages"]
         {
-            assert_eq!(why[column], row[column], "{column}");
+            assert_eq!(explained[column], row[column], "{column}");
         }
-        let check = &why["checks"][0];
+        let check = &explained["checks"][0];
         assert_eq!(
             (&check["measure"], &check["value"]),
             (&json!("volume_ratio"), &row["volume_ratio"])
         );
         let (value, least) = (check["value"].as_f64().unwrap(), check["least"].as_f64().unwrap());
         assert_eq!(check["margin"], json!(value / least - 1.0));
-        let said = folder.stdout(&["why", id]);
+        let said = folder.stdout(&["job", id]);
         assert!(said.contains("done, deployed") && said.contains("height_ratio"), "{said}");
         assert!(said.contains("≤ 0.01") && said.contains("counted by this model"), "{said}");
-        assert!(said.contains(&format!("next      billow show {}", &id[..8])), "{said}");
+        assert!(said.contains(&format!("next      billow job {}", &id[..8])), "{said}");
     }
     // A stall: the gas is not enough for the volume.
     let mut study = grid(&json!({"N": [6], "M": [3], "alpha1_over_phi": [1]}));
@@ -108,7 +108,7 @@ fn why_explains_a_verdict_with_its_numbers() {
     folder.stdout(&["run", "grid.json", "-q"]);
     let id = ids(&folder, "done").remove(0);
     let row = folder.rows("results/grid").remove(0);
-    let said = folder.stdout(&["why", &id]);
+    let said = folder.stdout(&["job", &id]);
     let verdict = row["verdict"].as_str().unwrap();
     assert_ne!(verdict, "deployed", "{row}");
     assert!(
@@ -118,7 +118,7 @@ fn why_explains_a_verdict_with_its_numbers() {
 }
 
 #[test]
-fn why_and_show_judge_a_job_by_the_limits_as_the_table_does() {
+fn job_judges_a_job_by_the_limits_as_the_table_does() {
     let mut study = grid(&json!({"N": [6], "M": [3], "alpha1_over_phi": [1],
         "mass_flow_rate": ["1 g/s", "2 g/s"]}));
     study["limits"] = json!({"peak_vz": "< 24 m/s", "verdict": "deployed"});
@@ -129,22 +129,22 @@ fn why_and_show_judge_a_job_by_the_limits_as_the_table_does() {
     assert_eq!(safe, [true, false], "{rows:?}");
     for row in &rows {
         let id = row["job"].as_str().unwrap();
-        let why = json_of(&folder, &["why", id]);
-        let limit = &why["limits"][0];
+        let explained = json_of(&folder, &["job", id]);
+        let limit = &explained["limits"][0];
         assert_eq!(
             (&limit["measure"], &limit["condition"]),
             (&json!("peak_vz"), &json!("< 24 m/s"))
         );
         assert_eq!(
-            (&why["safe"], &limit["met"], &limit["value"], &limit["margin"]),
+            (&explained["safe"], &limit["met"], &limit["value"], &limit["margin"]),
             (&row["safe"], &row["safe"], &row["peak_vz"], &row["margin_peak_vz"])
         );
-        let said = folder.stdout(&["why", id]);
+        let said = folder.stdout(&["job", id]);
         let flow = if row["safe"] == true { "1 g/s): done" } else { "2 g/s): done" };
         let met = if row["safe"] == true { ": met, margin 0." } else { ": not met, margin -0." };
         assert!(said.contains("m/s, asked < 24 m/s") && said.contains(met), "{said}");
         assert!(said.contains(flow), "parameters have the units of the study: {said}");
-        let shown = json_of(&folder, &["show", id]);
+        let shown = json_of(&folder, &["job", id, "--all"]);
         for name in ["safe", "smallest_margin", "smallest_margin_of", "margin_peak_vz"] {
             let shown = shown.as_array().unwrap().iter().find(|shown| shown["name"] == name);
             assert_eq!(shown.unwrap()["value"], row[name], "{name}");
@@ -153,22 +153,22 @@ fn why_and_show_judge_a_job_by_the_limits_as_the_table_does() {
 }
 
 #[test]
-fn why_reports_failures_and_infeasible_points_with_time_place_and_nearest() {
+fn job_reports_failures_and_infeasible_points_with_time_place_and_nearest() {
     let folder = failed();
     let failed = ids(&folder, "step_limit").remove(0);
-    let said = folder.stdout(&["why", &failed]);
+    let said = folder.stdout(&["job", &failed]);
     assert!(said.contains("step_limit: the run used all steps"), "{said}");
     assert!(said.contains("\n  time ") && said.contains("\n  location "), "{said}");
     assert!(said.contains("proposed  more steps: solver.step_limit"), "{said}");
     let infeasible = ids(&folder, "infeasible").remove(0);
-    let said = folder.stdout(&["why", &infeasible, "results/grid"]);
+    let said = folder.stdout(&["job", &infeasible, "results/grid"]);
     assert!(
         said.contains("no fold pattern exists for this design") && said.contains("nearest"),
         "{said}"
     );
     let rows = folder.rows("results/grid");
     let row = rows.iter().find(|row| row["job"] == infeasible.as_str()).unwrap();
-    assert_eq!(json_of(&folder, &["why", &infeasible])["nearest"], row["nearest"]);
+    assert_eq!(json_of(&folder, &["job", &infeasible])["nearest"], row["nearest"]);
 }
 
 #[test]
@@ -177,10 +177,10 @@ fn job_ids_may_be_unique_prefixes() {
     let mut all = ids(&folder, "done");
     all.sort();
     for (arguments, expected) in [
-        (["why", "zzz"], "no job has this id"),
-        (["show", ""], "no job has this id"),
+        (["job", "zzz"], "no job has this id"),
+        (["job", ""], "no job has this id"),
         (["rerun", "fffffffffffffffffffffffffffffffff0"], "neither a study file"),
-        (["why", &format!("{}0000000", &all[0][..8])], &all[0][..8]),
+        (["job", &format!("{}0000000", &all[0][..8])], &all[0][..8]),
     ] {
         let output = folder.run(&arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -197,16 +197,16 @@ fn job_ids_may_be_unique_prefixes() {
         .max_by_key(|(_, count)| *count)
         .unwrap();
     assert!(count > 1, "24 ids share 16 first digits");
-    let output = folder.run(&["why", &first]);
+    let output = folder.run(&["job", &first]);
     assert!(stderr(&output).contains(&format!("{count} job ids begin so")), "{}", stderr(&output));
 }
 
 #[test]
-fn show_prints_the_stored_row_scene_and_history() {
+fn job_prints_the_stored_row_scene_and_history() {
     let folder = ran();
     let row = folder.rows("results/grid").into_iter().find(|row| row["status"] == "done").unwrap();
     let id = row["job"].as_str().unwrap();
-    let shown = json_of(&folder, &["show", id]);
+    let shown = json_of(&folder, &["job", id, "--all"]);
     let shown = shown.as_array().unwrap();
     let of = |group: &str, name: &str| {
         shown.iter().find(|row| row["group"] == group && row["name"] == name)
@@ -221,13 +221,13 @@ fn show_prints_the_stored_row_scene_and_history() {
     assert_eq!(of("measures", "peak_vz").unwrap()["unit"], "m/s");
     assert!(of("scene", "film.youngs_modulus").unwrap()["value"].as_f64().unwrap() > 1e9);
 
-    let scene: Value = serde_json::from_str(&folder.stdout(&["show", id, "--scene"])).unwrap();
+    let scene: Value = serde_json::from_str(&folder.stdout(&["job", id, "--scene"])).unwrap();
     assert_eq!(scene["design"]["N"], row["N"]);
     let stored = billow_study::store::history_file::read(&file_of(&folder, id)).unwrap();
     assert_eq!(scene, serde_json::from_str::<Value>(&stored.scene).unwrap());
 
     let samples = stored.history.len();
-    let every = json_of(&folder, &["show", id, "--history"]);
+    let every = json_of(&folder, &["job", id, "--history"]);
     assert_eq!(every.as_array().unwrap().len(), samples);
     for (index, row) in every.as_array().unwrap().iter().enumerate() {
         for (column, values) in stored.history.iter() {
@@ -240,7 +240,7 @@ fn show_prints_the_stored_row_scene_and_history() {
         }
     }
     let thin = folder.stdout(&[
-        "show",
+        "job",
         id,
         "--history",
         "--columns",
@@ -263,9 +263,9 @@ fn show_prints_the_stored_row_scene_and_history() {
         1 + samples.div_ceil(100) + usize::from(!(samples - 1).is_multiple_of(100))
     );
     for (arguments, expected) in [
-        (&["show", id, "--history", "--columns", "presure"][..], "did you mean pressure?"),
-        (&["show", id, "--history", "--every", "0"], "must be positive"),
-        (&["show", &ids(&folder, "infeasible")[0], "--history"], "the point is infeasible"),
+        (&["job", id, "--history", "--columns", "presure"][..], "did you mean pressure?"),
+        (&["job", id, "--history", "--every", "0"], "1 or more"),
+        (&["job", &ids(&folder, "infeasible")[0], "--history"], "the point is infeasible"),
     ] {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2));
@@ -279,8 +279,8 @@ fn a_folder_without_results_is_one_error_for_every_command() {
     fs::create_dir(folder.path().join("empty")).unwrap();
     for command in [
         &["status", "empty"][..],
-        &["why", "ab", "empty"],
-        &["show", "ab", "empty"],
+        &["job", "ab", "empty"],
+        &["job", "ab", "empty"],
         &["rerun", "ab", "empty/"],
         &["compare", "empty", "--by", "N", "--base", "5"],
         &["doctor", "empty"],
@@ -301,13 +301,13 @@ fn a_folder_without_results_is_one_error_for_every_command() {
 }
 
 #[test]
-fn why_reports_a_run_that_ends_in_motion() {
+fn job_reports_a_run_that_ends_in_motion() {
     let axes = json!({"N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]});
     let mut study = grid(&axes);
     study["solver"]["end_time"] = json!("20 ms");
     let folder = TestFolder::new(&study);
     folder.stdout(&["run", "grid.json", "-q"]);
-    let said = folder.stdout(&["why", &ids(&folder, "done")[0]]);
+    let said = folder.stdout(&["job", &ids(&folder, "done")[0]]);
     for words in
         ["done, stalled", "motion    in the last tenth", "next      a longer solver.end_time"]
     {
@@ -318,7 +318,7 @@ fn why_reports_a_run_that_ends_in_motion() {
 #[test]
 fn a_results_folder_instead_of_a_job_id_is_refused() {
     let folder = ran();
-    for command in ["why", "show", "frames"] {
+    for command in ["job", "frames"] {
         let output = folder.run(&[command, "results/grid"]);
         assert_eq!(output.status.code(), Some(2), "{command}");
         let said = stderr(&output);

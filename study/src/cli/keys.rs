@@ -1,0 +1,248 @@
+//! `billow keys`: the keys of a study or scene file, with unit, default, range and meaning.
+
+use std::io::Write;
+
+use serde::Serialize;
+use serde_json::Serializer;
+use serde_json::ser::PrettyFormatter;
+
+use super::options::OutputOptions;
+use super::print::print_rows;
+use super::{Format, output_error};
+use crate::accuracy::PROMISED;
+use crate::input::keys::listing::{Entry, FileKind, REQUIRED, entries};
+use crate::input::schema;
+use crate::input::value::Value;
+use crate::job::row::COLUMNS;
+use crate::platform::error::{InputError, Result};
+use crate::platform::nearest::nearest;
+use crate::platform::quote;
+
+/// Arguments of `billow keys`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Print only keys with this word in their name; without one, columns of the table with it in their
+    /// name, or keys with it in their meaning.
+    pub word: Option<String>,
+    /// Print the keys of a scene file.
+    #[arg(long)]
+    pub scene: bool,
+    /// Print the JSON Schema of a study file or of a scene file, for editors.
+    #[arg(
+        long,
+        value_name = "FILE",
+        num_args = 0..=1,
+        default_missing_value = "study",
+        conflicts_with_all = ["word", "scene"]
+    )]
+    pub schema: Option<SchemaOf>,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// A file with a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum SchemaOf {
+    /// The study file of `billow run`.
+    Study,
+    /// The scene file of `billow solve`.
+    Scene,
+}
+
+/// Kind of an entry that is a column of the table and no key.
+const COLUMN: &str = "column of the table";
+/// Width of a line of meaning, characters.
+const LINE_WIDTH: usize = 96;
+/// Names printed when a word is not found (chosen: one line).
+const MAX_NEAREST: usize = 3;
+/// Keys named in the note about further meanings, at most (chosen: two lines).
+const MAX_FURTHER: usize = 6;
+/// Letters of a word that is searched within other words, at least: a shorter one is in nearly every name.
+const MIN_PART: usize = 3;
+
+/// Runs `billow keys`.
+///
+/// # Errors
+/// When no key and no column has the word, or the output cannot be written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let file = match args.schema {
+        Some(of) => return print_schema(of, out),
+        None if args.scene => FileKind::Scene,
+        None => FileKind::Study,
+    };
+    let found = match &args.word {
+        Some(word) => search(file, word)?,
+        None => entries(file).into_iter().map(|entry| (file.name(), entry)).collect(),
+    };
+    let format = args.output.format();
+    if format == Format::Table {
+        let text: String = found.iter().map(|(kind, entry)| described(kind, entry)).collect();
+        return write!(out, "{text}").map_err(output_error);
+    }
+    let row = |(kind, entry): &(&str, Entry)| {
+        [kind, &*entry.path, entry.unit, &entry.default, &entry.allowed, &entry.meaning]
+            .map(|text| Value::Text(text.to_owned()))
+            .to_vec()
+    };
+    let rows: Vec<Vec<Value>> = found.iter().map(row).collect();
+    print_rows(&["file", "key", "unit", "default", "allowed", "meaning"], &rows, format, out)
+}
+
+fn print_schema(of: SchemaOf, out: &mut dyn Write) -> Result<()> {
+    let schema = match of {
+        SchemaOf::Study => schema::study_schema(),
+        SchemaOf::Scene => schema::scene_schema(),
+    };
+    // One space for each level keeps it readable and small.
+    let formatter = PrettyFormatter::with_indent(b" ");
+    let mut serializer = Serializer::with_formatter(&mut *out, formatter);
+    let written = schema.serialize(&mut serializer).map_err(std::io::Error::from);
+    written.and_then(|()| writeln!(out)).map_err(output_error)
+}
+
+/// A key on a few lines: path, then unit, default and range, then meaning.
+fn described(kind: &str, entry: &Entry) -> String {
+    let mut lines = vec![match kind {
+        COLUMN => format!("{} ({kind})", entry.path),
+        _ => entry.path.clone(),
+    }];
+    let before_default = if entry.default == REQUIRED { "" } else { "default " };
+    let facts =
+        [("unit ", entry.unit), (before_default, &entry.default), ("allowed ", &entry.allowed)];
+    let facts = facts.iter().filter(|(_, text)| !text.is_empty());
+    let facts: Vec<String> = facts.map(|(name, text)| format!("{name}{text}")).collect();
+    if !facts.is_empty() {
+        lines.push(facts.join("; "));
+    }
+    let mut words = entry.meaning.split_whitespace().peekable();
+    while let Some(first) = words.next() {
+        let mut line = first.to_owned();
+        let fits =
+            |line: &str, word: &str| line.chars().count() + 1 + word.chars().count() <= LINE_WIDTH;
+        while let Some(word) = words.next_if(|word| fits(&line, word)) {
+            line.extend([" ", word]);
+        }
+        lines.push(line);
+    }
+    lines.join("\n    ") + "\n"
+}
+
+/// The keys with this name; else those with the word in their name; else the columns of the table with it in
+/// theirs; else the keys with it in their meaning. Notes go to stderr.
+fn search(file: FileKind, word: &str) -> Result<Vec<(&'static str, Entry)>> {
+    let lower = word.trim().to_lowercase();
+    let keys = entries(file);
+    // Another case of one letter is another key: N panels, n subdivisions.
+    let exact = |entry: &Entry| entry.path == word || leaf(&entry.path) == word;
+    let exact_any_case = |entry: &Entry| leaf(&entry.path).to_lowercase() == lower;
+    let in_name = |entry: &Entry| has_word(&entry.path, &lower);
+    let in_meaning = |entry: &Entry| has_word(&entry.meaning, &lower);
+    let tests: [&dyn Fn(&Entry) -> bool; 3] = [&exact, &exact_any_case, &in_name];
+    let of_file =
+        |entries: Vec<Entry>| entries.into_iter().map(|entry| (file.name(), entry)).collect();
+    for test in tests {
+        let (found, others): (Vec<Entry>, Vec<Entry>) = keys.iter().cloned().partition(test);
+        if found.is_empty() {
+            continue;
+        }
+        let further = others.iter().filter(|entry| in_meaning(entry));
+        let names: Vec<&str> = further.map(|entry| entry.path.as_str()).collect();
+        if !names.is_empty() {
+            let more = if names.len() > MAX_FURTHER { ", …" } else { "" };
+            let shown = names[..names.len().min(MAX_FURTHER)].join(", ");
+            eprintln!("billow: also in the meaning of {shown}{more}");
+        }
+        return Ok(of_file(found));
+    }
+    let columns = columns();
+    let is_long = lower.chars().count() >= MIN_PART;
+    let in_column = |entry: &Entry| is_long && entry.path.contains(&lower);
+    for test in [&|entry: &Entry| entry.path == lower, &in_column as &dyn Fn(&Entry) -> bool] {
+        let found: Vec<Entry> = columns.iter().filter(|entry| test(entry)).cloned().collect();
+        let names: Vec<&str> = found.iter().map(|entry| entry.path.as_str()).collect();
+        if let [first, others @ ..] = &*names {
+            let are = if others.is_empty() {
+                "is a column of the table, not a key"
+            } else {
+                "are columns of the table, not keys"
+            };
+            eprintln!("billow: {} {are}: billow table --columns {first}", names.join(", "));
+            return Ok(found.into_iter().map(|entry| (COLUMN, entry)).collect());
+        }
+    }
+    let meant: Vec<Entry> = keys.iter().filter(|entry| in_meaning(entry)).cloned().collect();
+    if meant.is_empty() {
+        return Err(not_found(file, word, &keys, &columns).into());
+    }
+    Ok(of_file(meant))
+}
+
+/// The last part of a path.
+fn leaf(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or_default()
+}
+
+/// Whether a text has a word: a short one as a whole word.
+fn has_word(text: &str, lower: &str) -> bool {
+    let text = text.to_lowercase();
+    if lower.chars().count() < MIN_PART {
+        text.split(|c: char| !c.is_alphanumeric()).any(|word| word == lower)
+    } else {
+        text.contains(lower)
+    }
+}
+
+/// The columns of the table, also those of mesh errors.
+fn columns() -> Vec<Entry> {
+    let entry = |path: &str, unit, meaning| Entry {
+        path: path.to_owned(),
+        unit,
+        default: String::new(),
+        allowed: String::new(),
+        meaning,
+    };
+    let of_row =
+        COLUMNS.iter().map(|column| entry(column.name, column.unit, column.meaning.to_owned()));
+    let of_errors = PROMISED.iter().map(|promised| {
+        entry(promised.error_column, promised.measure.column().unit, promised.meaning())
+    });
+    of_row.chain(of_errors).collect()
+}
+
+/// The error of a word that no key and no column has, with the nearest names of both.
+fn not_found(file: FileKind, word: &str, keys: &[Entry], columns: &[Entry]) -> InputError {
+    let mut names: Vec<&str> = keys.iter().chain(columns).map(|entry| leaf(&entry.path)).collect();
+    let mut near: Vec<&str> = Vec::new();
+    while near.len() < MAX_NEAREST
+        && let Some(name) = nearest(word, names.iter().copied())
+    {
+        names.retain(|known| *known != name);
+        near.push(name);
+    }
+    let shown = quote::echo(word);
+    let (other, command) = match file {
+        FileKind::Study => (FileKind::Scene, format!("billow keys --scene {shown}")),
+        FileKind::Scene => (FileKind::Study, format!("billow keys {shown}")),
+    };
+    let lower = word.to_lowercase();
+    let has = |entry: &Entry| has_word(&entry.path, &lower) || has_word(&entry.meaning, &lower);
+    let hint = if !near.is_empty() {
+        format!("nearest: {}", near.join(", "))
+    } else if entries(other).iter().any(has) {
+        format!("the {} file has such a key: {command}", other.name())
+    } else {
+        "billow keys prints every key".to_owned()
+    };
+    InputError {
+        file: "billow keys".to_owned(),
+        key: String::new(),
+        value: String::new(),
+        problem: format!(
+            "no key of a {} file has \"{shown}\" in its name or meaning, and no column of the table in \
+             its name",
+            file.name()
+        ),
+        allowed: "a part of a name or of a meaning, as in billow keys thickness".to_owned(),
+        hint,
+    }
+}
