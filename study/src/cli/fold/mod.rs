@@ -6,14 +6,13 @@ use std::path::{Path, PathBuf};
 use billow_solver::geometry::fold::{Caps, Chirality, Fit, FoldDesign, FoldError, FoldPattern};
 use billow_solver::geometry::mesh::{Mesh, Shape};
 use billow_solver::geometry::mesh_io::{fold as fold_text, obj};
-use clap::ValueEnum;
-use serde_json::Value as Json;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::options::{OutputOptions, QuietOption};
 use super::print::print_rows;
 use super::{Format, output_error};
-use crate::input::keys;
-use crate::input::study_file::Json as Typed;
+use crate::input::keys::{self, CAPS, CHIRALITIES, FITS, Named};
+use crate::input::study_file::Json;
 use crate::input::value::Value;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{Disk, Files, disk_error, write_output};
@@ -28,8 +27,8 @@ mod answer;
 pub struct Args {
     /// The given quantities: `cone` (top radius, height), `angles` (alpha1/phi and the half angle,
     /// or a nominal top radius and height), `height` (height, alpha1/phi).
-    #[arg(long, value_enum, default_value = "cone")]
-    fit: FitArg,
+    #[arg(long, value_parser = one_of(&FITS), default_value = "cone")]
+    fit: Fit,
     /// N, number of panels of a ring, at least 4.
     #[arg(long, visible_alias = "N", value_name = "N")]
     panels: u32,
@@ -52,8 +51,8 @@ pub struct Args {
     #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     alpha1_over_phi: Option<String>,
     /// Direction of rotation of successive storeys.
-    #[arg(long, value_enum, default_value = "same")]
-    chirality: ChiralityArg,
+    #[arg(long, value_parser = one_of(&CHIRALITIES), default_value = "same")]
+    chirality: Chirality,
     /// Height of the stowed stack [default: 40 mm, or the largest height that this design can have,
     /// if that is less].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
@@ -62,8 +61,8 @@ pub struct Args {
     #[arg(long, value_name = "n", default_value_t = 8)]
     subdivisions: u32,
     /// Shape of the caps; circular caps exist for the erected shape only.
-    #[arg(long, value_enum, default_value = "polygon")]
-    caps: CapsArg,
+    #[arg(long, value_parser = one_of(&CAPS), default_value = "polygon")]
+    caps: Caps,
     /// Write `crease_pattern.fold`, `crease_pattern.svg`, `flat.obj`, `stowed.obj`,
     /// `developed.obj` and `erected.obj` to this folder.
     #[arg(long, value_name = "DIR")]
@@ -77,23 +76,13 @@ pub struct Args {
     quiet: QuietOption,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum FitArg {
-    Cone,
-    Angles,
-    Height,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ChiralityArg {
-    Same,
-    Alternate,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum CapsArg {
-    Polygon,
-    Circular,
+/// A parser of the words of a key.
+fn one_of<T: Copy + Send + Sync>(words: &'static [Named<T>]) -> impl TypedValueParser<Value = T> {
+    let known = words.iter().map(|word| PossibleValue::new(word.name).help(word.meaning));
+    PossibleValuesParser::new(known).map(|text| {
+        let named = words.iter().find(|word| word.name == text);
+        named.unwrap_or_else(|| unreachable!("the parser allows only these words")).value
+    })
 }
 
 /// Runs `billow fold`. An infeasible design is an answer: it prints the reason and the nearest values.
@@ -105,31 +94,26 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     if args.out.is_some() {
         check_size(&design)?;
     }
-    let solved = match solve(&design, args.stowed_height.is_none()) {
+    let answer = match solve(&design, args.stowed_height.is_none()) {
         Ok(pattern) => Ok(pattern),
         Err(FoldError::Infeasible { reason, nearest }) => Err((reason, nearest)),
         Err(FoldError::Invalid { key, problem }) => {
             return Err(refused(&option(key), "", &problem, ""));
         }
     };
-    let flap = match (&args.glue_flaps, &solved) {
+    let flap = match (&args.glue_flaps, &answer) {
         (Some(text), Ok(pattern)) => Some(flap_width(text, pattern)?),
         _ => None,
     };
-    match (args.output.format(), &solved) {
-        (Format::Json, Ok(pattern)) => print_json(&answer::feasible_json(pattern), out)?,
-        (Format::Json, Err((reason, nearest))) => {
-            print_json(&answer::infeasible_json(&design, reason, nearest), out)?;
+    match args.output.format() {
+        Format::Json => {
+            writeln!(out, "{:#}", answer::json(&design, &answer)).map_err(output_error)?;
         }
-        (format, solved) => {
-            let rows = match solved {
-                Ok(pattern) => answer::rows(pattern),
-                Err((reason, nearest)) => answer::infeasible_rows(reason, nearest),
-            };
-            print_rows(&["quantity", "value", "unit"], &rows, format, out)?;
+        format => {
+            print_rows(&["quantity", "value", "unit"], &answer::rows(&answer), format, out)?;
         }
     }
-    match (&args.out, solved) {
+    match (&args.out, answer) {
         (Some(folder), Ok(pattern)) => write_files(&Disk, folder, &pattern, flap, args.quiet.quiet),
         (Some(folder), Err(_)) => {
             eprintln!("billow: infeasible design, nothing is written to {}", folder.display());
@@ -143,11 +127,7 @@ fn design(args: &Args) -> Result<FoldDesign> {
     let given =
         |key: &str, text: &Option<String>| text.as_deref().map(|text| value(key, text)).transpose();
     Ok(FoldDesign {
-        fit: match args.fit {
-            FitArg::Cone => Fit::Cone,
-            FitArg::Angles => Fit::Angles,
-            FitArg::Height => Fit::Height,
-        },
+        fit: args.fit,
         panels: args.panels,
         storeys: args.storeys,
         bottom_radius: value("bottom_radius", &args.bottom_radius)?,
@@ -155,17 +135,11 @@ fn design(args: &Args) -> Result<FoldDesign> {
         height: given("height", &args.height)?,
         half_angle: given("half_angle", &args.half_angle)?,
         alpha1_over_phi: given("alpha1_over_phi", &args.alpha1_over_phi)?,
-        chirality: match args.chirality {
-            ChiralityArg::Same => Chirality::Same,
-            ChiralityArg::Alternate => Chirality::Alternate,
-        },
+        chirality: args.chirality,
         stowed_height: given("stowed_height", &args.stowed_height)?
             .unwrap_or(DEFAULT_STOWED_HEIGHT),
         subdivisions: args.subdivisions,
-        caps: match args.caps {
-            CapsArg::Polygon => Caps::Polygon,
-            CapsArg::Circular => Caps::Circular,
-        },
+        caps: args.caps,
     })
 }
 
@@ -193,8 +167,8 @@ fn solve(design: &FoldDesign, lower: bool) -> std::result::Result<FoldPattern, F
 /// and both must be in the range of the key.
 fn value(key: &str, text: &str) -> Result<f64> {
     let json = match text.trim().parse::<f64>() {
-        Ok(number) => Typed::Number(number),
-        Err(_) => Typed::Text(text.to_owned()),
+        Ok(number) => Json::Number(number),
+        Err(_) => Json::Text(text.to_owned()),
     };
     let known = keys::find(&format!("design.{key}")).map(|index| &keys::KEYS[index]);
     let refuse = |problem: &str, allowed: &str| Err(refused(&option(key), text, problem, allowed));
@@ -209,7 +183,9 @@ fn value(key: &str, text: &str) -> Result<f64> {
 /// width; the limit 0.4 of the shortest edge keeps a margin.
 fn flap_width(text: &str, pattern: &FoldPattern) -> Result<f64> {
     let width = value("top_radius", text).map_err(|error| match error {
-        Error::Input(error) => Error::Input(InputError { key: "--glue-flaps".to_owned(), ..error }),
+        Error::Input(error) => {
+            Error::Input(InputError { file: "--glue-flaps".to_owned(), ..error })
+        }
         other => other,
     })?;
     let top = pattern.lengths(pattern.design.storeys - 1);
@@ -222,14 +198,7 @@ fn flap_width(text: &str, pattern: &FoldPattern) -> Result<f64> {
 }
 
 fn refused(option: &str, value: &str, problem: &str, allowed: &str) -> Error {
-    Error::Input(InputError {
-        file: "fold".to_owned(),
-        key: option.to_owned(),
-        value: value.to_owned(),
-        problem: problem.to_owned(),
-        allowed: allowed.to_owned(),
-        hint: "see `billow fold --help`".to_owned(),
-    })
+    Error::invalid_option(option, value, problem, allowed, "see `billow fold --help`")
 }
 
 /// The option of a design key.
@@ -241,46 +210,30 @@ fn option(key: &str) -> String {
     }
 }
 
-fn print_json(answer: &Json, out: &mut dyn Write) -> Result<()> {
-    serde_json::to_writer_pretty(&mut *out, answer)
-        .map_err(std::io::Error::from)
-        .and_then(|()| writeln!(out))
-        .map_err(output_error)
-}
-
 /// Most elements of a shape in an .obj file. Chosen: larger files fill the memory, and no program opens
 /// them.
 const MAX_OBJ_ELEMENTS: u64 = 4_000_000;
-
-fn check_size(design: &FoldDesign) -> Result<()> {
-    let (n, elements) = (design.subdivisions, design.elements());
-    if elements <= MAX_OBJ_ELEMENTS {
-        return check_memory(design);
-    }
-    let problem = format!("gives shapes with {elements} elements");
-    let allowed = format!("2 N (M + 1) n² up to {MAX_OBJ_ELEMENTS} elements");
-    Err(refused("--subdivisions", &n.to_string(), &problem, &allowed))
-}
-
 /// Memory of an element in the meshes and texts of all shapes, bytes. Measured: 330 to 400.
 const OBJ_ELEMENT: u64 = 450;
 
-/// Refuses shapes for which this process has no memory.
-fn check_memory(design: &FoldDesign) -> Result<()> {
-    let needed = OBJ_ELEMENT * design.elements();
-    match memory::smallest(&memory::limits(), 1) {
-        Some(limit) if needed > limit.usable_alone() => {
-            let problem = format!(
-                "gives shapes with {} elements: about {} of memory needed",
-                design.elements(),
-                memory::size(needed)
-            );
-            let usable = memory::size(limit.usable_alone());
-            let allowed = format!("up to {usable}, what the program leaves of {limit}");
-            Err(refused("--subdivisions", &design.subdivisions.to_string(), &problem, &allowed))
-        }
-        _ => Ok(()),
-    }
+/// Refuses shapes that are too large for a file, or for the memory of this process.
+fn check_size(design: &FoldDesign) -> Result<()> {
+    let elements = design.elements();
+    let needed = OBJ_ELEMENT * elements;
+    let limit = memory::smallest(&memory::limits(), 1);
+    let (problem, allowed) = if elements > MAX_OBJ_ELEMENTS {
+        (String::new(), format!("2 N (M + 1) n² up to {MAX_OBJ_ELEMENTS} elements"))
+    } else if let Some(limit) = limit.filter(|limit| needed > limit.usable_alone()) {
+        let usable = memory::size(limit.usable_alone());
+        (
+            format!(": about {} of memory needed", memory::size(needed)),
+            format!("up to {usable}, what the program leaves of {limit}"),
+        )
+    } else {
+        return Ok(());
+    };
+    let problem = format!("gives shapes with {elements} elements{problem}");
+    Err(refused("--subdivisions", &design.subdivisions.to_string(), &problem, &allowed))
 }
 
 fn write_files(

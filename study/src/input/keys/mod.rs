@@ -27,10 +27,10 @@ pub use strategy::{CAPSULE_SUPPORT_KEYS, STRATEGY_KEYS, WINDOW_KEYS};
 pub(crate) use study::GRID_MEANINGS;
 pub use study::{KEYS, SECTIONS};
 pub use table::{SCENE, STUDY, Table, find, index, short_name};
+pub(crate) use words::{CAPS, CHIRALITIES, FITS, Named, PROFILES, SUPPORT_PLACES};
 pub use words::{
     MODELS, Model, ResidualGas, Word, default_integrator, ignored_by_integrator, model,
 };
-pub(crate) use words::{PROFILES, SUPPORT_PLACES};
 
 #[cfg(test)]
 mod tests;

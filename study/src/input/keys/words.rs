@@ -199,7 +199,7 @@ pub(super) const MODEL_KINDS: [Named<ModelKind>; MODELS.len()] = {
 };
 
 /// Values of `design.fit`.
-pub(super) const FITS: [Named<Fit>; 3] = [
+pub(crate) const FITS: [Named<Fit>; 3] = [
     word("cone", Fit::Cone, "top_radius and height; phi follows"),
     word(
         "angles",
@@ -210,13 +210,13 @@ pub(super) const FITS: [Named<Fit>; 3] = [
 ];
 
 /// Values of `design.chirality`.
-pub(super) const CHIRALITIES: [Named<Chirality>; 2] = [
+pub(crate) const CHIRALITIES: [Named<Chirality>; 2] = [
     word("same", Chirality::Same, "all storeys turn in one direction"),
     word("alternate", Chirality::Alternate, "successive storeys turn in opposite directions"),
 ];
 
 /// Values of `design.caps`; a study has the first alone.
-pub(super) const CAPS: [Named<Caps>; 2] = [
+pub(crate) const CAPS: [Named<Caps>; 2] = [
     word("polygon", Caps::Polygon, "N-gons sewn to the ring fold lines"),
     word("circular", Caps::Circular, "discs; erected shape only"),
 ];
