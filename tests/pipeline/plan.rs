@@ -1,4 +1,4 @@
-//! From study text to jobs: ids, grids, filters, overrides, old names, generations.
+//! From study text to jobs: ids, grids, filters, overrides, generations.
 #![expect(clippy::float_cmp, reason = "planning moves numbers, it computes none: they are equal")]
 
 use std::time::Instant;
@@ -418,49 +418,6 @@ fn ten_thousand_jobs_are_planned() {
     assert!(error.problem.contains("999000 points"), "{error}");
     assert!(error.allowed.contains("250000"), "{error}");
     assert!(error.hint.contains("seed (1000 values) and step_limit (999 values)"), "{error}");
-}
-
-#[test]
-fn old_names_of_keys_give_the_same_jobs_with_a_note() {
-    let study = |margin: &str, rate: &str, grid: Json| {
-        let mut study = capsule();
-        study["outputs"] = json!({"thresholds": {margin: 0.05}});
-        study["strategies"] = json!({"late": {"inflow": [{"from": 0.1, rate: "1 g/s"}]}});
-        study["strategy"] = "late".into();
-        study["grid"] = grid;
-        study
-    };
-    let (old, new) = (("close_margin", "rate"), ("near_threshold_margin", "mass_flow_rate"));
-    let grid = |(margin, rate): (&str, &str)| {
-        json!({
-            format!("strategies.late.inflow[0].{rate}"): ["1 g/s", "2 g/s"],
-            margin: [0.01, 0.02],
-            "filter": format!("{margin} < 0.5"),
-        })
-    };
-    let [old_study, new_study] = [old, new].map(|names| study(names.0, names.1, grid(names)));
-    let sets = ["outputs.thresholds.stalled_volume=0.8"];
-    assert_eq!(plan(&old_study, &sets), plan(&new_study, &sets));
-
-    let folder = tempfile::tempdir().unwrap();
-    let stderr = |study: &Json, arguments: &[&str]| {
-        std::fs::write(folder.path().join("study.json"), study.to_string()).unwrap();
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_billow"));
-        command.args(["plan", "study.json"]).args(arguments).current_dir(folder.path());
-        String::from_utf8(command.output().unwrap().stderr).unwrap()
-    };
-    let notes = stderr(&old_study, &[]);
-    for note in ["is now called near_threshold_margin", "is now called mass_flow_rate"] {
-        assert_eq!(notes.matches(note).count(), 1, "{note}: {notes}");
-    }
-    let notes = stderr(&capsule(), &["--set", "close_margin=0.03"]);
-    assert!(notes.contains("close_margin is now called near_threshold_margin"), "{notes}");
-    assert!(!stderr(&new_study, &[]).contains("is now called"));
-
-    let mut both = new_study;
-    both["outputs"]["thresholds"]["close_margin"] = json!(0.01);
-    let error = try_study(&both, &[]).unwrap_err().to_string();
-    assert!(error.contains("outputs.thresholds.close_margin: is the old name of"), "{error}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Keys of a study as columns of its table: `film.loss_factor`, `design.N`. A key that the study does not
 //! vary has one value in every row.
 
+use crate::input::expression;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
 use crate::job::row::{CellType, current_column_name};
@@ -66,38 +67,7 @@ fn constant(name: &str, key: StudyKey, rows: usize, units: &DisplayUnits) -> Col
     }
 }
 
-/// The names in a condition, outside of quotes: letters, digits, `_`, dots and numbers in brackets.
+/// The names in a condition.
 pub fn names_in(condition: Option<&str>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    let mut quote = None;
-    let mut name = String::new();
-    for symbol in condition.unwrap_or_default().chars().chain([' ']) {
-        let in_name = symbol.is_ascii_alphanumeric() || matches!(symbol, '_' | '.' | '[' | ']');
-        if quote.is_none() && in_name {
-            name.push(symbol);
-            continue;
-        }
-        if !name.is_empty() {
-            names.push(std::mem::take(&mut name));
-        }
-        if matches!(symbol, '\'' | '"') {
-            quote = if quote == Some(symbol) { None } else { quote.or(Some(symbol)) };
-        }
-    }
-    names
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_a_condition_are_found() {
-        let condition =
-            "film.loss_factor > 0.01 and (strategy=='late' or strategies.a.inflow[0].to<1)";
-        let expected =
-            ["film.loss_factor", "0.01", "and", "strategy", "or", "strategies.a.inflow[0].to", "1"];
-        assert_eq!(names_in(Some(condition)), expected.map(str::to_owned));
-        assert!(names_in(None).is_empty());
-    }
+    condition.map(expression::names).unwrap_or_default()
 }

@@ -6,7 +6,6 @@ pub mod fraction;
 pub mod keys;
 pub(crate) mod overrides;
 pub(crate) mod plausible;
-pub mod renamed;
 pub mod schema;
 pub(crate) mod settings;
 pub(crate) mod source;

@@ -8,7 +8,6 @@
 //! - A list for a key that takes one value is an axis in a study: `N=[5, 6]` is `grid.N=[5, 6]`.
 
 use crate::input::keys::{self, KeyKind, Table};
-use crate::input::renamed;
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
 use crate::platform::error::InputError;
@@ -22,87 +21,49 @@ const REPLICATES: &str = "replicates";
 /// Members of a grid that are not the axis of a key.
 const GRID_WORDS: [&str; 3] = ["zip", "points", "filter"];
 
-/// Gives the keys of a file their new names, then applies the overrides in order, and records their
-/// flags in `source`. Returns the notes about old names.
+/// Applies the overrides in order, and records their flags in `source`. Returns what a reader of the plan
+/// must know about them.
 pub(crate) fn apply(
     tree: &mut Json,
     sets: &[String],
     table: &Table,
     source: &mut Source,
 ) -> Result<Vec<String>, InputError> {
-    let mut notes = renamed::update(tree, source)?;
-    let mut given: Vec<Given> = Vec::new();
+    let mut notes = Vec::new();
     for set in sets {
-        let new = Given::apply(tree, set, table, source, &mut notes)?;
-        if let Some(other) = given.iter().find(|other| other.is_other_name_of(&new)) {
-            let mut error = refused(set, "gives one key by two names");
-            error.allowed = format!("--set {} alone", new.path);
-            error.hint = format!("remove {} or {}", flag(set), flag(&other.set));
-            return Err(error);
-        }
-        given.push(new);
+        let path = apply_one(tree, set, table, &mut notes)?;
+        source.sets.push((path, flag(set)));
     }
-    // An override may give a whole object, with old names in it.
-    notes.extend(renamed::update(tree, source)?);
     Ok(notes)
 }
 
-/// One override that was applied.
-struct Given {
-    set: String,
-    path: String,
-    /// Whether it has the old name of its key.
-    old: bool,
-}
-
-impl Given {
-    fn is_other_name_of(&self, other: &Self) -> bool {
-        self.path == other.path && self.old != other.old
+/// Applies one override. Returns the path of its key.
+fn apply_one(
+    tree: &mut Json,
+    set: &str,
+    table: &Table,
+    notes: &mut Vec<String>,
+) -> Result<String, InputError> {
+    let Some((name, value)) = set.split_once('=') else {
+        return Err(refused(set, "has no `=`"));
+    };
+    let name = name.trim();
+    if name.is_empty() {
+        return Err(refused(set, "has no key before the `=`"));
     }
-
-    /// Applies one override.
-    fn apply(
-        tree: &mut Json,
-        set: &str,
-        table: &Table,
-        source: &mut Source,
-        notes: &mut Vec<String>,
-    ) -> Result<Self, InputError> {
-        let Some((name, value)) = set.split_once('=') else {
-            return Err(refused(set, "has no `=`"));
-        };
-        let name = name.trim();
-        if name.is_empty() {
-            return Err(refused(set, "has no key before the `=`"));
-        }
-        let value = value_of(set, value)?;
-        let has_grid = table.structured.iter().any(|(path, _)| *path == "grid");
-        if !has_grid && (name == "grid" || name.starts_with("grid.")) {
-            let mut error = refused(set, "a scene has no grid");
-            "set the key itself, or use a study file with billow plan".clone_into(&mut error.hint);
-            return Err(error);
-        }
-        let mut sections = [GRID, REPLICATES].into_iter().filter(|_| has_grid);
-        let axis = sections
-            .find_map(|section| Some((section, name.strip_prefix(section)?.strip_prefix('.')?)));
-        let (section, axis) = axis.unzip();
-        let current = renamed::current(axis.unwrap_or(name));
-        let old = current.is_some();
-        if let Some(new) = &current {
-            notes.push(format!(
-                "{}: {} is now called {new}; the next version refuses the old name",
-                flag(set),
-                axis.unwrap_or(name)
-            ));
-        }
-        let name = current.as_deref().unwrap_or(axis.unwrap_or(name)).to_owned();
-        let path = match axis {
-            Some(_) => set_axis(tree, section.unwrap_or(GRID), &name, value),
-            None => set_key(tree, &name, value, table, has_grid, set, notes)?,
-        };
-        source.sets.push((path.clone(), flag(set)));
-        Ok(Self { set: set.to_owned(), path, old })
+    let value = value_of(set, value)?;
+    let has_grid = table.structured.iter().any(|(path, _)| *path == GRID);
+    if !has_grid && (name == GRID || name.starts_with("grid.")) {
+        let mut error = refused(set, "a scene has no grid");
+        "set the key itself, or use a study file with billow plan".clone_into(&mut error.hint);
+        return Err(error);
     }
+    for section in [GRID, REPLICATES].into_iter().filter(|_| has_grid) {
+        if let Some(axis) = name.strip_prefix(section).and_then(|rest| rest.strip_prefix('.')) {
+            return Ok(set_axis(tree, section, axis, value));
+        }
+    }
+    set_key(tree, name, value, table, has_grid, set, notes)
 }
 
 fn flag(set: &str) -> String {

@@ -78,8 +78,8 @@ pub struct Study {
     pub name: String,
     /// The question it answers, in words.
     pub question: String,
-    /// Keys that the file gives by an old name.
-    renamed: Vec<String>,
+    /// What `--set` replaces in the file.
+    notes: Vec<String>,
     /// Warnings about its values.
     warnings: Vec<String>,
     /// Whether one of them is about points.
@@ -168,7 +168,7 @@ impl Study {
             let error = source.error("format", "\"billow-scene\"", "is a scene, not a study", "");
             return Err(InputError { hint: format!("billow solve {file}"), ..error });
         }
-        let renamed = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
+        let notes = overrides::apply(&mut tree, sets, &STUDY, &mut source)?;
         let is_auto = auto::is_auto(&tree);
         if is_auto {
             auto::replace_model(&mut tree);
@@ -188,7 +188,7 @@ impl Study {
             return Ok(Self {
                 name,
                 question,
-                renamed,
+                notes,
                 warnings,
                 warns_of_points: false,
                 units,
@@ -225,7 +225,7 @@ impl Study {
         Ok(Self {
             name,
             question,
-            renamed,
+            notes,
             warnings,
             warns_of_points,
             units,
@@ -343,9 +343,9 @@ impl Study {
         self.warns_of_points
     }
 
-    /// What a reader of the plan must know: keys given by an old name.
+    /// What a reader of the plan must know: an axis that an override replaces.
     pub(crate) fn notes(&self) -> &[String] {
-        &self.renamed
+        &self.notes
     }
 
     /// The points of the study, in plan order: those of the product that the filter keeps, and the single

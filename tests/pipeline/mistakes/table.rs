@@ -270,9 +270,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         &["--set N=[5,6: invalid JSON: this [ is not closed", "next: add the missing ]"],
     ),
     mistake(
-        "--set of a key by its old and its new name",
-        "plan grid.json --set film.viscosity=0 --set film.numerical_damping=0",
-        &["gives one key by two names", "next: remove --set"],
+        "--set of a misspelt key in a section",
+        "plan grid.json --set film.thiknes=1",
+        &["film.thiknes", "did you mean thickness?"],
     ),
     mistake(
         "a misspelt column",

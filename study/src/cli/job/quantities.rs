@@ -6,7 +6,6 @@ use super::Inspected;
 use crate::accuracy::{NO_ERROR_REASON, is_error_column};
 use crate::cli::{limits, remedies};
 use crate::input::keys::{self, KEYS};
-use crate::input::renamed;
 use crate::input::value::Value;
 use crate::job::row::{Cells, ColumnGroup};
 use crate::platform::error::{Error, Result};
@@ -115,11 +114,21 @@ fn show_in_units(row: &mut [Value], job: &Inspected) {
     }
 }
 
-/// The path of a value in a stored scene as a file has it: with the current name of its key, and the
-/// number of a list item in brackets.
+/// Keys that a stored scene gives another name than a study file: stored name, name of the key. The stored
+/// names stay, because job ids are hashes of them.
+const STORED_NAMES: [(&str, &str); 3] = [
+    ("viscosity", "numerical_damping"),
+    ("close_margin", "near_threshold_margin"),
+    ("rate", "mass_flow_rate"),
+];
+
+/// The path of a value in a stored scene as a file has it: with the name of its key, and the number of a
+/// list item in brackets.
 fn current_path(stored: &str) -> String {
     let mut path = String::with_capacity(stored.len());
     for part in stored.split('.') {
+        let name = STORED_NAMES.iter().find(|(stored, _)| *stored == part);
+        let part = name.map_or(part, |(_, name)| name);
         let separator = if path.is_empty() { "" } else { "." };
         if !path.is_empty() && part.parse::<usize>().is_ok() {
             path.extend(["[", part, "]"]);
@@ -127,7 +136,7 @@ fn current_path(stored: &str) -> String {
             path.extend([separator, part]);
         }
     }
-    renamed::current(&path).unwrap_or(path)
+    path
 }
 
 /// SI unit of a number in a scene, given its dotted key; empty without a unit.

@@ -55,12 +55,11 @@ impl Expression {
     }
 }
 
-/// The names in an expression and the range of bytes of each, in order; none where the text is not an
-/// expression.
-pub(crate) fn names(text: &str) -> Vec<(String, (usize, usize))> {
+/// The names in a text, in order; none where it is not an expression.
+pub(crate) fn names(text: &str) -> Vec<String> {
     let tokens = lexer::tokens(text).unwrap_or_default();
-    let name = |(token, span)| match token {
-        lexer::Token::Name(name) => Some((name, span)),
+    let name = |(token, _)| match token {
+        lexer::Token::Name(name) => Some(name),
         _ => None,
     };
     tokens.into_iter().filter_map(name).collect()

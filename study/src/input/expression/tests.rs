@@ -188,3 +188,13 @@ proptest! {
         prop_assert_eq!(holds(&text), either, "{}", text);
     }
 }
+
+#[test]
+fn names_of_a_condition_are_found() {
+    let condition = "film.loss_factor > 0.01 and (strategy=='late' or strategies.a.inflow[0].to<1)";
+    let found = names(condition);
+    for name in ["film.loss_factor", "strategy", "strategies.a.inflow[0].to"] {
+        assert!(found.iter().any(|known| known == name), "{name}: {found:?}");
+    }
+    assert!(names("a 'b").is_empty());
+}

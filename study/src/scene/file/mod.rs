@@ -35,11 +35,11 @@ use serde_json::json;
 
 use crate::input::keys::draft::Draft;
 use crate::input::keys::{GRAVITY, KEYS, Key, Refusal, SCENE, named};
+use crate::input::overrides;
 use crate::input::settings::{Settings, check_sample_interval, check_version, missing_key};
 use crate::input::source::Source;
 use crate::input::study_file::{self, Json};
 use crate::input::value::Value;
-use crate::input::{overrides, renamed};
 use crate::job::canonical_json;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
@@ -278,13 +278,12 @@ fn check_film(
     Ok(film)
 }
 
-/// The scene as stored, and the hash of everything that decides its results. The hash uses the old name
-/// of a renamed key, so that a new name does not change it.
+/// The scene as stored, and the hash of everything that decides its results.
 fn identity(tree: &Json, reader: &Reader) -> (serde_json::Value, String) {
-    let with_files = |tree: &Json| json!({"scene": to_value(tree), "files": reader.hashes});
-    let input = with_files(&renamed::with_old_names(tree));
+    let input = json!({"scene": to_value(tree), "files": reader.hashes});
     let identity = json!({"physics_version": PHYSICS_VERSION, "input": input});
-    (with_files(tree), bytes_hash(canonical_json(&identity).as_bytes()))
+    let hash = bytes_hash(canonical_json(&identity).as_bytes());
+    (input, hash)
 }
 
 /// A value, or its error.

@@ -85,8 +85,7 @@ impl Grid {
 
     /// The first replicate that a condition names.
     fn replicate_in(&self, condition: &str) -> Option<String> {
-        let mut names = expression::names(condition).into_iter().map(|(name, _)| name);
-        names.find(|name| {
+        expression::names(condition).into_iter().find(|name| {
             let replicate = |column: &usize| self.columns[*column].target.has_name(name);
             self.replicates().any(|axis| axis.columns.iter().any(replicate))
         })
