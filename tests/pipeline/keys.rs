@@ -56,21 +56,6 @@ fn keys_are_found_by_name_and_by_meaning() {
 }
 
 #[test]
-fn a_word_without_a_key_gives_the_nearest_names() {
-    for (arguments, hint) in [
-        (&["keys", "thicknes_"][..], "nearest: thickness"),
-        (&["keys", "adhesion_range"], "billow keys --scene adhesion_range"),
-        (&["keys", "xylophone"], "billow keys prints every key"),
-    ] {
-        let output = billow(arguments);
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains(hint), "{error}");
-        assert!(output.stdout.is_empty());
-    }
-}
-
-#[test]
 fn the_schemas_are_small() {
     /// Largest size of a printed schema, bytes.
     const MAX_SCHEMA_SIZE: usize = 85_000;
@@ -88,4 +73,15 @@ fn an_error_column_is_found_and_auto_has_its_place() {
     let output = billow(&["plan", first, "--set", "model=atuo"]);
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(text.contains("\"auto\" can stand in the section solver"), "{text}");
+}
+
+#[test]
+fn help_shows_options_of_the_command_before_global_ones_and_lists_the_exit_codes() {
+    let help = stdout(&["table", "--help"]);
+    let positions = ["--columns", "Global options", "--results", "--format", "--quiet"]
+        .map(|text| help.find(text).unwrap_or_else(|| panic!("{text}: {help}")));
+    assert!(positions.is_sorted(), "{help}");
+    let help = stdout(&["--help"]);
+    assert!(help.contains("Exit codes:") && help.contains("130: Ctrl-C"), "{help}");
+    assert!(!help.contains("Global options"), "{help}");
 }

@@ -211,11 +211,6 @@ fn ranges_give_the_values_a_list_would() {
     }
     let whole = plan(&with_grid(json!({"N": {"from": 5, "to": 8, "step": 1}})), &[]);
     assert_eq!(column(&whole, "N"), integers(&[5, 6, 7, 8]));
-    let error = try_study(&with_grid(json!({"N": {"from": 5, "to": 8, "steps": 3}})), &[]);
-    assert!(error.unwrap_err().to_string().contains("is not a whole number"));
-    let range = json!({"compression": {"from": 0.1, "to": 0.75, "step": 0.2}});
-    let error = try_study(&with_grid(range), &[]).unwrap_err().to_string();
-    assert!(error.contains("does not end at `to`: its last step is 0.7"), "{error}");
 }
 
 #[test]
@@ -302,21 +297,6 @@ fn overrides_come_before_expansion() {
     let zipped = with_grid(json!({"zip": [{"N": [5, 6], "M": [3, 4]}]}));
     let error = try_study(&zipped, &["N=7"]).unwrap_err().to_string();
     assert!(error.contains("varies this key together with others (zip)"), "{error}");
-
-    for (set, problem) in [
-        ("film.thickness=thick", "--set film.thickness=thick: film.thickness = \"thick\""),
-        ("nonsense", "has no `=`"),
-        ("film.thicknes=1", "did you mean thickness?"),
-        ("film.thickness=[1, 2", "this [ is not closed"),
-        ("thiknes=1", "did you mean thickness?"),
-        ("desing.N=6", "did you mean design.N?"),
-        ("=1", "has no key"),
-        ("grid.filter=N >", "something is missing here"),
-        ("supports[3]=1", "names no place"),
-    ] {
-        let error = try_study(&study, &[set]).unwrap_err().to_string();
-        assert!(error.contains(problem) && error.contains("--set"), "{set}: {error}");
-    }
 }
 
 #[test]
@@ -404,14 +384,7 @@ fn ten_thousand_jobs_are_planned() {
         assert_eq!(ids.len(), 10_000, "every id is unique");
     }
 
-    // Grids that are too large are refused before they are expanded.
-    for axis in [
-        json!({"from": 0, "to": 1e9, "step": 1}),
-        json!({"from": 0, "to": 9, "steps": 1_000_000_000}),
-    ] {
-        let error = try_study(&with_grid(json!({"seed": axis})), &[]).unwrap_err();
-        assert!(error.problem.contains("a grid may have 250000 points"), "{error}");
-    }
+    // A grid that is too large is refused before it is expanded.
     let many: Vec<i64> = (0..1000).collect();
     let huge = with_grid(json!({"seed": many, "step_limit": (1..1000).collect::<Vec<i64>>()}));
     let error = try_study(&huge, &[]).unwrap_err();

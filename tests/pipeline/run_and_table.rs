@@ -122,27 +122,6 @@ fn table_selects_sorts_and_filters() {
 }
 
 #[test]
-fn invalid_columns_conditions_and_folders_give_exit_code_2() {
-    let folder = TestFolder::new(&small_grid());
-    folder.run(&["run", "grid.json", "-q"]);
-    for (arguments, expected) in [
-        (&["table", "--columns", "final_volum"][..], "did you mean final_volume?"),
-        (&["table", "--sort", "N:up"], "unknown direction"),
-        (&["table", "--where", "final_volum > 1"], "^"),
-        (&["table", "nowhere"], "nowhere"),
-        (&["table", "--results", "empty"], "no table here"),
-        (&["run", "grid.json", "--threads", "0"], "zero threads cannot run a job"),
-        (&["run", "missing.json"], "missing.json"),
-        (&["completions", "cobol"], "allowed: bash, elvish, fish"),
-    ] {
-        let output = folder.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
-        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
-        assert!(output.stdout.is_empty());
-    }
-}
-
-#[test]
 fn a_closed_output_pipe_is_no_error() {
     let folder = TestFolder::new(&small_grid());
     folder.run(&["run", "grid.json", "-q"]);
@@ -222,19 +201,4 @@ fn plan_reports_finished_jobs_and_forecasts_the_rest() {
     let other = ["plan", "grid.json", "--set", "solver.end_time=0.5 s"];
     let other = stderr(&folder.run(&other));
     assert!(other.contains("forecast: 16 jobs") && !other.contains("finished already"), "{other}");
-}
-
-#[test]
-fn a_study_and_a_scene_are_distinguished() {
-    let folder = TestFolder::new(&small_grid());
-    let study = stderr(&folder.run(&["solve", "grid.json"]));
-    assert!(
-        study.contains("grid: belongs to a study, not to a scene")
-            && study.contains("next: billow run grid.json"),
-        "{study}"
-    );
-    fs::write(folder.path().join("scene.json"), r#"{"format": "billow-scene"}"#).unwrap();
-    let scene = folder.run(&["run", "scene.json"]);
-    assert_eq!(scene.status.code(), Some(2));
-    assert!(stderr(&scene).contains("next: billow solve scene.json"), "{}", stderr(&scene));
 }

@@ -54,15 +54,6 @@ fn tables_show_the_units_of_the_study() {
     let by = ["compare", "-q", "--by", "mass_flow_rate", "--base", "1 g/s"];
     let compared = folder.stdout(&by);
     assert!(words(&compared)[1].starts_with(&["(degC)", "(g/s)", "(s)"]), "{compared}");
-    for (units, expected) in [
-        ("peak_vz", "has no `=`"),
-        ("peak_v=m/s", "names no parameter and no column"),
-        ("peak_vz=kg", "is a mass, not a velocity"),
-    ] {
-        let output = folder.run(&["table", "--units", units]);
-        assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
-    }
 }
 
 #[test]
@@ -80,18 +71,6 @@ fn a_study_says_in_which_units_it_is_shown() {
     let output = folder.run(&["table", "grid.json"]);
     assert!(!stderr(&output).contains("is not the study"), "{}", stderr(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("(us)"));
-
-    for (name, unit, expected) in [
-        ("t_90_z_rim", json!("kg"), "is a mass, not a time"),
-        ("t_90_z_rm", json!("ms"), "did you mean t_90_z_rim?"),
-        ("height", json!(3), "is a whole number, not a unit"),
-    ] {
-        study["units"] = json!({name: unit});
-        fs::write(folder.path().join("grid.json"), study.to_string()).unwrap();
-        let output = folder.run(&["plan", "grid.json"]);
-        assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
-    }
 }
 
 #[test]
@@ -112,14 +91,6 @@ fn a_likely_forgotten_unit_is_a_warning() {
     let set = stderr(&folder.run(&["plan", "grid.json", "--set", "solver.end_time=500"]));
     assert!(set.contains("warning: --set solver.end_time=500: solver.end_time = 500: is 500 s"));
     assert!(!stderr(&folder.run(&["plan", "grid.json", "-q"])).contains("warning"));
-    // A refused number says what to write as well.
-    let refused = folder.run(&["plan", "grid.json", "--set", "film.thickness=25"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        stderr(&refused).contains("if 25 um is meant, write \"25 um\""),
-        "{}",
-        stderr(&refused)
-    );
     let sane = TestFolder::new(&small_grid());
     assert!(!stderr(&sane.run(&["run", "grid.json"])).contains("warning"));
 }
@@ -226,9 +197,6 @@ fn keys_of_the_study_are_columns() {
     let sorted = folder.stdout(&["table", "-q", "--sort", "final_temperature:desc"]);
     assert!(words(&sorted)[0].contains(&"final_temperature"), "{sorted}");
 
-    let unquoted = folder.run(&["table", "--where", "mass_flow_rate == 5 g/s"]);
-    assert_eq!(unquoted.status.code(), Some(2));
-    assert!(stderr(&unquoted).contains("a number with a unit is written in quotes"));
     let pairs = ["compare", "-q", "--by", "mass_flow_rate", "--base", "1 g/s", "--json"];
     let pairs: Value = serde_json::from_str(
         &folder.stdout(&[&pairs[..], &["--where", "film.loss_factor < 1 %"]].concat()),
