@@ -7,7 +7,7 @@ use crate::input::value::{Value, short_number};
 use crate::job::result_limit::{Condition, ResultLimit};
 use crate::job::row::DerivedColumn;
 use crate::render::figure::plot::Direction;
-use crate::render::figure::plot::rule::Rule;
+use crate::render::figure::plot::Rule;
 use crate::render::figure::ticks::minus;
 use crate::render::figure::unit::Unit;
 use crate::store::table::{Column, Table, row_column_name};

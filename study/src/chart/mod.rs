@@ -19,7 +19,6 @@ use self::runs::Replicated;
 
 pub mod borders;
 mod encoding;
-mod grid;
 pub mod history;
 mod limits;
 pub mod map;
@@ -31,7 +30,6 @@ pub mod pareto;
 mod positions;
 pub mod runs;
 mod searched;
-pub mod share;
 pub mod standard;
 mod time_axis;
 
@@ -107,46 +105,13 @@ impl<'a> Source<'a> {
         jobs.into_iter().map(|(_, rows)| rows).filter(|rows| rows.len() > 1).collect()
     }
 
-    /// A note on the points that are one job: "N 5: strategy a = strategy b".
+    /// A note on the points that are one job.
     fn shared_job_note(&self) -> Option<String> {
-        /// Most jobs that the note names. Chosen: two lines of text.
-        const MAX_NAMED: usize = 3;
         let shared = self.shared_jobs();
         let points: usize = shared.iter().map(Vec::len).sum();
         let jobs =
             if shared.len() == 1 { "1 job".to_owned() } else { format!("{} jobs", shared.len()) };
-        let mut texts: Vec<String> =
-            shared.iter().take(MAX_NAMED).map(|rows| self.same_job_text(rows)).collect();
-        if shared.len() > MAX_NAMED {
-            texts.push(format!("and {} more", shared.len() - MAX_NAMED));
-        }
-        (!shared.is_empty())
-            .then(|| format!("{points} points are {jobs}, with one result: {}.", texts.join("; ")))
-    }
-
-    /// What some points of one job have in common, and their differences with "=" between them.
-    fn same_job_text(&self, rows: &[usize]) -> String {
-        let columns =
-            self.table.parameters().filter(|column| !parameters::is_fixed(column, &self.rows));
-        let all: Vec<Parameter<'_>> =
-            columns.map(|column| Parameter::new(column, &self.rows)).collect();
-        let (common, different): (Vec<_>, Vec<_>) =
-            all.iter().partition(|parameter| parameters::is_fixed(parameter.column, rows));
-        let text = |parameters: &[&Parameter<'_>], row: usize| {
-            let texts: Vec<String> =
-                parameters.iter().map(|parameter| parameter.named(row)).collect();
-            texts.join(", ")
-        };
-        let equal = rows.iter().enumerate().map(|(number, row)| match different.as_slice() {
-            // The name stands once.
-            [only] if number > 0 => only.of_row(*row),
-            _ => text(&different, *row),
-        });
-        let equal: Vec<String> = equal.collect();
-        match text(&common, rows[0]).as_str() {
-            "" => equal.join(" = "),
-            common => format!("{common}: {}", equal.join(" = ")),
-        }
+        (points > 0).then(|| format!("{points} points are {jobs}: they have the same result."))
     }
 
     /// The column of numbers with this name, which `option` asks for.

@@ -9,6 +9,7 @@ use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::proportion::Proportion;
 use crate::render::figure::legend::{Legend, Sample};
+use crate::render::figure::map::Cell;
 use crate::render::figure::style::Fill;
 use crate::store::table::Column;
 
@@ -144,7 +145,9 @@ impl<'a> Outcomes<'a> {
             } else {
                 format!("{kind} ({count})")
             };
-            (if cells { Sample::Cell(letter) } else { Sample::Letter(letter) }, text)
+            let sample =
+                if cells { Sample::Cell(Cell::letter(letter)) } else { Sample::Letter(letter) };
+            (sample, text)
         });
         Legend {
             heading: "Outcome (number of points)".to_owned(),

@@ -259,7 +259,7 @@ fn points_that_are_one_job_are_shown_and_named() {
     points[3].job.id = points[2].job.id.clone();
     let table = with_records(&points, |_, _| {});
     let source = source(&table);
-    let note = "2 points are 1 job, with one result: N 6: mass flow rate 1 g/s = 2 g/s.";
+    let note = "2 points are 1 job: they have the same result.";
     let map = check::figure(&map::svg(&source, "peak_vz", ["mass_flow_rate", "N"]).unwrap());
     for text in ["20.0", "= 23.0", "=", "same job as another cell", note] {
         assert!(contains(&map, text), "{text}: {map:?}");
@@ -267,7 +267,7 @@ fn points_that_are_one_job_are_shown_and_named() {
     let over = check::figure(&over::svg(&source, "peak_vz", "mass_flow_rate", &[]).unwrap());
     assert!(contains(&over, note) && contains(&over, "deployed (4)"), "{over:?}");
     let lines = history::svg(&source, &["z_rim".to_owned()], [None; 2], &read).unwrap();
-    assert_eq!(lines.matches("<polyline").count(), 3, "one line per job");
+    assert_eq!(lines.matches("<polyline").count(), 3 + 4, "one line per job, and the legend");
     assert!(contains(&check::figure(&lines), note));
 }
 

@@ -6,16 +6,13 @@ use super::vertical::Vertical;
 use crate::chart::encoding::Encoding;
 use crate::chart::positions::Positions;
 use crate::render::figure::legend::{Legend, Sample};
-use crate::render::figure::plot::lane::Mark;
-use crate::render::figure::plot::{Direction, Line, Panel};
+use crate::render::figure::plot::{Direction, Line, Mark, Panel};
 use crate::render::figure::style::{Fill, Series};
 use crate::render::figure::unit::Unit;
 use crate::study::{Border, Level, Outcome};
 
 /// Distance of lines with equal x, mm.
 const SHIFT: f64 = 3.0;
-/// Width of a shaded column, mm.
-const COLUMN: f64 = 2.4;
 /// Letter of a search whose outcome changes more than once.
 const NOT_MONOTONE: &str = "M";
 /// Letter of a search whose outcome is decided at no value.
@@ -124,14 +121,14 @@ impl<'d> Drawing<'d> {
                 // The column ends where the criterion is known to be met.
                 let [first, last] = decided.unwrap_or([low, high]);
                 let column = if *met_below { [x, first, low] } else { [x, high, last] };
-                line.columns.push((column, COLUMN));
+                line.columns.push(column);
                 (Sign::Border, None)
             }
             Outcome::NoChange { met } => {
                 let arrow = self.arrow(border, *met);
                 line.arrows.extend(arrow.map(|(end, up)| ([x, end], direction(up))));
                 if let Some([first, last]) = decided.filter(|_| *met) {
-                    line.columns.push(([x, first, last], COLUMN));
+                    line.columns.push([x, first, last]);
                 }
                 self.partly |= border.levels.iter().any(|l| l.outcome(self.replicates).is_none());
                 let up = arrow.map(|(_, up)| up);

@@ -1,6 +1,6 @@
 //! The vertical axis of the chart of borders: the values of the search, with its spacing.
 
-use crate::render::figure::plot::rule::Rule;
+use crate::render::figure::plot::Rule;
 use crate::render::figure::scale::Spread;
 use crate::study::{Border, Level};
 

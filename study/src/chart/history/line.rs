@@ -17,7 +17,7 @@ pub(super) fn history_line(
     run: &Run,
     drawn: &Drawn<'_>,
 ) -> Line {
-    let Drawn { quantity, unit, time, rings, .. } = drawn;
+    let Drawn { quantity, unit, time, thin, .. } = drawn;
     let points: Vec<[f64; 2]> = run
         .times()
         .iter()
@@ -34,7 +34,7 @@ pub(super) fn history_line(
         marks: marker.and_then(|fill| last.map(|point| (point, fill))).into_iter().collect(),
         sparse_markers: true,
         crosses: crosses.into_iter().collect(),
-        rings: *rings,
+        thin: *thin,
         ..Line::new(series)
     }
 }

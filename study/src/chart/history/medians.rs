@@ -37,7 +37,7 @@ pub(super) fn line(
 }
 
 fn median_line(outcome: Outcome, series: Series, runs: &[&Run], drawn: &Drawn<'_>) -> Line {
-    let Drawn { quantity, unit, time, rings, .. } = drawn;
+    let Drawn { quantity, unit, time, thin, .. } = drawn;
     let spreads = spreads(runs, &quantity.symbol);
     let side = |pick: fn(&Spread) -> f64| -> Vec<[f64; 2]> {
         let point = |(t, spread): &(f64, Spread)| [time.unit.shown(*t), unit.shown(pick(spread))];
@@ -55,7 +55,7 @@ fn median_line(outcome: Outcome, series: Series, runs: &[&Run], drawn: &Drawn<'_
         pieces: pieces(&median, time),
         marks: fill.and_then(|fill| end.map(|point| (point, fill))).into_iter().collect(),
         sparse_markers: true,
-        rings: *rings,
+        thin: *thin,
         bands: least.iter().zip(&largest).map(band).collect(),
         ..Line::new(series)
     }

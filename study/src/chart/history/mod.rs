@@ -29,8 +29,8 @@ use quantity::{Drawn, Quantity, drawn, quantity};
 
 /// Most jobs in one figure. Chosen: 12 panels with a few lines each.
 pub const MAX_JOBS: usize = 48;
-/// Most lines in a panel of a quantity that rings. Chosen: more cover each other.
-const MAX_RINGING_LINES: usize = 3;
+/// Most lines in a panel of a quantity that oscillates. Chosen: more cover each other.
+const MAX_THIN_LINES: usize = 3;
 /// Most runs behind the lines of a figure. Chosen: what is drawn of their histories is in memory together, some 200 kB of a
 /// run with 6000 samples.
 const MAX_RUNS: usize = 2000;
@@ -88,9 +88,9 @@ pub fn svg(
     let encoding = |preferred: usize| {
         Encoding::new(&chosen, others.clone(), &[], preferred, false, ("--history", &asked))
     };
-    let rings = drawn.iter().any(|drawn| drawn.rings);
-    let encoding = if rings && drawn.len() == 1 {
-        encoding(MAX_RINGING_LINES).or_else(|_| encoding(PREFERRED_LINES))?
+    let thin = drawn.iter().any(|drawn| drawn.thin);
+    let encoding = if thin && drawn.len() == 1 {
+        encoding(MAX_THIN_LINES).or_else(|_| encoding(PREFERRED_LINES))?
     } else {
         encoding(PREFERRED_LINES)?
     };

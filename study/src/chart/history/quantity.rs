@@ -1,4 +1,4 @@
-//! The quantities of a figure of histories: name, unit, axis, and whether they ring.
+//! The quantities of a figure of histories: name, unit, axis, and whether their lines are thin.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,6 @@ use crate::chart::unknown_name;
 use crate::platform::error::Result;
 use crate::render::figure::ticks;
 use crate::render::figure::unit::Unit;
-
-/// Number of turns, on average over the jobs, from which a quantity of both signs rings.
-const RINGING_TURNS: usize = 5;
 
 /// A quantity: symbol, SI unit, plain name.
 pub(super) struct Quantity {
@@ -30,7 +27,8 @@ pub(super) struct Drawn<'a> {
     /// Ends of the y axis.
     pub(super) range: [f64; 2],
     pub(super) time: &'a TimeAxis,
-    pub(super) rings: bool,
+    /// Whether lines are thin and few.
+    pub(super) thin: bool,
 }
 
 /// The quantity with that name: a column of the history, or an extra quantity of a job.
@@ -57,7 +55,7 @@ pub(super) fn quantity(symbol: &str, runs: &BTreeMap<&str, Run>) -> Result<Quant
     Err(unknown_name("--history", symbol, "no such history column", &known))
 }
 
-/// Unit and axis of a quantity, and whether it rings, from its values within the time axis.
+/// Unit and axis of a quantity, from its values within the time axis.
 pub(super) fn drawn<'a>(
     quantity: &'a Quantity,
     runs: &BTreeMap<&str, Run>,
@@ -80,24 +78,7 @@ pub(super) fn drawn<'a>(
     } else {
         ticks::padded(unit.shown(low), unit.shown(high)).into()
     };
-    let turns: usize = values.iter().map(|values| turns(values, 0.1 * (high - low))).sum();
-    let rings = -low > 0.2 * high && high > -0.2 * low && turns > RINGING_TURNS * runs.len();
-    Drawn { quantity, unit, range, time, rings }
-}
-
-/// How often values turn by at least `change`.
-fn turns(values: &[f64], change: f64) -> usize {
-    let mut count = 0;
-    let (mut low, mut high, mut rising) = (f64::INFINITY, f64::NEG_INFINITY, None);
-    for value in values {
-        (low, high) = (low.min(*value), high.max(*value));
-        let up = *value - low >= change && rising != Some(true);
-        let down = high - *value >= change && rising != Some(false);
-        if up || down {
-            count += usize::from(rising.is_some());
-            rising = Some(up);
-            (low, high) = (*value, *value);
-        }
-    }
-    count
+    // Velocities oscillate.
+    let thin = quantity.unit == "m/s";
+    Drawn { quantity, unit, range, time, thin }
 }

@@ -6,10 +6,9 @@ use super::middle::middle;
 use super::{ChartKind, HISTORIES, MEASURES, axes, measured};
 use crate::analysis::compare::{canonical, values};
 use crate::chart::Source;
-use crate::chart::grid::MAX_VALUES;
 use crate::chart::history::has_history;
+use crate::chart::map::{Judged, MAX_VALUES};
 use crate::chart::parameters::STRATEGY;
-use crate::chart::share::Judged;
 use crate::job::row::DerivedColumn;
 
 /// Most points whose histories are drawn together. Chosen: more lines hide each other.

@@ -78,7 +78,7 @@ fn the_runs_of_a_point_are_a_median_with_a_band_and_a_marker() {
     }
     assert!(!texts.iter().any(|text| text.starts_with("Seed")), "seeds are no panels: {texts:?}");
     let bands = svg.matches("fill-opacity=\"0.2\"").count();
-    assert_eq!(bands, 2, "one band per strategy");
+    assert_eq!(bands, 3, "one band per strategy, and the legend");
     // The third point of `direct` has the speeds 20 to 23: its median is drawn.
     let svg = condensed(&table, &limits, |source| {
         map::svg(source, "peak_vz", ["mass_flow_rate", "strategy"]).unwrap()
@@ -200,8 +200,8 @@ fn the_history_of_a_point_is_the_median_of_its_runs() {
         condensed(&table, &[], |source| history::svg(source, &columns, [None; 2], &read).unwrap());
     let texts = check::figure(&svg);
     let lines = svg.matches("<polyline").count();
-    // Each point has one line and two edges of its band.
-    assert_eq!((lines, svg.matches("fill-opacity=\"0.2\"").count()), (18, 6));
+    // Each point has one line and two edges of its band; so has the legend, with five more lines.
+    assert_eq!((lines, svg.matches("fill-opacity=\"0.2\"").count()), (26, 7));
     let heading =
         "Outcome, at the end of a line (number of points); no mark: all runs deployed (5)";
     for text in ["some runs deployed (1)", heading, "median, and range from least to largest"] {

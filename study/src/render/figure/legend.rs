@@ -1,11 +1,10 @@
 //! The legend, below the plots, so that it never covers data.
 
-use super::map;
-use super::outcome;
-use super::plot::line::Direction;
-use super::plot::range::{self, FAINT, FAINT_OPACITY};
-use super::plot::rule;
-use super::style::{self, Fill, MEDIUM, Outcome, PLAIN, SMALL, Series};
+use super::map::Cell;
+use super::plot::panel::{self, Frame};
+use super::plot::{Direction, Line};
+use super::scale::{Scale, Spread};
+use super::style::{self, Fill, MEDIUM, SMALL, Series};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, cut};
 
@@ -31,18 +30,8 @@ pub enum Sample {
     Cross,
     /// A letter that stands for a job without a value.
     Letter(String),
-    /// A hatched cell with a letter.
-    Cell(String),
-    /// An empty cell.
-    Absent,
-    /// A cell with a thick frame: it misses a limit.
-    Missed,
-    /// A cell of an outcome.
-    Outcome(Outcome),
-    /// A cell with the corner of those in which a failure is expected.
-    Expected,
-    /// The line between runs that end well and those that fail.
-    Border,
+    /// A cell of a map.
+    Cell(Cell),
     /// A shaded area.
     Area,
     /// A line in a shaded range.
@@ -100,9 +89,7 @@ impl Legend {
         }
         below + rows as f64 * ROW - corner[1]
     }
-}
 
-impl Legend {
     /// Width of a sample and the gap after it, mm.
     fn indent(&self) -> f64 {
         let lines =
@@ -124,86 +111,56 @@ impl Legend {
 
 /// Draws a sample with its left end at `left`.
 fn draw_sample(page: &mut Page, sample: &Sample, left: Position) {
-    let middle = [left[0] + 2.0, left[1]];
+    let [x, y] = left;
+    let corner = [x, y - 1.9];
+    let mut line = Line::default();
+    let wide = LINE_SAMPLE - 2.0;
+    // Coordinates of the sample: both from 0 to 1.
     match sample {
         Sample::Line(series) => {
-            page.line(left, [left[0] + LINE_SAMPLE - 2.0, left[1]], &series.line());
-            let middle = [left[0] + 0.5 * (LINE_SAMPLE - 2.0), left[1]];
-            if series.marker.is_some() {
-                style::marker(page, middle, *series, Fill::Filled, MARKER);
-            }
+            line.series = *series;
+            line.pieces = vec![vec![[0.0, 0.5], [wide / 4.0, 0.5]]];
+            let middle = [0.5 * wide / 4.0, 0.5];
+            line.marks.extend(series.marker.map(|_| (middle, Fill::Filled)));
         }
-        Sample::Point(series) => style::marker(page, middle, *series, Fill::Filled, MARKER),
-        Sample::Marker(fill) => style::plain_marker(page, middle, PLAIN, *fill, MARKER),
-        Sample::Cross => style::cross(page, middle, PLAIN, MARKER),
+        Sample::Point(series) => {
+            line.series = *series;
+            line.marks.push(([0.5, 0.5], Fill::Filled));
+        }
+        Sample::Marker(fill) => line.marks.push(([0.5, 0.5], *fill)),
+        Sample::Cross => line.crosses.push([0.5, 0.5]),
+        Sample::Area => line.columns.push([0.5, 0.0, 1.0]),
+        Sample::Band => {
+            line.bands.push(vec![[0.0, 0.0, 1.0], [wide / 4.0, 0.0, 1.0]]);
+            line.pieces = vec![vec![[0.0, 0.5], [wide / 4.0, 0.5]]];
+        }
+        Sample::Bar => line.bars.push([0.5, 0.0, 1.0]),
+        Sample::Error => line.errors.push([0.5, 0.0, 1.0]),
+        Sample::Arrow(direction) => {
+            let start = if *direction == Direction::Up { 0.0 } else { 1.0 };
+            line.arrows.push(([0.5, start], *direction));
+        }
+        Sample::Faint(fill) => line.faint.push(([0.5, 0.5], *fill)),
         Sample::Letter(letter) => {
             let letters = Letters::new(MEDIUM).at(Anchor::Middle);
-            page.text([middle[0], middle[1] + 0.36 * MEDIUM], &letters, letter);
+            page.text([x + 2.0, y + 0.36 * MEDIUM], &letters, letter);
         }
-        Sample::Cell(letter) => {
-            let corner = [left[0], left[1] - 1.9];
-            page.fill(corner, [4.0, 3.8], style::EMPTY);
-            page.hatch(corner, [4.0, 3.8], 1.2, &style::HATCH);
-            let letters = Letters::new(SMALL).at(Anchor::Middle);
-            page.text([middle[0], middle[1] + 0.36 * SMALL], &letters, letter);
-        }
-        Sample::Absent => page.frame([left[0], left[1] - 1.9], [4.0, 3.8], &style::HATCH),
-        Sample::Missed => {
-            page.frame([left[0], left[1] - 1.9], [4.0, 3.8], &style::HATCH);
-            map::draw_missed(page, [left[0], left[1] - 1.9], [4.0, 3.8], "#000000");
-        }
-        Sample::Outcome(outcome) => {
-            let corner = [left[0], left[1] - 1.9];
-            page.fill(corner, [4.0, 3.8], outcome.ground());
+        Sample::Cell(cell) => {
+            cell.draw(page, (corner, [4.0, 3.8]), [true, false], None);
             page.frame(corner, [4.0, 3.8], &style::HATCH);
-            outcome.draw(page, [middle[0], left[1]]);
         }
-        Sample::Expected => {
-            let corner = [left[0], left[1] - 1.9];
-            page.frame(corner, [4.0, 3.8], &style::HATCH);
-            outcome::draw_expected(page, [corner[0] + 4.0, corner[1]], "#000000");
-        }
-        Sample::Border => page.line(left, [left[0] + 4.2, left[1]], &outcome::BORDER),
-        Sample::Area => area(page, left, 4.0),
-        Sample::Band => {
-            area(page, left, LINE_SAMPLE - 2.0);
-            let line = Series::dashes_only(0).line();
-            page.line(left, [left[0] + LINE_SAMPLE - 2.0, left[1]], &line);
-        }
-        Sample::Bar => {
-            range::draw_bar(page, [[middle[0], left[1] + 1.7], [middle[0], left[1] - 1.7]], PLAIN);
-            style::plain_marker(page, middle, PLAIN, Fill::Filled, range::FAINT);
-        }
-        Sample::Error => {
-            range::draw_error(
-                page,
-                [[middle[0], left[1] + 1.7], [middle[0], left[1] - 1.7]],
-                PLAIN,
-            );
-            style::plain_marker(page, middle, PLAIN, Fill::Filled, range::FAINT);
-        }
-        Sample::Closed => rule::draw_closed(page, [left[0], left[1] - 1.7], [4.2, 3.4], 1.2),
-        Sample::End => page.line(left, [left[0] + 4.2, left[1]], &rule::END),
-        Sample::Arrow(direction) => {
-            let start = if *direction == Direction::Up { left[1] + 2.0 } else { left[1] - 2.0 };
-            range::arrow(page, [middle[0], start], *direction, PLAIN);
-        }
-        Sample::Faint(fill) => {
-            page.fade(FAINT_OPACITY);
-            style::plain_marker(page, middle, PLAIN, *fill, FAINT);
-            page.close();
-        }
+        Sample::Closed => panel::draw_closed(page, corner, [4.0, 3.8], 1.2),
+        Sample::End => page.line(left, [x + 4.2, y], &panel::END),
     }
+    if matches!(sample, Sample::Bar | Sample::Error) {
+        line.faint.push(([0.5, 0.5], Fill::Filled));
+    }
+    let scale = |start: f64, end: f64| Scale::new(Spread::Linear, [0.0, 1.0], [start, end]);
+    let frame = Frame { x: scale(x, x + 4.0), y: scale(y + 1.7, y - 1.7), ..Frame::default() };
+    line.draw_bands(page, &frame);
+    line.draw_pieces(page, &frame);
+    line.draw_points(page, &frame, (0, 1));
 }
-
-/// A shaded area of this width, mm.
-fn area(page: &mut Page, left: Position, width: f64) {
-    let (top, bottom, right) = (left[1] - 1.5, left[1] + 1.5, left[0] + width);
-    page.area(&[[left[0], top], [right, top], [right, bottom], [left[0], bottom]], PLAIN);
-}
-
-/// Size of a marker, mm.
-pub const MARKER: f64 = 2.0;
 
 /// Draws several parts: side by side where they fit with one row of entries each, else one below the other.
 /// Returns their height, mm.

@@ -1,22 +1,19 @@
-//! Maps: one quantity over two axes, one cell per point with its number.
+//! Maps over two axes: one cell per point, with a colour, a sign and a few letters.
 //!
-//! All cells have the same size, whatever the distances of the values along the axes. A cell without a
-//! value is hatched and has a letter; a cell without a point of the study is an empty frame.
+//! All cells have the same size, whatever the distances of the values along the axes. A cell without a value is
+//! hatched; a cell without a point of the study is an empty frame. Signs and texts are left out of a map in
+//! which they do not fit.
 
-use super::style::{AXIS, Fill, MARGIN, MEDIUM, SMALL};
-use super::{INNER, Sheet};
+use super::style::{self, AXIS, EMPTY, HATCH, MARGIN, MEDIUM, SMALL, Sign};
+use super::{INNER, Sheet, draw_names, ticks, widest};
+use crate::input::value::short_number;
 use crate::render::font;
-use crate::render::page::{Anchor, Letters, Page, Position, cut, wrapped_at_commas};
-
-mod bar;
-mod cell;
-
-use self::bar::MIN_BAR_HEIGHT;
-use self::cell::cell_text;
-pub use self::cell::draw_missed;
+use crate::render::page::{
+    Anchor, Letters, Page, Position, Stroke, cut, wrapped, wrapped_at_commas,
+};
 
 /// A figure of maps.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Maps {
     /// Title, legends, notes.
     pub sheet: Sheet,
@@ -24,58 +21,54 @@ pub struct Maps {
     pub x: (String, Vec<String>),
     /// Label and texts of the y axis, the lowest value first.
     pub y: (String, Vec<String>),
-    /// Quantity and unit of the cells.
-    pub label: String,
-    /// Values at both ends of the colour scale; `None` when no cell has a value.
-    pub range: Option<[f64; 2]>,
+    /// Quantity and unit of the colour scale, and its ends; `None` without a scale.
+    pub scale: Option<(String, [f64; 2])>,
+    /// Headings of the texts at the right of every row; then the maps stand one below the other.
+    pub headings: Vec<String>,
     /// The maps, row by row.
     pub panels: Vec<Panel>,
 }
 
 /// One map.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panel {
-    /// Title: the parameters that distinguish it from the other maps.
+    /// Title: what distinguishes it from the other maps.
     pub title: String,
     /// Cells along x, those of the lowest y first.
     pub cells: Vec<Cell>,
+    /// Texts at the right of each row, one for each heading; the lowest y first.
+    pub beside: Vec<Vec<String>>,
 }
 
 /// One cell.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// A value.
-    Value {
-        /// The value.
-        value: f64,
-        /// The marker of the outcome.
-        outcome: Fill,
-        /// Whether another cell shows the same job; [`SAME_JOB`] says so.
-        shared: bool,
-        /// Text in the place of the number; empty for the number.
-        text: String,
-        /// Text below the number; empty for none.
-        below: String,
-        /// Whether the value misses a limit.
-        missed: bool,
-    },
-    /// No value: the letter of the outcome.
-    Letter(String),
-    /// No such point in the study.
-    Absent,
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cell {
+    /// What it stands on.
+    pub ground: Ground,
+    /// Sign before the text.
+    pub sign: Option<Sign>,
+    /// A number or a few letters.
+    pub text: String,
+    /// A text below it.
+    pub below: String,
+    /// Whether it has a thick frame.
+    pub framed: bool,
+    /// Whether its upper right corner is filled.
+    pub corner: bool,
 }
 
-impl Cell {
-    /// A cell with a value and its outcome.
-    pub fn of(value: f64, outcome: Fill, shared: bool) -> Self {
-        let (text, below) = (String::new(), String::new());
-        Self::Value { value, outcome, shared, text, below, missed: false }
-    }
-
-    /// The text below its number.
-    fn below(&self) -> &str {
-        if let Self::Value { below, .. } = self { below } else { "" }
-    }
+/// The ground of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Ground {
+    /// None: there is no such point.
+    #[default]
+    Absent,
+    /// A hatch: there is no value.
+    Hatched,
+    /// The colour of a value on the scale.
+    Value(f64),
+    /// A colour, and the colour of what is drawn on it.
+    Colour(&'static str, &'static str),
 }
 
 /// Least height of a cell, mm.
@@ -92,59 +85,165 @@ const MAP_HEIGHT: f64 = 60.0;
 const MAX_CELL_WIDTH: f64 = 26.0;
 /// Distance between maps side by side, mm.
 const GAP: f64 = 5.0;
-/// Sign before the number in a cell of a job that another cell shows too.
-pub const SAME_JOB: &str = "=";
-/// Width of the outcome marker and its distance from the number, mm.
-const MARKER_WIDTH: f64 = 4.5;
+/// Width of the sign and its distance from the text, mm.
+const SIGN: f64 = 3.4;
+/// Distance of the two lines of a cell, mm.
+const LINE: f64 = 1.3 * SMALL;
+/// Height of a line of a title, mm.
+const TITLE_LINE: f64 = 1.35 * SMALL;
+/// Distance of the texts at the right from the map and from each other, mm.
+const BESIDE: f64 = 2.5;
+/// Width of the colour bar, mm.
+const BAR: f64 = 4.0;
+/// Least height of the colour bar, mm.
+const MIN_BAR_HEIGHT: f64 = 30.0;
+
+impl Cell {
+    /// A cell with a value, written as a number.
+    pub fn of(value: f64, sign: Sign) -> Self {
+        let (ground, sign) = (Ground::Value(value), Some(sign));
+        Self { ground, sign, text: number(value), ..Self::default() }
+    }
+
+    /// A cell without a value, with a letter.
+    pub fn letter(letter: impl Into<String>) -> Self {
+        Self { ground: Ground::Hatched, text: letter.into(), ..Self::default() }
+    }
+
+    /// Width of the sign and the text beside it, mm.
+    fn line(&self) -> f64 {
+        match (self.sign, self.text.as_str()) {
+            (None, text) => font::width(text, SMALL),
+            (Some(_), "") => SIGN - 1.4,
+            (Some(_), text) => SIGN + font::width(text, SMALL),
+        }
+    }
+
+    /// Width of its texts with some space, mm.
+    fn width(&self) -> f64 {
+        self.line().max(font::width(&self.below, SMALL)) + 1.0
+    }
+
+    /// Draws the cell; `texts` says whether its text and the text below it have space, `range` are the ends of the scale.
+    pub(super) fn draw(
+        &self,
+        page: &mut Page,
+        (corner, size): (Position, [f64; 2]),
+        texts: [bool; 2],
+        range: Option<[f64; 2]>,
+    ) {
+        let (ground, ink) = match self.ground {
+            Ground::Absent => (None, "#000000"),
+            Ground::Hatched => (Some(EMPTY.to_owned()), "#000000"),
+            Ground::Colour(ground, ink) => (Some(ground.to_owned()), ink),
+            Ground::Value(value) => {
+                let range = range.filter(|[low, high]| high > low);
+                let place = range.map_or(0.5, |[low, high]| (value - low) / (high - low));
+                let (colour, ink) = style::map_colour(place);
+                (Some(colour), ink)
+            }
+        };
+        if let Some(colour) = ground {
+            page.fill(corner, size, &colour);
+        }
+        let middle = [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]];
+        match self.ground {
+            Ground::Absent => page.frame(corner, size, &HATCH),
+            Ground::Colour(..) => page.frame(corner, size, &Stroke::solid("#ffffff", 0.3)),
+            Ground::Value(_) => {}
+            Ground::Hatched => {
+                page.hatch(corner, size, 1.6, &HATCH);
+                if !self.text.is_empty() {
+                    let free = [self.line() + 1.2, 1.1 * SMALL];
+                    page.fill([0, 1].map(|axis| middle[axis] - 0.5 * free[axis]), free, EMPTY);
+                }
+            }
+        }
+        if self.framed {
+            let inset = 0.65;
+            let inner = size.map(|length| length - 2.0 * inset);
+            page.frame(corner.map(|end| end + inset), inner, &Stroke::solid(ink, 0.8));
+        }
+        if self.corner {
+            let [x, y] = [corner[0] + size[0], corner[1]];
+            page.polygon(&[[x - 1.5, y], [x, y], [x, y + 1.5]], ink, &Stroke::solid(ink, 0.05));
+        }
+        let letters = Letters { colour: ink, ..Letters::new(SMALL) };
+        let up = if texts[1] && !self.below.is_empty() { 0.5 * LINE } else { 0.0 };
+        let line = if texts[0] { self.line() } else { SIGN - 1.4 };
+        let left = middle[0] - 0.5 * line;
+        if let Some(sign) = self.sign {
+            sign.draw(page, [left + 1.0, middle[1] - up], ink);
+        }
+        if texts[0] && !self.text.is_empty() {
+            let left = if self.sign.is_some() { left + SIGN } else { left };
+            page.text([left, middle[1] - up + 0.36 * SMALL], &letters, &self.text);
+        }
+        if up > 0.0 {
+            let position = [middle[0], middle[1] + up + 0.36 * SMALL];
+            page.text(position, &letters.at(Anchor::Middle), &self.below);
+        }
+    }
+}
 
 /// Sizes of the figure, mm.
 struct Layout {
     /// Left end of the first map.
     left: f64,
-    /// Width for maps and the gaps between them.
-    inner_width: f64,
     /// Width of the texts of the y axis.
     gutter: f64,
     /// Number of maps side by side.
     across: usize,
-    /// Width and height of a cell.
+    /// Width and height of a cell, and of a map.
     cell: [f64; 2],
-    /// Width and height of a map.
     map: [f64; 2],
-    /// Titles of the maps, broken into lines.
+    /// Titles of the maps, broken into lines, and the height above a map.
     titles: Vec<Vec<String>>,
-    /// Height of the title above a map.
     title: f64,
+    /// Distance of each column of texts from the right end of a map.
+    beside: Vec<f64>,
+    /// Whether the cells have the space for their text, and for the text below.
+    texts: [bool; 2],
 }
-
-/// Height of a line of a title, mm.
-const TITLE_LINE: f64 = 1.35 * SMALL;
 
 impl Layout {
     fn new(maps: &Maps) -> Self {
         let (columns, rows) = (maps.x.1.len().max(1), maps.y.1.len().max(1));
-        let gutter = widest(&maps.y.1).min(0.25 * INNER);
+        let gutter = widest(&maps.y.1).min(0.3 * INNER);
         let left = MARGIN + 1.8 * MEDIUM + gutter + 2.5;
-        let inner_width = INNER + MARGIN - left - maps.bar_width();
-        let across = maps.across(inner_width);
-        let width = ((inner_width - (across - 1) as f64 * GAP) / across as f64)
-            .min(columns as f64 * MAX_CELL_WIDTH);
-        let max_height =
-            if maps.panels.len() > across { MAX_CELL_HEIGHT } else { MAX_CELL_HEIGHT_OF_ONE_ROW };
-        let cell_height = (MAP_HEIGHT / rows as f64).clamp(maps.min_cell_height(), max_height);
-        let titles: Vec<Vec<String>> =
-            maps.panels.iter().map(|panel| wrapped_at_commas(&panel.title, SMALL, width)).collect();
-        let lines = titles.iter().map(Vec::len).max().unwrap_or(0);
-        Self {
-            left,
-            inner_width,
-            gutter,
-            across,
-            cell: [width / columns as f64, cell_height],
-            map: [width, cell_height * rows as f64],
-            titles,
-            title: 1.5 + TITLE_LINE * lines as f64,
+        let (mut beside, mut end) = (Vec::new(), 0.0);
+        for (number, heading) in maps.headings.iter().enumerate() {
+            let rows = maps.panels.iter().flat_map(|panel| &panel.beside);
+            beside.push(end + BESIDE);
+            end += BESIDE + widest(rows.filter_map(|row| row.get(number)).chain([heading]));
         }
+        let inner = INNER + MARGIN - left - end - maps.bar_width();
+        let cells = || maps.panels.iter().flat_map(|panel| &panel.cells);
+        let needed = cells().map(Cell::width).fold(0.0, f64::max);
+        let names = widest(&maps.x.1) + 1.5;
+        let width_of =
+            |across: usize| (inner - (across - 1) as f64 * GAP) / (across * columns) as f64;
+        let most = match maps.panels.len() {
+            _ if !maps.headings.is_empty() => 1,
+            many if many > 9 => 4,
+            few => super::columns(few),
+        };
+        let across = (1..=most).rev().find(|across| width_of(*across) >= needed.max(names));
+        let across = across.unwrap_or(1);
+        let width = width_of(across).min(MAX_CELL_WIDTH);
+        let line = cells().map(|cell| cell.line() + 0.6).fold(0.0, f64::max);
+        let texts = [width >= line, width >= needed];
+        let two_lines = texts[1] && cells().any(|cell| !cell.below.is_empty());
+        let least = if two_lines { MIN_HEIGHT_OF_TWO_LINES } else { MIN_CELL_HEIGHT };
+        let one_row = maps.panels.len() <= across;
+        let most = if one_row { MAX_CELL_HEIGHT_OF_ONE_ROW } else { MAX_CELL_HEIGHT };
+        let cell = [width, (MAP_HEIGHT / rows as f64).clamp(least, most)];
+        let map = [width * columns as f64, cell[1] * rows as f64];
+        let title = |panel: &Panel| wrapped_at_commas(&panel.title, SMALL, map[0]);
+        let titles: Vec<Vec<String>> = maps.panels.iter().map(title).collect();
+        let lines = titles.iter().map(Vec::len).max().unwrap_or(0).max(maps.headings.len().min(1));
+        let title = 1.5 + TITLE_LINE * lines as f64;
+        Self { left, gutter, across, cell, map, titles, title, beside, texts }
     }
 
     /// Width of a full row of maps.
@@ -153,131 +252,208 @@ impl Layout {
     }
 }
 
-/// Vertical extent of the drawn maps, mm.
-struct Extent {
-    /// Upper end of the first row of maps.
-    top: f64,
-    /// Lower end of the last row of maps.
-    bottom: f64,
-    /// Lower end of the texts of the x axis.
-    end: f64,
-}
-
 impl Maps {
     /// The SVG text.
     pub fn svg(&self) -> String {
         let layout = Layout::new(self);
         let mut page = Page::new();
-        let top = self.sheet.head(&mut page);
-        let extent = self.draw_maps(&mut page, &layout, top);
-        let mut y = self.draw_labels(&mut page, &layout, &extent);
-        if let Some(range) = self.range {
-            let corner = [layout.left + layout.row_width() + 4.0, extent.top];
-            self.draw_bar(&mut page, corner, layout.map[1].max(MIN_BAR_HEIGHT), range);
-            y = y.max(extent.top + MIN_BAR_HEIGHT + 2.0);
+        let mut end = self.sheet.head(&mut page);
+        let first = end + layout.title;
+        let mut bottom = first;
+        for (number, panel) in self.panels.iter().enumerate() {
+            let column = number % layout.across;
+            if column == 0 {
+                bottom = end + layout.title + layout.map[1];
+                end = bottom;
+            }
+            let left = layout.left + column as f64 * (layout.map[0] + GAP);
+            self.draw_panel(&mut page, &layout, number, [left, bottom - layout.map[1]]);
+            if number + layout.across >= self.panels.len() {
+                let place = |(at, name): (usize, &String)| {
+                    (left + (at as f64 + 0.5) * layout.cell[0], name.clone())
+                };
+                let names: Vec<ticks::Tick> = self.x.1.iter().enumerate().map(place).collect();
+                end = end.max(bottom + draw_names(&mut page, &names, bottom, layout.cell[0]));
+            }
+            debug_assert_eq!(panel.cells.len(), self.x.1.len() * self.y.1.len());
+        }
+        let middle = Letters::new(MEDIUM).at(Anchor::Middle);
+        let letters = Letters { upwards: true, ..middle };
+        let label = cut(&self.y.0, MEDIUM, bottom - first + 8.0);
+        page.text([MARGIN + MEDIUM, 0.5 * (first + bottom)], &letters, &label);
+        let label = cut(&self.x.0, MEDIUM, INNER + MARGIN - layout.left);
+        // A label that is wider than the maps starts at their left end.
+        let half = 0.5 * layout.row_width().max(font::width(&label, MEDIUM));
+        page.text([layout.left + half, end + MEDIUM], &middle, &label);
+        let mut y = end + 1.5 * MEDIUM;
+        if self.scale.is_some() {
+            let corner = [layout.left + layout.row_width() + 4.0, first];
+            self.draw_bar(&mut page, corner, layout.map[1].max(MIN_BAR_HEIGHT));
+            y = y.max(first + MIN_BAR_HEIGHT + 2.0);
         }
         self.sheet.foot(page, y)
     }
 
-    /// Draws every map from `top` on, with the axes at the left and below the last ones.
-    fn draw_maps(&self, page: &mut Page, layout: &Layout, top: f64) -> Extent {
-        let [width, height] = layout.map;
-        let last_row = self.panels.len().saturating_sub(layout.across);
-        let mut extent = Extent { top: top + layout.title, bottom: top + layout.title, end: top };
-        for (row, panels) in self.panels.chunks(layout.across).enumerate() {
-            let y = extent.end + layout.title;
-            let mut axis_height: f64 = 0.0;
-            for (column, panel) in panels.iter().enumerate() {
-                let corner = [layout.left + column as f64 * (width + GAP), y];
-                let title = &layout.titles[row * layout.across + column];
-                for (number, line) in title.iter().rev().enumerate() {
-                    let position = [corner[0], y - 1.6 - number as f64 * TITLE_LINE];
-                    page.text(position, &Letters::new(SMALL), &cut(line, SMALL, width));
-                }
-                self.draw_cells(page, panel, corner, layout.cell);
-                if column == 0 {
-                    self.draw_y_axis(page, corner, layout);
-                }
-                if row * layout.across + column >= last_row {
-                    let below = [corner[0], y + height];
-                    axis_height = axis_height.max(self.draw_x_axis(page, below, layout));
-                }
-            }
-            extent.bottom = y + height;
-            extent.end = extent.bottom + axis_height;
+    /// Draws a map with its title, the texts beside it, and the y axis if it is the first one of a row.
+    fn draw_panel(&self, page: &mut Page, layout: &Layout, number: usize, corner: Position) {
+        let panel = &self.panels[number];
+        let [width, height] = layout.cell;
+        for (above, line) in layout.titles[number].iter().rev().enumerate() {
+            let position = [corner[0], corner[1] - 1.6 - above as f64 * TITLE_LINE];
+            page.text(position, &Letters::new(SMALL), &cut(line, SMALL, layout.map[0]));
         }
-        extent
-    }
-
-    /// Draws the labels of both axes. Returns the lower end of the x label, mm.
-    fn draw_labels(&self, page: &mut Page, layout: &Layout, extent: &Extent) -> f64 {
-        let middle = 0.5 * (extent.top + extent.bottom);
-        let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
-        let label = cut(&self.y.0, MEDIUM, extent.bottom - extent.top + 8.0);
-        page.text([MARGIN + MEDIUM, middle], &letters, &label);
-        let label = cut(&self.x.0, MEDIUM, layout.inner_width);
-        // A label that is wider than the maps starts at their left end.
-        let middle = layout.left + 0.5 * layout.row_width().max(font::width(&label, MEDIUM));
-        let letters = Letters::new(MEDIUM).at(Anchor::Middle);
-        page.text([middle, extent.end + MEDIUM], &letters, &label);
-        extent.end + 1.5 * MEDIUM
-    }
-
-    /// Least height of a cell, mm.
-    fn min_cell_height(&self) -> f64 {
-        let mut cells = self.panels.iter().flat_map(|panel| &panel.cells);
-        let two = cells.any(|cell| !cell.below().is_empty());
-        if two { MIN_HEIGHT_OF_TWO_LINES } else { MIN_CELL_HEIGHT }
-    }
-
-    /// Number of maps side by side: as many as leave the numbers legible.
-    fn across(&self, inner_width: f64) -> usize {
-        let columns = self.x.1.len().max(1) as f64;
-        let numbers = self.panels.iter().flat_map(|panel| &panel.cells).map(|cell| match cell {
-            Cell::Value { value, shared, text, below, .. } => {
-                let number = font::width(&cell_text(*value, *shared, text), SMALL) + MARKER_WIDTH;
-                number.max(font::width(below, SMALL) + 1.0)
-            }
-            _ => SMALL,
-        });
-        let names = self.x.1.iter().map(|name| font::width(name, SMALL) + 1.5);
-        let min_width = numbers.chain(names).fold(0.0, f64::max) * columns;
-        let fits = |across: &usize| *across as f64 * (min_width + GAP) - GAP <= inner_width;
-        let most = if self.panels.len() > 9 { 4 } else { super::columns(self.panels.len()) };
-        (1..=most).rev().find(fits).unwrap_or(1)
-    }
-
-    fn draw_y_axis(&self, page: &mut Page, corner: Position, layout: &Layout) {
-        let (rows, [_, height]) = (self.y.1.len(), layout.cell);
+        let (columns, rows) = (self.x.1.len().max(1), self.y.1.len());
+        let range = self.scale.as_ref().map(|(_, range)| *range);
+        let top = |row: usize| corner[1] + (rows - 1 - row) as f64 * height;
+        for (index, cell) in panel.cells.iter().enumerate() {
+            let at = [corner[0] + (index % columns) as f64 * width, top(index / columns)];
+            let letter = cell.ground == Ground::Hatched;
+            cell.draw(page, (at, layout.cell), [layout.texts[0] || letter, layout.texts[1]], range);
+        }
+        page.frame(corner, layout.map, &AXIS);
         for (row, name) in self.y.1.iter().enumerate() {
-            let middle = corner[1] + ((rows - 1 - row) as f64 + 0.5) * height;
-            page.line([corner[0] - 1.0, middle], [corner[0], middle], &AXIS);
-            let position = [corner[0] - 1.8, middle + 0.36 * SMALL];
-            let name = cut(name, SMALL, layout.gutter + 0.1);
-            page.text(position, &Letters::new(SMALL).at(Anchor::End), &name);
+            let y = top(row) + 0.5 * height;
+            if number.is_multiple_of(layout.across) {
+                page.line([corner[0] - 1.0, y], [corner[0], y], &AXIS);
+                let name = cut(name, SMALL, layout.gutter + 0.1);
+                let letters = Letters::new(SMALL).at(Anchor::End);
+                page.text([corner[0] - 1.8, y + 0.36 * SMALL], &letters, &name);
+            }
+            for (text, right) in panel.beside.get(row).into_iter().flatten().zip(&layout.beside) {
+                let position = [corner[0] + layout.map[0] + right, y + 0.36 * SMALL];
+                page.text(position, &Letters::new(SMALL), text);
+            }
+        }
+        for (heading, right) in self.headings.iter().zip(&layout.beside) {
+            let position = [corner[0] + layout.map[0] + right, corner[1] - 1.6];
+            page.text(position, &Letters::new(SMALL), heading);
         }
     }
 
-    /// Draws the x axis; wide texts stand alternately on two lines. Returns its height, mm.
-    fn draw_x_axis(&self, page: &mut Page, corner: Position, layout: &Layout) -> f64 {
-        let [width, _] = layout.cell;
-        let lines: usize = if widest(&self.x.1) + 1.5 > width { 2 } else { 1 };
-        for (column, name) in self.x.1.iter().enumerate() {
-            let middle = corner[0] + (column as f64 + 0.5) * width;
-            page.line([middle, corner[1]], [middle, corner[1] + 1.0], &AXIS);
-            let down = (column % lines) as f64 * 1.25 * SMALL;
-            let name = cut(name, SMALL, lines as f64 * width - 1.5);
-            let position = [middle, corner[1] + 1.6 + 0.8 * SMALL + down];
-            page.text(position, &Letters::new(SMALL).at(Anchor::Middle), &name);
+    /// Ticks of the colour bar, the lines of its label, and the width of the widest number, mm.
+    fn bar(&self) -> Option<(Vec<ticks::Tick>, Vec<String>, f64)> {
+        let (label, [low, high]) = self.scale.as_ref()?;
+        let ticks = ticks::linear(*low, *high, 7);
+        let widest = widest(ticks.iter().map(|(_, text)| text));
+        // The lines fit beside the lowest map of this number of rows.
+        let rows = self.y.1.len().max(1) as f64;
+        let height = rows * (MAP_HEIGHT / rows).clamp(MIN_CELL_HEIGHT, MAX_CELL_HEIGHT);
+        Some((ticks, wrapped(label, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0), widest))
+    }
+
+    /// Width of the colour bar with its numbers and label, mm.
+    fn bar_width(&self) -> f64 {
+        self.bar().map_or(0.0, |(_, lines, widest)| {
+            4.0 + BAR + 1.8 + widest + 2.0 + 1.3 * lines.len().max(1) as f64 * MEDIUM
+        })
+    }
+
+    /// Draws the colour bar with its numbers and label.
+    fn draw_bar(&self, page: &mut Page, corner: Position, height: f64) {
+        let (Some((ticks, lines, widest)), Some((_, [low, high]))) = (self.bar(), &self.scale)
+        else {
+            return;
+        };
+        style::colour_bar(page, corner, [BAR, height]);
+        let right = corner[0] + BAR;
+        for (value, text) in ticks {
+            let fraction = if high > low { (value - low) / (high - low) } else { 0.5 };
+            let y = corner[1] + height * (1.0 - fraction);
+            page.line([right, y], [right + 1.0, y], &AXIS);
+            page.text([right + 1.8, y + 0.36 * SMALL], &Letters::new(SMALL), &text);
         }
-        1.6 + lines as f64 * 1.25 * SMALL
+        let letters = Letters { upwards: true, ..Letters::new(MEDIUM).at(Anchor::Middle) };
+        for (number, line) in lines.iter().enumerate() {
+            let x = right + 1.8 + widest + 1.3 * MEDIUM * (number + 1) as f64;
+            let line = cut(line, MEDIUM, height.max(MIN_BAR_HEIGHT) + 6.0);
+            page.text([x, corner[1] + 0.5 * height], &letters, &line);
+        }
     }
 }
 
-/// Width of the widest of some small texts, mm.
-fn widest(texts: &[String]) -> f64 {
-    texts.iter().map(|text| font::width(text, SMALL)).fold(0.0, f64::max)
+/// A number in a cell: three significant digits.
+fn number(value: f64) -> String {
+    let exponent = libm::floor(libm::log10(value.abs()));
+    ticks::minus(&match exponent {
+        _ if value == 0.0 || !value.is_finite() => short_number(value),
+        exponent if !(-3.0..5.0).contains(&exponent) => format!("{value:.1e}"),
+        exponent if exponent >= 2.0 => format!("{value:.0}"),
+        exponent if exponent >= 1.0 => format!("{value:.1}"),
+        exponent if exponent >= 0.0 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    })
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::render::figure::check;
+    use crate::render::figure::style::Fill;
+    use crate::render::png;
+
+    const VALUES: [f64; 5] = [12.0, 31.25, 0.5, 0.25, -1234.0];
+
+    /// Maps with cells of all kinds.
+    fn maps(columns: usize, rows: usize, panels: usize, headings: usize) -> Maps {
+        let cell = |index: usize| match index % 7 {
+            3 => Cell::letter("S"),
+            4 => Cell::default(),
+            5 => Cell {
+                ground: Ground::Colour("#d55e00", "#000000"),
+                sign: Some([Sign::Dot, Sign::Cross, Sign::Bar, Sign::Marker(3)][index % 4]),
+                text: ["S", "", "Tl"][index % 3].to_owned(),
+                below: ["3.4 µs", "", "2e−5"][index % 3].to_owned(),
+                corner: true,
+                ..Cell::default()
+            },
+            6 => Cell { below: "3/5".to_owned(), framed: true, ..Cell::letter("") },
+            _ => Cell::of(VALUES[index % 5], Sign::Circle([Fill::Half, Fill::Crossed][index % 2])),
+        };
+        let beside =
+            |row: usize| vec![format!("1.{row}"), "1.0000".to_owned()][..headings].to_vec();
+        let panel = |panel: usize| Panel {
+            title: format!("M {panel}, strategy rapid"),
+            cells: (0..columns * rows).map(cell).collect(),
+            beside: (0..rows).map(beside).collect(),
+        };
+        Maps {
+            sheet: Sheet { title: "A map".to_owned(), ..Sheet::default() },
+            x: (
+                "mass_flow_rate (g/s)".to_owned(),
+                (0..columns).map(|n| format!("{n}.5")).collect(),
+            ),
+            y: ("N".to_owned(), (0..rows).map(|n| n.to_string()).collect()),
+            scale: (headings == 0).then(|| ("peak_vz (m/s)".to_owned(), [-1234.0, 31.25])),
+            headings: ["border", "of 2/ω"][..headings].iter().map(|&s| s.to_owned()).collect(),
+            panels: (0..panels).map(panel).collect(),
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+        #[test]
+        fn any_map_is_a_valid_figure(
+            columns in 1..17_usize, rows in 1..9_usize, panels in 1..11_usize, headings in 0..3_usize,
+        ) {
+            check::figure(&maps(columns, rows, panels, headings).svg());
+        }
+    }
+
+    #[test]
+    fn cells_have_their_texts_where_all_of_them_fit() {
+        let shown = |columns: usize, headings: usize, texts: &[&str]| {
+            let all = check::figure(&maps(columns, 2, 1, headings).svg());
+            texts.iter().all(|text| all.iter().any(|other| other == text))
+        };
+        assert!(shown(6, 0, &["12.0", "0.500", "3/5", "Tl", "2e−5", "peak_vz (m/s)", "N", "S"]));
+        assert!(shown(6, 2, &["border", "1.1"]));
+        assert!(!shown(16, 0, &["12.0"]) && shown(16, 0, &["S"]));
+        assert_eq!(VALUES.map(number), ["12.0", "31.2", "0.500", "0.250", "−1234"]);
+        assert!(png::encode(&maps(5, 1, 1, 0).svg(), 2.0).unwrap().len() > 1000);
+        // One value for all cells has a finite colour.
+        let scale = Some(("x".to_owned(), [5.0, 5.0]));
+        check::figure(&Maps { scale, ..maps(3, 2, 1, 0) }.svg());
+    }
+}

@@ -1,15 +1,15 @@
-//! Figures: plots ([`plot`]), maps ([`map`]) and maps of outcomes ([`outcome`]) with a title above, a legend and notes below.
+//! Figures: plots ([`plot`]) and maps ([`map`]) with a title above, a legend and notes below.
 //!
 //! Values are given in the units in which they are shown. Sizes are those of print: 160 mm wide, texts of
 //! at least 8 pt. Series never differ in colour only ([`style`]).
 
 use self::legend::Legend;
-use self::style::{GREY, LARGE, MARGIN, PAGE_WIDTH, SMALL};
-use super::page::{Letters, Page, wrapped};
+use self::style::{AXIS, GREY, LARGE, MARGIN, PAGE_WIDTH, SMALL};
+use super::font;
+use super::page::{Anchor, Letters, Page, cut, wrapped};
 
 pub mod legend;
 pub mod map;
-pub mod outcome;
 pub mod plot;
 pub mod scale;
 pub mod style;
@@ -69,6 +69,31 @@ pub fn columns(panels: usize) -> usize {
         2 | 4 => 2,
         _ => 3,
     }
+}
+
+/// Least distance between the texts of an axis, mm.
+const MIN_TEXT_GAP: f64 = 1.5;
+
+/// Width of the widest of some small texts, mm.
+fn widest<'a>(texts: impl IntoIterator<Item = &'a String>) -> f64 {
+    texts.into_iter().map(|text| font::width(text, SMALL)).fold(0.0, f64::max)
+}
+
+/// Draws names below an axis at these positions, at least `distance` mm apart. Names that are too wide stand in
+/// turn on several lines. Returns their height, mm.
+fn draw_names(page: &mut Page, names: &[ticks::Tick], top: f64, distance: f64) -> f64 {
+    let needed = (widest(names.iter().map(|(_, text)| text)) + MIN_TEXT_GAP) / distance;
+    // Chosen: eleven names of 25 characters fit.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 4")]
+    let lines = needed.ceil().clamp(1.0, 4.0) as usize;
+    for (number, (x, text)) in names.iter().enumerate() {
+        page.line([*x, top], [*x, top + 1.0], &AXIS);
+        let down = (number % lines) as f64 * 1.25 * SMALL;
+        let text = cut(text, SMALL, lines as f64 * distance - MIN_TEXT_GAP);
+        let letters = Letters::new(SMALL).at(Anchor::Middle);
+        page.text([*x, top + 1.6 + 0.8 * SMALL + down], &letters, &text);
+    }
+    1.6 + lines as f64 * 1.25 * SMALL
 }
 
 #[cfg(test)]

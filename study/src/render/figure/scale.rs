@@ -11,7 +11,7 @@ pub enum Spread {
 }
 
 /// An axis on the page.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Scale {
     spread: Spread,
     /// Values at the ends of the axis, after [`Spread::of`].

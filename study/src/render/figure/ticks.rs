@@ -1,9 +1,18 @@
 //! Ticks of an axis: steps of 1, 2 or 5 times a power of ten, and their texts.
 
+use super::scale::Spread;
 use crate::input::value::short_number;
 
 /// A tick: its value and its text.
 pub type Tick = (f64, String);
+
+/// At most `most` (at least 2) ticks of an axis.
+pub fn of(spread: Spread, [low, high]: [f64; 2], most: usize) -> Vec<Tick> {
+    match spread {
+        Spread::Linear => linear(low, high, most),
+        Spread::Logarithmic => logarithmic(low, high, most),
+    }
+}
 
 /// Ticks at the multiples of a round step within `low ..= high`. The step is the smallest of 1, 2, 5 times a
 /// power of ten that gives at most `most` (at least 2) ticks.

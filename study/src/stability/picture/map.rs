@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::words::{below, letter, outcome};
+use super::look;
+use super::words::{below, letter};
 use crate::input::value::brief_number;
 use crate::render::figure::Sheet;
 use crate::render::figure::legend::{Legend, Sample};
-use crate::render::figure::outcome::{Cell, Outcomes, Panel};
-use crate::render::figure::style::Outcome;
+use crate::render::figure::map::{Cell, Maps, Panel};
 use crate::stability::Method;
 use crate::stability::cell::Cell as Found;
 use crate::stability::file::{Axis, Map, failure_expected};
@@ -43,7 +43,7 @@ pub fn map(map: &Map, cells: &[Placed], borders: &[Border]) -> String {
             None => panels.push(new),
         }
     }
-    Outcomes {
+    Maps {
         sheet: Sheet {
             title: format!("Where methods fail: {}", map.name),
             subtitle: if map.description.is_empty() {
@@ -57,7 +57,7 @@ pub fn map(map: &Map, cells: &[Placed], borders: &[Border]) -> String {
         x: (x.parameter.label(), texts(x)),
         y,
         headings: headings.iter().map(|&heading| heading.to_owned()).collect(),
-        borders: true,
+        scale: None,
         panels,
     }
     .svg()
@@ -72,15 +72,15 @@ fn in_order<'a>(map: &Map, cells: &'a [Placed]) -> Vec<&'a Placed> {
     (0..first).flat_map(|row| cells[row..].iter().step_by(first)).collect()
 }
 
-fn drawn(placed: &Placed) -> Option<Cell> {
-    let cell = placed.cell.as_ref()?;
-    Some(Cell {
-        outcome: outcome(&cell.status),
-        letter: letter(&cell.audit).to_owned(),
+fn drawn(placed: &Placed) -> Cell {
+    let Some(cell) = &placed.cell else { return Cell::letter("") };
+    Cell {
+        text: letter(&cell.audit).to_owned(),
         below: below(cell, placed.question.method == Method::Statics),
-        failure_expected: failure_expected(&placed.expected),
-        missed: placed.is_wrong(),
-    })
+        corner: failure_expected(&placed.expected),
+        framed: placed.is_wrong(),
+        ..look::cell(&cell.status)
+    }
 }
 
 /// Border, and border over the limit of theory, of each row.
@@ -108,20 +108,19 @@ fn beside(map: &Map, cells: &[&Placed], borders: &[Border], columns: usize) -> V
 
 fn legends(cells: &[Placed]) -> Vec<Legend> {
     let found = || cells.iter().filter_map(|placed| placed.cell.as_ref());
-    let statuses: BTreeMap<Outcome, &str> =
-        found().map(|cell| (outcome(&cell.status), cell.status.as_str())).collect();
+    let statuses: BTreeMap<usize, &str> =
+        found().map(|cell| (look::place(&cell.status), cell.status.as_str())).collect();
     let mut entries: Vec<(Sample, String)> = statuses
-        .into_iter()
-        .map(|(outcome, status)| (Sample::Outcome(outcome), status.to_owned()))
+        .into_values()
+        .map(|status| (Sample::Cell(look::cell(status)), status.to_owned()))
         .collect();
-    if found().any(Found::is_done) && found().any(|cell| !cell.is_done()) {
-        entries.push((Sample::Border, "between done and failed".to_owned()));
-    }
     if cells.iter().any(|placed| failure_expected(&placed.expected)) {
-        entries.push((Sample::Expected, "a failure is expected".to_owned()));
+        let sample = Cell { corner: true, ..Cell::default() };
+        entries.push((Sample::Cell(sample), "a failure is expected".to_owned()));
     }
     if cells.iter().any(Placed::is_wrong) {
-        entries.push((Sample::Missed, "not as expected".to_owned()));
+        let sample = Cell { framed: true, ..Cell::default() };
+        entries.push((Sample::Cell(sample), "not as expected".to_owned()));
     }
     let audits: BTreeSet<&str> = found().map(|cell| cell.audit.as_str()).collect();
     let audits = audits.into_iter().filter(|audit| !letter(audit).is_empty());

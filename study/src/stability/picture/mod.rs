@@ -1,5 +1,6 @@
 //! Pictures: the outcome of each cell of a map, all maps beside each other, and the shapes of a failing run.
 
+mod look;
 mod map;
 mod overview;
 mod strip;

@@ -1,10 +1,11 @@
 //! All maps beside each other: how many cells of each fail, by method.
 
-use super::words::outcome;
+use std::collections::BTreeMap;
+
+use super::look;
 use crate::render::figure::Sheet;
 use crate::render::figure::legend::{Legend, Sample};
-use crate::render::figure::outcome::{Cell, Outcomes, Panel};
-use crate::render::figure::style::Outcome;
+use crate::render::figure::map::{Cell, Maps, Panel};
 use crate::stability::Method;
 use crate::stability::file::{Map, failure_expected};
 use crate::stability::map::Placed;
@@ -15,25 +16,22 @@ pub fn overview(maps: &[(&Map, Vec<Placed>)]) -> String {
     let methods: Vec<Method> = Method::all().into_iter().filter(used).collect();
     // The first map is the highest row.
     let rows = || maps.iter().rev();
-    let cells: Vec<Option<Cell>> = rows()
-        .flat_map(|(_, cells)| methods.iter().map(|method| summary(cells, *method)))
-        .collect();
-    let mut shown: Vec<Outcome> = cells.iter().flatten().map(|cell| cell.outcome).collect();
-    shown.sort_unstable();
-    shown.dedup();
-    let name = |outcome: Outcome| {
-        let all =
-            maps.iter().flat_map(|(_, cells)| cells).filter_map(|placed| placed.cell.as_ref());
-        let mut statuses = all.map(|cell| cell.status.clone());
-        statuses.find(|status| super::words::outcome(status) == outcome).unwrap_or_default()
-    };
-    let mut entries: Vec<(Sample, String)> =
-        shown.into_iter().map(|outcome| (Sample::Outcome(outcome), name(outcome))).collect();
-    if cells.iter().flatten().any(|cell| cell.missed) {
-        entries.push((Sample::Missed, "not as expected".to_owned()));
+    let (mut cells, mut shown) = (Vec::new(), BTreeMap::new());
+    for (_, of_map) in rows() {
+        for method in &methods {
+            let (status, cell) = summary(of_map, *method);
+            shown.extend(status.map(|status| (look::place(&status), status)));
+            cells.push(cell);
+        }
+    }
+    let sample = |status: String| (Sample::Cell(look::cell(&status)), status);
+    let mut entries: Vec<(Sample, String)> = shown.into_values().map(sample).collect();
+    if cells.iter().any(|cell: &Cell| cell.framed) {
+        let sample = Cell { framed: true, ..Cell::default() };
+        entries.push((Sample::Cell(sample), "not as expected".to_owned()));
     }
     let heading = "most frequent failure, or done".to_owned();
-    Outcomes {
+    Maps {
         sheet: Sheet {
             title: "Where methods fail: all maps".to_owned(),
             subtitle: vec!["Number of runs that fail, and of all, by map and method".to_owned()],
@@ -43,27 +41,33 @@ pub fn overview(maps: &[(&Map, Vec<Placed>)]) -> String {
         x: ("method".to_owned(), methods.iter().map(|method| method.name().to_owned()).collect()),
         y: ("map".to_owned(), rows().map(|(map, _)| map.name.clone()).collect()),
         headings: Vec::new(),
-        borders: false,
+        scale: None,
         panels: vec![Panel { title: String::new(), cells, beside: Vec::new() }],
     }
     .svg()
 }
 
-/// The cells of a method in a map as one cell.
-fn summary(cells: &[Placed], method: Method) -> Option<Cell> {
+/// The most frequent status of the failures of a method in a map, or done, and a cell that counts them.
+fn summary(cells: &[Placed], method: Method) -> (Option<String>, Cell) {
     let ran = |placed: &&Placed| placed.question.method == method && placed.cell.is_some();
     let of: Vec<&Placed> = cells.iter().filter(ran).collect();
-    let failed = of.iter().filter_map(|placed| placed.cell.as_ref()).filter(|cell| !cell.is_done());
-    let failed: Vec<Outcome> = failed.map(|cell| outcome(&cell.status)).collect();
-    let number = |outcome: Outcome| failed.iter().filter(|other| **other == outcome).count();
-    // Of equally frequent ones the first.
-    let frequent = Outcome::ALL.into_iter().rev().max_by_key(|outcome| number(*outcome));
-    let outcome = frequent.filter(|_| !failed.is_empty()).unwrap_or(Outcome::Done);
-    (!of.is_empty()).then(|| Cell {
-        outcome,
-        letter: String::new(),
+    let found = || of.iter().filter_map(|placed| placed.cell.as_ref());
+    let failed: Vec<&str> =
+        found().filter(|cell| !cell.is_done()).map(|cell| cell.status.as_str()).collect();
+    // Of equally frequent ones the first in the order of statuses.
+    let frequency = |status: &&str| {
+        let equal = failed.iter().filter(|other| *other == status).count();
+        (equal, std::cmp::Reverse(look::place(status)))
+    };
+    let frequent = failed.iter().copied().max_by_key(frequency);
+    let Some(status) = frequent.or_else(|| found().next().map(|cell| cell.status.as_str())) else {
+        return (None, Cell::letter(""));
+    };
+    let cell = Cell {
         below: format!("{} of {}", failed.len(), of.len()),
-        failure_expected: of.iter().any(|placed| failure_expected(&placed.expected)),
-        missed: of.iter().any(|placed| placed.is_wrong()),
-    })
+        corner: of.iter().any(|placed| failure_expected(&placed.expected)),
+        framed: of.iter().any(|placed| placed.is_wrong()),
+        ..look::cell(status)
+    };
+    (Some(status.to_owned()), cell)
 }

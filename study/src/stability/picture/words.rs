@@ -1,33 +1,11 @@
-//! Outcomes, audits, times and borders in few letters.
+//! Audits, times and borders in few letters.
 
 use billow_solver::output::audit_kind::AuditKind;
-use billow_solver::output::outcome::FailureKind;
 
 use crate::input::value::{brief_number, short_number};
-use crate::job::Status;
-use crate::render::figure::style::Outcome;
 use crate::stability::cell::Cell;
 use crate::stability::file::Map;
 use crate::stability::map::Border;
-
-/// The outcome that a status is drawn as.
-pub(super) fn outcome(status: &str) -> Outcome {
-    match Status::from_name(status) {
-        Some(Status::Done) => Outcome::Done,
-        Some(Status::Failed(kind)) => match kind {
-            FailureKind::Unstable => Outcome::Unstable,
-            FailureKind::Overstretched => Outcome::Overstretched,
-            FailureKind::EnergyDrift => Outcome::EnergyDrift,
-            FailureKind::InvertedVolume => Outcome::InvertedVolume,
-            FailureKind::StepLimit => Outcome::StepLimit,
-            FailureKind::Interpenetrated => Outcome::Interpenetrated,
-            FailureKind::Inconsistent => Outcome::Inconsistent,
-        },
-        Some(Status::NoEquilibrium) => Outcome::NoEquilibrium,
-        Some(Status::Invalid) => Outcome::Refused,
-        _ => Outcome::Other,
-    }
-}
 
 /// The letter of an audit; empty for one without a letter.
 pub(super) fn letter(audit: &str) -> &'static str {
@@ -129,13 +107,5 @@ mod tests {
         assert_eq!(letters.len(), AuditKind::ALL.len());
         assert!(!letters.contains(""));
         assert_eq!(letter("none"), "");
-    }
-
-    #[test]
-    fn every_failure_is_drawn_as_an_outcome_of_its_own() {
-        let drawn: std::collections::BTreeSet<Outcome> =
-            FailureKind::ALL.iter().map(|kind| outcome(kind.name())).collect();
-        assert_eq!(drawn.len(), FailureKind::ALL.len());
-        assert!(!drawn.contains(&Outcome::Done) && !drawn.contains(&Outcome::Other));
     }
 }

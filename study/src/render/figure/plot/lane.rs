@@ -1,8 +1,9 @@
 //! The lane below a plot: one letter per job without a value.
 
-use super::super::scale::Scale;
-use super::super::style::{AXIS, EMPTY, SMALL, Series};
-use crate::render::page::{Anchor, Letters, Page, Position};
+use super::panel::Frame;
+use crate::render::figure::scale::Scale;
+use crate::render::figure::style::{AXIS, EMPTY, SMALL, Series};
+use crate::render::page::{Anchor, Letters, Page};
 
 /// A job without a value.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,42 +21,35 @@ const LANE_GAP: f64 = 1.6;
 /// Height of a row of letters, mm.
 const LANE_ROW: f64 = 3.6;
 /// Width of a letter, mm.
-pub const LANE_LETTER: f64 = 3.0;
+const LANE_LETTER: f64 = 3.0;
 /// Label of the lane.
-pub const NAME: &str = "no value";
+pub(super) const NAME: &str = "no value";
 
 /// Height of a lane with this number of rows and the gap above it, mm.
-pub fn height(rows: usize) -> f64 {
+pub(super) fn height(rows: usize) -> f64 {
     if rows == 0 { 0.0 } else { LANE_GAP + rows as f64 * LANE_ROW }
 }
 
-/// Draws a lane below a plot, given the lower left corner of the plot and the size of the lane with its
-/// gap ([`height`]). The first lane of a row has the label.
-pub fn draw(
-    page: &mut Page,
-    marks: &[Mark],
-    ([left, bottom], [width, height]): (Position, [f64; 2]),
-    x: &Scale,
-    first: bool,
-) {
-    let (top, height) = (bottom + LANE_GAP, height - LANE_GAP);
-    page.fill([left, top], [width, height], EMPTY);
-    page.frame([left, top], [width, height], &AXIS);
-    if first {
-        let position = [left - 1.6, top + 0.5 * height + 0.36 * SMALL];
-        page.text(position, &Letters::new(SMALL).at(Anchor::End), NAME);
+/// Draws a lane below a plot. The first lane of a row has the label.
+pub(super) fn draw(page: &mut Page, marks: &[Mark], frame: &Frame) {
+    let (top, height) = (frame.bottom() + LANE_GAP, height(frame.lane_rows) - LANE_GAP);
+    page.fill([frame.left, top], [frame.width, height], EMPTY);
+    page.frame([frame.left, top], [frame.width, height], &AXIS);
+    let letters = Letters::new(SMALL);
+    if frame.first {
+        let position = [frame.left - 1.6, top + 0.5 * height + 0.36 * SMALL];
+        page.text(position, &letters.at(Anchor::End), NAME);
     }
-    let (positions, _) = positions(marks, x, width);
+    let (positions, _) = positions(marks, &frame.x, frame.width);
     for (mark, [at, row]) in marks.iter().zip(positions) {
-        let letters =
-            Letters { colour: mark.series.colour, ..Letters::new(SMALL).at(Anchor::Middle) };
+        let letters = Letters { colour: mark.series.colour, ..letters.at(Anchor::Middle) };
         page.text([at, top + (row + 0.79) * LANE_ROW], &letters, &mark.letter);
     }
 }
 
 /// Positions of the letters (x, mm, and row), and the number of rows. Letters with the same value stand side
 /// by side if the next value leaves enough space, else in several rows.
-pub fn positions(marks: &[Mark], x: &Scale, width: f64) -> (Vec<[f64; 2]>, usize) {
+pub(super) fn positions(marks: &[Mark], x: &Scale, width: f64) -> (Vec<[f64; 2]>, usize) {
     let mut distinct: Vec<f64> = marks.iter().map(|mark| x.position(mark.x)).collect();
     let centres = distinct.clone();
     distinct.sort_by(f64::total_cmp);

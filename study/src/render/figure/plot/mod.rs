@@ -4,27 +4,21 @@
 //! a value is a letter in a lane below the plot.
 
 use super::scale::{Scale, Spread};
-use super::style::{AXIS, MARGIN, MEDIUM, SMALL};
+use super::style::{MARGIN, MEDIUM, SMALL};
 use super::ticks::{self, Tick};
-use super::{INNER, Sheet};
+use super::{INNER, MIN_TEXT_GAP, Sheet, draw_names, widest};
 use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, cut, wrapped, wrapped_at_commas};
 
-mod band;
-mod frame;
-pub mod lane;
-pub mod line;
-mod panel;
-pub mod range;
-pub mod rule;
+mod lane;
+mod line;
+pub(super) mod panel;
 mod words;
 
+pub use self::lane::Mark;
 pub use self::line::{Direction, Line};
 
-use self::frame::Frame;
-use self::lane::Mark;
-use self::panel::Drawn;
-use self::rule::Rule;
+use self::panel::Frame;
 
 /// A figure of plots.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,12 +71,19 @@ pub struct Panel {
     pub blank: bool,
 }
 
+/// A horizontal line across a plot: a limit, or an end of a range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// Its value on the y axis.
+    pub value: f64,
+    /// Text beside it; empty for none.
+    pub text: String,
+    /// The side that is not allowed; `None` for a line alone, which is dashed.
+    pub closed: Option<Direction>,
+}
+
 /// Distance between plots side by side, mm.
 const GAP: f64 = 5.0;
-/// Least distance between the texts of an axis, mm.
-const MIN_TEXT_GAP: f64 = 1.5;
-/// Most lines of names below an axis. Chosen: eleven names of 25 characters fit.
-const MAX_NAME_LINES: f64 = 4.0;
 
 /// Sizes of the figure, mm.
 struct Layout {
@@ -100,8 +101,6 @@ struct Layout {
     title: f64,
 }
 
-/// Note of a figure with a band.
-const BAND_NOTE: &str = "Shaded bands: the range of a line that turns too often to be drawn.";
 /// Note of a figure without space for each text beside a point.
 const OMITTED_NOTE: &str = "Some texts k/n have no space here; the table has them all.";
 /// Distance of the lines of a label, in sizes of its letters.
@@ -109,30 +108,22 @@ const LABEL_LINE: f64 = 1.3;
 /// Height of a line of a title, mm.
 const TITLE_LINE: f64 = 1.35 * SMALL;
 
-impl Layout {
-    fn lane_height(&self, row: usize) -> f64 {
-        lane::height(self.lanes.get(row).copied().unwrap_or(0))
-    }
-}
-
 impl Plots {
     /// The SVG text.
     pub fn svg(&self) -> String {
         let mut page = Page::new();
         let mut y = self.sheet.head(&mut page);
         let layout = self.layout();
-        let mut all = Drawn::default();
-        let last_row = self.panels.len().saturating_sub(self.across);
+        let mut omitted = false;
         for (row, panels) in self.panels.chunks(self.across.max(1)).enumerate() {
             y += layout.title;
             let bottom = y + layout.height;
-            let mut below: f64 = 2.0;
-            for (column, panel) in panels.iter().enumerate() {
-                if panel.blank {
-                    continue;
-                }
-                let left = layout.columns[column];
+            let lane_rows = layout.lanes[row];
+            let below = bottom + lane::height(lane_rows);
+            let mut end = below + 2.0;
+            for (column, panel) in panels.iter().enumerate().filter(|(_, panel)| !panel.blank) {
                 let number = row * self.across + column;
+                let left = layout.columns[column];
                 let frame = Frame {
                     left,
                     top: y,
@@ -141,20 +132,15 @@ impl Plots {
                     x: self.x_scale(left, layout.width),
                     y: Scale::new(panels[0].spread, panels[0].range, [bottom, y]),
                     x_ticks: self.x_ticks(layout.width),
-                    lane_rows: layout.lanes.get(row).copied().unwrap_or(0),
+                    lane_rows,
                     first: column == 0,
                 };
-                let drawn = panel.draw(&mut page, &frame, &layout.titles[number]);
-                all.bands |= drawn.bands;
-                all.omitted |= drawn.omitted;
-                let below_is_blank =
-                    self.panels.get(number + self.across).is_none_or(|panel| panel.blank);
-                if number >= last_row || below_is_blank {
-                    let top = bottom + layout.lane_height(row);
-                    below = below.max(self.draw_x_axis(&mut page, &frame, top));
+                omitted |= panel.draw(&mut page, &frame, &layout.titles[number]);
+                if self.panels.get(number + self.across).is_none_or(|panel| panel.blank) {
+                    end = end.max(below + self.draw_x_axis(&mut page, &frame, below));
                 }
             }
-            y = bottom + layout.lane_height(row) + below;
+            y = end;
         }
         let left = layout.columns[0];
         let right = layout.columns[layout.columns.len() - 1] + layout.width;
@@ -164,11 +150,8 @@ impl Plots {
         page.text([0.5 * (left + right), y], &letters, &label);
         y += 0.5 * MEDIUM;
         let mut sheet = self.sheet.clone();
-        if all.omitted {
+        if omitted {
             sheet.notes.insert(0, OMITTED_NOTE.to_owned());
-        }
-        if all.bands {
-            sheet.notes.insert(0, BAND_NOTE.to_owned());
         }
         sheet.foot(page, y)
     }
@@ -184,16 +167,14 @@ impl Plots {
             (2, _) => 50.0,
             _ => 40.0,
         };
-        let widths = self.panels.iter().step_by(across).flat_map(|panel| {
-            let ticks = y_ticks(panel.spread, panel.range, height);
-            ticks.into_iter().map(|(_, text)| font::width(&text, SMALL))
-        });
-        let mut gutter = widths.fold(0.0, f64::max);
+        let first = || self.panels.iter().step_by(across);
+        let ticks = first().flat_map(|panel| y_ticks(panel.spread, panel.range, height));
+        let mut gutter = widest(&ticks.map(|(_, text)| text).collect::<Vec<_>>());
         if self.panels.iter().any(|panel| !panel.lane.is_empty()) {
             gutter = gutter.max(font::width(lane::NAME, SMALL));
         }
-        let labels = self.panels.iter().step_by(across);
-        let labels = labels.map(|panel| panel.label_lines(height).len()).max().unwrap_or(0).max(1);
+        let labels = first().map(|panel| panel.label_lines(height).len());
+        let labels = labels.max().unwrap_or(0).max(1);
         let left = MARGIN + (0.5 + LABEL_LINE * labels as f64) * MEDIUM + gutter + 2.0;
         // Half of the last number of the x axis extends beyond the plot.
         let inner_width = INNER + MARGIN - left - 3.0;
@@ -239,10 +220,7 @@ impl Plots {
         }
         let [low, high] = self.x.range;
         for most in (2..=9).rev() {
-            let mut ticks = match self.x.spread {
-                Spread::Linear => ticks::linear(low, high, most),
-                Spread::Logarithmic => ticks::logarithmic(low, high, most),
-            };
+            let mut ticks = ticks::of(self.x.spread, [low, high], most);
             if apart(&ticks) || most == 2 {
                 if !clear(&ticks) {
                     ticks.pop();
@@ -253,28 +231,14 @@ impl Plots {
         Vec::new()
     }
 
-    /// Draws the x axis of a panel below `top`. Names that are too wide stand in turn on several
-    /// lines.
-    /// Returns its height, mm.
+    /// Draws the ticks of the x axis of a panel below `top`. Returns their height, mm.
     fn draw_x_axis(&self, page: &mut Page, frame: &Frame, top: f64) -> f64 {
-        let ticks = &frame.x_ticks;
-        let positions: Vec<f64> = ticks.iter().map(|(value, _)| frame.x.position(*value)).collect();
-        let nearest =
-            positions.windows(2).map(|pair| pair[1] - pair[0]).fold(frame.width, f64::min);
-        let widest = ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
-        let needed = ((widest + MIN_TEXT_GAP) / nearest).ceil();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 4")]
-        let lines = if self.x.names { needed.clamp(1.0, MAX_NAME_LINES) as usize } else { 1 };
-        for (number, ((_, text), x)) in ticks.iter().zip(&positions).enumerate() {
-            page.line([*x, top], [*x, top + 1.0], &AXIS);
-            let down = (number % lines) as f64 * 1.25 * SMALL;
-            let max_width =
-                if self.x.names { lines as f64 * nearest - MIN_TEXT_GAP } else { f64::INFINITY };
-            let position = [*x, top + 1.6 + 0.8 * SMALL + down];
-            let text = cut(text, SMALL, max_width);
-            page.text(position, &Letters::new(SMALL).at(Anchor::Middle), &text);
-        }
-        1.6 + lines as f64 * 1.25 * SMALL
+        let place = |(value, text): &Tick| (frame.x.position(*value), text.clone());
+        let ticks: Vec<Tick> = frame.x_ticks.iter().map(place).collect();
+        let gaps = ticks.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        // Numbers have the space that they need.
+        let distance = if self.x.names { gaps.fold(frame.width, f64::min) } else { INNER };
+        draw_names(page, &ticks, top, distance)
     }
 }
 
@@ -286,13 +250,10 @@ impl Panel {
 }
 
 /// Ticks of a y axis of this height, mm.
-fn y_ticks(spread: Spread, [low, high]: [f64; 2], height: f64) -> Vec<Tick> {
+fn y_ticks(spread: Spread, range: [f64; 2], height: f64) -> Vec<Tick> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 11")]
     let most = ((height / 7.0) as usize).clamp(3, 9);
-    match spread {
-        Spread::Linear => ticks::linear(low, high, most),
-        Spread::Logarithmic => ticks::logarithmic(low, high, most),
-    }
+    ticks::of(spread, range, most)
 }
 
 #[cfg(test)]

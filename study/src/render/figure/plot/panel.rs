@@ -1,67 +1,94 @@
 //! One panel of a plot: grid, limits, lines, markers, lane, message.
 
-use super::frame::Frame;
-use super::line::{along, thinned};
 use super::words::Words;
-use super::{LABEL_LINE, Line, Panel, TITLE_LINE, band, lane, range, y_ticks};
-use crate::render::figure::legend;
-use crate::render::figure::scale::Spread;
-use crate::render::figure::style::{self, AXIS, Fill, GRID, MARGIN, MEDIUM, SMALL};
+use super::{LABEL_LINE, Panel, Rule, TITLE_LINE, lane, y_ticks};
+use crate::render::figure::plot::Direction;
+use crate::render::figure::scale::{Scale, Spread};
+use crate::render::figure::style::{AXIS, GRID, MARGIN, MEDIUM, SMALL};
+use crate::render::figure::ticks::Tick;
+use crate::render::font;
 use crate::render::page::{Anchor, Letters, Page, Position, Stroke, cut, wrapped};
+
+/// Where a panel lies on the page, mm, and its scales.
+#[derive(Default)]
+pub struct Frame {
+    /// Left end.
+    pub left: f64,
+    /// Upper end.
+    pub top: f64,
+    /// Width.
+    pub width: f64,
+    /// Height.
+    pub height: f64,
+    /// From x to the page.
+    pub x: Scale,
+    /// From y to the page.
+    pub y: Scale,
+    /// Ticks of the x axis.
+    pub x_ticks: Vec<Tick>,
+    /// Number of rows of letters in the lane below.
+    pub lane_rows: usize,
+    /// Whether the panel is the first one of its row and has the y axis.
+    pub first: bool,
+}
+
+impl Frame {
+    pub(super) fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    pub(super) fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+
+    pub(super) fn contains(&self, [x, y]: Position) -> bool {
+        (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
+    }
+}
 
 /// The line of zero in a plot of both signs.
 const ZERO: Stroke = Stroke::solid("#888888", 0.25);
-/// Number of markers along a line with sparse markers, at most.
-const SPARSE_MARKERS: f64 = 6.0;
-/// Distance of these markers along x, mm, at least. Chosen: with several lines they do not hide the data.
-const MARKER_DISTANCE: f64 = 20.0;
-
-/// What a panel drew.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Drawn {
-    /// Whether a line became a band.
-    pub(super) bands: bool,
-    /// Whether a text had no space.
-    pub(super) omitted: bool,
-}
+/// The line of a limit.
+const LIMIT: Stroke = Stroke::solid("#000000", 0.5);
+/// The line of an end of a range.
+pub const END: Stroke = Stroke { colour: "#555555", width: 0.3, dashes: &[1.6, 1.0] };
+/// Most points of data that the text of a limit may cover; with more it is left out, and the legend has it.
+const MAX_COVERED: usize = 4;
 
 impl Panel {
-    /// Draws the panel, with the y axis if it is the first one of its row.
-    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) -> Drawn {
+    /// Draws the panel, with the y axis if it is the first one of its row. Returns whether a text beside a point had
+    /// no space.
+    pub(super) fn draw(&self, page: &mut Page, frame: &Frame, title: &[String]) -> bool {
         for (number, line) in title.iter().rev().enumerate() {
             let y = frame.top - 1.6 - number as f64 * TITLE_LINE;
             page.text([frame.left, y], &Letters::new(SMALL), &cut(line, SMALL, frame.width));
         }
-        let size = [frame.width, frame.height];
+        let (corner, size) = ([frame.left, frame.top], [frame.width, frame.height]);
         for rule in &self.rules {
             rule.draw_closed_side(page, frame);
         }
         self.draw_grid(page, frame);
-        page.clip([frame.left, frame.top], size);
-        range::draw_bands(page, &self.lines, frame);
-        let mut bands = false;
-        for line in &self.lines {
-            bands |= draw_line(page, line, frame);
-        }
+        page.clip(corner, size);
+        self.lines.iter().for_each(|line| line.draw_bands(page, frame));
+        self.lines.iter().for_each(|line| line.draw_pieces(page, frame));
         page.unclip();
-        page.frame([frame.left, frame.top], size, &AXIS);
-        range::draw_points(page, &self.lines, frame);
-        self.draw_markers(page, frame);
-        let mut omitted = false;
-        // The message of an empty plot takes the place of other texts.
-        if self.message.is_empty() {
-            let mut words = Words::new(self, frame);
-            for rule in &self.rules {
-                rule.draw(page, frame, &mut words);
-            }
-            omitted = words.draw_texts(page, &self.lines, frame);
+        page.frame(corner, size, &AXIS);
+        for (number, line) in self.lines.iter().enumerate() {
+            line.draw_points(page, frame, (number, self.lines.len()));
         }
         if frame.lane_rows > 0 {
-            let area = ([frame.left, frame.bottom()], [frame.width, lane::height(frame.lane_rows)]);
-            lane::draw(page, &self.lane, area, &frame.x, frame.first);
+            lane::draw(page, &self.lane, frame);
         }
-        self.draw_message(page, frame);
-        Drawn { bands, omitted }
+        // The message of an empty plot takes the place of other texts.
+        if !self.message.is_empty() {
+            self.draw_message(page, frame);
+            return false;
+        }
+        let mut words = Words::new(self, frame);
+        for rule in &self.rules {
+            rule.draw(page, frame, &mut words);
+        }
+        words.draw_texts(page, &self.lines, frame)
     }
 
     /// Grid lines, and the y axis with its label.
@@ -95,37 +122,8 @@ impl Panel {
         }
     }
 
-    /// Sparse markers, markers of points, crosses.
-    fn draw_markers(&self, page: &mut Page, frame: &Frame) {
-        let sparse = self.lines.iter().filter(|line| line.sparse_markers).count();
-        for (number, line) in self.lines.iter().enumerate() {
-            if line.sparse_markers {
-                let step = (frame.width / SPARSE_MARKERS).max(MARKER_DISTANCE);
-                let shift = (number as f64 + 0.5) / sparse as f64;
-                let start = frame.left + shift * step;
-                let positions = along(line, (&frame.x, &frame.y), start, step);
-                // A marker at an end would be half outside.
-                let inside =
-                    |[x, y]: Position| frame.contains([x - 1.0, y]) && frame.contains([x + 1.0, y]);
-                for position in positions.into_iter().filter(|position| inside(*position)) {
-                    style::marker(page, position, line.series, Fill::Filled, 1.7);
-                }
-            }
-            for (point, fill) in &line.marks {
-                let position = range::shifted(frame.position(*point), line);
-                style::marker(page, position, line.series, *fill, legend::MARKER);
-            }
-            for point in &line.crosses {
-                style::cross(page, frame.position(*point), line.series.colour, 2.6);
-            }
-        }
-    }
-
     /// The message of an empty plot, in its middle.
     fn draw_message(&self, page: &mut Page, frame: &Frame) {
-        if self.message.is_empty() {
-            return;
-        }
         let lines = wrapped(&self.message, SMALL, frame.width - 6.0);
         for (number, line) in lines.iter().enumerate() {
             let below = number as f64 - 0.5 * (lines.len() - 1) as f64;
@@ -136,31 +134,50 @@ impl Panel {
     }
 }
 
-/// Draws a line. Where one that rings turns too often to be read, it is a band. Returns whether it has one.
-fn draw_line(page: &mut Page, line: &Line, frame: &Frame) -> bool {
-    let mut bands = false;
-    let stroke = if line.rings { line.series.thin_line() } else { line.series.line() };
-    for piece in &line.pieces {
-        let place = |point: &[f64; 2]| range::shifted(frame.position(*point), line);
-        let positions: Vec<Position> = piece.iter().map(place).collect();
-        if !line.rings {
-            page.polyline(&thinned(&positions), &stroke);
-            continue;
+impl Rule {
+    /// Hatches the side that is not allowed.
+    fn draw_closed_side(&self, page: &mut Page, frame: &Frame) {
+        let y = frame.y.position(self.value).clamp(frame.top, frame.bottom());
+        let (top, bottom) = match self.closed {
+            None => return,
+            Some(Direction::Up) => (frame.top, y),
+            Some(Direction::Down) => (y, frame.bottom()),
+        };
+        draw_closed(page, [frame.left, top], [frame.width, bottom - top], 2.6);
+    }
+
+    /// Draws the line, and its text where it covers the least.
+    fn draw(&self, page: &mut Page, frame: &Frame, words: &mut Words) {
+        let y = frame.y.position(self.value);
+        if !(frame.top..=frame.bottom()).contains(&y) {
+            return;
         }
-        for part in band::parts(&positions) {
-            match part {
-                band::Part::Line(positions) => page.polyline(&thinned(&positions), &stroke),
-                band::Part::Band { upper, lower } => {
-                    let around: Vec<Position> =
-                        upper.iter().chain(lower.iter().rev()).copied().collect();
-                    page.area(&around, line.series.colour);
-                    let border = Stroke { dashes: &[], ..stroke };
-                    page.polyline(&upper, &border);
-                    page.polyline(&lower, &border);
-                    bands = true;
-                }
-            }
+        let stroke = if self.closed.is_some() { &LIMIT } else { &END };
+        page.line([frame.left, y], [frame.right(), y], stroke);
+        let size = [font::width(&self.text, SMALL) + 1.0, 1.1 * SMALL];
+        let space = frame.width - size[0] - 1.2;
+        if self.text.is_empty() || space < 0.0 {
+            return;
+        }
+        let lefts = [1.0, 0.0, 0.5, 0.75, 0.25].map(|part| frame.left + 0.6 + part * space);
+        // The allowed side first: it is not hatched.
+        let mut tops = [y + 0.5, y - 0.5 - size[1]];
+        if self.closed == Some(Direction::Down) {
+            tops.reverse();
+        }
+        let corners = tops.iter().flat_map(|top| lefts.iter().map(move |left| [*left, *top]));
+        let corners: Vec<Position> = corners.collect();
+        if let Some([left, top]) = words.best(&corners, size, MAX_COVERED) {
+            page.fill([left, top], size, "#ffffff");
+            page.text([left + 0.5, top + 0.88 * SMALL], &Letters::new(SMALL), &self.text);
         }
     }
-    bands
+}
+
+/// A tinted and hatched rectangle: not allowed.
+pub fn draw_closed(page: &mut Page, corner: Position, size: [f64; 2], gap: f64) {
+    if size[0] > 0.0 && size[1] > 0.0 {
+        page.fill(corner, size, "#f7efe9");
+        page.hatch(corner, size, gap, &Stroke::solid("#d8c6ba", 0.2));
+    }
 }

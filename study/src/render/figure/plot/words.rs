@@ -1,8 +1,7 @@
 //! Places of texts inside a plot: no text covers another one, and as little data as possible is covered.
 
-use super::frame::Frame;
-use super::line::Line;
-use super::{Panel, range};
+use super::panel::Frame;
+use super::{Line, Panel};
 use crate::render::figure::style::SMALL;
 use crate::render::font;
 use crate::render::page::{Letters, Page, Position};
@@ -29,21 +28,15 @@ pub(super) struct Words {
 impl Words {
     pub(super) fn new(panel: &Panel, frame: &Frame) -> Self {
         let marks = |line: &Line| -> Vec<Position> {
-            let place = |point: [f64; 2]| range::shifted(frame.position(point), line);
-            line.marks.iter().map(|(point, _)| place(*point)).collect()
+            line.marks.iter().map(|(point, _)| line.place(frame, *point)).collect()
         };
         let points = |line: &Line| -> Vec<Position> {
             let bands = line.bands.iter().flatten().chain(&line.bars).chain(&line.errors);
             let bands = bands.flat_map(|[x, low, high]| [[*x, *low], [*x, *high]]);
             let faint = line.faint.iter().map(|(point, _)| *point);
             let arrows = line.arrows.iter().map(|(point, _)| *point);
-            let place = |point: [f64; 2]| range::shifted(frame.position(point), line);
-            let points = bands.chain(faint).chain(arrows).map(place);
-            let pieces = line.pieces.iter().flat_map(|piece| {
-                let positions: Vec<Position> = piece.iter().copied().map(place).collect();
-                along(&positions)
-            });
-            points.chain(pieces).collect()
+            let points = bands.chain(faint).chain(arrows).map(|point| line.place(frame, point));
+            points.chain(line.along(frame, frame.left, 1.0)).collect()
         };
         Self {
             frame: [frame.left, frame.top, frame.right(), frame.bottom()],
@@ -86,7 +79,7 @@ impl Words {
         let mut omitted = false;
         for line in lines {
             for (point, text) in &line.texts {
-                let [x, y] = range::shifted(frame.position(*point), line);
+                let [x, y] = line.place(frame, *point);
                 let (width, height) = (font::width(text, SMALL), 0.9 * SMALL);
                 let (right, left) = (x + MARKER + 0.3, x - MARKER - 0.3 - width);
                 let (above, below) = (y - height - 0.9, y + 0.9);
@@ -111,22 +104,6 @@ impl Words {
         }
         omitted
     }
-}
-
-/// Positions on a line, at most 1 mm apart.
-fn along(line: &[Position]) -> Vec<Position> {
-    let between = |pair: &[Position]| -> Vec<Position> {
-        let step = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
-        let length = libm::hypot(step[0], step[1]);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "mm")]
-        let count = length.clamp(1.0, 500.0) as usize;
-        let at = |number: usize| {
-            let fraction = number as f64 / count as f64;
-            [pair[0][0] + fraction * step[0], pair[0][1] + fraction * step[1]]
-        };
-        (0..count).map(at).collect()
-    };
-    line.windows(2).flat_map(between).chain(line.last().copied()).collect()
 }
 
 fn apart(a: Bounds, b: Bounds) -> bool {

@@ -7,13 +7,7 @@
 //! used, because it is not visible on white. Dashes and markers distinguish series in black and white. Maps
 //! use viridis, whose lightness increases evenly, so that they are readable in grey.
 
-use crate::render::page::Stroke;
-
-mod marker;
-mod outcome;
-
-pub use self::marker::{Fill, cross, map_marker, marker, plain_marker};
-pub use self::outcome::Outcome;
+use crate::render::page::{Page, Position, Stroke};
 
 /// Size of the numbers of axes, legends and notes, mm: 8 pt and more.
 pub const SMALL: f64 = 2.9;
@@ -21,8 +15,6 @@ pub const SMALL: f64 = 2.9;
 pub const MEDIUM: f64 = 3.2;
 /// Size of the title, mm: 11 pt.
 pub const LARGE: f64 = 3.9;
-/// Size of the shape of an outcome, mm.
-const MARKER_SIZE: f64 = 2.2;
 /// Width of every figure, mm: a column of text on A4.
 pub const PAGE_WIDTH: f64 = 160.0;
 /// Margin round a figure, mm.
@@ -36,7 +28,7 @@ const DASHES: [&[f64]; 5] =
     [&[], &[2.8, 1.1], &[0.7, 0.8], &[3.2, 0.9, 0.7, 0.9], &[5.0, 0.9, 1.4, 0.9, 1.4, 0.9]];
 /// Width of the line of a series, mm.
 const LINE: f64 = 0.45;
-/// Width of the line of a quantity that rings, mm.
+/// Width of the line of a quantity that oscillates, mm.
 const THIN_LINE: f64 = 0.25;
 /// Colour of samples that stand for no series.
 pub const PLAIN: &str = "#333333";
@@ -72,6 +64,13 @@ pub struct Series {
     pub dashes: usize,
     /// Index of the marker shape; `None` for a line without markers.
     pub marker: Option<usize>,
+}
+
+impl Default for Series {
+    /// No series: a solid line in one colour.
+    fn default() -> Self {
+        Self::dashes_only(0)
+    }
 }
 
 impl Series {
@@ -113,6 +112,105 @@ impl Series {
     }
 }
 
+/// How the inside of a marker is filled: it shows the outcome of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fill {
+    /// Filled: deployed.
+    Filled,
+    /// Its left half filled: some of several runs deployed.
+    Half,
+    /// White inside: partial.
+    Open,
+    /// White inside, with a cross: stalled, or no run deployed.
+    Crossed,
+}
+
+/// The sign of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    /// A circle, filled as the marker of a job.
+    Circle(Fill),
+    /// The filled marker with this index.
+    Marker(usize),
+    /// A small circle.
+    Dot,
+    /// A diagonal cross.
+    Cross,
+    /// A bar.
+    Bar,
+}
+
+/// Size of a sign, mm.
+const SIGN: f64 = 2.0;
+
+impl Sign {
+    /// Draws the sign in a colour on a coloured ground.
+    pub fn draw(self, page: &mut Page, centre: Position, ink: &'static str) {
+        let [x, y] = centre;
+        match self {
+            Self::Circle(fill) => shape(page, centre, 0, (ink, "none", fill), SIGN),
+            Self::Marker(number) => shape(page, centre, number, (ink, "none", Fill::Filled), SIGN),
+            Self::Dot => page.circle(centre, 0.25 * SIGN, ink, &Stroke::solid(ink, 0.1)),
+            Self::Cross => cross(page, centre, &Stroke::solid(ink, 0.5), SIGN),
+            Self::Bar => {
+                page.line([x - 0.5 * SIGN, y], [x + 0.5 * SIGN, y], &Stroke::solid(ink, 0.5));
+            }
+        }
+    }
+}
+
+/// Draws the marker of a series, about `size` mm wide; a circle for a series without one.
+pub fn marker(page: &mut Page, centre: Position, series: Series, fill: Fill, size: f64) {
+    let number = series.marker.unwrap_or(0);
+    shape(page, centre, number, (series.colour, "#ffffff", fill), size);
+}
+
+/// Draws a diagonal cross, `size` mm wide.
+pub fn cross(page: &mut Page, [x, y]: Position, stroke: &Stroke, size: f64) {
+    let arm = 0.5 * size;
+    page.line([x - arm, y - arm], [x + arm, y + arm], stroke);
+    page.line([x - arm, y + arm], [x + arm, y - arm], stroke);
+}
+
+/// Corners of the markers after the circle, over half of their size.
+const SHAPES: [&[Position]; 6] = [
+    &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
+    &[[0.0, -1.15], [1.1, 0.8], [-1.1, 0.8]],
+    &[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]],
+    &[[0.0, 1.15], [1.1, -0.8], [-1.1, -0.8]],
+    &[[1.15, 0.0], [-0.8, 1.1], [-0.8, -1.1]],
+    &[[-1.15, 0.0], [0.8, 1.1], [0.8, -1.1]],
+];
+
+/// Draws a marker with its outline in a colour; `ground` is the colour inside one that is not filled.
+fn shape(
+    page: &mut Page,
+    centre: Position,
+    number: usize,
+    (colour, ground, fill): (&'static str, &str, Fill),
+    size: f64,
+) {
+    let half = 0.5 * size;
+    let inside = if fill == Fill::Filled { colour } else { ground };
+    let stroke = Stroke::solid(colour, 0.35);
+    if number == 0 {
+        page.circle(centre, half, inside, &stroke);
+    } else {
+        let corners = SHAPES[(number - 1) % SHAPES.len()].iter();
+        let corners = corners.map(|[x, y]| [centre[0] + half * x, centre[1] + half * y]);
+        page.polygon(&corners.collect::<Vec<_>>(), inside, &stroke);
+    }
+    match fill {
+        Fill::Half => {
+            page.clip(centre.map(|end| end - 1.3 * half), [1.3 * half, 2.6 * half]);
+            shape(page, centre, number, (colour, ground, Fill::Filled), size);
+            page.unclip();
+        }
+        Fill::Crossed => cross(page, centre, &Stroke::solid(colour, 0.25), 0.55 * size),
+        Fill::Filled | Fill::Open => {}
+    }
+}
+
 /// Viridis (S. van der Walt, N. Smith; CC0) at 17 equal intervals, sRGB.
 const VIRIDIS: [[f64; 3]; 17] = [
     [68.0, 1.0, 84.0],
@@ -148,6 +246,25 @@ pub fn map_rgb(fraction: f64) -> [u8; 3] {
     viridis(fraction).map(|channel| libm::round(channel) as u8)
 }
 
+/// Fills a rectangle with the colours of a map, the lowest value at the left, or at the bottom of a rectangle that is higher
+/// than wide.
+pub fn colour_bar(page: &mut Page, corner: Position, size: [f64; 2]) {
+    const STEPS: u8 = 64;
+    let along = usize::from(size[1] > size[0]);
+    let step = size[along] / f64::from(STEPS);
+    for number in 0..STEPS {
+        let (colour, _) = map_colour((f64::from(number) + 0.5) / f64::from(STEPS));
+        let (mut at, mut piece) = (corner, size);
+        let from = if along == 0 { number } else { STEPS - 1 - number };
+        at[along] += f64::from(from) * step;
+        // Each step overlaps the next one, so that no white line shows between them.
+        let last = f64::from(from + 1) >= f64::from(STEPS);
+        piece[along] = if last { step } else { 1.5 * step };
+        page.fill(at, piece, &colour);
+    }
+    page.frame(corner, size, &AXIS);
+}
+
 /// Viridis at a fraction (0 to 1), sRGB channels from 0 to 255.
 fn viridis(fraction: f64) -> [f64; 3] {
     let position = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
@@ -172,13 +289,9 @@ fn luminance(colour: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    pub(super) fn rgb(text: &str) -> [f64; 3] {
+    fn rgb(text: &str) -> [f64; 3] {
         let channel = |i| f64::from(u8::from_str_radix(&text[i..i + 2], 16).unwrap());
         [channel(1), channel(3), channel(5)]
-    }
-
-    pub(super) fn luminance_of(text: &str) -> f64 {
-        luminance(rgb(text))
     }
 
     #[test]
