@@ -4,8 +4,10 @@
 # make contact-matrix  the paper's capsule with contact over meshes, loads and seeds (an hour)
 # make torture  kills, signals, full disks, damaged and mutated files, little memory: 20 minutes, one table
 # make paper    the studies of the paper's cases (an hour), their tables and pictures in results/paper/published
-# make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores), its tables and pictures
+# make pareto   work-precision diagrams: studies/pareto.json (three quarters of an hour on two cores) and the scenes with an
+#               exact answer, their tables and pictures in results/pareto/published
 # make stability  where each method fails: studies/stability.json (a quarter of an hour on two cores), its maps and pictures in results/stability/published
+# make validate every reference case, with its error and its tolerance: a quarter of an hour on one core
 # make bench    what billow costs on this machine, a few minutes
 # make slurm    a study on a Slurm cluster of two nodes on this machine, with accidents, with the program of make dist (root only)
 # make dist     a self-contained program with licences, completions and man page, as an archive in target/dist
@@ -21,13 +23,14 @@ SHELL := /bin/bash
 CARGO := cargo
 FLAGS := --release --workspace --locked
 BILLOW := $${CARGO_TARGET_DIR:-target}/release/billow
+CHECKS := $${CARGO_TARGET_DIR:-target}/release/billow-checks
 
 PACKAGES := libhdf5-dev pkg-config
 DIST_PACKAGES := g++ binutils git python3 python3-venv
 READER_PACKAGES := python3 python3-venv
 SLURM_PACKAGES := slurmctld slurmd slurm-client munge procps python3
 
-.PHONY: dist study paper pareto stability test test-all test-long torture contact-matrix readers build bench scale layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
+.PHONY: dist study paper pareto stability validate test test-all test-long torture contact-matrix readers build bench scale layers check deps dist-deps reader-deps slurm slurm-deps fresh-check
 
 study: build
 	$(BILLOW) run studies/first.json
@@ -38,21 +41,24 @@ paper: build
 	studies/publish_paper.sh $(BILLOW)
 
 pareto: build
-	studies/publish_pareto.sh $(BILLOW)
+	studies/publish_pareto.sh $(BILLOW) $(CHECKS)
+
+validate: build
+	$(CHECKS) validate
 
 stability: build
-	studies/publish_stability.sh $(BILLOW)
+	studies/publish_stability.sh $(CHECKS)
 
 test: deps
 	$(CARGO) test $(FLAGS)
-	$(BILLOW) validate --quick
+	$(CHECKS) validate --quick
 
 test-all: test test-long readers slurm
 
 # Tests marked `#[ignore]` are the long tier; so are the cases `validate --quick` leaves out.
 test-long: deps reader-deps
 	$(CARGO) test $(FLAGS) -- --ignored
-	$(BILLOW) validate
+	$(CHECKS) validate
 	tests/matrix/contact.py results/contact-matrix --billow $(BILLOW) --subdivisions 5 --seeds 1
 
 # Runs it has finished are not run again.
@@ -80,7 +86,7 @@ slurm: dist slurm-deps
 	tests/slurm/run.sh "$$(ls -t "$${CARGO_TARGET_DIR:-target}"/dist/billow-*.tar.gz | head -1)" || [ $$? -eq 77 ]
 
 bench: build
-	$(BILLOW) bench
+	$(CHECKS) bench
 
 # For machines without libhdf5. It is compiled in a folder of its own and checked by tests/dist/check.sh.
 dist: deps dist-deps

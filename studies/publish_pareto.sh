@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Runs studies/pareto.json (three quarters of an hour on two cores; finished jobs are not run again) and writes the tables and
-# pictures of its work-precision diagrams to results/pareto/published.
+# Runs studies/pareto.json (three quarters of an hour on two cores; finished jobs are not run again) and the scenes with an
+# exact answer, and writes the tables and pictures of their work-precision diagrams to results/pareto/published.
 #
-# usage: studies/publish_pareto.sh [BILLOW]
+# usage: studies/publish_pareto.sh [BILLOW [CHECKS]]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 billow=${1:-target/release/billow}
+checks=${2:-target/release/billow-checks}
 results=results/pareto
 out=$results/published
 mkdir -p "$out"
@@ -27,11 +28,16 @@ pareto --all --format csv > "$new/configurations.csv"
 pareto | tee "$new/front.txt"
 mv "$new"/* "$out"
 cp "$results"/charts/pareto*.svg "$out"
+"$checks" pareto --format csv > "$out/exact.csv"
+cp results/exact/charts/pareto*.svg "$out"
 # Of the pictures over seconds the overview and that with the peer show what the others do not.
 # In quiet filling integrators are compared, whose steps do not cost the same.
 for picture in pareto pareto_capsule_direct pareto_quiet_filling; do
   cp "$results/charts/$picture"{,_seconds}.png "$out"
 done
-for scene in capsule_residual end_state slow_filling injected_piston breathing_sphere square_airbag stretched_disc; do
+for scene in capsule_residual end_state slow_filling; do
   cp "$results/charts/pareto_$scene.png" "$out"
+done
+for scene in exact injected_piston breathing_sphere square_airbag stretched_disc; do
+  cp "results/exact/charts/pareto_$scene.png" "$out"
 done

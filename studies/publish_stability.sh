@@ -3,10 +3,10 @@
 # and pictures of where methods fail to RESULTS/published: maps.txt, cells.csv, overview.png, one SVG a map, and the strips of
 # the page.
 #
-# usage: studies/publish_stability.sh [BILLOW [RESULTS]]
+# usage: studies/publish_stability.sh [CHECKS [RESULTS]]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-billow=${1:-target/release/billow}
+checks=${1:-target/release/billow-checks}
 results=${2:-results/stability}
 out=$results/published
 mkdir -p "$out"
@@ -14,11 +14,11 @@ rm -rf "$results/charts"
 
 # Outcomes that are not as expected end this script; the pictures and lines that show them are written before.
 code=0
-"$billow" stability studies/stability.json --results "$results" > "$results/maps.txt" || code=$?
+"$checks" stability studies/stability.json --results "$results" > "$results/maps.txt" || code=$?
 # A run that was stopped draws nothing, and what is published stays.
 [ -d "$results/charts" ] || exit "$code"
 sed "\\|$results/charts/|d" "$results/maps.txt" > "$out/maps.txt"
-"$billow" stability "$results" --all --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
+"$checks" stability "$results" --all --format csv --no-pictures -q > "$out/cells.csv" 2> /dev/null || true
 
 rm -f "$out"/*.svg "$out"/*.png
 for picture in "$results"/charts/*.svg; do

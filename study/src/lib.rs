@@ -14,9 +14,6 @@
 //! | folder | holds |
 //! |---|---|
 //! | [`cli`] | the command line |
-//! | [`bench`](mod@bench) | speed of billow on this machine |
-//! | [`stability`] | the map of where each method fails |
-//! | [`cases`] | the reference cases of `billow validate` |
 //! | [`chart`] | charts of stored results |
 //! | [`render`] | pictures: SVG and PNG |
 //! | [`analysis`] | comparisons, statistics, the answer of a study |
@@ -40,8 +37,6 @@ macro_rules! eprintln {
 
 pub mod accuracy;
 pub mod analysis;
-pub mod bench;
-pub mod cases;
 pub mod chart;
 pub mod cli;
 pub mod cluster;
@@ -51,6 +46,5 @@ pub mod platform;
 pub mod render;
 pub mod run;
 pub mod scene;
-pub mod stability;
 pub mod store;
 pub mod study;

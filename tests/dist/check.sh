@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks an archive of `make dist`: its files, its libraries, and that its program runs a study, exports it
-# and passes the quick reference cases.  tests/dist/check.sh ARCHIVE
+# Checks an archive of `make dist`: its files, its libraries, and that its program runs a study of piston and
+# film, and exports it.  tests/dist/check.sh ARCHIVE
 set -euo pipefail
 archive=$(realpath "$1")
 folder=$(mktemp -d)
@@ -26,13 +26,11 @@ fi
 cat > study.json << 'STUDY'
 {
   "design": {"fit": "height", "bottom_radius": "500 mm", "height": "1 m", "alpha1_over_phi": 1, "M": 3},
-  "solver": {"model": "piston", "end_time": "0.3 s"},
-  "grid": {"N": [5, 6], "mass_flow_rate": ["1 g/s", "2 g/s"]}
+  "solver": {"end_time": "20 ms"},
+  "grid": {"solver.model": ["piston", "film"], "N": [5, 6], "mass_flow_rate": ["1 g/s", "2 g/s"]}
 }
 STUDY
 run=(env -i "HOME=$folder" ./billow)
 "${run[@]}" run study.json --quiet > /dev/null
 "${run[@]}" export results/study --cube study.nc
-"${run[@]}" validate --quick > validate.txt || { cat validate.txt >&2; exit 1; }
-tail -n 1 validate.txt
 echo "$(basename "$archive"): $(du -h "$archive" | cut -f 1), its program needs only libc, libm and libgcc"

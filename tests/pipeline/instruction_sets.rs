@@ -15,8 +15,6 @@ fn every_simulating_command_refuses_an_unknown_instruction_set() {
     for arguments in [
         &["run", "grid.json"][..],
         &["rerun", "--where", "status == 'done'", "results/grid"],
-        &["validate", "--quick"],
-        &["bench", "--quick"],
         &["solve", "sphere.json"],
     ] {
         let output = folder.billow(arguments).env("BILLOW_SIMD", "neon").output().unwrap();

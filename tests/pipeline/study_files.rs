@@ -18,7 +18,7 @@ fn shipped() -> Vec<PathBuf> {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
-        // A file of maps (`billow stability`) is no study.
+        // A file of maps (`make stability`) is no study.
         .filter(|path| !path.ends_with("stability.json"))
         .collect();
     files.sort();

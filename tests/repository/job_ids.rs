@@ -22,7 +22,7 @@ fn planned() -> Ids {
         if !page.contains(path.file_name().expect("a name").to_string_lossy().as_ref()) {
             continue;
         }
-        // A file of maps (`billow stability`) is no study.
+        // A file of maps (`make stability`) is no study.
         if path.ends_with("stability.json") {
             continue;
         }

@@ -7,7 +7,6 @@ use std::fs;
 
 use billow_study::cli::reference::{commands, exit_codes};
 use billow_study::input::keys::listing::reference_page as keys;
-use billow_study::stability::reference::page as stability;
 use billow_study::store::table::reference::page as columns;
 
 use crate::sources::root;
@@ -48,11 +47,6 @@ fn reference_page_of_columns_is_current() {
 #[test]
 fn reference_page_of_commands_is_current() {
     assert_current("docs/reference/commands.md", &commands());
-}
-
-#[test]
-fn reference_page_of_stability_is_current() {
-    assert_current("docs/reference/stability.md", &stability());
 }
 
 #[test]

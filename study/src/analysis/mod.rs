@@ -2,7 +2,6 @@
 
 pub mod answer;
 pub mod compare;
-pub mod convergence;
 pub mod ranking;
 pub mod replicates;
 pub mod statistics;

@@ -1,12 +1,13 @@
 //! The command line. One file per command: its arguments, and a function that writes the result to a
 //! given `Write`. Results go to stdout; progress, notes and errors go to stderr.
 
+use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::platform::error::{Error, Result};
 use crate::platform::exit_code::{EXIT_CODES, Exit};
@@ -15,19 +16,17 @@ use crate::platform::output::Output;
 
 mod advise;
 mod answer;
-pub mod bench;
 mod best;
 mod borders;
 mod changes;
 mod chart;
 mod compare;
 mod completions;
-mod converge;
 mod doctor;
 mod export;
 mod fold;
 mod frames;
-mod instruction_set;
+pub mod instruction_set;
 mod job;
 mod keys;
 mod legend;
@@ -36,10 +35,10 @@ mod memory;
 mod merge;
 mod needed_columns;
 mod notes;
-mod opened;
+pub mod opened;
 pub mod options;
 mod pareto;
-mod picture;
+pub mod picture;
 mod plan;
 mod points;
 pub mod print;
@@ -51,15 +50,13 @@ mod remedies;
 mod rerun;
 mod run;
 mod solve;
-mod stability;
 mod status;
-mod stored;
+pub mod stored;
 mod study_keys;
 mod submit;
 mod table;
-mod target;
-mod usage;
-pub mod validate;
+pub mod target;
+pub mod usage;
 
 pub use options::Format;
 
@@ -101,8 +98,6 @@ pub enum Command {
     Job(job::Args),
     /// Compare the values of one parameter, all other parameters being equal.
     Compare(compare::Args),
-    /// Show to what each measure tends as the mesh is refined.
-    Converge(converge::Args),
     /// Check a results folder, or repair it. Exit code 1 if something is broken.
     Doctor(doctor::Args),
     /// Draw the shapes of one job side by side, as SVG and PNG.
@@ -121,14 +116,8 @@ pub enum Command {
     Export(export::Args),
     /// Draw work-precision diagrams: what each model, mesh and step costs, and how large its error is.
     Pareto(pareto::Args),
-    /// Map where each method of integration fails, by real runs of small scenes.
-    Stability(stability::Args),
     /// List the keys of a study or scene file, with unit, default, range and meaning.
     Keys(keys::Args),
-    /// Run the reference cases and check their errors. Exit code 1 if one is out of tolerance.
-    Validate(validate::Args),
-    /// Measure the speed of billow on this machine, stage by stage, against its targets.
-    Bench(bench::Args),
     /// Print the completion script of a shell.
     Completions(completions::Args),
 }
@@ -137,7 +126,8 @@ pub enum Command {
 pub fn main() -> ExitCode {
     process_memory::share_if_limited();
     let mut out = io::BufWriter::new(Output::new(io::stdout().lock()));
-    let result = command(&mut out).and_then(|()| out.flush().map_err(output_error));
+    let result =
+        command(std::env::args_os(), &mut out).and_then(|()| out.flush().map_err(output_error));
     let Err(error) = result else { return Exit::Success.into() };
     // The reader still gets what was printed before the error.
     let _ = out.flush();
@@ -145,14 +135,20 @@ pub fn main() -> ExitCode {
     error.exit().into()
 }
 
-/// Runs the command of the command line.
-fn command(out: &mut dyn Write) -> Result<()> {
-    match Cli::try_parse() {
+/// Runs the command of a command line, whose first word is the program.
+///
+/// # Errors
+/// Those of the command.
+pub fn command<W: Into<OsString> + Clone>(
+    line: impl IntoIterator<Item = W>,
+    out: &mut dyn Write,
+) -> Result<()> {
+    match Cli::try_parse_from(line) {
         Ok(cli) => dispatch(&cli.command, out),
         Err(error) if !error.use_stderr() => {
             write!(out, "{}", error.render()).map_err(output_error)
         }
-        Err(error) => Err(usage::error(&error)),
+        Err(error) => Err(usage::error(&error, Cli::command())),
     }
 }
 
@@ -168,7 +164,6 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Status(args) => status::run(args, out),
         Command::Job(args) => job::run(args, out),
         Command::Compare(args) => compare::run(args, out),
-        Command::Converge(args) => converge::run(args, out),
         Command::Doctor(args) => doctor::run(args, out),
         Command::Frames(args) => frames::run(args, out),
         Command::Solve(args) => solve::run(args, out),
@@ -178,10 +173,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Chart(args) => chart::run(args, out),
         Command::Export(args) => export::run(args, out),
         Command::Pareto(args) => pareto::run(args, out),
-        Command::Stability(args) => stability::run(args, out),
         Command::Keys(args) => keys::run(args, out),
-        Command::Validate(args) => validate::run(args, out),
-        Command::Bench(args) => bench::run(args, out),
         Command::Completions(args) => completions::run(args, out),
     }
 }

@@ -14,7 +14,9 @@ use crate::study::Study;
 
 /// Results with some columns of their table, and without points and records.
 pub struct Opened {
+    /// The results.
     pub stored: Stored<'static>,
+    /// These columns.
     pub table: Table,
     /// Number of columns of the whole table.
     pub all_columns: usize,

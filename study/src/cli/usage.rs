@@ -4,16 +4,14 @@ use std::error::Error as _;
 use std::num::{IntErrorKind, ParseFloatError, ParseIntError};
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Arg, Command, CommandFactory};
+use clap::{Arg, Command};
 
-use super::Cli;
 use crate::platform::error::{Error, InputError};
 use crate::platform::nearest::nearest;
 use crate::platform::quote;
 
-/// The error of a command line that the parser refuses.
-pub fn error(refused: &clap::Error) -> Error {
-    let mut program = Cli::command();
+/// The error of a command line that the parser of a program refuses.
+pub fn error(refused: &clap::Error, mut program: Command) -> Error {
     program.build();
     let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let words: Vec<String> = words.collect();
@@ -68,7 +66,7 @@ impl Usage<'_> {
     /// The program with its command, as a user writes it.
     fn called(&self) -> String {
         let name = self.command.map_or("", Command::get_name);
-        format!("billow {name}").trim_end().to_owned()
+        format!("{} {name}", self.program.get_name()).trim_end().to_owned()
     }
 
     /// The names of the commands.
@@ -105,8 +103,8 @@ impl Usage<'_> {
             self.commands(),
         );
         "command line".clone_into(&mut error.file);
-        error.hint =
-            near.map_or("billow --help".to_owned(), |near| format!("billow {near} --help"));
+        let name = self.program.get_name();
+        error.hint = near.map_or(format!("{name} --help"), |near| format!("{name} {near} --help"));
         error
     }
 

@@ -260,7 +260,7 @@ pub fn parse(text: &str, file: &str) -> std::result::Result<Json, InputError> {
 }
 
 /// The error of a value of a file, with the line and column of that value in the name of the file.
-pub(crate) fn with_place(mut error: InputError, text: &str, file: &str) -> InputError {
+pub fn with_place(mut error: InputError, text: &str, file: &str) -> InputError {
     // A flag, and the text of another file, have no place in this one.
     if error.file == file
         && !error.key.is_empty()

@@ -33,17 +33,15 @@ pub const EXIT_CODES: [ExitCode; 4] = [
         number: "0",
         name: "success",
         brief: "the command finished",
-        meaning: "The command finished. Infeasible points, stalled capsules and missed targets of \
-                  `bench` are results, not failures.",
+        meaning: "The command finished. Infeasible points and stalled capsules are results, not failures.",
     },
     ExitCode {
         number: "1",
         name: "failure",
-        brief: "a job, scene, case or expected outcome failed, or stored results are broken",
+        brief: "a job or scene failed, or stored results are broken",
         meaning: "A job failed, `rerun` gave different bits, `merge` found different bits or a damaged \
-                  history, `doctor` found a fault, a scene of `solve` has no result, a case of `validate` is \
-                  out of tolerance, or an outcome of `stability` is not as expected. The output names each of \
-                  them.",
+                  history, `doctor` found a fault, or a scene of `solve` has no result. The output names \
+                  each of them.",
     },
     ExitCode {
         number: "2",

@@ -7,7 +7,6 @@ pub mod claims;
 pub mod cube;
 pub mod damaged;
 pub mod doctor;
-pub mod exact_scenes;
 pub mod finished;
 pub mod history_file;
 pub mod index;

@@ -1,15 +1,14 @@
-//! Mesh errors of rows, and convergence.
+//! Mesh errors of rows.
 
 mod advice;
 mod meshes;
 mod pilots;
 
-use std::fs;
 use std::process::Output;
 
 use serde_json::{Value, json};
 
-use crate::support::{TestFolder, grid, json_of, stderr};
+use crate::support::{TestFolder, json_of, stderr};
 
 /// All that a command printed.
 fn said(output: &Output) -> String {
@@ -63,43 +62,4 @@ fn rows_of_the_piston_have_no_mesh_error_and_say_where_theirs_is() {
     let args = ["compare", "--by", "mass_flow_rate", "--base", "5 g/s", "--measures", "t_90_z_rim"];
     let pairs = json_of(&folder, &args);
     assert_eq!(pairs[0]["t_90_z_rim_better"], "other", "{pairs}");
-}
-
-#[test]
-fn convergence_needs_four_meshes_and_names_what_tends_to_a_limit() {
-    let mut study = film(&json!({"grid": {"subdivisions": [2, 3, 4, 5]}}));
-    study["solver"]["end_time"] = json!("20 ms");
-    let folder = TestFolder::new(&study);
-    folder.stdout(&["run", "grid.json", "-q"]);
-    let rows = json_of(&folder, &["converge", "results/grid"]);
-    let rows = rows.as_array().unwrap();
-    let energy = rows.iter().find(|row| row["measure"] == "peak_kinetic_energy").unwrap();
-    assert_eq!(energy["meshes"], "2 to 5");
-    let trend = energy["trend"].as_str().unwrap();
-    assert!(["limit", "no limit known"].contains(&trend));
-    for name in ["finest", "order"] {
-        assert!(energy[name].is_f64(), "{energy}");
-    }
-    for name in ["limit", "change", "uncertainty"] {
-        assert_eq!(energy[name].is_f64(), trend == "limit", "{energy}");
-    }
-    let output = folder.run(&["converge", "results/grid", "--check"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("results with film on n 24"), "{}", stderr(&output));
-    let output =
-        folder.run(&["converge", "results/grid", "--table", "table.json", "--reference", "6"]);
-    assert!(stderr(&output).contains("no scene has this mesh"), "{}", stderr(&output));
-    assert!(!folder.path().join("table.json").exists());
-    folder.stdout(&["converge", "results/grid", "--table", "table.json", "--reference", "5"]);
-    let table: Value =
-        serde_json::from_str(&fs::read_to_string(folder.path().join("table.json")).unwrap())
-            .unwrap();
-    assert_eq!((&table["format"], &table["reference"]), (&json!("billow-mesh-errors"), &json!(5)));
-    let piston = TestFolder::new(&grid(&json!({
-        "N": [6], "M": [3], "alpha1_over_phi": [1], "mass_flow_rate": ["2 g/s"]
-    })));
-    piston.stdout(&["run", "grid.json", "-q"]);
-    let output = piston.run(&["converge", "results/grid"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("at least four meshes"), "{}", stderr(&output));
 }

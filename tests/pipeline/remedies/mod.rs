@@ -7,8 +7,6 @@ use billow_study::platform::files::Disk;
 use billow_study::store::results::Results;
 use serde_json::{Value, json};
 
-mod map;
-
 use crate::support::{TestFolder, file_of, histories, ids, json_of, stderr};
 
 /// The paper's capsule of soft film with much residual gas, on its coarsest mesh.

@@ -28,14 +28,12 @@ mod front;
 mod largest;
 pub mod peer;
 mod reference;
-mod stored;
 pub mod table;
 #[cfg(test)]
 mod tests;
 
 pub use chains::{Chain, label, words};
 pub use course::Course;
-pub use stored::from_stored;
 
 /// The runs of one scene.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,4 @@
-//! `billow pareto`: work-precision diagrams of a study and of the scenes with an exact answer.
+//! `billow pareto`: work-precision diagrams of a study.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,6 @@ use super::{Format, opened, output_error};
 use crate::analysis::work_precision::peer::Peer;
 use crate::analysis::work_precision::table::{COURSES, Histories, scenes};
 use crate::analysis::work_precision::{Cost, Course, Diagram, SceneRuns};
-use crate::cases::work_precision::SCENES;
 use crate::chart::pareto as pictures;
 use crate::input::keys::numerical::MESH_PARAMETER;
 use crate::input::study_file::MAX_FILE_SIZE;
@@ -24,7 +23,6 @@ use crate::store::history_file::StoredHistory;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 
-mod exact;
 mod print;
 
 /// Arguments of `billow pareto`.
@@ -32,13 +30,9 @@ mod print;
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Only these scenes, comma-separated: scenes of the study, and `injected_piston`, `breathing_sphere`,
-    /// `square_airbag`, `stretched_disc`, which run once if their results are not stored yet.
+    /// Only these scenes of the study, comma-separated.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     scenes: Vec<String>,
-    /// Leave out the four scenes of the program.
-    #[arg(long, conflicts_with = "scenes")]
-    study_only: bool,
     /// Only these quantities, comma-separated, for example `t_90_z_rim,volume`; of one scene
     /// `end_state:final_volume`.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -72,8 +66,7 @@ enum CostName {
 /// Runs `billow pareto`: prints the front and draws the pictures.
 ///
 /// # Errors
-/// Results or a peer that cannot be read; an unknown scene or quantity; a scene that fails; a picture that cannot be
-/// written.
+/// Results or a peer that cannot be read; an unknown scene or quantity; a picture that cannot be written.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let peer = args.peer.as_deref().map(read_peer).transpose()?;
     let (stored, table, _) =
@@ -84,12 +77,7 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let mut replicates = stored.study.replicates();
     replicates.retain(|name| name != MESH_PARAMETER);
     let of_study = scenes(&stored.study.name, &table, &replicates, &read);
-    let mut chosen = chosen(of_study, &args.scenes)?;
-    let wanted = |name: &str| match args.scenes.as_slice() {
-        [] => !args.study_only,
-        names => names.iter().any(|one| one == name),
-    };
-    chosen.extend(exact::scenes(&results, &wanted, args.quiet.quiet)?);
+    let chosen = chosen(of_study, &args.scenes)?;
     let mut diagrams: Vec<Diagram> = chosen.into_iter().map(Diagram::of).collect();
     keep_measures(&mut diagrams, &args.measures)?;
     let cost = match args.cost {
@@ -117,14 +105,10 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
 /// The scenes of the study with these names; every one without names.
 ///
 /// # Errors
-/// A name that neither the study nor the program has.
+/// A name that the study does not have.
 fn chosen(mut scenes: Vec<SceneRuns>, names: &[String]) -> Result<Vec<SceneRuns>> {
-    let known: Vec<String> = scenes
-        .iter()
-        .map(|scene| scene.name.clone())
-        .chain(SCENES.iter().map(|scene| scene.name.to_owned()))
-        .collect();
-    check("--scenes", "not a scene of the study, nor one of the program", names, &known)?;
+    let known: Vec<String> = scenes.iter().map(|scene| scene.name.clone()).collect();
+    check("--scenes", "not a scene of the study", names, &known)?;
     scenes.retain(|scene| names.is_empty() || names.contains(&scene.name));
     Ok(scenes)
 }

@@ -9,7 +9,6 @@
 //!                 summary.parquet   the table, built from plan and journal (crate::store::table)
 //!                 index.json        what commands need without planning again (crate::store::index)
 //!                 charts/           pictures (crate::chart)
-//!                 exact_scenes.json runs of scenes with an exact answer (crate::store::exact_scenes)
 //!                 claims/           during runs that share the folder: which of them has which job (crate::store::claims)
 //!                 attempts.jsonl    during a run: which jobs it has started (crate::store::attempts)
 //!                 submissions/      what was given to a scheduler (`crate::cluster`)
@@ -41,10 +40,8 @@ const ATTEMPTS: &str = "attempts.jsonl";
 const INDEX: &str = "index.json";
 /// Name of the folder of what was given to a scheduler.
 const SUBMISSIONS: &str = "submissions";
-/// Name of the file of the runs of exact scenes.
-const EXACT_SCENES: &str = "exact_scenes.json";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 14] = [
+pub const RESULT_NAMES: [&str; 13] = [
     "study.json",
     "journal",
     "jobs",
@@ -53,7 +50,6 @@ pub const RESULT_NAMES: [&str; 14] = [
     "summary.parquet",
     INDEX,
     "charts",
-    EXACT_SCENES,
     ATTEMPTS,
     "claims",
     SUBMISSIONS,
@@ -126,11 +122,6 @@ impl<'a> Results<'a> {
     /// Path of the index.
     pub fn index_path(&self) -> PathBuf {
         self.root.join(INDEX)
-    }
-
-    /// Path of the runs of exact scenes.
-    pub fn exact_scenes_path(&self) -> PathBuf {
-        self.root.join(EXACT_SCENES)
     }
 
     /// Path of the attempts of a running process.

@@ -1,0 +1,156 @@
+//! The reference cases of `billow-checks validate`: results against closed forms, series and quadratures.
+//!
+//! ```text
+//! error = |value/reference − 1|        in band: error ≤ band and order ≥ least order
+//! ```
+//!
+//! A case is an entry of [`CASES`] and a function that gives one [`Row`] for each quantity. Cases run
+//! the same code as a capsule: the scene of a film, its explicit step, its gas, its model. Numbers and
+//! bands come from `tests/reference`. A case that fails or panics gives a row out of band with the
+//! reason.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use rayon::ThreadPool;
+
+pub mod costs;
+pub mod reference;
+pub mod rig;
+mod row;
+mod table;
+
+mod axisymmetric;
+pub mod contact_capsule;
+mod contact_impacts;
+mod contact_relaxed;
+pub mod contact_rig;
+mod contact_stack;
+mod contact_tube;
+mod damping;
+mod drum;
+mod energy_balance;
+mod folded_strip;
+mod forces;
+mod friction_adhesion;
+mod gas_column;
+mod gas_piston;
+mod gas_vessel;
+mod integrators;
+mod integrators_contact;
+mod invariants;
+mod moving_fold;
+mod oscillation;
+mod piston_model;
+mod sphere_motion;
+mod static_airbag;
+mod static_compliant;
+mod static_discs;
+mod static_end_state;
+mod static_equilibrium;
+mod static_polygon;
+mod static_shells;
+mod static_wrinkling;
+pub(crate) mod step_limit;
+mod storeys_model;
+
+pub mod work_precision;
+
+pub use rig::Rig;
+pub use row::Row;
+pub use table::CASES;
+
+/// Whether a case is part of `--quick`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tier {
+    /// Always run.
+    Quick,
+    /// Skipped with `--quick`.
+    Long,
+}
+
+/// The rows of a case, or the reason why it has none.
+pub type Outcome = Result<Vec<Row>, String>;
+
+/// One reference case.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    /// Its name.
+    pub name: &'static str,
+    /// What it compares.
+    pub compares: &'static str,
+    /// Whether `--quick` skips it.
+    pub tier: Tier,
+    /// The function that runs it.
+    pub body: fn(&Rig) -> Outcome,
+}
+
+/// The result of a case.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// Its name.
+    pub name: &'static str,
+    /// Its rows; at least one.
+    pub rows: Vec<Row>,
+    /// Wall time of the whole case, s.
+    pub seconds: f64,
+}
+
+impl Judged {
+    /// Whether every row is in band.
+    pub fn pass(&self) -> bool {
+        self.rows.iter().all(|row| row.pass)
+    }
+}
+
+impl Case {
+    /// Runs the case. An error or a panic gives a row out of band.
+    pub fn run(&self, rig: &Rig) -> Judged {
+        let start = Instant::now();
+        let outcome = catch_unwind(AssertUnwindSafe(|| (self.body)(rig)));
+        let rows = match outcome {
+            Ok(Ok(rows)) if !rows.is_empty() => rows,
+            Ok(Ok(_)) => vec![Row::failed("the case has no rows")],
+            Ok(Err(reason)) => vec![Row::failed(&reason)],
+            Err(panic) => vec![Row::failed(&format!("panicked: {}", message(panic.as_ref())))],
+        };
+        Judged { name: self.name, rows, seconds: start.elapsed().as_secs_f64() }
+    }
+}
+
+/// The message of a panic.
+fn message(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message")
+}
+
+/// Runs cases on a pool and reports each as it ends. The results are in the given order, whatever the
+/// number of threads.
+pub fn run_all(
+    pool: &ThreadPool,
+    cases: &[&Case],
+    rig: &Rig,
+    report: &(dyn Fn(&Judged) + Sync),
+) -> Vec<Judged> {
+    let next = AtomicUsize::new(0);
+    let ended = Mutex::new(Vec::with_capacity(cases.len()));
+    pool.broadcast(|_| {
+        while let Some((index, case)) = {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            cases.get(index).map(|case| (index, case))
+        } {
+            let judged = case.run(rig);
+            report(&judged);
+            ended.lock().unwrap_or_else(PoisonError::into_inner).push((index, judged));
+        }
+    });
+    let mut ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);
+    ended.sort_by_key(|(index, _)| *index);
+    ended.into_iter().map(|(_, judged)| judged).collect()
+}
+
+#[cfg(test)]
+mod tests;

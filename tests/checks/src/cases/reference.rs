@@ -1,0 +1,53 @@
+//! Reference numbers and bands of the cases: `tests/reference/*.json`, part of the program.
+
+use std::sync::LazyLock;
+
+use serde_json::Value;
+
+static FILES: LazyLock<[Value; 5]> = LazyLock::new(|| {
+    [
+        include_str!("../../../reference/gas.json"),
+        include_str!("../../../reference/film.json"),
+        include_str!("../../../reference/dynamics.json"),
+        include_str!("../../../reference/statics.json"),
+        include_str!("../../../reference/contact.json"),
+    ]
+    .map(|text| serde_json::from_str(text).expect("JSON in tests/reference"))
+});
+
+/// The value at a path, such as `tank_filling/band`, in one of the files.
+fn find(path: &str) -> &'static Value {
+    let pointer = format!("/{path}");
+    let found = FILES.iter().find_map(|file| file.pointer(&pointer));
+    found.unwrap_or_else(|| panic!("no {path} in tests/reference"))
+}
+
+/// A number by its path.
+///
+/// # Panics
+/// If there is none: the files are part of the program.
+pub fn number(path: &str) -> f64 {
+    find(path).as_f64().unwrap_or_else(|| panic!("{path} in tests/reference is not a number"))
+}
+
+/// The rows of a table, `path/rows`.
+///
+/// # Panics
+/// If there is none.
+pub fn rows(path: &str) -> Vec<Vec<f64>> {
+    let rows = find(&format!("{path}/rows")).as_array();
+    let numbers =
+        |row: &Value| -> Option<Vec<f64>> { row.as_array()?.iter().map(Value::as_f64).collect() };
+    let rows: Option<Vec<Vec<f64>>> = rows.and_then(|rows| rows.iter().map(numbers).collect());
+    rows.unwrap_or_else(|| panic!("{path}/rows in tests/reference is not numeric"))
+}
+
+/// A list of numbers by its path.
+///
+/// # Panics
+/// If there is none.
+pub fn numbers(path: &str) -> Vec<f64> {
+    let list: Option<Vec<f64>> =
+        find(path).as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
+    list.unwrap_or_else(|| panic!("{path} in tests/reference is not numeric"))
+}

@@ -1,0 +1,223 @@
+//! `billow-checks converge`: to what each measure tends as the mesh is refined, and the table of mesh errors.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::convergence::{self, MeshCheck, ORDERS, SceneRuns, Trend, calibrate, fit, levels};
+use billow_study::accuracy::{MeshErrors, PROMISED};
+use billow_study::cli::options::{OutputOptions, QuietOption, ResultsOption};
+use billow_study::cli::print::{Heading, fraction, print_quantities};
+use billow_study::cli::target::{StudyArgs, folder};
+use billow_study::cli::{Format, stored};
+use billow_study::input::value::Value;
+use billow_study::job::row::ColumnId;
+use billow_study::platform::error::{Error, Result};
+use billow_study::platform::files::{Disk, disk_error, write_output};
+
+/// Measures that are looked at beside the promised ones.
+const MEASURES: [ColumnId; 8] = [
+    ColumnId::T50Volume,
+    ColumnId::T90Volume,
+    ColumnId::TDeployed,
+    ColumnId::FirstPeakZRim,
+    ColumnId::FilmStress99,
+    ColumnId::FinalPressure,
+    ColumnId::VolumeRatio,
+    ColumnId::HeightRatio,
+];
+
+/// Arguments of `billow-checks converge`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Study files, or folders of their results.
+    #[arg(required = true, value_name = "STUDY")]
+    studies: Vec<PathBuf>,
+    /// Write the table of mesh errors to this file, JSON.
+    #[arg(long, value_name = "FILE")]
+    table: Option<PathBuf>,
+    /// Subdivisions of the finest mesh of that table.
+    #[arg(long, value_name = "N", default_value_t = 24, requires = "table")]
+    reference: u32,
+    /// Check instead whether runs on coarser meshes keep the errors of the table of mesh errors that billow contains.
+    /// The results need film on n 24 too.
+    #[arg(long, conflicts_with = "table")]
+    check: bool,
+    #[command(flatten)]
+    output: OutputOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
+}
+
+/// Runs `billow-checks converge`: one row per scene and measure.
+///
+/// # Errors
+/// Results that cannot be read, or that have no scene on four meshes; a table that cannot be written.
+pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
+    let mut all = Vec::new();
+    for study in &args.studies {
+        let given = StudyArgs { study: Some(study.clone()), results: ResultsOption::default() };
+        all.push(stored::read(&folder(&given, &[])?)?);
+    }
+    let mut names: Vec<String> = Vec::new();
+    for stored in &all {
+        // Runs of one study may lie in several folders.
+        if !names.contains(&stored.study.name) {
+            names.push(stored.study.name.clone());
+        }
+    }
+    let scenes = convergence::by_scene(&all);
+    if args.check {
+        return print_checks(&scenes, &names, args, out);
+    }
+    let rows: Vec<Vec<Value>> = scenes.iter().flat_map(rows).collect();
+    if rows.is_empty() {
+        let allowed =
+            "results with film on at least four meshes (design.subdivisions), all else equal";
+        let value = names.join(", ");
+        return Err(Error::invalid_option("study", &value, "has no series of meshes", allowed, ""));
+    }
+    let headings: Vec<Heading> = COLUMNS.iter().map(|name| Heading::plain(*name)).collect();
+    let format = args.output.format();
+    print_quantities(&headings, &rows, format, out)?;
+    if format == Format::Table && !args.quiet.quiet {
+        eprintln!(
+            "{} scenes; limit: of the fit f0 + a h^order, h = 1/n, order from {} to {}; change: limit over the finest \
+             value, minus 1; uncertainty: 95 %, of the limit",
+            scenes.len(),
+            ORDERS[0],
+            ORDERS[1]
+        );
+    }
+    match &args.table {
+        Some(path) => write_table(&scenes, names, args.reference, path),
+        None => Ok(()),
+    }
+}
+
+/// Prints one row per mesh and measure: how many runs keep the error of the table.
+fn print_checks(
+    scenes: &[SceneRuns],
+    names: &[String],
+    args: &Args,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let table = MeshErrors::shipped();
+    let checks = convergence::check(scenes, table);
+    if checks.is_empty() {
+        let allowed = format!(
+            "results with film on n {} and on a coarser mesh, in scenes that the table covers",
+            table.reference
+        );
+        let problem = "has nothing to check the table of mesh errors with";
+        return Err(Error::invalid_option("study", &names.join(", "), problem, allowed, ""));
+    }
+    let format = args.output.format();
+    let whole = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
+    let row = |check: &MeshCheck| {
+        let mut row = vec![
+            Value::Integer(i64::from(check.subdivisions)),
+            Value::Text(check.measure.to_owned()),
+        ];
+        row.extend([whole(check.kept.met), whole(check.kept.of)]);
+        row.extend([fraction(check.error, format), fraction(check.of_table, format)]);
+        row
+    };
+    let headings = ["subdivisions", "measure", "kept", "of", "median_error", "median_of_table"];
+    let headings: Vec<Heading> = headings.into_iter().map(Heading::plain).collect();
+    print_quantities(&headings, &checks.iter().map(row).collect::<Vec<_>>(), format, out)?;
+    if format == Format::Table && !args.quiet.quiet {
+        eprintln!(
+            "kept: runs whose difference from n {} is within the error of the table; medians: of these differences, and of \
+             these errors, relative",
+            table.reference
+        );
+    }
+    Ok(())
+}
+
+const COLUMNS: [&str; 10] = [
+    "scene",
+    "measure",
+    "unit",
+    "meshes",
+    "finest",
+    "limit",
+    "change",
+    "uncertainty",
+    "order",
+    "trend",
+];
+
+/// The rows of a scene: one per measure that has values on at least four meshes.
+fn rows(scene: &SceneRuns) -> Vec<Vec<Value>> {
+    let measures = PROMISED.iter().map(|promised| promised.measure).chain(MEASURES);
+    let row = |measure: ColumnId| {
+        let levels = levels(scene, measure);
+        let fit = fit(&levels)?;
+        let (first, last) = (levels.first()?, levels.last()?);
+        let relative = |value: f64| {
+            if last.value == 0.0 { Value::Null } else { Value::Number(value / last.value) }
+        };
+        // A fitted number that is no limit must not be read as one.
+        let trend = convergence::trend(&levels, &fit);
+        let known = |value: Value| if trend == Trend::Limit { value } else { Value::Null };
+        let text = |text: &str| Value::Text(text.to_owned());
+        Some(vec![
+            text(&scene.label),
+            text(measure.name()),
+            text(measure.column().unit),
+            Value::Text(format!("{} to {}", first.subdivisions, last.subdivisions)),
+            Value::Number(last.value),
+            known(Value::Number(fit.limit)),
+            known(relative(fit.limit - last.value)),
+            known(relative(fit.uncertainty)),
+            Value::Number(fit.order),
+            text(trend.name()),
+        ])
+    };
+    measures.filter_map(row).collect()
+}
+
+fn write_table(
+    scenes: &[SceneRuns],
+    names: Vec<String>,
+    reference: u32,
+    path: &Path,
+) -> Result<()> {
+    let Some(table) = calibrate(scenes, names, reference) else {
+        let allowed = "the subdivisions of a mesh that a run of these results has";
+        let value = reference.to_string();
+        return Err(Error::invalid_option(
+            "--reference",
+            &value,
+            "no scene has this mesh",
+            allowed,
+            "",
+        ));
+    };
+    let mut text = serde_json::to_string_pretty(&table).unwrap_or_default();
+    text.push('\n');
+    write_output(&Disk, path, text.as_bytes()).map_err(|error| disk_error(path, &error))?;
+    let scenes = table.errors.all().iter().map(|entry| entry.scenes).max().unwrap_or(0);
+    eprintln!("{}: {} errors, of up to {scenes} scenes", path.display(), table.errors.all().len());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measure_is_a_number_and_stands_once() {
+        let mut names: Vec<&str> = PROMISED
+            .iter()
+            .map(|promised| promised.measure)
+            .chain(MEASURES)
+            .map(ColumnId::name)
+            .collect();
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+}

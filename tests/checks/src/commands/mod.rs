@@ -1,0 +1,69 @@
+//! The command line. One file per command: its arguments, and a function that writes the result to a
+//! given `Write`.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use billow_study::cli::{output_error, usage};
+use billow_study::platform::error::Result;
+use billow_study::platform::exit_code::Exit;
+use billow_study::platform::output::Output;
+use clap::{CommandFactory, Parser, Subcommand};
+
+mod bench;
+mod converge;
+mod pareto;
+mod stability;
+pub mod validate;
+
+/// Checks of the solver of billow: is it right, how exact, how fast, and where does it fail?
+#[derive(Debug, Parser)]
+#[command(name = "billow-checks", version, max_term_width = 100)]
+struct Cli {
+    /// The command.
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the reference cases and check their errors. Exit code 1 if one is out of tolerance.
+    Validate(validate::Args),
+    /// Map where each method of integration fails, by real runs of small scenes.
+    Stability(stability::Args),
+    /// Measure the speed of billow on this machine, stage by stage, against its targets.
+    Bench(bench::Args),
+    /// Draw work-precision diagrams of scenes with an exact answer.
+    Pareto(pareto::Args),
+    /// Show to what each measure of a study tends as the mesh is refined.
+    Converge(converge::Args),
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let mut out = io::BufWriter::new(Output::new(io::stdout().lock()));
+    let result = command(&mut out).and_then(|()| out.flush().map_err(output_error));
+    let Err(error) = result else { return Exit::Success.into() };
+    // The reader still gets what was printed before the error.
+    let _ = out.flush();
+    eprintln!("billow-checks: {error}");
+    error.exit().into()
+}
+
+/// Runs the command of the command line.
+fn command(out: &mut dyn Write) -> Result<()> {
+    match Cli::try_parse() {
+        Ok(cli) => match &cli.command {
+            Command::Validate(args) => validate::run(args, out),
+            Command::Stability(args) => stability::run(args, out),
+            Command::Bench(args) => bench::run(args, out),
+            Command::Pareto(args) => pareto::run(args, out),
+            Command::Converge(args) => converge::run(args, out),
+        },
+        Err(error) if !error.use_stderr() => {
+            write!(out, "{}", error.render()).map_err(output_error)
+        }
+        Err(error) => Err(usage::error(&error, Cli::command())),
+    }
+}

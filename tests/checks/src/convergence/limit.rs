@@ -1,0 +1,90 @@
+//! To what a measure tends on finer meshes, from scenes with several runs on several meshes.
+//!
+//! ```text
+//! change = mean of m_∞/m_ref − 1 over the scenes;  U² = mean of their squared uncertainties + (largest distance from it)²
+//! noise of a median of k runs = half their range/√k
+//! ```
+//! m_∞: [`super::fit()`].
+
+use std::collections::BTreeMap;
+
+use billow_solver::scene::ModelKind;
+
+use super::fit::{self, Level};
+use super::runs::SceneRuns;
+use billow_study::accuracy::Limit;
+use billow_study::analysis::statistics::Spread;
+use billow_study::job::row::ColumnId;
+
+/// Runs on a mesh from which a limit may follow, at least; and number of such meshes.
+const LIMIT_RUNS: usize = 4;
+const LIMIT_MESHES: usize = 4;
+/// Coarser meshes have no part in a limit where enough others are there. Chosen: on n 2 and 3 a panel is not yet round.
+const COARSEST_OF_LIMIT: u32 = 4;
+
+/// To what a measure tends, from the scenes with several runs on several meshes: the mean of their limits, with an
+/// uncertainty that holds them all.
+pub fn limit(scenes: &[&SceneRuns], measure: ColumnId, reference: u32) -> Limit {
+    let of_scene = |scene: &&SceneRuns| {
+        let levels = levels(scene, measure);
+        if levels.iter().filter(|level| level.runs >= LIMIT_RUNS).count() < LIMIT_MESHES {
+            return None;
+        }
+        let finest = levels.iter().find(|level| level.subdivisions == reference)?.value;
+        let fit = fit::fit(&levels).filter(|_| finest != 0.0)?;
+        Some(Limit {
+            known: super::trend(&levels, &fit) == super::Trend::Limit,
+            change: fit.limit / finest - 1.0,
+            uncertainty: (fit.uncertainty / finest).abs(),
+            order: fit.order,
+        })
+    };
+    let limits: Vec<Limit> = scenes.iter().filter_map(of_scene).collect();
+    let count = limits.len().max(1) as f64;
+    let mean = |of: fn(&Limit) -> f64| limits.iter().map(of).sum::<f64>() / count;
+    let change = mean(|limit| limit.change);
+    let away = limits.iter().map(|limit| (limit.change - change).abs()).fold(0.0, f64::max);
+    let squares = mean(|limit| limit.uncertainty * limit.uncertainty);
+    Limit {
+        known: !limits.is_empty() && limits.iter().all(|limit| limit.known),
+        change,
+        uncertainty: (squares + away * away).sqrt(),
+        order: limits.iter().map(|limit| limit.order).reduce(f64::min).unwrap_or(0.0),
+    }
+}
+
+/// The medians of a measure by mesh, coarsest first: those of which a limit can follow.
+pub fn levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
+    let mut levels = all_levels(scene, measure);
+    let fine = levels.iter().filter(|level| level.subdivisions >= COARSEST_OF_LIMIT).count();
+    if fine >= LIMIT_MESHES {
+        levels.retain(|level| level.subdivisions >= COARSEST_OF_LIMIT);
+    }
+    levels
+}
+
+fn all_levels(scene: &SceneRuns, measure: ColumnId) -> Vec<Level> {
+    let mut values: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for run in &scene.runs {
+        if let ((ModelKind::Film, n), Some(value)) = (run.mesh(), run.measure(measure)) {
+            values.entry(n).or_default().push(value);
+        }
+    }
+    // Where a mesh has one run, the spread is that of the meshes with several.
+    let half_range = |values: &Vec<f64>| {
+        Spread::of(values.iter().copied())
+            .filter(|spread| spread.count > 1)
+            .map(|spread| 0.5 * (spread.largest - spread.least))
+    };
+    let typical =
+        Spread::of(values.values().filter_map(half_range)).map_or(0.0, |spread| spread.median);
+    values
+        .iter()
+        .filter_map(|(n, values)| {
+            let spread = Spread::of(values.iter().copied())?;
+            let half_range = half_range(values).unwrap_or(typical);
+            let noise = half_range / (spread.count as f64).sqrt();
+            Some(Level { subdivisions: *n, value: spread.median, noise, runs: spread.count })
+        })
+        .collect()
+}

@@ -1,0 +1,125 @@
+//! Ridge regression of the biases of scenes over their coordinates.
+//!
+//! ```text
+//! minimise  Σ (y − b − Σ_f s_f z_f)² + λ Σ_f s_f²      z_f = u_f/rms(u_f)
+//! deviation² = mean over the scenes of (y − ŷ)²         ŷ: predicted from all other scenes
+//! ```
+//! λ is the penalty with the smallest deviation (leave-one-out). Scenes are few and their biases scatter, so slopes
+//! that other scenes do not confirm are kept small. See A. E. Hoerl and R. W. Kennard, Technometrics 12 (1970).
+
+use nalgebra::{DMatrix, DVector};
+
+use billow_study::accuracy::features::FEATURES;
+
+/// Penalties λ to choose from. The last one leaves the mean alone.
+const PENALTIES: [f64; 10] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1e6];
+
+/// Coordinates u of a scene, and its bias y.
+pub type Point = ([f64; FEATURES], f64);
+
+/// The bias as a linear function of the coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Regression {
+    /// b: the bias at u = 0.
+    pub intercept: f64,
+    /// Slope of each coordinate u; 0 for one that is 0 in every scene.
+    pub slopes: [f64; FEATURES],
+    /// Root of the mean squared deviation of a scene from the prediction of all others; 0 for a single scene.
+    pub deviation: f64,
+}
+
+/// The regression over these scenes; `None` without any.
+pub fn regression(points: &[Point]) -> Option<Regression> {
+    let scale: [f64; FEATURES] = core::array::from_fn(|index| {
+        let squares: f64 = points.iter().map(|(u, _)| u[index] * u[index]).sum();
+        (squares / points.len() as f64).sqrt()
+    });
+    let best = PENALTIES
+        .into_iter()
+        .filter_map(|penalty| Some((left_out(points, &scale, penalty)?, penalty)))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let (deviation, penalty) = best?;
+    let (intercept, slopes) = solve(points.iter(), &scale, penalty)?;
+    Some(Regression { intercept, slopes, deviation })
+}
+
+/// The deviation of scenes that are left out.
+fn left_out(points: &[Point], scale: &[f64; FEATURES], penalty: f64) -> Option<f64> {
+    if points.len() < 2 {
+        return (points.len() == 1).then_some(0.0);
+    }
+    let mut squares = 0.0;
+    for (index, (u, y)) in points.iter().enumerate() {
+        let others = points.iter().enumerate().filter(|(other, _)| *other != index);
+        let (intercept, slopes) = solve(others.map(|(_, point)| point), scale, penalty)?;
+        let predicted: f64 = intercept + slopes.iter().zip(u).map(|(s, u)| s * u).sum::<f64>();
+        squares += (y - predicted) * (y - predicted);
+    }
+    Some((squares / points.len() as f64).sqrt())
+}
+
+/// Intercept, and slopes of the coordinates u.
+fn solve<'a>(
+    points: impl Iterator<Item = &'a Point>,
+    scale: &[f64; FEATURES],
+    penalty: f64,
+) -> Option<(f64, [f64; FEATURES])> {
+    const SIZE: usize = FEATURES + 1;
+    let mut matrix = DMatrix::zeros(SIZE, SIZE);
+    let mut right = DVector::zeros(SIZE);
+    for (u, y) in points {
+        let z = |index: usize| match index {
+            0 => 1.0,
+            _ if scale[index - 1] > 0.0 => u[index - 1] / scale[index - 1],
+            _ => 0.0,
+        };
+        for row in 0..SIZE {
+            right[row] += z(row) * y;
+            for column in 0..SIZE {
+                matrix[(row, column)] += z(row) * z(column);
+            }
+        }
+    }
+    for index in 1..SIZE {
+        matrix[(index, index)] += penalty;
+    }
+    let solution = matrix.cholesky()?.solve(&right);
+    let slope = |index: usize| match scale[index] {
+        scale if scale > 0.0 => solution[index + 1] / scale,
+        _ => 0.0,
+    };
+    Some((solution[0], core::array::from_fn(slope)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(u: [f64; 2], y: f64) -> Point {
+        let mut all = [0.0; FEATURES];
+        all[..2].copy_from_slice(&u);
+        (all, y)
+    }
+
+    #[test]
+    fn a_linear_bias_is_found_and_an_irregular_one_is_taken_as_noise() {
+        let designs = [[0.0, 0.0], [0.5, 0.0], [-0.5, 0.0], [0.0, 0.4], [0.0, -0.4], [0.5, 0.4]];
+        let linear = designs.map(|u| point(u, 0.02 + 0.1 * u[0] - 0.05 * u[1]));
+        let found = regression(&linear).unwrap();
+        assert!((found.intercept - 0.02).abs() < 1e-3, "{found:?}");
+        assert!((found.slopes[0] - 0.1).abs() < 2e-3 && (found.slopes[1] + 0.05).abs() < 2e-3);
+        assert!(found.deviation < 2e-3 && found.slopes[2] == 0.0);
+        let signs = [1.0, -1.0, -1.0, 1.0, -1.0, 1.0];
+        let mut sign = signs.iter();
+        let noise = designs.map(|u| point(u, 0.01 * sign.next().unwrap()));
+        let found = regression(&noise).unwrap();
+        assert!(found.deviation > 0.008, "{found:?}");
+    }
+
+    #[test]
+    fn of_a_single_scene_nothing_is_known_beside_its_bias() {
+        let found = regression(&[point([0.3, 0.0], 0.04)]).unwrap();
+        assert!((found.intercept + 0.3 * found.slopes[0] - 0.04).abs() < 1e-4, "{found:?}");
+        assert!(found.deviation == 0.0 && regression(&[]).is_none());
+    }
+}

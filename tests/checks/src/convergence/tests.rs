@@ -1,0 +1,144 @@
+//! The table of mesh errors of synthetic runs whose errors are known.
+
+use billow_solver::scene::paper::capsule;
+use billow_solver::scene::{ModelKind, Stepping};
+
+use super::*;
+use billow_study::accuracy::features::FEATURE_NAMES;
+use billow_study::accuracy::{Features, Method, PROMISED};
+use billow_study::job::Status;
+use billow_study::job::row::{Cells, ColumnId};
+
+const MESHES: [u32; 6] = [4, 6, 8, 12, 16, 24];
+
+/// Runs of N panels and M storeys whose `t_90_z_rim` is `limit (1 + error(n, seed))`.
+fn scene([panels, storeys]: [u32; 2], limit: f64, error: &dyn Fn(u32, u64) -> f64) -> SceneRuns {
+    let run = |n: u32, seed: u64| {
+        let mut scene = capsule(n, 0.3);
+        scene.design.panels = panels;
+        scene.design.storeys = storeys;
+        scene.solver.model = ModelKind::Film;
+        scene.solver.stepping = Stepping::Stable(0.45);
+        scene.seed = seed;
+        let mut cells = Cells::new(Status::Done);
+        cells.set(ColumnId::T90ZRim, limit * (1.0 + error(n, seed)));
+        cells.set(ColumnId::Verdict, "deployed");
+        MeshRun { features: Features::of(&scene, 0.365, 1.0), scene, cells }
+    };
+    let seeds = |n: u32| if n <= 12 { 1..=5 } else { 1..=1 };
+    let runs = MESHES.iter().flat_map(|n| seeds(*n).map(|seed| run(*n, seed))).collect();
+    SceneRuns { runs, label: format!("N={panels} M={storeys}") }
+}
+
+/// The slope of the error in 1/n: changes with N and M add up.
+fn slope([panels, storeys]: [u32; 2]) -> f64 {
+    0.2 + 0.01 * (f64::from(panels) - 6.0) - 0.03 * (f64::from(storeys) - 3.0)
+}
+
+/// First-order errors, with a little scatter by seed.
+fn one(design: [u32; 2]) -> SceneRuns {
+    let slope = slope(design);
+    scene(design, 0.1 * f64::from(design[0]), &move |n, seed| {
+        slope / f64::from(n) + 1e-4 * (seed as f64 - 3.0) * f64::from(n % 3)
+    })
+}
+
+/// One feature at a time about N 6, M 3.
+fn scenes() -> Vec<SceneRuns> {
+    [[6, 3], [5, 3], [8, 3], [10, 3], [6, 2], [6, 4], [6, 5]].map(one).to_vec()
+}
+
+fn t_90() -> &'static billow_study::accuracy::Promised {
+    PROMISED.iter().find(|promised| promised.measure == ColumnId::T90ZRim).unwrap()
+}
+
+fn film(meshes: &[u32]) -> Method {
+    Method { model: ModelKind::Film, meshes: meshes.to_vec() }
+}
+
+#[test]
+fn bias_changes_and_limit_are_those_of_the_runs() {
+    let table = calibrate(&scenes(), vec!["synthetic".to_owned()], 24).unwrap();
+    assert_eq!(table.coordinates.base[..2], [6.0, 3.0]);
+    let entry = |meshes: &[u32]| table.entry(&film(meshes), "t_90_z_rim").unwrap();
+    let four = entry(&[4]);
+    assert_eq!((four.scenes, four.runs), (7, 35));
+    let against_finest = |slope: f64, n: f64| (1.0 + slope / n) / (1.0 + slope / 24.0) - 1.0;
+    assert!((four.bias - against_finest(0.2, 4.0)).abs() < 2e-3, "{}", four.bias);
+    let ranges = [0, 1].map(|index| four.ranges[FEATURE_NAMES[index].0]);
+    assert_eq!(ranges, [[5.0, 10.0], [2.0, 5.0]]);
+    let mut two_storeys = table.coordinates.base;
+    two_storeys[1] = 2.0;
+    let bias = four.bias(&two_storeys, &table.coordinates);
+    assert!((bias - against_finest(0.23, 4.0)).abs() < 3e-3, "{bias}");
+    let pair = entry(&[4, 8]);
+    assert!((pair.weight - 2.0 / 3.0).abs() < 0.05, "first order: {}", pair.weight);
+    assert!(pair.bias.abs() < 2e-3, "{}", pair.bias);
+    let limit = &table.limits["t_90_z_rim"];
+    assert!(limit.known && (limit.order - 1.0).abs() < 0.2, "{limit:?}");
+}
+
+/// Designs that the table was not made from keep the error, and the deviation of scenes that were left out is small
+/// where the bias is nearly linear.
+#[test]
+fn other_designs_keep_the_error() {
+    let mut kept = 0;
+    let mut runs = 0;
+    let mut all = scenes();
+    all.push(one([8, 4]));
+    let table = calibrate(&all, Vec::new(), 24).unwrap();
+    let four = table.entry(&film(&[4]), "t_90_z_rim").unwrap();
+    assert!(four.scenes == 8 && four.deviation < 4e-3, "{four:?}");
+    for design in [[5, 2], [7, 3], [9, 5], [10, 4], [8, 2], [7, 4]].map(one) {
+        let finest = design.runs.last().unwrap().measure(ColumnId::T90ZRim).unwrap();
+        for run in design.runs.iter().filter(|run| run.mesh().1 < 24) {
+            let error = table.error(&film(&[run.mesh().1]), &run.features, t_90()).unwrap();
+            let actual = (run.measure(ColumnId::T90ZRim).unwrap() / finest - 1.0).abs();
+            kept += u32::from(actual <= error.of_reference);
+            runs += 1;
+        }
+    }
+    assert!(10 * kept >= 9 * runs, "{kept} of {runs}");
+}
+
+/// A check counts the runs of each mesh; a table that promises too much is found out.
+#[test]
+fn a_check_counts_the_runs_that_keep_the_error_of_the_table() {
+    let mut table = calibrate(&scenes(), Vec::new(), 24).unwrap();
+    let designs = [[7, 3], [9, 3], [6, 3]].map(one);
+    let checks = check(&designs, &table);
+    let meshes: Vec<u32> = checks.iter().map(|check| check.subdivisions).collect();
+    assert_eq!(meshes, [4, 6, 8, 12, 16]);
+    let four = &checks[0];
+    assert_eq!((four.measure, four.kept.of), ("t_90_z_rim", 15));
+    assert!(10 * four.kept.met >= 9 * four.kept.of, "{four:?}");
+    assert!(four.error > 0.03 && four.error < four.of_table, "{four:?}");
+    let mut entries: Vec<billow_study::accuracy::Entry> = table.errors.into();
+    for entry in &mut entries {
+        (entry.bias, entry.scatter, entry.deviation) = (0.0, 0.0, 0.0);
+        entry.slopes.clear();
+    }
+    table.errors = entries.into();
+    table.limits.clear();
+    assert!(check(&designs, &table).iter().all(|check| check.kept.met == 0));
+    assert!(check(&[], &table).is_empty());
+}
+
+#[test]
+fn without_a_run_on_the_finest_mesh_there_is_no_table() {
+    assert!(calibrate(&scenes(), Vec::new(), 32).is_none());
+}
+
+#[test]
+fn the_state_at_the_end_counts_only_where_the_capsule_is_deployed() {
+    let mut scene = scene([6, 3], 1.0, &|_, _| 0.0);
+    for run in &mut scene.runs {
+        run.cells.set(ColumnId::FinalVolume, 0.6);
+    }
+    assert_eq!(levels(&scene, ColumnId::FinalVolume).len(), 6);
+    for run in &mut scene.runs {
+        run.cells.set(ColumnId::Verdict, "stalled");
+    }
+    assert!(levels(&scene, ColumnId::FinalVolume).is_empty());
+    assert_eq!(levels(&scene, ColumnId::T90ZRim).len(), 6);
+}

@@ -1,0 +1,15 @@
+//! The checks themselves: their rows, files and messages, and the faults that they detect.
+
+#![allow(clippy::disallowed_methods, reason = "tests read and damage files directly")]
+
+mod bench;
+mod converge;
+mod fault_injection;
+mod monitor_detects_faults;
+mod pareto;
+mod physics_version;
+mod reference;
+mod remedies;
+mod stability;
+mod support;
+mod validate;
