@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::look;
 use super::words::{below, letter};
-use billow_study::input::value::brief_number;
-use billow_study::render::figure::Sheet;
-use billow_study::render::figure::legend::{Legend, Sample};
-use billow_study::render::figure::map::{Cell, Maps, Panel};
 use crate::stability::Method;
 use crate::stability::cell::Cell as Found;
 use crate::stability::file::{Axis, Map, failure_expected};
 use crate::stability::map::{Border, Placed};
+use billow_study::input::value::brief_number;
+use billow_study::render::figure::Sheet;
+use billow_study::render::figure::legend::{Legend, Sample};
+use billow_study::render::figure::map::{Cell, Maps, Panel};
 
 /// The map as SVG. Methods whose panels are equal share one.
 pub fn map(map: &Map, cells: &[Placed], borders: &[Border]) -> String {

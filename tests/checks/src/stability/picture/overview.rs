@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::look;
-use billow_study::render::figure::Sheet;
-use billow_study::render::figure::legend::{Legend, Sample};
-use billow_study::render::figure::map::{Cell, Maps, Panel};
 use crate::stability::Method;
 use crate::stability::file::{Map, failure_expected};
 use crate::stability::map::Placed;
+use billow_study::render::figure::Sheet;
+use billow_study::render::figure::legend::{Legend, Sample};
+use billow_study::render::figure::map::{Cell, Maps, Panel};
 
 /// The overview as SVG, for maps with their cells.
 pub fn overview(maps: &[(&Map, Vec<Placed>)]) -> String {

@@ -2,10 +2,10 @@
 
 use billow_solver::output::audit_kind::AuditKind;
 
-use billow_study::input::value::{brief_number, short_number};
 use crate::stability::cell::Cell;
 use crate::stability::file::Map;
 use crate::stability::map::Border;
+use billow_study::input::value::{brief_number, short_number};
 
 /// The letter of an audit; empty for one without a letter.
 pub(super) fn letter(audit: &str) -> &'static str {
