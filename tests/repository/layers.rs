@@ -8,8 +8,8 @@ use std::path::Path;
 
 use crate::sources::{code, files, text};
 
-/// Rooms of both crates, from the ground up.
-const ROOMS: [(&str, &[&str]); 2] = [
+/// Rooms of every crate, from the ground up.
+const ROOMS: [(&str, &[&str]); 3] = [
     (
         "solver",
         &[
@@ -32,6 +32,10 @@ const ROOMS: [(&str, &[&str]); 2] = [
             "platform", "input", "job", "accuracy", "study", "store", "run", "cluster", "scene",
             "analysis", "render", "chart", "cli",
         ],
+    ),
+    (
+        "tests/checks",
+        &["cases", "exact_scenes", "exact_runs", "stability", "bench", "convergence", "commands"],
     ),
 ];
 

@@ -71,7 +71,7 @@ fn findings(avoided: &Avoided, text: &[(usize, String)]) -> Vec<usize> {
 /// Sources, scripts and documents of the repository.
 fn looked_at() -> Vec<PathBuf> {
     let endings = [".rs", ".md", ".toml", ".sh", ".py", "Makefile", ".ci/run"];
-    let folders = ["solver", "study", "studies", "scenes", "tests", "benches", "docs", ".ci"];
+    let folders = ["solver", "study", "studies", "scenes", "tests", "docs", ".ci"];
     let pages = [
         "README.md",
         "DESIGN.md",

@@ -1,5 +1,5 @@
 //! The paper's capsule: its film, its gas, its fold and its scene, for reference cases, tests and
-//! benches.
+//! benchmarks.
 //!
 //! Geometry and film are those of the paper the program reproduces: a cone of radii 0.5 and 0.365 m
 //! and height 1 m, N 6, M 3, of polyester film 25.4 µm (1 mil) thick. The same numbers stand in

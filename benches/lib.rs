@@ -1,1 +1,0 @@
-//! Empty: the measurements are in `kernels.rs` and `factorisation/`.
