@@ -41,6 +41,33 @@ impl Value {
     }
 }
 
+/// What becomes a value as it stands.
+macro_rules! from {
+    ($($type:ty, $value:ident => $made:expr;)*) => {
+        $(impl From<$type> for Value {
+            fn from($value: $type) -> Self {
+                $made
+            }
+        })*
+    };
+}
+
+from! {
+    bool, value => Self::Bool(value);
+    f64, value => Self::Number(value);
+    u32, value => Self::Integer(value.into());
+    u64, value => Self::Integer(i64::try_from(value).unwrap_or(i64::MAX));
+    usize, value => Self::Integer(i64::try_from(value).unwrap_or(i64::MAX));
+    &str, value => Self::Text(value.to_owned());
+    String, value => Self::Text(value);
+}
+
+impl<T: Into<Value>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Null, T::into)
+    }
+}
+
 /// A value as JSON; a non-finite number is `null`.
 pub fn json_value(value: &Value) -> serde_json::Value {
     match value {

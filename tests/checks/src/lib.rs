@@ -11,8 +11,7 @@ macro_rules! eprintln {
 
 pub mod bench;
 pub mod cases;
-pub mod commands;
 pub mod convergence;
-mod exact_runs;
-pub mod exact_scenes;
+pub mod exact;
+pub mod output;
 pub mod stability;

@@ -3,8 +3,8 @@
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
 
+use billow_checks::cases::command as validate;
 use billow_checks::cases::{self, CASES, Rig, Tier};
-use billow_checks::commands::validate;
 use billow_solver::platform::fault_injection::{Fault, Term};
 use billow_study::cli::Format;
 use billow_study::platform::exit_code::Exit;
@@ -96,7 +96,7 @@ fn an_unknown_case_is_bad_input() {
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
     let error = stderr_of(&output);
-    assert!(error.contains("--case = shear_pannel: unknown case"), "{error}");
+    assert!(error.contains("--case = shear_pannel: unknown name"), "{error}");
     assert!(error.contains("did you mean shear_panel?"), "{error}");
     assert!(CASES.iter().all(|case| error.contains(case.name)), "{error}");
     assert_eq!(billow(&["--threads", "0"]).status.code(), Some(2));

@@ -18,6 +18,7 @@ use billow_study::platform::stop::Stop;
 
 pub mod capsule;
 pub mod clock;
+pub mod command;
 pub mod kernels;
 pub mod machine;
 pub mod quiet_filling;

@@ -17,6 +17,7 @@ use std::time::Instant;
 
 use rayon::ThreadPool;
 
+pub mod command;
 pub mod costs;
 pub mod reference;
 pub mod rig;
@@ -31,22 +32,22 @@ pub mod contact_rig;
 mod contact_stack;
 mod contact_tube;
 mod damping;
-mod drum;
+pub mod drum;
 mod energy_balance;
 mod folded_strip;
 mod forces;
 mod friction_adhesion;
 mod gas_column;
-mod gas_piston;
+pub mod gas_piston;
 mod gas_vessel;
 mod integrators;
 mod integrators_contact;
 mod invariants;
 mod moving_fold;
 mod oscillation;
-mod piston_model;
-mod sphere_motion;
-mod static_airbag;
+pub mod piston_model;
+pub mod sphere_motion;
+pub mod static_airbag;
 mod static_compliant;
 mod static_discs;
 mod static_end_state;
@@ -54,10 +55,8 @@ mod static_equilibrium;
 mod static_polygon;
 mod static_shells;
 mod static_wrinkling;
-pub(crate) mod step_limit;
+pub mod step_limit;
 mod storeys_model;
-
-pub mod work_precision;
 
 pub use rig::Rig;
 pub use row::Row;

@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod check;
+pub mod command;
 pub mod fit;
 pub mod limit;
 pub mod regression;

@@ -49,7 +49,7 @@ impl Question {
 }
 
 /// What a cell found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
     /// [`Question::key`].
@@ -96,17 +96,8 @@ impl Observer for Listener<'_> {
 
 /// Runs a cell. `None` when a signal ended it.
 pub fn run(rig: &Rig, question: &Question, stop: &Stop) -> Option<Cell> {
-    let blank = Cell {
-        key: question.key(),
-        status: Status::Invalid.name().to_owned(),
-        audit: String::new(),
-        place: String::new(),
-        time: 0.0,
-        end_time: 0.0,
-        steps: 0,
-        residual: None,
-        theory: None,
-    };
+    let status = Status::Invalid.name().to_owned();
+    let blank = Cell { key: question.key(), status, ..Cell::default() };
     let body = || answer(rig, question, stop, &blank);
     match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(cell)) => cell,

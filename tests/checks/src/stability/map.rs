@@ -8,10 +8,12 @@
 //!
 //! Every trial is a cell, so a search that continues finds its trials among the finished cells.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Mutex;
 
+use billow_solver::scene::IntegratorKind;
+use billow_study::platform::error::{Error, Result};
+use billow_study::platform::stop::Stop;
 use rayon::prelude::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::Method;
@@ -19,8 +21,6 @@ use super::cell::{self, Cell, Question};
 use super::file::{Map, meets};
 use super::stored::{self, Cells};
 use crate::cases::Rig;
-use billow_study::platform::error::{Error, Result};
-use billow_study::platform::stop::Stop;
 
 /// A place where the outcome changes along the axis of the search.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,21 +109,10 @@ impl<'a> Running<'a> {
     /// # Errors
     /// As for a cell.
     pub fn run(&self, map: &Map) -> Result<()> {
-        let mut keys = BTreeSet::new();
-        let mut questions: Vec<Question> = Vec::new();
-        for question in placed(map, &Cells::new()).into_iter().map(|placed| placed.question) {
-            if keys.insert(question.key()) {
-                questions.push(question);
-            }
-        }
-        questions
-            .par_iter()
-            .map(|question| self.cell(question).map(|_| ()))
-            .collect::<Result<()>>()?;
-        lines(map)
-            .par_iter()
-            .map(|line| border(map, line, &|question| self.cell(question)).map(|_| ()))
-            .collect()
+        let cells = placed(map, &Cells::new());
+        cells.par_iter().try_for_each(|placed| self.cell(&placed.question).map(|_| ()))?;
+        let ask = |question: &Question| self.cell(question);
+        lines(map).par_iter().try_for_each(|line| border(map, *line, &ask).map(|_| ()))
     }
 }
 
@@ -141,13 +130,8 @@ pub fn placed(map: &Map, cells: &Cells) -> Vec<Placed> {
     all
 }
 
-/// A row of cells along the axis of the search.
-#[derive(Debug, Clone, Copy)]
-struct Line {
-    method: Method,
-    /// Value of the other axis.
-    at: Option<f64>,
-}
+/// A row of cells along the axis of the search: the method, and the value of the other axis.
+type Line = (Method, Option<f64>);
 
 fn lines(map: &Map) -> Vec<Line> {
     let Some(search) = map.search else { return Vec::new() };
@@ -155,8 +139,7 @@ fn lines(map: &Map) -> Vec<Line> {
         Some(axis) => axis.values.iter().copied().map(Some).collect(),
         None => vec![None],
     };
-    let of = |method: &Method| others.iter().map(|at| Line { method: *method, at: *at }).collect();
-    map.methods.iter().flat_map(|method| -> Vec<Line> { of(method) }).collect()
+    map.methods.iter().flat_map(|method| others.iter().map(|at| (*method, *at))).collect()
 }
 
 /// The borders of a map as far as they are known from finished cells.
@@ -165,29 +148,33 @@ pub fn borders(map: &Map, cells: &Cells) -> Vec<Border> {
         let missing = || Error::JobsFailed("a cell that did not run yet".to_owned());
         cells.get(&question.key()).cloned().ok_or_else(missing)
     };
-    lines(map).iter().filter_map(|line| border(map, line, &known).ok()).collect()
+    lines(map).into_iter().filter_map(|line| border(map, line, &known).ok()?).collect()
 }
 
 /// The border of a line: the first change of the outcome along the axis.
-fn border(map: &Map, line: &Line, cell: &dyn Fn(&Question) -> Result<Cell>) -> Result<Border> {
-    let none = |wrong: bool| Border {
-        method: line.method,
-        at: line.at,
+fn border(
+    map: &Map,
+    (method, at): Line,
+    cell: &dyn Fn(&Question) -> Result<Cell>,
+) -> Result<Option<Border>> {
+    let Some(search) = map.search else { return Ok(None) };
+    let ask = |value: f64| {
+        let mut place = vec![value];
+        if let Some(other) = at {
+            place.insert(1 - search.axis, other);
+        }
+        cell(&map.question(method, &place))
+    };
+    let explicit = method == Method::Film(IntegratorKind::Explicit);
+    let bound = search.theory.filter(|_| explicit);
+    let none = Border {
+        method,
+        at,
         value: None,
         status: String::new(),
         of_theory: None,
-        wrong,
+        wrong: bound.is_some(),
     };
-    let Some(search) = map.search else { return Ok(none(false)) };
-    let ask = |value: f64| {
-        let at: Vec<f64> = match (search.axis, line.at) {
-            (_, None) => vec![value],
-            (0, Some(other)) => vec![value, other],
-            (_, Some(other)) => vec![other, value],
-        };
-        cell(&map.question(line.method, &at))
-    };
-    let bound = map.theory.as_ref().filter(|theory| theory.methods.contains(&line.method));
     let values = &map.axes[search.axis].values;
     let mut found: Vec<(f64, Cell)> = Vec::new();
     for value in values {
@@ -197,30 +184,23 @@ fn border(map: &Map, line: &Line, cell: &dyn Fn(&Question) -> Result<Cell>) -> R
     let Some([(mut low, first), (mut high, last)]) =
         change.map(|pair| [pair[0].clone(), pair[1].clone()])
     else {
-        return Ok(none(bound.is_some()));
+        return Ok(Some(none));
     };
     let mut failing = if first.is_done() { last } else { first.clone() };
-    let smallest =
-        values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
-    let smallest = if smallest.is_finite() { smallest } else { 0.0 };
+    let positive = values.iter().copied().filter(|value| *value > 0.0);
+    let smallest = positive.reduce(f64::min).unwrap_or(0.0);
     while high - low > search.within * high.abs().max(low.abs()).max(smallest) {
         let middle = if low > 0.0 { (low * high).sqrt() } else { 0.5 * (low + high) };
         let trial = ask(middle)?;
         if !trial.is_done() {
             failing = trial.clone();
         }
-        if trial.is_done() == first.is_done() {
-            low = middle;
-        } else {
-            high = middle;
-        }
+        *(if trial.is_done() == first.is_done() { &mut low } else { &mut high }) = middle;
     }
     let value = 0.5 * (low + high);
     let of_step = map.axes[search.axis].parameter.name == "step";
     let of_theory = failing.theory.filter(|_| of_step).map(|theory| value * theory);
-    let close = |bound: &super::file::Theory| {
-        of_theory.is_some_and(|ratio| (ratio - 1.0).abs() <= bound.within)
-    };
-    let wrong = bound.is_some_and(|bound| !close(bound));
-    Ok(Border { value: Some(value), status: failing.status, of_theory, wrong, ..none(false) })
+    let close = |within| of_theory.is_some_and(|ratio| (ratio - 1.0).abs() <= within);
+    let wrong = bound.is_some_and(|within| !close(within));
+    Ok(Some(Border { value: Some(value), status: failing.status, of_theory, wrong, ..none }))
 }

@@ -15,11 +15,10 @@ use billow_solver::integrators;
 use billow_solver::scene::IntegratorKind;
 
 pub mod cell;
+pub mod command;
 pub mod file;
 pub mod map;
 pub mod picture;
-pub mod read;
-pub mod reference;
 pub mod scenes;
 pub mod stored;
 

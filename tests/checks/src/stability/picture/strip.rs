@@ -25,8 +25,7 @@ const DECADES: f64 = 6.0;
 const INVISIBLE: f64 = 0.02;
 const VISIBLE: f64 = 0.1;
 
-/// The strip of a failing run as SVG: of the cells that the map names, else of the one with the fewest steps that
-/// has every shape. `None` without one that has shapes.
+/// The strip of the first failing run that the map names, as SVG; `None` without one that has shapes.
 pub fn strip(rig: &Rig, map: &Map, cells: &[Placed]) -> Option<String> {
     let (placed, found) = chosen(map, cells)?;
     let (film, shapes) = cell::shapes(rig, &placed.question, found, SHAPES)?;
@@ -69,17 +68,9 @@ pub fn strip(rig: &Rig, map: &Map, cells: &[Placed]) -> Option<String> {
 
 /// The cell whose run is shown.
 fn chosen<'a>(map: &Map, cells: &'a [Placed]) -> Option<(&'a Placed, &'a Cell)> {
-    let failing = || {
-        let found = cells.iter().filter_map(|placed| Some((placed, placed.cell.as_ref()?)));
-        found.filter(|(_, cell)| !cell.is_done() && cell.steps > 0)
-    };
-    let named = map
-        .strip
-        .as_ref()
-        .and_then(|choice| failing().find(|(placed, _)| choice.holds(&placed.question)));
-    let steps = |(_, cell): &(&Placed, &Cell)| cell.steps;
-    let whole = || failing().filter(|(_, cell)| cell.steps >= SHAPES).min_by_key(steps);
-    named.or_else(whole).or_else(|| failing().max_by_key(steps))
+    let choice = map.strip.as_ref()?;
+    let mut found = cells.iter().filter_map(|placed| Some((placed, placed.cell.as_ref()?)));
+    found.find(|(placed, cell)| !cell.is_done() && cell.steps > 0 && choice.holds(&placed.question))
 }
 
 /// Time, largest speed and ledger residual of a shape.

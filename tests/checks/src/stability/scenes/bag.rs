@@ -44,9 +44,7 @@ pub const SCENE: StabilityScene = StabilityScene {
 
 fn build(rig: &Rig, method: Method, values: &Values) -> Result<Prepared, String> {
     let Method::Film(kind) = method else { return Err("film only".to_owned()) };
-    // A whole number of the range of the parameter.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
-    let level = values.get("level") as u32;
+    let level = values.count("level");
     let flatness = values.get("flatness");
     // The reference of the film is the sphere.
     let shell = moved(icosphere(level, RADIUS), |x| Vector3::new(x.x, x.y, x.z * flatness));

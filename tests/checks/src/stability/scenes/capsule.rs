@@ -56,9 +56,7 @@ pub const SCENE: StabilityScene = StabilityScene {
 
 /// The scene as data, without its method.
 fn scene(values: &Values) -> Scene {
-    // A whole number of the range of the parameter.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "2 to 6")]
-    let subdivisions = values.get("subdivisions") as u32;
+    let subdivisions = values.count("subdivisions");
     let mut scene = paper::empty_capsule(subdivisions, END);
     scene.design.stowed_height = values.get("stowed_height");
     scene.film = values.film();

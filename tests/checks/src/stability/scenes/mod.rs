@@ -107,6 +107,12 @@ impl Values {
         self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
 
+    /// The value of a parameter of whole numbers, within its range.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 8")]
+    fn count(&self, name: &str) -> u32 {
+        self.get(name) as u32
+    }
+
     /// Sets a parameter that the scene has.
     pub fn set(&mut self, name: &str, value: f64) {
         for (known, old) in &mut self.0 {
@@ -177,11 +183,6 @@ pub struct StabilityScene {
 }
 
 impl StabilityScene {
-    /// Whether the largest stable step of its linear film is known.
-    pub fn has_theory(&self) -> bool {
-        self.name == sheet::SCENE.name
-    }
-
     /// The parameter of a name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)

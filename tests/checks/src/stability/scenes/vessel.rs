@@ -52,9 +52,7 @@ pub const CAPSULE: StabilityScene = StabilityScene {
 };
 
 fn bag(_: &Rig, _: Method, values: &Values) -> Result<Prepared, String> {
-    // A whole number of the range of the parameter.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 3")]
-    let level = values.get("level") as u32;
+    let level = values.count("level");
     let flatness = values.get("flatness");
     // The reference of the film is the sphere.
     let shell = moved(icosphere(level, RADIUS), |x| Vector3::new(x.x, x.y, x.z * flatness));
@@ -66,9 +64,7 @@ fn bag(_: &Rig, _: Method, values: &Values) -> Result<Prepared, String> {
 }
 
 fn capsule(rig: &Rig, _: Method, values: &Values) -> Result<Prepared, String> {
-    // A whole number of the range of the parameter.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "2 to 8")]
-    let subdivisions = values.get("subdivisions") as u32;
+    let subdivisions = values.count("subdivisions");
     let mut scene = paper::empty_capsule(subdivisions, 1.0);
     scene.film.thickness = values.get("thickness");
     scene.film.youngs_modulus = values.get("modulus");

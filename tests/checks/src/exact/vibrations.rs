@@ -2,12 +2,12 @@
 
 use billow_solver::integrators::entry;
 use billow_solver::scene::IntegratorKind;
-use serde_json::Value;
+use billow_study::analysis::work_precision::{Ending, SceneRuns};
+use billow_study::input::value::Value;
 
-use super::meter::{Meter, quantity, scene, timed};
+use super::meter::{Meter, Scene, quantity, timed};
 use crate::cases::reference::rows;
 use crate::cases::{Rig, drum, sphere_motion};
-use crate::exact_scenes::ExactScene;
 
 /// Levels of the icosphere: each has four times the elements of the one before.
 const SPHERE_LEVELS: [u32; 5] = [1, 2, 3, 4, 5];
@@ -35,11 +35,10 @@ struct Vibration {
 }
 
 impl Vibration {
-    fn configuration(&self) -> Vec<Value> {
+    fn configuration(&self) -> [Value; 4] {
         let integrator = entry(self.integrator).name;
-        let samples = self.samples.map_or(Value::Null, Value::from);
         let cfl = if self.samples.is_some() { Value::Null } else { self.cfl.into() };
-        vec![self.mesh.into(), integrator.into(), cfl, samples]
+        [self.mesh.into(), integrator.into(), cfl, self.samples.into()]
     }
 }
 
@@ -67,13 +66,13 @@ fn vibrations(all: &[u32], scene: usize) -> Vec<Vibration> {
 }
 
 /// A sphere on adiabatic gas about its equilibrium.
-pub(super) fn breathing_sphere(rig: &Rig) -> Result<ExactScene, String> {
+pub(super) fn breathing_sphere(rig: &Rig) -> Result<SceneRuns, String> {
     let rows = rows("breathing_sphere");
     let name = |row: &Vec<f64>| {
         let name = format!("frequency_{}_Pa", row[0]);
         quantity(&name, "Hz", &format!("frequency at {} Pa", row[0]), Some(row[1]))
     };
-    let mut found = scene(
+    let mut scene = Scene::new(
         "breathing_sphere",
         "radial mode of a sphere of film on adiabatic gas; cost of the runs at both pressures; implicit steps end at \
          samples, whose number a period is given",
@@ -91,20 +90,20 @@ pub(super) fn breathing_sphere(rig: &Rig) -> Result<ExactScene, String> {
             meter.add(&mut film, wall);
             values.push(value);
         }
-        found.runs.push(meter.run(run.configuration(), values));
+        scene.add(run.configuration(), &meter, Ending::Trusted, &values);
     }
-    Ok(found)
+    Ok(scene.runs())
 }
 
 /// A drum: a disc under tension from its rim.
-pub(super) fn stretched_disc(rig: &Rig) -> Result<ExactScene, String> {
+pub(super) fn stretched_disc(rig: &Rig) -> Result<SceneRuns, String> {
     let modes = drum::drum_modes();
     let name = |mode: &drum::DrumMode| {
         let name = format!("frequency_{}_{}", mode.diameters, mode.circles);
         let meaning = format!("frequency with {} nodal diameters", mode.diameters);
         quantity(&name, "Hz", &meaning, Some(mode.frequency))
     };
-    let mut found = scene(
+    let mut scene = Scene::new(
         "stretched_disc",
         "frequencies of a disc under tension from its rim; cost of the runs of both modes; implicit steps end at \
          samples, whose number a period is given",
@@ -119,7 +118,7 @@ pub(super) fn stretched_disc(rig: &Rig) -> Result<ExactScene, String> {
             meter.add(&mut film, wall);
             values.push(value);
         }
-        found.runs.push(meter.run(run.configuration(), values));
+        scene.add(run.configuration(), &meter, Ending::Trusted, &values);
     }
-    Ok(found)
+    Ok(scene.runs())
 }

@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 
-use crate::cases::{self, CASES, Case, Judged, Rig, Tier, costs};
+use super::{CASES, Case, Judged, Rig, Tier, costs, run_all};
+use crate::output::chosen;
 use billow_study::cli::options::{OutputOptions, QuietOption, ThreadsOption};
 use billow_study::cli::print::{count, duration, print_rows};
 use billow_study::cli::{Format, instruction_set};
 use billow_study::input::value::Value;
 use billow_study::platform::error::{Error, Result};
 use billow_study::platform::files::disk_error;
-use billow_study::platform::nearest::did_you_mean;
 use billow_study::platform::stop::Stop;
 
 /// Interval at which a signal is checked for. Chosen: short for a user, long for a processor.
@@ -46,7 +46,7 @@ pub struct Args {
 /// # Errors
 /// An unknown case; a case that is out of tolerance; a signal, after the rows of the finished cases.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    let chosen = chosen(&args.cases)?;
+    let chosen = chosen("--case", &args.cases, CASES, |case| case.name)?;
     if args.list {
         return list(&chosen, args.output.format(), out);
     }
@@ -115,7 +115,7 @@ fn judge(
     let _running = thread::spawn(move || {
         // After a signal the receiver is gone and the send fails.
         let send = |judged: &Judged| drop(sender.send(judged.clone()));
-        cases::run_all(&pool, &cases, &rig, &send)
+        run_all(&pool, &cases, &rig, &send)
     });
     let mut judged = Vec::new();
     while stop.requested().is_none() {
@@ -146,20 +146,6 @@ pub fn verdict(judged: &[Judged]) -> Result<()> {
         judged.len(),
         outside.join(", ")
     )))
-}
-
-/// The cases with these names, in the order of the table; every case without names.
-fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
-    for name in names {
-        if !CASES.iter().any(|case| case.name == name) {
-            let known = || CASES.iter().map(|case| case.name);
-            let allowed = known().collect::<Vec<_>>().join(", ");
-            let hint = did_you_mean(name, known()).unwrap_or_default();
-            return Err(Error::invalid_option("--case", name, "unknown case", allowed, hint));
-        }
-    }
-    let named = |case: &&Case| names.is_empty() || names.iter().any(|name| name == case.name);
-    Ok(CASES.iter().filter(named).collect())
 }
 
 fn list(cases: &[&Case], format: Format, out: &mut dyn Write) -> Result<()> {

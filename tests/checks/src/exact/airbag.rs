@@ -1,0 +1,66 @@
+//! The square airbag at rest.
+
+use billow_solver::integrators::entry;
+use billow_solver::scene::IntegratorKind;
+use billow_study::analysis::work_precision::{Ending, SceneRuns};
+use billow_study::input::value::Value;
+use billow_study::job::Status;
+
+use super::meter::{Meter, Scene, quantity, timed};
+use crate::cases::{Rig, static_airbag};
+
+/// Cells along the side of a quarter of the airbag. With 96 the search finds another minimum, of higher energy.
+const CELLS: [u32; 5] = [4, 8, 16, 32, 64];
+/// Name of the search by Newton's method beside the integrators.
+const STATIC_SEARCH: &str = "static search";
+/// Integrators, CFL numbers and finest meshes with which the airbag is brought to rest by damped motion.
+const RELAXATIONS: [(IntegratorKind, f64, u32); 4] = [
+    (IntegratorKind::Explicit, 0.9, 32),
+    (IntegratorKind::Implicit, 0.9, 32),
+    (IntegratorKind::Hybrid, 0.9, 4),
+    (IntegratorKind::Xpbd, 0.1, 16),
+];
+
+/// Two squares sewn together and inflated. No closed form is known: the finest mesh is the reference. The search by
+/// Newton's method stands beside damped motion with each integrator.
+pub(super) fn square_airbag(rig: &Rig) -> Result<SceneRuns, String> {
+    let quantities = vec![
+        quantity("potential_energy", "J", "potential energy of a quarter of a sheet", None),
+        quantity("height", "m", "height of the middle", None),
+        quantity("volume", "m3", "enclosed volume", None),
+    ];
+    let mut scene = Scene::new(
+        "square_airbag",
+        "two squares sewn together and inflated, at rest; work is elements times Newton steps, seconds are those of the search",
+        &["cells", "solver.integrator", "solver.cfl"],
+        quantities,
+    )
+    .at_rest();
+    for cells in CELLS {
+        let ((state, _), wall) = timed(|| static_airbag::inflated(rig, cells))?;
+        let (elements, steps) = (state.model.elements() as f64, f64::from(state.iterations));
+        let meter = Meter { elements, steps, implicit: true, wall, ..Meter::default() };
+        let values = [state.potential_energy, state.positions.z[0], 8.0 * state.volume];
+        let method = [cells.into(), STATIC_SEARCH.into(), Value::Null];
+        scene.add(method, &meter, Ending::Trusted, &values);
+    }
+    for (kind, cfl, finest) in RELAXATIONS {
+        for cells in CELLS.into_iter().filter(|cells| *cells <= finest) {
+            let method = [cells.into(), entry(kind).name.into(), cfl.into()];
+            let (settled, wall) = timed(|| static_airbag::relaxed(rig, cells, (kind, cfl)))?;
+            match settled {
+                Ok((mut film, energy)) => {
+                    let meter = Meter::of(&mut film, wall);
+                    let state = film.view().state;
+                    let values = [energy, state.positions.z[0], 8.0 * state.volume];
+                    scene.add(method, &meter, Ending::Trusted, &values);
+                }
+                Err(mut unsettled) => {
+                    let ending = Ending::Failed(Status::Failed(unsettled.failure.kind));
+                    scene.add(method, &Meter::of(&mut unsettled.film, wall), ending, &[]);
+                }
+            }
+        }
+    }
+    Ok(scene.runs())
+}

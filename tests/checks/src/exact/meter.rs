@@ -1,0 +1,110 @@
+//! What the scenes share: their description, and the cost of their runs.
+
+use std::time::Instant;
+
+use billow_solver::integrators::FilmSimulation;
+use billow_solver::output::events::EventKind;
+use billow_solver::scene::IntegratorKind;
+use billow_study::analysis::work_precision::{Ending, Outcome, Quantity, Run, SceneRuns};
+use billow_study::input::value::Value;
+
+/// A quantity of a scene.
+pub(super) fn quantity(name: &str, unit: &str, meaning: &str, exact: Option<f64>) -> Quantity {
+    let [name, unit, meaning] = [name, unit, meaning].map(str::to_owned);
+    Quantity { name, unit, meaning, exact, is_course: false }
+}
+
+/// A scene, and the names of the numerical parameters of its runs.
+pub(super) struct Scene {
+    runs: SceneRuns,
+    parameters: &'static [&'static str],
+}
+
+impl Scene {
+    /// A scene without runs.
+    pub(super) fn new(
+        name: &str,
+        meaning: &str,
+        parameters: &'static [&'static str],
+        quantities: Vec<Quantity>,
+    ) -> Self {
+        let [name, meaning] = [name, meaning].map(str::to_owned);
+        let per_simulated_second = true;
+        let (runs, without_result) = (Vec::new(), 0);
+        let runs =
+            SceneRuns { name, meaning, quantities, per_simulated_second, runs, without_result };
+        Self { runs, parameters }
+    }
+
+    /// Adds a run with a value of each parameter, its cost and its result for each quantity.
+    pub(super) fn add<const N: usize>(
+        &mut self,
+        configuration: [Value; N],
+        meter: &Meter,
+        ending: Ending,
+        values: &[f64],
+    ) {
+        let names = self.parameters.iter().map(|name| (*name).to_owned());
+        let per = if self.runs.per_simulated_second { meter.simulated } else { 1.0 };
+        let result = |index| values.get(index).map(|value| Outcome::Number(*value));
+        self.runs.runs.push(Run {
+            configuration: names.zip(configuration).collect(),
+            ending,
+            elements: meter.elements,
+            steps: meter.steps,
+            implicit: meter.implicit,
+            seconds: Some(meter.wall / per),
+            results: (0..self.runs.quantities.len()).map(result).collect(),
+            mesh_errors: Vec::new(),
+        });
+    }
+
+    /// The same scene, where seconds are those of a run and not of a simulated second.
+    pub(super) fn at_rest(mut self) -> Self {
+        self.runs.per_simulated_second = false;
+        self
+    }
+
+    /// All runs.
+    pub(super) fn runs(self) -> SceneRuns {
+        self.runs
+    }
+}
+
+/// Cost so far: elements, steps, whether some are implicit, simulated time, wall time.
+#[derive(Default)]
+pub(super) struct Meter {
+    pub(super) elements: f64,
+    pub(super) steps: f64,
+    pub(super) implicit: bool,
+    pub(super) simulated: f64,
+    pub(super) wall: f64,
+}
+
+impl Meter {
+    /// The cost of film that ran for this wall time, s.
+    pub(super) fn of(film: &mut FilmSimulation, wall: f64) -> Self {
+        let mut meter = Self::default();
+        meter.add(film, wall);
+        meter
+    }
+
+    /// Adds film that ran for this wall time, s.
+    pub(super) fn add(&mut self, film: &mut FilmSimulation, wall: f64) {
+        let changes = film.take_events();
+        self.implicit |= film.settings().integrator == IntegratorKind::Implicit
+            || changes.iter().any(|event| event.kind == EventKind::Implicit);
+        let film = film.view();
+        self.elements = film.system.model.elements() as f64;
+        self.steps += film.steps() as f64;
+        self.simulated += film.state.time;
+        self.wall += wall;
+    }
+}
+
+/// Result and wall time, s.
+pub(super) fn timed<T>(body: impl FnOnce() -> Result<T, String>) -> Result<(T, f64), String> {
+    let start = Instant::now();
+    let value = body()?;
+    Ok((value, start.elapsed().as_secs_f64()))
+}

@@ -1,0 +1,56 @@
+//! What the checks share beside the printer of billow: entries chosen by name, pictures in a folder.
+
+use std::io::Write;
+use std::path::Path;
+
+use billow_study::cli::output_error;
+use billow_study::cli::picture::{self, Picture};
+use billow_study::platform::error::{Error, Result};
+use billow_study::platform::files::{Disk, Files, disk_error};
+use billow_study::platform::nearest::did_you_mean;
+
+/// The entries of a table that an option names, in the order of the table; all without names.
+///
+/// # Errors
+/// A name that no entry has.
+pub fn chosen<'a, T>(
+    option: &str,
+    names: &[String],
+    table: &'a [T],
+    name_of: fn(&T) -> &str,
+) -> Result<Vec<&'a T>> {
+    let known = || table.iter().map(name_of);
+    for name in names {
+        if !known().any(|known| known == name) {
+            let near = did_you_mean(name, known()).unwrap_or_default();
+            let allowed = known().collect::<Vec<_>>().join(", ");
+            return Err(Error::invalid_option(option, name, "unknown name", allowed, near));
+        }
+    }
+    let named = |entry: &&T| names.is_empty() || names.iter().any(|name| name == name_of(entry));
+    Ok(table.iter().filter(named).collect())
+}
+
+/// Writes pictures (name, SVG) as SVG and PNG to the folder `charts` of results. Lists their paths if asked.
+///
+/// # Errors
+/// A picture that cannot be written.
+pub fn draw(
+    results: &Path,
+    pictures: impl IntoIterator<Item = (String, String)>,
+    list: bool,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let folder = results.join("charts");
+    Disk.create_folder(&folder).map_err(|error| disk_error(&folder, &error))?;
+    for (name, svg) in pictures {
+        for format in Picture::ALL {
+            let path = folder.join(format!("{name}.{}", format.extension()));
+            picture::write(&path, &svg)?;
+            if list {
+                writeln!(out, "  {}", path.display()).map_err(output_error)?;
+            }
+        }
+    }
+    Ok(())
+}
