@@ -133,14 +133,14 @@ fn a_job_that_is_killed_twice_is_quarantined_and_runs_again_on_request() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
     assert!(
-        said.contains("1 crashed") && said.contains("rerun results/grid --status crashed"),
+        said.contains("1 crashed") && said.contains("run results/grid --again crashed"),
         "{said}"
     );
     let crashed = ids(&folder, "crashed");
     assert_eq!((crashed.len(), ids(&folder, "done").len()), (1, 1));
     let why = folder.stdout(&["job", &crashed[0][..8], "results/grid"]);
-    assert!(why.contains("died in two attempts") && why.contains("billow rerun"), "{why}");
-    folder.stdout(&["rerun", "results/grid", "--status", "crashed", "-q"]);
+    assert!(why.contains("died in two attempts") && why.contains("--again"), "{why}");
+    folder.stdout(&["run", "results/grid", "--again", "crashed", "-q"]);
     assert_same_bits(&folder, &whole);
 }
 
@@ -153,7 +153,7 @@ fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
     let output = folder.run(&["run", "grid.json", "-q"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
-    assert!(said.contains("--status step_limit --job-limit steps=…"), "{said}");
+    assert!(said.contains("--again step_limit --job-limit steps=…"), "{said}");
     let failed = ids(&folder, "step_limit");
     assert_eq!((failed.len(), files(&folder, "checkpoints").len()), (1, 1));
     let row = folder.rows("results/grid").pop().unwrap();
@@ -164,11 +164,11 @@ fn a_limited_job_is_a_row_and_goes_on_with_a_higher_limit() {
 
     // An attempt of a moment; then one without any limit.
     let timeout = ["--job-limit", "steps=none", "--job-limit", "wall_time=0.05", "-q"];
-    let again = ["rerun", "results/grid", "--status", "step_limit"];
+    let again = ["run", "results/grid", "--again", "step_limit"];
     let output = folder.run(&[&again[..], &timeout].concat());
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert_eq!(ids(&folder, "timeout"), failed);
-    let again = ["rerun", "results/grid", "--status", "timeout", "--job-limit", "steps=none", "-q"];
+    let again = ["run", "results/grid", "--again", "timeout", "--job-limit", "steps=none", "-q"];
     folder.stdout(&again);
     assert_same_bits(&folder, &whole);
     // The limits are no change of the study.

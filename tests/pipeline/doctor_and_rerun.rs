@@ -1,4 +1,4 @@
-//! `doctor` finds damage in a results folder; `rerun` repeats jobs and compares their bits.
+//! `doctor` finds damage in a results folder; `run --again` repeats jobs and compares their bits.
 
 use std::fs;
 
@@ -266,19 +266,18 @@ fn files_of_a_newer_version_are_refused() {
 }
 
 #[test]
-fn rerun_reproduces_the_bits_and_reports_it() {
+fn jobs_run_again_reproduce_their_bits() {
     let folder = ran();
     let before = histories(&folder.results());
     let table = without_costs(folder.rows("results/grid"));
     let done = ids(&folder, "done");
-    let listed = folder.stdout(&["rerun", &done[0][..9], &done[1], "--dry-run", "--format", "csv"]);
-    assert_eq!(listed.lines().count(), 3, "{listed}");
-    assert_eq!(histories(&folder.results()), before);
-    let said = folder.stdout(&["rerun", &done[0][..9], &done[1], "results/grid", "-q"]);
+    let two = format!("{},{}", &done[0][..9], done[1]);
+    let said = folder.stdout(&["run", "results/grid", "--again", &two, "-q"]);
     assert!(said.starts_with("grid: 2 jobs run, 24 points\n"), "{said}");
     assert!(said.contains("bits     2 jobs the same as before\n"), "{said}");
-    let summary = json_of(&folder, &["rerun", "--where", "N == 6 and M == 3", "grid.json", "-q"]);
-    assert_eq!((&summary["ran"], &summary["same_bits"]), (&json!(6), &json!(6)));
+    let summary = json_of(&folder, &["run", "grid.json", "--again", "done", "-q"]);
+    let number = json!(done.len());
+    assert_eq!((&summary["ran"], &summary["same_bits"]), (&number, &number));
     assert_eq!(summary["other_bits"], json!([]));
     assert_eq!(histories(&folder.results()), before);
     assert_eq!(without_costs(folder.rows("results/grid")), table);
@@ -286,15 +285,30 @@ fn rerun_reproduces_the_bits_and_reports_it() {
     assert_eq!(folder.run(&["doctor"]).status.code(), Some(0));
 
     let infeasible = &ids(&folder, "infeasible")[0];
-    for (arguments, expected) in [
-        (&["rerun"][..], "no job is named"),
-        (&["rerun", infeasible], "it has no job to run"),
-        (&["rerun", &done[0], "--where", "N == 6"], "both by id and by --where"),
+    for (again, expected) in [
+        (infeasible.as_str(), "it has no job to run"),
+        ("timeout", "no job of the study has this status"),
+        ("timeoot", "no job has this id"),
     ] {
-        let output = folder.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let output = folder.run(&["run", "results/grid", "--again", again]);
+        assert_eq!(output.status.code(), Some(2), "{again}");
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
     }
+}
+
+#[test]
+fn a_job_runs_with_other_settings_beside_the_study() {
+    let folder = ran();
+    let table = folder.rows("results/grid");
+    let done = ids(&folder, "done");
+    let set = ["run", "grid.json", "--again", &done[0], "--set", "solver.end_time=0.2 s", "--json"];
+    let rows: Vec<Value> = serde_json::from_str(&folder.stdout(&set)).unwrap();
+    assert_eq!(rows.len(), 2);
+    assert_eq!((&rows[0]["status"], &rows[1]["status"]), (&json!("done"), &json!("done")));
+    assert_ne!(rows[0]["steps"], rows[1]["steps"]);
+    assert_eq!(folder.rows("results/grid"), table);
+    let refused = folder.run(&["run", "grid.json", "--again", &done[0], "--set", "N=9"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
 }
 
 #[test]
@@ -310,7 +324,7 @@ fn different_bits_are_an_error() {
     let sealed =
         |line: &str| seal::seal(&seal::open(line).unwrap().replace(hash, &"0".repeat(64))) + "\n";
     fs::write(&journal, text.lines().map(sealed).collect::<String>()).unwrap();
-    let output = folder.run(&["rerun", id, "-q"]);
+    let output = folder.run(&["run", "grid.json", "--again", id, "-q"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
     assert!(
@@ -320,15 +334,12 @@ fn different_bits_are_an_error() {
 }
 
 #[test]
-fn rerun_selects_failed_jobs_by_condition() {
+fn failed_jobs_run_again_by_their_status() {
     let folder = failed();
-    let output = folder.run(&["rerun", "--where", "status == 'step_limit'", "-q", "--json"]);
+    let output = folder.run(&["run", "grid.json", "--again", "step_limit", "-q", "--json"]);
     assert_eq!(output.status.code(), Some(1), "they fail again: {}", stderr(&output));
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&summary["ran"], &summary["same_bits"]), (&json!(16), &json!(16)));
-    let none = folder.run(&["rerun", "--where", "status == 'done'"]);
-    assert_eq!(none.status.code(), Some(0));
-    assert!(stderr(&none).contains("0 jobs would run"), "{}", stderr(&none));
 }
 
 /// A results folder and its study.json name the study and its folder, also after a move.

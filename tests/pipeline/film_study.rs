@@ -171,7 +171,7 @@ fn first_json_killed_ten_times_has_the_table_of_an_undisturbed_run() {
         // A job that was killed twice counts as one that kills its process: its next step is to run it on request.
         let text = stderr(&output);
         assert!(text.contains("crashed)") && text.contains("--status crashed"), "{text}");
-        folder.stdout(&["rerun", "results/grid", "--status", "crashed", "-q"]);
+        folder.stdout(&["run", "results/grid", "--again", "crashed", "-q"]);
     }
     assert_eq!(
         without_costs(folder.rows("results/grid")),

@@ -14,7 +14,7 @@ fn every_simulating_command_refuses_an_unknown_instruction_set() {
     }
     for arguments in [
         &["run", "grid.json"][..],
-        &["rerun", "--where", "status == 'done'", "results/grid"],
+        &["run", "results/grid", "--again", "done"],
         &["solve", "sphere.json"],
     ] {
         let output = folder.billow(arguments).env("BILLOW_SIMD", "neon").output().unwrap();

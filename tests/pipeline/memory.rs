@@ -64,7 +64,7 @@ fn an_out_of_memory_job_runs_again_with_more_memory() {
         assert_eq!(output.status.code(), Some(1), "{limit} kB: {}", stderr(&output));
     }
     assert_eq!(folder.rows("results/grid")[0]["status"], "out_of_memory");
-    let output = folder.run(&["rerun", "--status", "out_of_memory", "-q"]);
+    let output = folder.run(&["run", "grid.json", "--again", "out_of_memory", "-q"]);
     assert_eq!(folder.rows("results/grid")[0]["status"], "done", "{}", stderr(&output));
 }
 

@@ -55,7 +55,7 @@ fn status_works_under_the_lock_of_another_process() {
     assert!(
         folder.stdout(&["status"]).starts_with("grid: running: another process holds its lock")
     );
-    let refused = folder.run(&["rerun", &ids(&folder, "done")[0], "-q"]);
+    let refused = folder.run(&["run", "grid.json", "--again", &ids(&folder, "done")[0], "-q"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).contains("another billow command is running"), "{}", stderr(&refused));
     drop(lock);
@@ -178,7 +178,6 @@ fn job_ids_may_be_unique_prefixes() {
     all.sort();
     for (arguments, expected) in [
         (["job", ""], "no job has this id"),
-        (["rerun", "fffffffffffffffffffffffffffffffff0"], "neither a study file"),
         (["job", &format!("{}0000000", &all[0][..8])], &all[0][..8]),
     ] {
         let output = folder.run(&arguments);

@@ -35,7 +35,7 @@ fn every_command_keeps_its_exit_code_when_a_stream_is_closed_or_full() {
         (&["fold", "--panels", "6", "--storeys", "3", "--bottom-radius", "0.5"][..], 2, false),
         (&["plan", "grid.json"], 0, true),
         (&["run", "grid.json"], 0, true),
-        (&["rerun", "--where", "M == 3", "-v"], 0, true),
+        (&["run", "grid.json", "--again", "done", "-v"], 0, true),
         (&["status"], 0, true),
         (&["compare", "--by", "M", "--base", "3"], 0, true),
         (&["doctor"], 0, true),

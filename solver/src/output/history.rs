@@ -148,17 +148,6 @@ columns! {
     "intersections" ["1"] "intersections of the mesh at this sample",
 }
 
-/// Names of history columns and tracks that changed: old name, new name. Readers accept the old name in
-/// files written by earlier versions.
-pub const RENAMED_COLUMNS: &[(&str, &str)] = &[
-    ("contact_searches", "broad_phase_rebuilds"),
-    ("contact_impulses", "collision_impulses"),
-    ("viscous_work", "numerical_dissipation"),
-];
-
-/// Columns that files of physics version 4 and less do not have; all their values were 0 then.
-pub const ADDED_COLUMNS: &[&str] = &["material_loss"];
-
 impl Default for History {
     fn default() -> Self {
         Self::new()

@@ -22,7 +22,7 @@ fn point(number: u32, parameters: &[(&str, Value)]) -> Point {
     let mut job: Job = fixture::job(number);
     job.parameters =
         parameters.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
-    Point { job, remedied: None, infeasible: None, solved: None, merged: Vec::new() }
+    Point { job, infeasible: None, solved: None, merged: Vec::new() }
 }
 
 /// A table of N × mass flow × strategy; `edit` sets the cells of each point.

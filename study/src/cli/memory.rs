@@ -121,11 +121,6 @@ fn limited_note(study: &Study) -> Option<String> {
     ))
 }
 
-/// What the largest job of a study needs, bytes; 0 without a job.
-pub fn largest(study: &Study) -> u64 {
-    feasible(study).map(|point| memory::estimate(&point.scene).total).max().unwrap_or(0)
-}
-
 /// Memory of a job below which `plan` says nothing, bytes. Chosen: every machine has it.
 const MIN_SHOWN: u64 = 50_000_000;
 

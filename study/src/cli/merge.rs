@@ -7,7 +7,6 @@ use std::time::Duration;
 use super::options::{OutputOptions, QuietOption};
 use super::print::count;
 use super::run::listed;
-use super::stored::write_index_file;
 use super::{Format, output_error};
 use crate::job::row::Counts;
 use crate::job::{JobId, Status};
@@ -16,7 +15,6 @@ use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
 use crate::run::merge::{self, Merged};
 use crate::store::claims::{LEASE, RENEWAL};
-use crate::store::index::{Index, Key};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::study::Study;
@@ -110,9 +108,7 @@ fn existing(folder: &Path) -> Result<Results<'static>> {
 
 fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) -> Result<()> {
     let results = existing(folder)?;
-    let key = Key::of(&results);
     let stored = Stored::read(results)?;
-    write_index(&stored, key);
     let mut counts = Counts::default();
     for point in &stored.points {
         counts.add_cells(&stored.cells(point));
@@ -148,16 +144,6 @@ fn print(folder: &Path, merged: &Merged, format: Format, out: &mut dyn Write) ->
     lines.push(format!("  results  {root}"));
     lines.push(format!("  next     {next}"));
     writeln!(out, "{}", lines.join("\n")).map_err(output_error)
-}
-
-/// Writes the index of the results, so that commands need not read them whole; `key` is that of the folder before they
-/// were read. The answer is left to `billow run`.
-fn write_index(stored: &Stored<'_>, key: Option<Key>) {
-    if Index::read(&stored.results).is_none()
-        && let Some(index) = key.and_then(|key| Index::of(stored, key, &stored.table()))
-    {
-        write_index_file(&index, &stored.results);
-    }
 }
 
 /// The error of a merge, if it has one.

@@ -33,7 +33,6 @@ mod legend;
 mod limits;
 mod memory;
 mod merge;
-mod needed_columns;
 mod notes;
 pub mod opened;
 pub mod options;
@@ -46,8 +45,6 @@ mod queue;
 mod range;
 mod rank;
 pub mod reference;
-mod remedies;
-mod rerun;
 mod run;
 mod solve;
 mod status;
@@ -86,8 +83,6 @@ pub enum Command {
     Advise(advise::Args),
     /// Run the jobs of a study that are not finished.
     Run(run::Args),
-    /// Run finished jobs again and check that they give the same bits.
-    Rerun(rerun::Args),
     /// Give the unfinished jobs of a study to a cluster.
     Submit(submit::Args),
     /// Join what several runs have stored: parts of a study, or runs that shared a folder.
@@ -158,7 +153,6 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<()> {
         Command::Plan(args) => plan::run(args, out),
         Command::Advise(args) => advise::run(args, out),
         Command::Run(args) => run::run(args, out),
-        Command::Rerun(args) => rerun::run(args, out),
         Command::Submit(args) => submit::run(args, out),
         Command::Merge(args) => merge::run(args, out),
         Command::Status(args) => status::run(args, out),

@@ -9,6 +9,9 @@ use crate::input::value::{Value, brief_number, json_value};
 use crate::platform::error::Result;
 use crate::study::Study;
 
+/// A line of an explanation: its topic and its text.
+pub(super) type TopicLine = (&'static str, String);
+
 /// A number of points with several runs each: "30 points of 5 runs", or "57 points, 256 runs" where a filter leaves some
 /// points fewer. `planned` counts every run. A study without replicates has points only, also one that gives a value twice.
 pub fn points_of_runs(study: &Study, planned: usize) -> String {
@@ -16,7 +19,7 @@ pub fn points_of_runs(study: &Study, planned: usize) -> String {
         return count(planned, "point");
     }
     let runs = study.replicate_count();
-    let points = if planned == study.run_count() {
+    let points = if planned == study.points().len() {
         study.point_count()
     } else if planned.is_multiple_of(runs) {
         planned / runs

@@ -2,8 +2,7 @@
 
 use serde_json::json;
 
-use super::print::count;
-use super::remedies::Line;
+use super::print::{TopicLine, count};
 use super::run::listed;
 use crate::cluster::slurm;
 use crate::cluster::submission::{Queued, Submission};
@@ -35,7 +34,7 @@ impl Workers {
     }
 
     /// As lines of `billow status`.
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<TopicLine> {
         let mut lines = Vec::new();
         if !self.runs.is_empty() {
             let jobs: usize = self.runs.iter().map(|run| run.jobs.len()).sum();

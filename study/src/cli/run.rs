@@ -1,6 +1,6 @@
 //! `billow run`: runs the jobs of a study that are not finished.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,6 @@ use super::options::{
     OutputOptions, ProgressOptions, ResultsOption, SetOption, ThreadsOption, UnitsOption,
 };
 use super::print::{count, points_of_runs};
-use super::remedies::Applicable;
 use super::target::results_folder;
 use super::{Format, changes, memory, notes, output_error};
 use crate::analysis::answer::Answer;
@@ -22,9 +21,8 @@ use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Disk, disk_error};
 use crate::platform::stop::Stop;
-use crate::run::runner::{self, CHECKPOINT_INTERVAL, Rerun, Run, Summary};
+use crate::run::runner::{self, CHECKPOINT_INTERVAL, Run, Summary};
 use crate::run::{merge, progress};
-use crate::store::index::Key;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
@@ -33,8 +31,8 @@ use crate::study::Study;
 use crate::study::job_limits::with_options;
 use crate::study::plan;
 
+mod again;
 mod failures;
-mod finished;
 mod scope;
 
 use failures::result;
@@ -50,6 +48,10 @@ pub struct Args {
     results: ResultsOption,
     #[command(flatten)]
     set: SetOption,
+    /// Run these jobs again, also finished ones, and check that they give the same bits: the first digits of their ids, or
+    /// a status as in --again timeout; comma-separated. With --set they run with other settings, beside the study.
+    #[arg(long, value_name = "JOBS", value_delimiter = ',')]
+    again: Vec<String>,
     #[command(flatten)]
     scope: ScopeOptions,
     #[command(flatten)]
@@ -73,13 +75,6 @@ pub(super) struct RunOptions {
     pub(super) progress: ProgressOptions,
 }
 
-impl RunOptions {
-    /// Whether quantities are shown in other units than those of the study.
-    fn changes_units(&self) -> bool {
-        self.units.si || !self.units.units.is_empty()
-    }
-}
-
 /// Runs `billow run`. Finished jobs are kept; the others run. After a stop at any moment the same
 /// command resumes. A study whose grid has changed keeps the jobs that are still in its plan.
 ///
@@ -87,15 +82,13 @@ impl RunOptions {
 /// An invalid study, a disk error, jobs that failed, a signal.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let (file, folder) = study_of_results(&args.study)?;
-    if args.scope.is_none()
-        && let Some(result) = finished::run(args, &file, folder.as_deref(), out)
-    {
-        return result;
-    }
     let study = Study::load(&file, &args.set.set)?;
     let root = folder
         .filter(|_| args.results.results.is_none())
         .unwrap_or_else(|| results_folder(&args.results, &study));
+    if !args.again.is_empty() {
+        return again::run(args, &root, out);
+    }
     if !args.options.progress.quiet {
         notes::print_warnings(&study);
         let results = Results::new(&Disk, &root);
@@ -138,7 +131,7 @@ pub(super) fn study_of_results(path: &Path) -> Result<(PathBuf, Option<PathBuf>)
 pub(super) fn run_study(
     study: &Study,
     root: &Path,
-    again: Option<Rerun<'_>>,
+    again: Option<&BTreeSet<JobId>>,
     scope: Scope,
     options: &RunOptions,
     out: &mut dyn Write,
@@ -196,15 +189,13 @@ pub(super) fn run_study(
     if shared {
         merge::finish_if_last(&results)?;
     }
-    let key = Key::of(&results);
     let mut stored = Stored::read(results)?;
     stored.units = units;
     let table = stored.table();
     let answer = Answer::of(&stored, &table);
     let ended = Ended { study, root, summary: &summary, points: stored.planned_runs() };
     ended.print(&answer, options.output.format(), out).map_err(output_error)?;
-    finished::write_index(study, (&stored, &table), key, &answer, options);
-    result(study, &summary, &limits, root, &Applicable::of(&stored))
+    result(study, &summary, &limits, root)
 }
 
 /// The error of a run that a signal stopped. A signal after the last job has stopped nothing.
@@ -258,7 +249,6 @@ impl Ended<'_> {
                 "status": counts.status,
                 "verdict": counts.verdict,
                 "same_bits": summary.same,
-                "with_remedy": counts.remedied,
                 "other_bits": summary.different.iter().map(JobId::as_str).collect::<Vec<_>>(),
             });
             if let (Some(keys), serde_json::Value::Object(more)) =
@@ -280,14 +270,6 @@ impl Ended<'_> {
         writeln!(out, "  status   {}", listed(&counts.status))?;
         if !counts.verdict.is_empty() {
             writeln!(out, "  verdict  {}", listed(&counts.verdict))?;
-        }
-        if counts.remedied > 0 {
-            let jobs = count(counts.remedied, "job");
-            let new = match summary.remedied {
-                0 => String::new(),
-                new => format!(", {new} of them now"),
-            };
-            writeln!(out, "  remedy   {jobs} with other numerical settings (column remedy){new}")?;
         }
         if summary.ended_elsewhere > 0 {
             let jobs = count(summary.ended_elsewhere, "job");

@@ -8,9 +8,8 @@ use serde_json::json;
 
 use super::answer::{auto, judged};
 use super::options::{OutputOptions, ThreadsOption};
-use super::print::{count, duration, points_of_runs, print_rows};
+use super::print::{TopicLine, count, duration, points_of_runs, print_rows};
 use super::queue::Workers;
-use super::remedies::{Applicable, Line};
 use super::run::listed;
 use super::target::{StudyArgs, folder};
 use super::{Format, changes, output_error};
@@ -23,7 +22,6 @@ use crate::platform::files::Disk;
 use crate::platform::quote;
 use crate::scene::summary;
 use crate::store::doctor::{self, Health};
-use crate::store::index::Index;
 use crate::store::results::Results;
 use crate::store::stored::{Stored, other_physics};
 use crate::study::Study;
@@ -52,8 +50,6 @@ struct Status<'a> {
     invalidated: usize,
     /// Numbers of finished jobs of other versions of the physics, by version.
     other_physics: BTreeMap<i64, usize>,
-    /// The failed jobs that can run with a remedy.
-    remedies: Applicable,
     /// Sum of the wall times of the jobs, s.
     seconds: f64,
     /// Number of jobs with a wall time.
@@ -80,12 +76,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let results = Results::new(&Disk, &root);
     let cores = || std::thread::available_parallelism().ok();
     let threads = args.threads.count()?.or_else(cores).map_or(1, NonZero::get);
-    if let Some(index) = Index::read(&results)
-        && let Some(failed) = index.stored(&results, &index.failed)
-    {
-        let health = doctor::examine_indexed(&results, &index);
-        return print(&Status::indexed(&index, &failed, &health, threads)?, args, out);
-    }
     // Damage is part of the answer, not an error.
     let stored = Stored::read(results)?;
     let health = doctor::examine_stored(&stored);
@@ -125,38 +115,11 @@ impl<'a> Status<'a> {
             counts,
             invalidated: stored.journal.invalidated.len(),
             other_physics: other_physics(&stored.points, &stored.journal.records),
-            remedies: Applicable::of(stored),
             seconds,
             timed,
             threads,
             checkpoints: checkpoints(&stored.results),
             workers: Workers::of(&stored.results)?,
-        })
-    }
-
-    /// The same from an index; `failed` are the results of the failed jobs. An index has neither pilots nor jobs that
-    /// are invalidated or of another physics.
-    fn indexed(
-        index: &Index,
-        failed: &'a Stored<'a>,
-        health: &'a Health,
-        threads: usize,
-    ) -> Result<Self> {
-        Ok(Self {
-            results: &failed.results,
-            study: &failed.study,
-            health,
-            runs: index.runs,
-            auto: None,
-            counts: index.counts.clone(),
-            invalidated: 0,
-            other_physics: BTreeMap::new(),
-            remedies: Applicable::of(failed),
-            seconds: index.seconds,
-            timed: index.timed,
-            threads,
-            checkpoints: checkpoints(&failed.results),
-            workers: Workers::of(&failed.results)?,
         })
     }
 
@@ -188,8 +151,6 @@ impl<'a> Status<'a> {
             "infeasible": counts.of(JobStatus::Infeasible),
             "other_physics": self.other_physics,
             "invalidated": self.invalidated,
-            "with_remedy": counts.remedied,
-            "can_run_with_remedy": self.remedies.jobs(),
             "status": counts.status,
             "verdict": counts.verdict,
             "near_threshold": counts.near_threshold,
@@ -215,7 +176,7 @@ impl<'a> Status<'a> {
             (false, _) => "not running",
         };
         writeln!(out, "{}: {state}", self.study.name).map_err(output_error)?;
-        let mut lines: Vec<Line> = Vec::new();
+        let mut lines: Vec<TopicLine> = Vec::new();
         if !self.study.question.is_empty() {
             lines.push(("question", quote::printable(&self.study.question)));
         }
@@ -233,7 +194,7 @@ impl<'a> Status<'a> {
     }
 
     /// Numbers of points and jobs, failures and verdicts.
-    fn job_lines(&self) -> Vec<Line> {
+    fn job_lines(&self) -> Vec<TopicLine> {
         let counts = &self.counts;
         let (infeasible, pending) =
             (counts.of(JobStatus::Infeasible), counts.of(JobStatus::Pending));
@@ -255,22 +216,13 @@ impl<'a> Status<'a> {
             number => format!(" ({number} invalidated)"),
         };
         let (done, failed) = (counts.of(JobStatus::Done), counts.failed());
-        let remedied = match counts.remedied {
-            0 => String::new(),
-            number => format!(" ({number} with a remedy)"),
-        };
         lines.push((
             "jobs",
-            format!("{done} done{remedied}, {failed} failed, {pending} pending{invalidated}"),
+            format!("{done} done, {failed} failed, {pending} pending{invalidated}"),
         ));
         let failures = counts.failures();
         if !failures.is_empty() {
             lines.push(("failed", format!("{}; billow job JOB explains one", listed(&failures))));
-        }
-        if self.remedies.jobs() > 0 {
-            let root = self.results.root().display();
-            let text = format!("{}: billow rerun {root} --remedy", self.remedies.named());
-            lines.push(("remedy", text));
         }
         if !counts.verdict.is_empty() {
             let near = match counts.near_threshold {
@@ -283,7 +235,7 @@ impl<'a> Status<'a> {
     }
 
     /// Time of the finished jobs, and remaining time.
-    fn time_lines(&self) -> Vec<Line> {
+    fn time_lines(&self) -> Vec<TopicLine> {
         let mut lines = Vec::new();
         if let Some(mean) = self.mean_seconds() {
             // Jobs run side by side, in several runs: their sum is no time on a clock.
@@ -312,7 +264,7 @@ impl<'a> Status<'a> {
     }
 
     /// Jobs that continue from a checkpoint.
-    fn checkpoint_line(&self) -> Option<Line> {
+    fn checkpoint_line(&self) -> Option<TopicLine> {
         const MAX_SHOWN: usize = 4;
         let shown = self.checkpoints.iter().take(MAX_SHOWN).map(|(id, time)| {
             let at = time.map_or_else(String::new, |time| format!(" at {} s", brief_number(time)));

@@ -5,10 +5,9 @@ use std::path::Path;
 use crate::job::JobId;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::Disk;
-use crate::store::index::Index;
 use crate::store::journal::{Fault, Journal};
 use crate::store::results::Results;
-use crate::store::stored::{self, Stored};
+use crate::store::stored::Stored;
 use crate::store::table::{Table, agreement};
 
 /// Journal lines that are named, at most.
@@ -29,29 +28,9 @@ pub fn read(root: &Path) -> Result<Stored<'static>> {
 /// # Errors
 /// As [`Stored::read`] and [`Stored::job`].
 pub fn read_job(root: &Path, prefix: &str) -> Result<(Stored<'static>, JobId)> {
-    let results = Results::new(&Disk, root);
-    if let Some(found) = indexed_job(&results, prefix) {
-        return Ok(found);
-    }
     let stored = read(root)?;
     let id = stored.job(prefix)?;
     Ok((stored, id))
-}
-
-/// The same from the index; `None` where it does not name exactly one job.
-fn indexed_job(results: &Results<'static>, prefix: &str) -> Option<(Stored<'static>, JobId)> {
-    let index = Index::read(results)?;
-    let position = index.position(&stored::wanted(prefix))?;
-    let id = index.job(position)?.clone();
-    Some((index.stored(results, &[position])?, id))
-}
-
-/// Writes the index of results. A failure costs time later and no result: it is a message.
-pub fn write_index_file(index: &Index, results: &Results<'_>) {
-    if let Err(problem) = index.write(results) {
-        let path = results.index_path();
-        eprintln!("billow: {}: {problem}; commands read the journals instead", path.display());
-    }
 }
 
 /// Names the lines of the journal that are not valid. A torn last line is what a running process writes.

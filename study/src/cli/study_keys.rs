@@ -4,7 +4,7 @@
 use crate::input::expression;
 use crate::input::units::DisplayUnits;
 use crate::input::value::Value;
-use crate::job::row::{CellType, current_column_name};
+use crate::job::row::CellType;
 use crate::platform::error::Result;
 use crate::store::results::Results;
 use crate::store::table::{Column, Table};
@@ -21,10 +21,7 @@ pub fn add_from(
     units: &DisplayUnits,
     names: &[String],
 ) -> Result<()> {
-    let missing = |name: &&String| {
-        let column = current_column_name(name).0;
-        table.column(name).is_none() && table.column(column).is_none() && Study::may_be_key(name)
-    };
+    let missing = |name: &&String| table.column(name).is_none() && Study::may_be_key(name);
     let missing: Vec<String> = names.iter().filter(missing).cloned().collect();
     if missing.is_empty() || results.owner()?.is_none() {
         return Ok(());

@@ -10,12 +10,11 @@ use crate::input::units::{Dimension, DisplayUnits};
 use crate::input::value::Value;
 use crate::job::JobId;
 use crate::job::id::common_prefix_length;
-use crate::job::row::{CellType, RENAMED_TABLE_COLUMNS, current_column_name, note};
-use crate::job::status::{RENAMED_STATUSES, Status};
+use crate::job::row::CellType;
+use crate::job::status::Status;
 use crate::platform::error::{Error, InputError, Result};
 use crate::platform::files::{self, Disk, Files};
 use crate::platform::nearest::did_you_mean;
-use crate::store::index::Index;
 use crate::store::journal::Record;
 use crate::store::results::Results;
 use crate::store::stored::Stored;
@@ -129,12 +128,6 @@ pub fn folder(given: &StudyArgs, set: &[String]) -> Result<PathBuf> {
             ),
         })
     } else {
-        if let Ok(Some(sketch)) = Study::sketch(study, set) {
-            let root = results_folder(&given.results, &sketch);
-            if Index::of_study(&Results::new(&Disk, &root), &sketch).is_some() {
-                return Ok(root);
-            }
-        }
         Ok(results_folder(&given.results, &Study::load(study, set)?))
     }
 }
@@ -200,25 +193,13 @@ fn only_folder() -> Result<PathBuf> {
     }
 }
 
-/// The current name of a column; an old one, given with this option, gives a note on stderr.
-pub fn current_name<'a>(option: &str, name: &'a str) -> &'a str {
-    let (current, note) = current_column_name(name);
-    if let Some(note) = note {
-        eprintln!("billow: {option}: {note}");
-    }
-    current
-}
-
 /// The column with that name, which `option` asks for.
 ///
 /// # Errors
-/// When there is none; the error gives the nearest name. An old name is read, with a note on stderr.
+/// When there is none; the error gives the nearest name.
 pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column> {
     let names = || table.columns.iter().map(|column| column.name.as_str());
-    if let Some(column) = table.column(name) {
-        return Ok(column);
-    }
-    table.column(current_name(option, name)).ok_or_else(|| {
+    table.column(name).ok_or_else(|| {
         let hint = did_you_mean(name, names());
         let allowed = names().collect::<Vec<_>>().join(", ");
         Error::invalid_option(option, name, "no such column", allowed, hint.unwrap_or_default())
@@ -231,7 +212,6 @@ pub fn find<'a>(table: &'a Table, option: &str, name: &str) -> Result<&'a Column
 /// An invalid condition, or an unknown column in it.
 pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
     let Some(text) = condition else { return Ok((0..table.rows()).collect()) };
-    let text = &with_current_names(text, table);
     let variables: Vec<Variable> = table
         .columns
         .iter()
@@ -251,39 +231,6 @@ pub fn filtered(table: &Table, condition: Option<&str>) -> Result<Vec<usize>> {
         condition.holds(&values)
     };
     Ok((0..table.rows()).filter(holds).collect())
-}
-
-/// A condition with the current names of columns and statuses; each old name gives a note on stderr.
-fn with_current_names(text: &str, table: &Table) -> String {
-    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let mut current_text = String::with_capacity(text.len());
-    let mut quote = None;
-    let mut rest = text;
-    while let Some(first) = rest.chars().next() {
-        let length = rest.find(|c| !is_name(c)).unwrap_or(rest.len()).max(first.len_utf8());
-        let (word, after) = rest.split_at(length);
-        let renamed: &[(&str, &str)] =
-            if quote.is_some() { &RENAMED_STATUSES } else { &RENAMED_TABLE_COLUMNS };
-        // A parameter of the study may have the old name, or the old text as a value.
-        let known = if quote.is_some() {
-            let mut values = table.parameters().flat_map(|column| &column.cells);
-            values.any(|value| matches!(value, Value::Text(text) if text == word))
-        } else {
-            table.column(word).is_some()
-        };
-        match renamed.iter().find(|(old, _)| *old == word && !known) {
-            Some((old, current)) => {
-                eprintln!("billow: --where: {}", note(old, current));
-                current_text.push_str(current);
-            }
-            None => current_text.push_str(word),
-        }
-        if matches!(first, '\'' | '"') {
-            quote = if quote == Some(first) { None } else { quote.or(Some(first)) };
-        }
-        rest = after;
-    }
-    current_text
 }
 
 /// The type of a column in an expression.

@@ -66,11 +66,6 @@ impl Source {
         warnings.push(Warning { place, noun, text, more: 0 });
     }
 
-    /// Whether one of the warnings so far is about points.
-    pub fn warns_of_points(&self) -> bool {
-        self.warnings.borrow().iter().any(|warning| warning.noun == "point")
-    }
-
     /// The warnings so far, one text each.
     pub fn warnings(&self) -> Vec<String> {
         let warnings = self.warnings.borrow();

@@ -54,7 +54,7 @@ impl Limit {
     pub fn reason(self) -> String {
         let next = |key: &str| {
             let status = self.status();
-            format!("next: billow rerun --status {status} --job-limit {key}=…")
+            format!("next: billow run STUDY --again {status} --job-limit {key}=…")
         };
         match self {
             Self::WallTime(limit) => {
@@ -70,8 +70,8 @@ impl Limit {
                 next("memory")
             ),
             Self::Available { limit, needed } => format!(
-                "the job needs about {} of memory, and {limit} leaves less; next: a coarser mesh, or billow rerun \
-                 --status out_of_memory with more memory",
+                "the job needs about {} of memory, and {limit} leaves less; next: a coarser mesh, or billow run \
+                 STUDY --again out_of_memory with more memory",
                 size(needed)
             ),
         }
@@ -92,10 +92,10 @@ mod tests {
         let reason = Limit::WallTime(10.0).reason();
         assert_eq!(
             reason,
-            "job_limits.wall_time of 10 s is reached; next: billow rerun --status timeout --job-limit \
+            "job_limits.wall_time of 10 s is reached; next: billow run STUDY --again timeout --job-limit \
              wall_time=…"
         );
-        assert!(Limit::Steps(7).reason().contains("--status step_limit --job-limit steps=…"));
+        assert!(Limit::Steps(7).reason().contains("--again step_limit --job-limit steps=…"));
         let memory = Limit::Memory { limit: 1_000_000, needed: 1_000_001 }.reason();
         assert!(memory.starts_with("the job needs 2 MB, job_limits.memory is 1 MB"), "{memory}");
     }

@@ -11,10 +11,10 @@ pub mod pace;
 pub mod point;
 pub mod proportion;
 pub mod references;
-pub mod remedy;
 pub mod result_limit;
 pub mod row;
 pub mod status;
+pub mod suggestions;
 
 pub use id::{JobId, canonical_json};
 pub use point::{Job, Parameters, label};

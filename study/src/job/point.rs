@@ -1,10 +1,10 @@
 //! A point of the grid: its job, or the reason why it has none.
 
 use billow_solver::geometry::fold::{FoldPattern, Nearest};
-use billow_solver::scene::{Scene, Solver};
+use billow_solver::scene::Scene;
 
 use crate::input::value::Value;
-use crate::job::{JobId, Status};
+use crate::job::JobId;
 
 /// The varied parameters of a point, in the order of the study's axes: name and value (SI).
 pub type Parameters = Vec<(String, Value)>;
@@ -30,75 +30,14 @@ pub struct Job {
 /// One point of the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// The job whose result its row shows. For an infeasible point it gives id and parameters of the row.
+    /// Its job. For an infeasible point it gives id and parameters of the row.
     pub job: Job,
-    /// The runs with a remedy, after the planned job failed; `None` where there was none.
-    pub remedied: Option<Remedied>,
     /// Set when no fold pattern satisfies the design: the point is a row without a run.
     pub infeasible: Option<Infeasible>,
     /// Solved dimensions of the fold pattern; `None` for an infeasible point.
     pub solved: Option<Solved>,
     /// Parameters of later points that resolve to the same job.
     pub merged: Vec<Parameters>,
-}
-
-impl Point {
-    /// The job that the study plans for the point: that of its row, unless a remedy gave the result.
-    pub fn planned_id(&self) -> &JobId {
-        self.remedied.as_ref().map_or(&self.job.id, |remedied| &remedied.planned)
-    }
-
-    /// Whether its row shows the result of a remedy.
-    pub fn shows_remedy(&self) -> bool {
-        self.remedied.as_ref().is_some_and(|remedied| remedied.shown.is_some())
-    }
-
-    /// Every job of the point: the planned one, and those of its remedies.
-    pub fn jobs(&self) -> impl Iterator<Item = &JobId> {
-        let runs = self.remedied.iter().flat_map(|remedied| &remedied.runs);
-        std::iter::once(self.planned_id()).chain(runs.map(|run| &run.job))
-    }
-}
-
-/// The runs of a point with remedies ([`crate::job::remedy`]): the planned job failed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Remedied {
-    /// The planned job.
-    pub planned: JobId,
-    /// The runs, in the order in which they were tried.
-    pub runs: Vec<RemedyRun>,
-    /// Position of the run that the row shows; `None` where none has a result: the row is that of the planned job.
-    pub shown: Option<usize>,
-}
-
-/// A run with a remedy.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RemedyRun {
-    /// Its job.
-    pub job: JobId,
-    /// Its settings.
-    pub settings: Solver,
-    /// What was changed: "solver.cfl 0.45 -> 0.225".
-    pub text: String,
-    /// How it ended; `None` where its record is lost.
-    pub status: Option<Status>,
-}
-
-impl Remedied {
-    /// What was changed for the result of the row; `None` where no remedy has a result.
-    pub fn remedy(&self) -> Option<&str> {
-        Some(self.runs[self.shown?].text.as_str())
-    }
-
-    /// The remedies that did not help, each with the status of its run; `None` without one.
-    pub fn failed(&self) -> Option<String> {
-        let failed = self.runs.iter().filter_map(|run| Some((run, run.status?)));
-        let texts: Vec<String> = failed
-            .filter(|(_, status)| *status != Status::Done)
-            .map(|(run, status)| format!("{}: {status}", run.text))
-            .collect();
-        (!texts.is_empty()).then(|| texts.join("; "))
-    }
 }
 
 /// Dimensions that the solution of the fold pattern gives.

@@ -4,9 +4,6 @@ use std::fmt;
 
 use billow_solver::output::outcome::FailureKind;
 
-/// Old names of statuses that are still read: old name, current name.
-pub const RENAMED_STATUSES: [(&str, &str); 1] = [("drifted", "energy_drift")];
-
 /// How a job, or the run of a single scene, stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
@@ -74,10 +71,8 @@ impl Status {
         }
     }
 
-    /// The status with that name. Old names ([`RENAMED_STATUSES`]) are read.
+    /// The status with that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        let renamed = RENAMED_STATUSES.iter().find(|(old, _)| *old == name);
-        let name = renamed.map_or(name, |(_, current)| current);
         Self::all().find(|status| status.name() == name)
     }
 
@@ -129,12 +124,5 @@ mod tests {
         let names: BTreeSet<&str> = Status::all().map(Status::name).collect();
         assert_eq!(names.len(), Status::all().count());
         assert_eq!(Status::from_name("finished"), None);
-    }
-
-    #[test]
-    fn the_old_name_of_energy_drift_is_read() {
-        let drift = Status::Failed(FailureKind::EnergyDrift);
-        assert_eq!(Status::from_name("drifted"), Some(drift));
-        assert_eq!(drift.name(), "energy_drift");
     }
 }

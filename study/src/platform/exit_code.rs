@@ -39,7 +39,7 @@ pub const EXIT_CODES: [ExitCode; 4] = [
         number: "1",
         name: "failure",
         brief: "a job or scene failed, or stored results are broken",
-        meaning: "A job failed, `rerun` gave different bits, `merge` found different bits or a damaged \
+        meaning: "A job failed, `run --again` gave different bits, `merge` found different bits or a damaged \
                   history, `doctor` found a fault, or a scene of `solve` has no result. The output names \
                   each of them.",
     },
@@ -56,7 +56,7 @@ pub const EXIT_CODES: [ExitCode; 4] = [
         brief: "signal n stopped the command (129: SIGHUP, 130: Ctrl-C, 138: SIGUSR1, 143: SIGTERM)",
         meaning: "Signal n stopped the command within 2 s: 129 for SIGHUP (n = 1), 130 for Ctrl-C \
                   (SIGINT, n = 2), 138 for SIGUSR1 (n = 10), 143 for SIGTERM (n = 15). `run` and \
-                  `rerun` keep the finished jobs and checkpoints of the running ones, and the same \
+                  `run --again` keep the finished jobs and checkpoints of the running ones, and the same \
                   command continues them; `validate` prints the cases that have finished.",
     },
 ];

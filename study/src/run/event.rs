@@ -16,11 +16,6 @@ pub enum Event {
         /// Number of these jobs that are already finished.
         finished: usize,
     },
-    /// Runs of failed jobs with remedies start.
-    RemediesStarted {
-        /// Number of jobs to run.
-        jobs: usize,
-    },
     /// A job starts.
     JobStarted {
         /// Id of the job.

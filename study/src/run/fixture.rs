@@ -156,7 +156,6 @@ pub fn generation(jobs: u32) -> Generation {
                 reason: "alpha1 would exceed pi/2 - pi/N".to_owned(),
                 nearest: Vec::new(),
             }),
-            remedied: None,
             solved: None,
             merged: Vec::new(),
         })

@@ -1,6 +1,5 @@
 //! Joins what several runs have stored: the end of runs that shared a folder, and folders of parts of one study.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -12,7 +11,7 @@ use crate::platform::files::disk_error;
 use crate::platform::stop::Stop;
 use crate::run::alone::{self, Alone};
 use crate::store::history_file;
-use crate::store::journal::{Journal, Record, RemedyLink, Writer};
+use crate::store::journal::{Journal, Record, Writer};
 use crate::store::results::Results;
 use crate::store::stored::Stored;
 use crate::store::table::Table;
@@ -153,8 +152,7 @@ fn copy(
             append(&mut records, journal, writer, merged)?;
         }
     }
-    append(&mut records, journal, writer, merged)?;
-    copy_links(&found.remedies, journal, writer)
+    append(&mut records, journal, writer, merged)
 }
 
 /// Copies a history and returns its record; `None` where the history is damaged or missing.
@@ -185,27 +183,6 @@ fn append(
     writer.append(records)?;
     merged.copied += records.len();
     journal.records.extend(records.drain(..).map(|record| (record.job.clone(), record)));
-    Ok(())
-}
-
-/// Copies the links of runs with remedies that the folder does not have.
-fn copy_links(
-    found: &BTreeMap<JobId, Vec<RemedyLink>>,
-    journal: &mut Journal,
-    writer: &mut Writer<'_>,
-) -> Result<()> {
-    let known = |link: &RemedyLink| {
-        let links = journal.remedies.get(&link.planned);
-        links.is_some_and(|links| links.iter().any(|known| known.by == link.by))
-    };
-    let new: Vec<RemedyLink> =
-        found.values().flatten().filter(|link| !known(link)).cloned().collect();
-    if !new.is_empty() {
-        writer.append_remedies(&[], &new)?;
-    }
-    for link in new {
-        crate::store::journal::add_link(&mut journal.remedies, link);
-    }
     Ok(())
 }
 

@@ -24,5 +24,5 @@ pub fn row(
     limits: &[ResultLimit],
 ) -> Option<FinishedRow> {
     let cells = journal::cells_of(point, records)?;
-    Some(FinishedRow::of(point.planned_id(), &cells, limits))
+    Some(FinishedRow::of(&point.job.id, &cells, limits))
 }

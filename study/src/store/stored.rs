@@ -14,7 +14,6 @@ use crate::platform::error::{Error, InputError, Result};
 use crate::platform::provenance::PHYSICS_VERSION;
 use crate::store::finished;
 use crate::store::journal::{self, Journal, Record};
-use crate::store::remedied::{self, Attempt};
 use crate::store::results::Results;
 use crate::store::table::Table;
 use crate::study::auto::Outcome;
@@ -79,19 +78,13 @@ impl<'a> Stored<'a> {
             .unwrap_or_else(|| Cells::new(Status::Pending))
     }
 
-    /// The row of a job: that of its point, or for a job whose point shows another one its record.
+    /// The row of a job: that of its point, or for a job without one its record.
     pub fn cells_of_job(&self, id: &JobId) -> Cells {
-        if let Some(point) = self.point(id).filter(|point| point.job.id == *id) {
+        if let Some(point) = self.point(id) {
             return self.cells(point);
         }
         let record = self.record(id).map(|record| record.cells.clone());
         record.unwrap_or_else(|| Cells::new(Status::Pending))
-    }
-
-    /// The next run of a point with a remedy; `None` for a point that has not failed, and where none remains.
-    pub fn remedy(&self, point: &Point) -> Option<Attempt> {
-        let has_failed = self.cells(point).status().is_failure();
-        has_failed.then(|| remedied::next(point, &|id| self.record(id))).flatten()
     }
 
     /// The table, built from plan and journal: one row per point, also for points that share a job.
@@ -106,7 +99,7 @@ impl<'a> Stored<'a> {
 
     /// The table of one job: a row for each of its points. `None` for a job that no row shows.
     pub fn table_of(&self, id: &JobId) -> Option<Table> {
-        let point = self.point(id).filter(|point| point.job.id == *id)?;
+        let point = self.point(id)?;
         Some(self.built(std::slice::from_ref(point)))
     }
 
@@ -141,11 +134,9 @@ impl<'a> Stored<'a> {
         plan::borders(&self.study, &finished)
     }
 
-    /// The point of a job: the one whose row shows it, else the one that it was planned for or ran for with a remedy.
+    /// The point of a job.
     pub fn point(&self, id: &JobId) -> Option<&Point> {
-        let shown = self.points.iter().find(|point| point.job.id == *id);
-        let mut points = self.points.iter();
-        shown.or_else(|| points.find(|point| point.jobs().any(|job| job == id)))
+        self.points.iter().find(|point| point.job.id == *id)
     }
 
     /// The last record of a job, also of an invalidated one.
@@ -185,7 +176,7 @@ impl<'a> Stored<'a> {
     /// [`Error::Input`] when no id or several ids begin so. The message lists the nearest ids.
     pub fn job(&self, prefix: &str) -> Result<JobId> {
         let wanted = wanted(prefix);
-        let planned = self.points.iter().flat_map(Point::jobs);
+        let planned = self.points.iter().map(|point| &point.job.id);
         let recorded = self.journal.records.keys().chain(self.journal.invalidated.keys());
         let known: BTreeSet<&JobId> = planned.chain(recorded).collect();
         let begins_so = |id: &&&JobId| !wanted.is_empty() && id.as_str().starts_with(&wanted);
@@ -245,7 +236,7 @@ pub fn wanted(prefix: &str) -> String {
 /// Numbers of finished jobs of other versions of the physics, by version. A planned job does not count,
 /// whatever version its record has.
 pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTreeMap<i64, usize> {
-    let planned: BTreeSet<&JobId> = points.iter().flat_map(Point::jobs).collect();
+    let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
     let mut versions = BTreeMap::new();
     for record in records.values().filter(|record| !planned.contains(&record.job)) {
         if let Value::Integer(version) = record.cells.get(ColumnId::PhysicsVersion)
@@ -257,18 +248,15 @@ pub fn other_physics(points: &[Point], records: &BTreeMap<JobId, Record>) -> BTr
     versions
 }
 
-/// Every point that the study plans with these finished jobs: generation after generation, as in a
-/// run. A point whose planned job failed shows the result of a remedy, where the journal has one.
+/// Every point that the study plans with these finished jobs: generation after generation, as in a run.
 pub fn planned(study: &Study, journal: &Journal) -> Vec<Point> {
-    let record_of = |id: &JobId| journal.record(id);
     let mut points: Vec<Point> = Vec::new();
     let mut last = None;
     let mut finished = Vec::new();
-    while let Some(mut generation) = plan::next_jobs(study, &finished)
+    while let Some(generation) = plan::next_jobs(study, &finished)
         && last.is_none_or(|last| generation.number > last)
     {
         last = Some(generation.number);
-        remedied::apply(&mut generation.points, &journal.remedies, &record_of);
         plan::add_generation(&mut points, generation);
         finished = finished::rows(&points, &journal.records, study.result_limits());
     }

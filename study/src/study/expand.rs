@@ -77,40 +77,6 @@ pub(super) fn points(
     Ok(Points { points: expansion.points, filtered })
 }
 
-/// The points with these numbers ([`super::sketch`]), also those that the filter removes.
-///
-/// # Errors
-/// A number that no point has; a point that is not valid.
-pub(super) fn numbered(
-    base: &Base,
-    grid: &Grid,
-    source: &Source,
-    numbers: &[usize],
-) -> Result<Vec<StudyPoint>, InputError> {
-    let (product, _) = count(grid, source, PlanSize { points: usize::MAX })?;
-    let axes: Vec<&Axis> = grid.axes.iter().collect();
-    let repeated: Vec<&Axis> = grid.replicates().collect();
-    let mut expansion = Expansion::new(base, grid, source);
-    for number in numbers {
-        let mut point = base.clone();
-        if let Some(single) = number.checked_sub(product) {
-            let runs = grid.replicate_count();
-            let Some(values) = grid.points.get(single / runs) else {
-                return Err(source.error("grid", "", format!("has no point {number}"), ""));
-            };
-            for (column, value) in values {
-                grid.columns[*column].target.set(&mut point, value.clone());
-            }
-            set_axes(&mut point, grid, &repeated, single % runs);
-        } else {
-            set_axes(&mut point, grid, &axes, *number);
-        }
-        expansion.number = *number;
-        expansion.add(&point, None)?;
-    }
-    Ok(expansion.points)
-}
-
 /// The runs of one searched point, with these values by column; those of replicates are not used.
 pub(super) fn points_at(
     base: &Base,

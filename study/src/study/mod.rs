@@ -27,7 +27,6 @@ mod resolve;
 mod result_limits;
 mod schedule;
 mod search;
-mod sketch;
 mod strategy;
 mod target;
 mod units;
@@ -82,8 +81,6 @@ pub struct Study {
     notes: Vec<String>,
     /// Warnings about its values.
     warnings: Vec<String>,
-    /// Whether one of them is about points.
-    warns_of_points: bool,
     /// The units in which its quantities are shown.
     units: DisplayUnits,
     base: Base,
@@ -96,8 +93,6 @@ pub struct Study {
     auto: Option<Auto>,
     /// Its points, resolved when something asks for them.
     points: OnceLock<Points>,
-    /// Numbers of runs and of points, where they are known without these.
-    known: Option<[usize; 2]>,
 }
 
 impl Study {
@@ -137,23 +132,11 @@ impl Study {
     /// # Errors
     /// As [`Study::from_text`].
     pub fn from_tree(
-        tree: Json,
-        file: &str,
-        stem: &str,
-        sets: &[String],
-        size: PlanSize,
-    ) -> Result<Self, InputError> {
-        Self::read_tree(tree, file, stem, sets, size, true)
-    }
-
-    /// Reads a study, with its points or as a [sketch](Study::sketch).
-    fn read_tree(
         mut tree: Json,
         file: &str,
         stem: &str,
         sets: &[String],
         size: PlanSize,
-        with_points: bool,
     ) -> Result<Self, InputError> {
         let mut source = Source::new(file);
         if !matches!(tree, Json::Object(_)) {
@@ -181,26 +164,6 @@ impl Study {
         let units = units::read(&tree, &base, &source)?;
         let mut accuracy = Accuracy::read(tree.get(ACCURACY), &source)?;
         let mut base = base;
-        let by_scenes = is_auto || accuracy.is_some() || grid.search.is_some();
-        if !with_points && !by_scenes {
-            let name = study_name(&base, stem, &source)?;
-            let (question, warnings) = (question(&base), source.warnings());
-            return Ok(Self {
-                name,
-                question,
-                notes,
-                warnings,
-                warns_of_points: false,
-                units,
-                base,
-                grid,
-                result_limits,
-                accuracy,
-                auto: None,
-                points: OnceLock::new(),
-                known: None,
-            });
-        }
         let mut points = expand::points(&base, &grid, &source, size)?;
         let chooses = accuracy.as_mut().filter(|accuracy| accuracy.meshes.is_empty() && !is_auto);
         if let Some(accuracy) = chooses {
@@ -221,13 +184,11 @@ impl Study {
         };
         let name = study_name(&base, stem, &source)?;
         let (question, warnings) = (question(&base), source.warnings());
-        let warns_of_points = source.warns_of_points();
         Ok(Self {
             name,
             question,
             notes,
             warnings,
-            warns_of_points,
             units,
             base,
             grid,
@@ -235,7 +196,6 @@ impl Study {
             accuracy,
             auto,
             points: points.into(),
-            known: None,
         })
     }
 
@@ -338,11 +298,6 @@ impl Study {
         &self.warnings
     }
 
-    /// Whether one of the warnings is about points, and not about a value of a key.
-    pub(crate) fn warns_of_points(&self) -> bool {
-        self.warns_of_points
-    }
-
     /// What a reader of the plan must know: an axis that an override replaces.
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
@@ -357,7 +312,6 @@ impl Study {
     /// The points, resolved.
     fn expanded(&self) -> &Points {
         self.points.get_or_init(|| {
-            // Those of a sketch are known to be valid.
             let (source, size) = (Source::new(&self.name), PlanSize { points: usize::MAX });
             expand::points(&self.base, &self.grid, &source, size).unwrap_or_default()
         })
@@ -373,9 +327,6 @@ impl Study {
 
     /// Number of points that differ in more than replicates.
     pub(crate) fn point_count(&self) -> usize {
-        if let Some([_, points]) = self.known {
-            return points;
-        }
         let replicates = self.replicates();
         let key = |point: &StudyPoint| -> Vec<String> {
             let fixed = point.parameters.iter().filter(|(name, _)| !replicates.contains(name));

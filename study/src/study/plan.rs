@@ -94,17 +94,17 @@ pub fn next_jobs(study: &Study, finished: &[FinishedRow]) -> Option<Generation> 
     }
 }
 
-/// Adds a generation to the points planned before. A job that is planned already keeps its place, its remedies and its
+/// Adds a generation to the points planned before. A job that is planned already keeps its place and its
 /// result, and gets the parameters of the new point.
 pub fn add_generation(points: &mut Vec<Point>, generation: Generation) {
     if points.is_empty() {
         *points = generation.points;
         return;
     }
-    let known = points.iter().enumerate().map(|(index, point)| (point.planned_id().clone(), index));
+    let known = points.iter().enumerate().map(|(index, point)| (point.job.id.clone(), index));
     let known: HashMap<JobId, usize> = known.collect();
     for point in generation.points {
-        match known.get(point.planned_id()) {
+        match known.get(&point.job.id) {
             Some(index) => {
                 points[*index].merged.push(point.job.parameters);
                 points[*index].merged.extend(point.merged);
@@ -150,13 +150,7 @@ pub(super) fn generation(number: u32, planned: &[StudyPoint]) -> Generation {
                 };
                 entry.insert(points.len());
                 let infeasible = point.infeasible.clone();
-                points.push(Point {
-                    job,
-                    remedied: None,
-                    infeasible,
-                    solved: point.solved,
-                    merged: Vec::new(),
-                });
+                points.push(Point { job, infeasible, solved: point.solved, merged: Vec::new() });
             }
         }
     }

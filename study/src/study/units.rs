@@ -10,7 +10,7 @@ use crate::input::settings::object;
 use crate::input::source::Source;
 use crate::input::study_file::Json;
 use crate::input::units::{DisplayUnit, DisplayUnits, written_unit};
-use crate::job::row::{COLUMNS, current_column_name};
+use crate::job::row::COLUMNS;
 use crate::platform::error::InputError;
 
 /// Members of a range and of a search that hold values of the key.
@@ -51,7 +51,7 @@ pub(super) fn read(tree: &Json, base: &Base, source: &Source) -> Result<DisplayU
         for (name, value) in limits {
             if let Json::Text(text) = value {
                 let bound = text.trim_start_matches(['<', '>', '=', ' ']);
-                suggest(&mut units, current_column_name(name).0, &Json::Text(bound.to_owned()));
+                suggest(&mut units, name, &Json::Text(bound.to_owned()));
             }
         }
     }
@@ -70,7 +70,7 @@ pub(super) fn quantity(
     if let Ok(column) = target::find(name, path, value, base, Section::Grid, source) {
         return Ok((column.name, column.target.key().unit()));
     }
-    let current = current_column_name(name).0;
+    let current = name;
     if let Some(column) = COLUMNS.iter().find(|column| column.name == current) {
         return Ok((current.to_owned(), column.unit));
     }

@@ -8,7 +8,6 @@ mod fault_injection;
 mod monitor_detects_faults;
 mod pareto;
 mod physics_version;
-mod remedies;
 mod stability;
 mod support;
 mod validate;

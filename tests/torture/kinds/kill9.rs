@@ -70,11 +70,11 @@ pub fn finish_study(trial: &mut Trial, place: &Place, truth: &Truth, last: &prog
     let crashed = rows.iter().filter(|row| row["status"] == "crashed").count();
     if crashed > 0 {
         trial.count("jobs quarantined and brought back", crashed);
-        let arguments = ["rerun", "--status", "crashed", "--results", "results/s", "--quiet"];
+        let arguments = ["run", "results/s", "--again", "crashed", "--quiet"];
         let finish = program::run(place, &arguments);
-        finish.check_end(trial, "rerun --status crashed");
+        finish.check_end(trial, "run --again crashed");
         if !finish.succeeded() {
-            trial.fault(Fault::WrongMessage, format!("rerun: {}", finish.said()));
+            trial.fault(Fault::WrongMessage, format!("run --again: {}", finish.said()));
         }
     } else if !last.hung && last.code != Some(0) {
         trial.fault(Fault::Lost, format!("the last run ended with {}", last.said()));

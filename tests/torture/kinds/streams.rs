@@ -35,7 +35,7 @@ const COMMANDS: [(&str, i32); 12] = [
     ("run s.json --threads 2", 0),
     ("run s.json --threads 2 --verbose", 0),
     ("run s.json --results fresh --json", 0),
-    ("rerun --where N==5 results/s", 0),
+    ("run results/s --again done", 0),
     ("plan s.json", 0),
     ("table results/s", 0),
     ("table results/s --columns wrong", 2),

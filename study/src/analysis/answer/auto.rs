@@ -118,7 +118,7 @@ fn cost(stored: &Stored<'_>, auto: &Auto) -> Option<f64> {
     let all: f64 = stored.points.iter().map(element_steps).sum();
     let on_reference = |point: &&crate::job::point::Point| {
         let pilots = auto.pilots.iter().map(|pilot| &points[*pilot]);
-        pilots.map(|pilot| JobId::of(&pilot.scene)).any(|id| id == *point.planned_id())
+        pilots.map(|pilot| JobId::of(&pilot.scene)).any(|id| id == point.job.id)
     };
     let pilots: f64 = stored.points.iter().filter(on_reference).map(element_steps).sum();
     let feasible = points.iter().filter(|point| point.infeasible.is_none());

@@ -3,7 +3,6 @@
 use super::Args;
 use crate::chart::standard::ChartKind;
 use crate::cli::picture::refused;
-use crate::cli::target;
 use crate::platform::error::{Error, Result};
 
 /// What the options ask for.
@@ -22,16 +21,13 @@ pub fn kind(args: &Args) -> Result<Option<Asked>> {
     let one = |kind| Ok(Some(Asked::One(kind)));
     let by = args.by.iter().map(|name| name.trim().to_owned()).collect();
     if !args.history.is_empty() {
-        let current = |name: &String| target::current_name("--history", name.trim()).to_owned();
-        return one(ChartKind::History(args.history.iter().map(current).collect()));
+        let names = args.history.iter().map(|name| name.trim().to_owned());
+        return one(ChartKind::History(names.collect()));
     }
     if args.borders {
         return one(ChartKind::Borders(args.over.clone(), by));
     }
-    let measure = args
-        .measure
-        .as_deref()
-        .map(|name| target::current_name("--measure", name.trim()).to_owned());
+    let measure = args.measure.as_deref().map(|name| name.trim().to_owned());
     let axes: Vec<String> = args.map.iter().map(|name| name.trim().to_owned()).collect();
     if args.outcome && matches!(axes.len(), 0 | 2) {
         return Ok(Some(Asked::Outcome(axes)));

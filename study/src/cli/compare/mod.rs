@@ -16,7 +16,6 @@ use crate::platform::nearest::did_you_mean;
 use crate::store::stored::Stored;
 use crate::store::table::{Column, Table};
 
-mod needed;
 mod notes;
 mod pairs;
 mod summary;
@@ -87,15 +86,6 @@ struct Comparison<'a> {
 /// # Errors
 /// An unknown parameter, value, measure or column; results that cannot be read.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
-    if args.summary {
-        let mut text = Vec::new();
-        // An error lists what the whole table has.
-        let indexed = needed::open(args);
-        if indexed.is_some_and(|found| print(args, &found.stored, &found.table, &mut text).is_ok())
-        {
-            return out.write_all(&text).map_err(output_error);
-        }
-    }
     let condition = args.condition.as_deref();
     let (stored, table, _) = open_stored(&args.study, &args.set.set, &args.units, condition)?;
     print(args, &stored, &table, out)

@@ -7,7 +7,7 @@ use super::Comparison;
 use crate::analysis::compare::{ToleranceSource, pairs_of_jobs};
 use crate::analysis::replicates::is_mesh;
 use crate::cli::print::count;
-use crate::cli::{best, legend, remedies};
+use crate::cli::{best, legend};
 use crate::input::value::Value;
 use crate::job::Status;
 use crate::job::row::BetterSide;
@@ -59,9 +59,6 @@ impl Comparison<'_> {
         }
         for carried in &self.sets.carried {
             eprintln!("note: {carried} changes with {by}, so it is not matched");
-        }
-        if let Some(note) = remedies::note(self.table) {
-            eprintln!("{note}");
         }
         if let (None, Some(note)) = (self.points, self.not_trusted()) {
             eprintln!("{note}");

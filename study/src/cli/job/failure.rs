@@ -3,14 +3,14 @@
 use billow_solver::output::outcome::FailureKind;
 
 use super::Inspected;
-use crate::cli::remedies::Line;
+use crate::cli::print::TopicLine;
 use crate::input::value::brief_number;
 use crate::job::Status;
-use crate::job::remedy::Failure;
 use crate::job::row::ColumnId;
+use crate::job::suggestions::is_without_motion;
 
 /// Lines of a failed or infeasible job, and the next step.
-pub(super) fn explanation(job: &Inspected) -> (Vec<Line>, String) {
+pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
     let cells = &job.cells;
     let (meaning, next) = meaning_and_next(job);
     let mut lines = vec![("status", format!("{}: {meaning}", cells.status()))];
@@ -29,7 +29,7 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<Line>, String) {
         }
     }
     if let Some(energy) = cells.number(ColumnId::PeakKineticEnergy).map(brief_number)
-        && Failure::of(cells).is_without_motion()
+        && is_without_motion(cells)
     {
         let text = format!(
             "the film hardly moved (peak kinetic energy {energy} J): the strain energy of the folded mesh is as \
@@ -44,7 +44,7 @@ pub(super) fn explanation(job: &Inspected) -> (Vec<Line>, String) {
 fn meaning_and_next(job: &Inspected) -> (&'static str, String) {
     let (id, root) = (job.id.short(), job.stored.results.root().display());
     let history = format!("billow job {id} {root} --history");
-    let again = format!("billow rerun {id} {root}");
+    let again = format!("billow run {root} --again {id}");
     let has_history = !job.cells.text(ColumnId::ContentHash).is_empty();
     match job.cells.status() {
         Status::Infeasible => (

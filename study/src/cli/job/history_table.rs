@@ -5,7 +5,6 @@ use std::io::Write;
 use super::{Args, Inspected, si_unit};
 use crate::cli::Format;
 use crate::cli::print::{Heading, print_quantities};
-use crate::cli::target::current_name;
 use crate::input::value::Value;
 use crate::platform::error::{Error, Result};
 use crate::platform::nearest::did_you_mean;
@@ -65,8 +64,7 @@ pub(super) fn print(
 
 fn find<'a>(all: &[Series<'a>], name: &str) -> Result<Series<'a>> {
     let names = || all.iter().map(|(name, _)| *name);
-    let current = current_name("--columns", name);
-    all.iter().find(|(known, _)| *known == current).copied().ok_or_else(|| {
+    all.iter().find(|(known, _)| *known == name).copied().ok_or_else(|| {
         let hint = did_you_mean(name, names());
         let allowed = names().collect::<Vec<_>>().join(", ");
         let problem = "no such column in this history";

@@ -9,13 +9,13 @@ use serde_json::{Map, json};
 
 use super::limits;
 use super::options::{OutputOptions, QuietOption, UnitsOption};
-use super::print::print_rows;
-use super::remedies::{self, Line};
+use super::print::{TopicLine, print_rows};
 use super::target::{StudyArgs, folder_of_job};
 use super::{Format, output_error};
 use crate::accuracy::PROMISED;
 use crate::input::value::{Value, brief_number, json_value};
 use crate::job::row::{COLUMNS, Cells, ColumnId};
+use crate::job::suggestions::{Suggestion, suggestions};
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 use crate::scene::summary;
@@ -125,31 +125,24 @@ impl Inspected {
     }
 
     /// Every line of the explanation; the last one is the next step.
-    fn explanation(&self) -> Result<Vec<Line>> {
+    fn explanation(&self) -> Result<Vec<TopicLine>> {
         let Self { stored, id, cells } = self;
         let root = stored.results.root().display();
-        let (mut lines, mut next) = match cells.status() {
+        let (mut lines, next) = match cells.status() {
             Status::Done => verdict::explanation(self),
             Status::Pending => {
                 let invalidated = stored.journal.invalidated.contains_key(id);
                 let status =
                     if invalidated { "invalidated, not run again yet" } else { "not run yet" };
-                let next =
-                    format!("billow run of its study, or billow rerun {} {root}", id.short());
-                (vec![("status", status.to_owned())], next)
+                (vec![("status", status.to_owned())], format!("billow run {root}"))
             }
             _ => failure::explanation(self),
         };
         lines.extend(limits::lines(stored, cells));
         lines.extend(audit(cells));
         lines.extend(damping(cells));
-        lines.extend(remedies::lines(stored, id, cells));
+        lines.extend(self.suggestions().into_iter().map(|text| ("try", text)));
         let point = stored.point(id);
-        if let Some(point) = point.filter(|point| point.job.id != *id) {
-            next = format!("billow job {} {root}", point.job.id.short());
-        } else if remedies::next(stored, id).is_some() {
-            next = format!("billow rerun {} {root} --remedy", id.short());
-        }
         if point.is_none() {
             lines.push(("study", "this job is no longer in the study".to_owned()));
         }
@@ -163,8 +156,21 @@ impl Inspected {
         Ok(lines)
     }
 
+    /// What to try about the run: a command that can be copied, or what only its user can decide.
+    fn suggestions(&self) -> Vec<String> {
+        let Some(point) = self.stored.point(&self.id) else { return Vec::new() };
+        let (id, root) = (self.id.short(), self.stored.results.root().display());
+        let text = |suggestion: Suggestion| match suggestion.set {
+            Some(set) => {
+                format!("billow run {root} --again {id} --set {set}: {}", suggestion.text)
+            }
+            None => suggestion.text.to_owned(),
+        };
+        suggestions(&self.cells, &point.job.scene.solver).into_iter().map(text).collect()
+    }
+
     /// The explanation as JSON: parameters, checks, limits, the cells of the row, and the lines as `why`.
-    fn json(&self, lines: &[Line]) -> serde_json::Value {
+    fn json(&self, lines: &[TopicLine]) -> serde_json::Value {
         let Self { stored, id, cells } = self;
         let point = stored.point(id);
         let parameters = point.map(|point| {
@@ -173,15 +179,13 @@ impl Inspected {
         });
         let why: Vec<String> =
             lines.iter().map(|(topic, text)| format!("{topic}: {text}")).collect();
-        let planned = point.filter(|point| point.job.id == *id);
         let mut keys = json!({
             "job": id.as_str(),
             "parameters": parameters,
             "ledger_bound": MAX_LEDGER_RESIDUAL,
             "checks": verdict::checks(cells),
             "why": why,
-            "next_remedy": remedies::next(stored, id).map(|next| next.text),
-            "proposed": planned.map(|point| remedies::proposed(cells, point)),
+            "suggestions": self.suggestions(),
         });
         for (name, value) in limits::keys(stored, cells) {
             keys[name] = value;
@@ -194,7 +198,7 @@ impl Inspected {
 }
 
 /// Lines of the audit: energy ledger, passages and intersections.
-fn audit(cells: &Cells) -> Vec<Line> {
+fn audit(cells: &Cells) -> Vec<TopicLine> {
     let Some(residual) = cells.number(ColumnId::LedgerResidual) else { return Vec::new() };
     let sign = if residual <= MAX_LEDGER_RESIDUAL { "≤" } else { ">" };
     let residual = brief_number(residual);
@@ -214,7 +218,7 @@ fn audit(cells: &Cells) -> Vec<Line> {
 }
 
 /// The work of the gas that the film's material and the method dissipated, where it matters.
-fn damping(cells: &Cells) -> Vec<Line> {
+fn damping(cells: &Cells) -> Vec<TopicLine> {
     let large = |column| {
         let fraction = cells.number(column)?;
         (fraction.abs() > MAX_NUMERICAL_FRACTION).then_some(fraction)

@@ -4,7 +4,7 @@ use billow_solver::output::events::Event;
 
 use super::Inspected;
 use crate::accuracy::{NO_ERROR_REASON, is_error_column};
-use crate::cli::{limits, remedies};
+use crate::cli::limits;
 use crate::input::keys::{self, KEYS};
 use crate::input::value::Value;
 use crate::job::row::{Cells, ColumnGroup};
@@ -48,8 +48,8 @@ pub(super) fn rows(job: &Inspected, in_units: bool) -> Vec<Vec<Value>> {
             rows.extend(limits::rows(stored, cells));
         }
     }
-    let about = remedies::lines(stored, id, cells).into_iter();
-    rows.extend(about.map(|(topic, text)| row("remedies", topic, Value::Text(text), "", "")));
+    let suggested = job.suggestions().into_iter();
+    rows.extend(suggested.map(|text| row("suggestions", "try", Value::Text(text), "", "")));
     rows.extend(mesh_errors(job));
     let events = job.history().map(|history| history.events).unwrap_or_default();
     let event = |event: &Event| {

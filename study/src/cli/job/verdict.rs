@@ -4,7 +4,7 @@ use billow_solver::output::measures::Verdict;
 use serde_json::json;
 
 use super::{Inspected, percent};
-use crate::cli::remedies::Line;
+use crate::cli::print::TopicLine;
 use crate::input::value::{Value, brief_number};
 use crate::job::row::{Cells, ColumnId};
 
@@ -46,10 +46,10 @@ pub(super) fn checks(cells: &Cells) -> Vec<serde_json::Value> {
 }
 
 /// Lines and next step of a job that reached its end time.
-pub(super) fn explanation(job: &Inspected) -> (Vec<Line>, String) {
+pub(super) fn explanation(job: &Inspected) -> (Vec<TopicLine>, String) {
     let cells = &job.cells;
     let is_deployed = cells.verdict() == Some(Verdict::Deployed);
-    let mut lines: Vec<Line> = Vec::new();
+    let mut lines: Vec<TopicLine> = Vec::new();
     lines.extend(volume(cells).map(|text| ("volume", text)));
     lines.extend(height(cells).map(|text| ("height", text)));
     lines.extend(reference(cells).map(|text| ("reference", text)));

@@ -11,7 +11,7 @@ use crate::analysis::statistics::Spread;
 use crate::input::keys;
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
-use crate::job::row::{CellType, DerivedColumn, current_column_name};
+use crate::job::row::{CellType, DerivedColumn};
 use crate::platform::error::Result;
 use crate::store::table::{Column, Table};
 use columns::{columns, keys_start};
@@ -56,7 +56,7 @@ pub fn chosen_runs(
     }
     let all: Vec<usize> = (0..table.rows()).collect();
     let points = Points::of(table, &all, replicates);
-    if !names.iter().any(|name| points.is_result(current_column_name(name).0)) {
+    if !names.iter().any(|name| points.is_result(name)) {
         return filtered(table, condition);
     }
     let kept = filtered(&points.as_variables(), condition)?;

@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
+use super::Format;
 use super::opened::open_stored;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::chosen_runs;
-use super::target::{StudyArgs, current_name};
-use super::{Format, remedies};
+use super::target::StudyArgs;
 use crate::analysis::compare::{self, measures_with};
 use crate::analysis::ranking::{DEFAULT_MEASURES, Question, Ranking};
 use crate::job::row::{BetterSide, ColumnId};
@@ -89,9 +89,6 @@ pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     printed.print(args.top, args.output.format(), out)?;
     if !args.quiet.quiet && args.output.format() == Format::Table {
         printed.notes(args.top, &stored.study).iter().for_each(|note| eprintln!("{note}"));
-        if let Some(note) = remedies::note(&table) {
-            eprintln!("{note}");
-        }
     }
     Ok(())
 }
@@ -169,7 +166,7 @@ fn measures(given: &[String]) -> Result<Vec<ColumnId>> {
     }
     let mut measures = Vec::new();
     for name in given.iter().map(|name| name.trim()) {
-        let id = ColumnId::from_name(current_name("--measures", name));
+        let id = ColumnId::from_name(name);
         let id = id.filter(|id| id.column().better != BetterSide::Neither).ok_or_else(|| {
             let known =
                 [measures_with(BetterSide::Smaller), measures_with(BetterSide::Larger)].concat();

@@ -8,7 +8,6 @@ use billow_solver::output::outcome::FailureKind;
 
 use super::listed;
 use crate::cli::print::count;
-use crate::cli::remedies::Applicable;
 use crate::job::limits::JobLimits;
 use crate::job::{JobId, Status};
 use crate::platform::error::{Error, Result};
@@ -21,7 +20,6 @@ pub(super) fn result(
     summary: &Summary,
     limits: &JobLimits,
     root: &Path,
-    remedies: &Applicable,
 ) -> Result<()> {
     if !summary.different.is_empty() {
         return Err(Error::JobsFailed(format!(
@@ -34,14 +32,13 @@ pub(super) fn result(
     match summary.counts.failed() {
         0 => Ok(()),
         failed => Err(Error::JobsFailed(format!(
-            "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow job JOB {}{}{}",
+            "{} failed{}\n  next: billow table {}{} --columns job,status,stop_time,stop_audit,stop_location\n        billow job JOB {}{}",
             count(failed, "job"),
             limited(&summary.counts.failures()),
             root.display(),
             // A point of several runs has no job.
             if study.replicate_count() > 1 { " --runs" } else { "" },
             root.display(),
-            next_with_remedy(remedies, root),
             next_of_limited(summary, limits, root),
         ))),
     }
@@ -63,14 +60,6 @@ fn limited(failures: &BTreeMap<String, usize>) -> String {
     if any { format!(" ({})", listed(failures)) } else { String::new() }
 }
 
-/// The command that runs failed jobs with remedies, and what it would change.
-fn next_with_remedy(remedies: &Applicable, root: &Path) -> String {
-    match remedies.jobs() {
-        0 => String::new(),
-        _ => format!("\n  {}:\n        billow rerun {} --remedy", remedies.named(), root.display()),
-    }
-}
-
 /// The commands that run such jobs again.
 fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String {
     let mut text = String::new();
@@ -82,7 +71,7 @@ fn next_of_limited(summary: &Summary, limits: &JobLimits, root: &Path) -> String
             // Without job_limits.memory it is the machine's memory, or a limit of the process.
             let by_machine = status == Status::OutOfMemory && limits.memory.is_none();
             let option = if by_machine { ", with more memory or a coarser mesh" } else { option };
-            let _ = write!(text, "\n        billow rerun {root} --status {status}{option}");
+            let _ = write!(text, "\n        billow run {root} --again {status}{option}");
         }
     }
     text

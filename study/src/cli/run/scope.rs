@@ -34,11 +34,6 @@ pub struct Scope {
 }
 
 impl ScopeOptions {
-    /// Whether the run is alone and takes every job.
-    pub fn is_none(&self) -> bool {
-        self.points.is_none() && self.chunk.is_none() && !self.shared
-    }
-
     /// What the options say for a results folder.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use crate::cli::print::Heading;
 use crate::cli::target::find;
 use crate::cli::{Format, range};
 use crate::input::value::Value;
-use crate::job::row::{ColumnId, DerivedColumn, current_column_name};
+use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::Result;
 use crate::store::table::corrected::RUN_MESH;
 use crate::store::table::{Column, Table};
@@ -24,7 +24,6 @@ pub fn main_names(table: &Table) -> Vec<&str> {
         ColumnId::Status.name(),
         RUN_MESH,
         ColumnId::Verdict.name(),
-        ColumnId::Remedy.name(),
         DerivedColumn::Safe.name(),
         DerivedColumn::SmallestMargin.name(),
         DerivedColumn::SmallestMarginOf.name(),
@@ -95,7 +94,7 @@ pub fn chosen<'a>(
 pub fn sorting<'a>(table: &'a Table, sort: &[String], known: &[&Column]) -> Vec<&'a Column> {
     let mut columns: Vec<&Column> = Vec::new();
     for name in sort.iter().map(|key| key.split(':').next().unwrap_or_default().trim()) {
-        let column = table.column(current_column_name(name).0);
+        let column = table.column(name);
         let is_new =
             |column: &&Column| known.iter().chain(&columns).all(|known| known.name != column.name);
         columns.extend(column.filter(is_new));
@@ -133,12 +132,11 @@ fn main_columns<'a>(table: &'a Table, sort: &[String]) -> Vec<&'a Column> {
     columns
 }
 
-/// Whether a column is shown even if it makes the line too long: the status, remedies, and what the limits say.
+/// Whether a column is shown even if it makes the line too long: the status, and what the limits say.
 fn is_always_shown(name: &str, has_values: bool) -> bool {
     let judged =
         [DerivedColumn::Safe, DerivedColumn::SmallestMargin, DerivedColumn::VerdictDependsOn];
     name == ColumnId::Status.name()
-        || (has_values && name == ColumnId::Remedy.name())
         || (has_values && judged.iter().any(|column| column.name() == name))
 }
 

@@ -2,12 +2,11 @@
 
 use std::io::Write;
 
-use super::opened::Opened;
 use super::options::{OutputOptions, QuietOption, SetOption, UnitsOption};
 use super::points::{Points, chosen_runs};
 use super::print::{Heading, print_quantities};
 use super::target::{self, StudyArgs, Target};
-use super::{Format, best, changes, legend, notes, output_error};
+use super::{Format, best, legend, notes};
 use crate::input::keys::numerical::SEED;
 use crate::input::value::Value;
 use crate::job::row::{ColumnId, SAME_JOB_AS};
@@ -19,7 +18,6 @@ use columns::{chosen, heading, shown};
 use sort::{by_search, sorted};
 
 mod columns;
-mod needed;
 mod point_columns;
 mod sort;
 
@@ -82,14 +80,6 @@ struct Listing {
 /// Results that cannot be read; an unknown column; an invalid condition.
 pub fn run(args: &Args, out: &mut dyn Write) -> Result<()> {
     let asked = asked(args);
-    if let Some(Opened { stored, table, all_columns, .. }) = needed::open(args, &asked) {
-        let mut text = Vec::new();
-        // An error lists what the whole table has.
-        if print(args, Some(&stored.study), &table, all_columns, &mut text).is_ok() {
-            changes::note_other_physics(&table);
-            return out.write_all(&text).map_err(output_error);
-        }
-    }
     let mut target = target::open(&args.study, &args.set.set, &args.units)?;
     let all_columns = target.table.columns.len();
     if args.runs && target.study.as_ref().is_some_and(|study| study.auto().is_some()) {

@@ -7,7 +7,7 @@ use crate::cli::points::{DEPLOYED, Points, RANGE, RUNS};
 use crate::cli::print::Heading;
 use crate::cli::target::find;
 use crate::input::value::Value;
-use crate::job::row::{ColumnId, DerivedColumn, current_column_name};
+use crate::job::row::{ColumnId, DerivedColumn};
 use crate::platform::error::{Error, Result};
 use crate::store::table::corrected::RUN_MESH;
 use crate::store::table::{Column, Table};
@@ -79,7 +79,7 @@ pub fn find_point<'a>(
     option: &str,
     name: &str,
 ) -> Result<&'a Column> {
-    let current = current_column_name(name).0;
+    let current = name;
     let known = |table: &Table| table.column(name).or(table.column(current)).is_some();
     if known(runs) && !known(&points.table) {
         let problem = "is a column of single runs, and each row is a point of several runs";

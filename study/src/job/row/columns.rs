@@ -329,12 +329,6 @@ columns! {
     StopAudit "stop_audit" Text [""] Outcome Neither
         "audit that ended a failed run: finite_motion, energy_source, energy_ledger, …"
         end => end.failure().map(|failure| failure.audit.name());
-    Remedy "remedy" Text [""] Outcome Neither
-        "numerical settings with which the result was computed after the planned job failed: key, planned and new value; null for the planned job"
-        _end => None::<String>;
-    FailedRemedies "failed_remedies" Text [""] Outcome Neither
-        "remedies that did not help, each with the status of its run; null without one"
-        _end => None::<String>;
     Steps "steps" Integer ["1"] Cost Neither
         "accepted steps"
         end => end.deployment().map(|run| integer(run.steps));
@@ -382,8 +376,7 @@ impl ColumnId {
         self.column().signed
     }
 
-    /// The column with that name. Old names are not known here: see
-    /// [`super::current_column_name`].
+    /// The column with that name.
     pub fn from_name(name: &str) -> Option<Self> {
         COLUMNS.iter().find(|column| column.name == name).map(|column| column.id)
     }

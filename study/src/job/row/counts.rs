@@ -18,8 +18,6 @@ pub struct Counts {
     pub verdict: BTreeMap<String, usize>,
     /// Done rows whose verdict is near a threshold.
     pub near_threshold: usize,
-    /// Rows with the result of a remedy.
-    pub remedied: usize,
 }
 
 impl Counts {
@@ -36,7 +34,6 @@ impl Counts {
     pub fn add_cells(&mut self, cells: &Cells) {
         let near_threshold = *cells.get(ColumnId::NearThreshold) == Value::Bool(true);
         self.add(cells.status(), cells.verdict(), near_threshold);
-        self.remedied += usize::from(!cells.text(ColumnId::Remedy).is_empty());
     }
 
     /// Number of rows with that status.

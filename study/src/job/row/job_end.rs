@@ -13,7 +13,7 @@ use crate::job::{Job, Status};
 
 /// The reason of a job in quarantine.
 const CRASHED: &str = "the process died in two attempts at this job, in the last one with no other job \
-                       beside it (memory, a signal, an error in the program); next: billow rerun --status \
+                       beside it (memory, a signal, an error in the program); next: billow run STUDY --again \
                        crashed";
 
 /// A job that ended, as the table of columns sees it. The methods return `None` for what this job

@@ -13,7 +13,6 @@ mod counts;
 mod derived;
 mod job_end;
 mod noisy;
-mod renamed;
 
 pub use cell::Cell;
 pub use columns::{BetterSide, COLUMNS, CellType, ColumnGroup, ColumnId, RowColumn};
@@ -21,9 +20,6 @@ pub use counts::Counts;
 pub use derived::{DERIVED_COLUMNS, DerivedColumn, DerivedRow};
 pub use job_end::JobEnd;
 pub use noisy::{HEADLINE, NOISY};
-pub use renamed::{
-    RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS, current_column_name, hashed_column_name, note,
-};
 
 /// Name of the last column of the table, which lists the other points of a job.
 pub const SAME_JOB_AS: &str = "same_job_as";

@@ -95,7 +95,7 @@ impl Reporter for Bars {
     fn event(&mut self, event: &Event) {
         self.work.add(event);
         match event {
-            Event::GenerationStarted { .. } | Event::RemediesStarted { .. } => self.draw_study(),
+            Event::GenerationStarted { .. } => self.draw_study(),
             Event::JobStarted { thread, .. } => self.draw_job(*thread),
             Event::JobSample { thread, .. } => {
                 self.draw_job(*thread);

@@ -91,10 +91,6 @@ impl<W: Write> Reporter for Lines<W> {
                 }
             }
             Event::Note(text) => self.line(&format!("note: {text}")),
-            Event::RemediesStarted { jobs: to_run } => {
-                self.line(&format!("{to_run} to run with a remedy"));
-                self.last = Some(Instant::now());
-            }
             Event::GenerationStarted { .. }
             | Event::JobStarted { .. }
             | Event::JobSample { .. }

@@ -60,10 +60,6 @@ impl Work {
                     self.start.get_or_insert((Instant::now(), self.finished));
                 }
             }
-            Event::RemediesStarted { jobs } => {
-                self.jobs += jobs;
-                self.start = Some((Instant::now(), self.finished));
-            }
             Event::JobStarted { id, label, thread } => {
                 let (id, label) = (id.short().to_owned(), label.clone());
                 self.running.insert(*thread, Running { id, label, progress: None });

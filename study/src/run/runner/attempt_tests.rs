@@ -90,7 +90,7 @@ fn run_with(
         limits: JobLimits::default(),
         checkpoint_interval: interval,
         stop: stop.clone(),
-        rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: false }),
+        rerun: ids.as_ref(),
         selection: Selection::All,
         shared: None,
     };
@@ -159,11 +159,11 @@ fn two_deaths_alone_at_last_put_a_job_in_quarantine_until_it_is_asked_for() {
     assert_eq!(summary.counts.of(Status::Crashed), 1);
     assert_eq!((summary.counts.of(Status::Done), summary.ran), (3, 3));
     let note = &notes[0];
-    assert!(note.contains("two attempts") && note.contains("--status crashed"), "{note}");
+    assert!(note.contains("two attempts") && note.contains("--again crashed"), "{note}");
     let table = Results::new(&Disk, folder.path()).read_table().unwrap();
     let cell = |name: &str| table.column(name).unwrap().cells[3].to_string();
     assert_eq!(cell("status"), "crashed");
-    assert!(cell("reason").contains("next: billow rerun --status crashed"), "{}", cell("reason"));
+    assert!(cell("reason").contains("next: billow run STUDY --again crashed"), "{}", cell("reason"));
 
     // Another run leaves it alone; a rerun computes it, and there are no old bits to compare.
     let executor = Tasks::new(done);

@@ -10,8 +10,7 @@
 //! the folder or writes the table: [`crate::run::merge::finish`] does, when no run is left.
 //!
 //! A job that is run again ([`Run::rerun`]) keeps its record until its new result is stored. Its new history is
-//! compared with the hash of the old one. A failed job that is run again with a remedy keeps its record without end: the run
-//! with the remedy is another job, and the journal links both (`remedies`).
+//! compared with the hash of the old one.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
@@ -79,20 +78,11 @@ pub struct Run<'a> {
     /// Requests an early stop.
     pub stop: Stop,
     /// Runs only these jobs, also finished ones; `None` runs every job that is not finished.
-    pub rerun: Option<Rerun<'a>>,
+    pub rerun: Option<&'a BTreeSet<JobId>>,
     /// The jobs of the plan that this run takes.
     pub selection: Selection,
     /// How other runs may work in the folder at the same time; `None` for a run that is alone.
     pub shared: Option<Shared>,
-}
-
-/// Jobs to run again.
-#[derive(Debug, Clone, Copy)]
-pub struct Rerun<'a> {
-    /// Their ids, those that rows show.
-    pub jobs: &'a BTreeSet<JobId>,
-    /// Whether the failed ones of them run with remedies ([`crate::job::remedy`]), instead of as they are.
-    pub remedy: bool,
 }
 
 /// Result of a run.
@@ -108,8 +98,6 @@ pub struct Summary {
     pub same: usize,
     /// Jobs that had ended before and gave another status or history.
     pub different: Vec<JobId>,
-    /// Number of failed jobs that have a result with a remedy since this run.
-    pub remedied: usize,
     /// Number of unfinished jobs that are not in this run's selection.
     pub not_selected: usize,
     /// Number of jobs that other runs have ended while this one ran.
@@ -175,7 +163,6 @@ fn run_generations(
         last = Some(generation.number);
         let missing = state.begin_generation(generation, reporter)?;
         state.run_jobs(missing, reporter)?;
-        state.run_remedies(reporter)?;
         finished = state.finished();
     }
     Ok(())
@@ -183,8 +170,6 @@ fn run_generations(
 
 #[cfg(test)]
 mod attempt_tests;
-#[cfg(test)]
-mod remedy_tests;
 #[cfg(test)]
 mod rerun_tests;
 #[cfg(test)]

@@ -67,7 +67,7 @@ pub fn quarantine_note<'a>(
     let names = named(jobs, label)?;
     Some(format!(
         "the process died in two attempts at these jobs: {names}; they are not run again (status crashed); \
-         to run them: billow rerun {root} --status crashed"
+         to run them: billow run {root} --again crashed"
     ))
 }
 

@@ -49,7 +49,7 @@ fn run_on<S: Fn(u32) -> Outcome + Sync>(
         limits: JobLimits::default(),
         checkpoint_interval: CHECKPOINT_INTERVAL,
         stop: Stop::new(),
-        rerun: ids.as_ref().map(|jobs| Rerun { jobs, remedy: false }),
+        rerun: ids.as_ref(),
         selection: Selection::All,
         shared: None,
     };

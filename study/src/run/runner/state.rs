@@ -14,8 +14,7 @@ use crate::platform::error::{Error, Result};
 use crate::run::event::{Event, Reporter};
 use crate::store::finished;
 use crate::store::history_file;
-use crate::store::journal::{self, Journal, Record, RemedyLink};
-use crate::store::remedied::{self, Links};
+use crate::store::journal::{self, Journal, Record};
 use crate::study::finished::FinishedRow;
 use crate::study::plan::{self, Generation};
 
@@ -26,7 +25,6 @@ const MIN_TABLE_INTERVAL: Duration = Duration::from_secs(10);
 const MIN_TABLE_RATIO: u32 = 20;
 
 mod dispatch;
-mod remedies;
 
 /// State of a run.
 pub(super) struct State<'a, 'w> {
@@ -42,10 +40,6 @@ pub(super) struct State<'a, 'w> {
     records: BTreeMap<JobId, Record>,
     /// Deaths of earlier processes.
     deaths: Deaths,
-    /// The jobs that ran with a remedy, by planned job.
-    links: Links,
-    /// Links of the jobs with a remedy that run now, by the job that runs.
-    open_links: BTreeMap<JobId, Vec<RemedyLink>>,
     /// Every point planned so far.
     points: Vec<Point>,
     summary: Summary,
@@ -64,8 +58,6 @@ impl<'a, 'w> State<'a, 'w> {
             recorded: journal.records,
             records: BTreeMap::new(),
             deaths: Deaths::new(journal.deaths),
-            links: journal.remedies,
-            open_links: BTreeMap::new(),
             points: Vec::new(),
             summary: Summary::default(),
             table_due: Instant::now() + MIN_TABLE_INTERVAL,
@@ -96,10 +88,9 @@ impl<'a, 'w> State<'a, 'w> {
     /// Adds a generation and returns its missing jobs, in plan order.
     pub(super) fn begin_generation(
         &mut self,
-        mut generation: Generation,
+        generation: Generation,
         reporter: &mut dyn Reporter,
     ) -> Result<Vec<Job>> {
-        self.show_remedies(&mut generation.points);
         let mut missing = Vec::new();
         let mut seen = BTreeSet::new();
         for point in generation.points.iter().filter(|point| point.infeasible.is_none()) {
@@ -108,8 +99,7 @@ impl<'a, 'w> State<'a, 'w> {
             if !seen.insert(id.clone()) || self.records.contains_key(id) {
                 continue;
             }
-            let again =
-                self.run.rerun.is_some_and(|rerun| !rerun.remedy && rerun.jobs.contains(id));
+            let again = self.run.rerun.is_some_and(|jobs| jobs.contains(id));
             if !self.must_run(id, again, reporter)? {
                 continue;
             }
@@ -120,8 +110,8 @@ impl<'a, 'w> State<'a, 'w> {
             }
         }
         match self.run.rerun {
-            Some(rerun) => {
-                missing.retain(|job| !rerun.remedy && rerun.jobs.contains(&job.id));
+            Some(jobs) => {
+                missing.retain(|job| jobs.contains(&job.id));
                 for job in &missing {
                     self.deaths.forget(&job.id);
                 }
@@ -164,17 +154,6 @@ impl<'a, 'w> State<'a, 'w> {
                 Ok(true)
             }
         }
-    }
-
-    /// Gives points the runs with remedies that their rows show.
-    fn show_remedies(&self, points: &mut [Point]) {
-        remedied::apply(points, &self.links, &|id| self.record(id));
-    }
-
-    /// The last record of a job, also of one that must run again.
-    fn record(&self, id: &JobId) -> Option<&Record> {
-        let maps = [&self.records, &self.recorded, &self.old_records];
-        maps.into_iter().find_map(|records| records.get(id))
     }
 
     /// Stores jobs that ended: history files first, then their records with one sync.
@@ -221,10 +200,7 @@ impl<'a, 'w> State<'a, 'w> {
             self.run.results.write_reference(&id, &reference)?;
         }
         if !records.is_empty() {
-            let links = records.iter().filter_map(|record| self.open_links.remove(&record.job));
-            let links: Vec<RemedyLink> = links.flatten().collect();
-            self.log.writer().append_remedies(&records, &links)?;
-            self.add_links(links);
+            self.log.writer().append(&records)?;
             self.summary.ran += records.len();
             self.table_outdated = true;
             for record in &records {

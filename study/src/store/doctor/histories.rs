@@ -33,23 +33,6 @@ pub(super) fn check(results: &Results<'_>, journal: &Journal, depth: Depth, heal
     }
 }
 
-/// The same at [`Depth::Names`] of these jobs, whose records name a file.
-pub(super) fn check_names<'j>(
-    results: &Results<'_>,
-    jobs: impl Iterator<Item = &'j JobId>,
-    health: &mut Health,
-) {
-    let mut existing = Existing::default();
-    for id in jobs {
-        let path = results.job_path(id);
-        if existing.contains(results, &path) {
-            health.histories += 1;
-        } else {
-            health.fault(&path, MISSING, RUN_AGAIN);
-        }
-    }
-}
-
 /// Jobs whose history file is missing or not the recorded one, and what is wrong with it.
 ///
 /// # Errors

@@ -11,7 +11,6 @@ use crate::job::JobId;
 use crate::job::point::Point;
 use crate::platform::error::Error;
 use crate::platform::files::disk_error;
-use crate::store::index::Index;
 use crate::store::journal::Journal;
 use crate::store::reference_file::Unread;
 use crate::store::results::Results;
@@ -129,20 +128,6 @@ pub fn examine_stored(stored: &Stored<'_>) -> Health {
     })
 }
 
-/// The same at [`Depth::Names`], of results with an index that is up to date. Then study.json, journals and table have no
-/// faults.
-pub fn examine_indexed(results: &Results<'_>, index: &Index) -> Health {
-    let mut with_file: Vec<&JobId> = index.files().map(|(id, _)| id).collect();
-    with_file.sort_unstable();
-    examined(results, &|health, paths| {
-        histories::check_names(results, with_file.iter().copied(), health);
-        let is_known = |id: &JobId| with_file.binary_search(&id).is_ok();
-        unknown_files::check(results, &is_known, paths, health);
-        check_derived(results, health);
-        health.records = index.records();
-    })
-}
-
 /// What `check` finds in a results folder in which every file and folder is in its place.
 fn examined(results: &Results<'_>, check: &dyn Fn(&mut Health, &[PathBuf])) -> Health {
     let mut health = Health::default();
@@ -191,7 +176,7 @@ fn begin(results: &Results<'_>, health: &mut Health) -> Option<Vec<PathBuf>> {
 
 /// Notes the finished jobs that the study does not plan.
 fn note_unplanned(results: &Results<'_>, points: &[Point], journal: &Journal, health: &mut Health) {
-    let planned: BTreeSet<&JobId> = points.iter().flat_map(Point::jobs).collect();
+    let planned: BTreeSet<&JobId> = points.iter().map(|point| &point.job.id).collect();
     let unplanned = journal.records.keys().filter(|id| !planned.contains(id)).count();
     if unplanned > 0 {
         let problem = format!("{unplanned} finished jobs are not in the study as it is now");
@@ -296,17 +281,6 @@ fn note_journal(results: &Results<'_>, journal: &Journal, health: &mut Health) {
         let number = journal.invalidated.len();
         let problem = format!("{number} jobs are invalidated and have not run again yet");
         health.note(&folder, problem, "run `billow run` of its study: it runs them");
-    }
-    if journal.unsealed > 0 {
-        let problem = format!(
-            "{} records have no checksum: they were written by an older version",
-            journal.unsealed
-        );
-        health.note(
-            &folder,
-            problem,
-            "nothing; `billow rerun` of a job writes its record with one",
-        );
     }
 }
 

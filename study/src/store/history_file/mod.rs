@@ -12,9 +12,7 @@
 //! /VTKHDF/     shapes of the film, when the run stored any (vtkhdf)
 //! ```
 //!
-//! The `job` of a scene that is solved alone is the first half of its fingerprint. Columns of older
-//! files that were renamed since are read under their current names
-//! ([`crate::job::row::RENAMED_COLUMNS`]).
+//! The `job` of a scene that is solved alone is the first half of its fingerprint.
 //!
 //! The file is built in memory and written at once, so no reader ever sees an incomplete file. It
 //! holds no time of day: the same job and program give the same bytes. The columns over `time` can be

@@ -7,13 +7,12 @@ use billow_solver::output::history::COLUMNS;
 use hdf5::Group;
 
 use super::{HDF5_LOCK, damaged, open, read_text};
-use crate::job::row::current_column_name;
 use crate::platform::error::Result;
 
 /// A column of a history.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnOutline {
-    /// Name: the current one, also where the file has an old one.
+    /// Name.
     pub name: String,
     /// SI unit; "1" for a pure number.
     pub unit: String,
@@ -47,16 +46,15 @@ pub fn outline(path: &Path) -> Result<Outline> {
 
 fn columns(group: &Group) -> hdf5::Result<Vec<ColumnOutline>> {
     let mut columns = Vec::new();
-    for stored in group.member_names()? {
-        let name = current_column_name(&stored).0;
+    for name in group.member_names()? {
         if name == "time" {
             continue;
         }
-        let dataset = group.dataset(&stored)?;
+        let dataset = group.dataset(&name)?;
         columns.push(ColumnOutline {
-            name: name.to_owned(),
             unit: read_text(&dataset, "units")?,
             meaning: read_text(&dataset, "long_name")?,
+            name,
         });
     }
     let place = |column: &ColumnOutline| {

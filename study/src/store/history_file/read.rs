@@ -5,11 +5,10 @@ use std::path::Path;
 use std::sync::PoisonError;
 
 use billow_solver::output::events::Event;
-use billow_solver::output::history::{ADDED_COLUMNS, COLUMNS, History, RING_COLUMNS};
-use hdf5::{File, Group};
+use billow_solver::output::history::{COLUMNS, History, RING_COLUMNS};
+use hdf5::File;
 
 use super::{HDF5_LOCK, damaged, events, open, read_text};
-use crate::job::row::{RENAMED_COLUMNS, current_column_name};
 use crate::job::{JobId, Status};
 use crate::platform::error::Result;
 
@@ -46,7 +45,7 @@ impl StoredHistory {
 ///
 /// # Errors
 /// [`crate::platform::error::Error::Disk`] for a file that is missing, damaged, incomplete, of
-/// another format or of a newer version.
+/// another format or version.
 pub fn read(path: &Path) -> Result<StoredHistory> {
     let _guard = HDF5_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
     let file = open(path)?;
@@ -67,25 +66,13 @@ pub fn read(path: &Path) -> Result<StoredHistory> {
     })
 }
 
-/// Name under which the file has a column: the current name, or an old one.
-fn stored_name<'a>(group: &Group, name: &'a str) -> &'a str {
-    let old = RENAMED_COLUMNS.iter().filter(|(_, current)| *current == name);
-    let mut old = old.map(|(old, _)| *old);
-    if group.link_exists(name) {
-        return name;
-    }
-    old.find(|old| group.link_exists(old)).unwrap_or(name)
-}
-
 fn read_history(file: &File) -> hdf5::Result<History> {
     let group = file.group("history")?;
     let mut columns = Vec::with_capacity(COLUMNS.len());
     let rings = RING_COLUMNS.iter().any(|name| group.link_exists(name));
     for column in COLUMNS {
-        let stored = group.link_exists(stored_name(&group, column.name));
-        let expected = rings || !RING_COLUMNS.contains(&column.name);
-        if stored || (expected && !ADDED_COLUMNS.contains(&column.name)) {
-            columns.push(group.dataset(stored_name(&group, column.name))?.read_raw::<f64>()?);
+        if rings || !RING_COLUMNS.contains(&column.name) {
+            columns.push(group.dataset(column.name)?.read_raw::<f64>()?);
         } else {
             columns.push(vec![0.0; columns[0].len()]);
         }
@@ -112,15 +99,14 @@ fn read_tracks(file: &File) -> hdf5::Result<Tracks> {
     let group = file.group("history")?;
     let mut tracks = BTreeMap::new();
     let mut labels = BTreeMap::new();
-    for stored in group.member_names()? {
-        let name = current_column_name(&stored).0;
+    for name in group.member_names()? {
         if COLUMNS.iter().any(|column| column.name == name) {
             continue;
         }
-        let dataset = group.dataset(&stored)?;
+        let dataset = group.dataset(&name)?;
         let label = (read_text(&dataset, "units")?, read_text(&dataset, "long_name")?);
-        tracks.insert(name.to_owned(), dataset.read_raw::<f64>()?);
-        labels.insert(name.to_owned(), label);
+        tracks.insert(name.clone(), dataset.read_raw::<f64>()?);
+        labels.insert(name, label);
     }
     Ok((tracks, labels))
 }

@@ -3,7 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests read and write files directly")]
 
 use billow_solver::output::events::{Event, EventKind};
-use billow_solver::output::history::{COLUMNS, History, Track};
+use billow_solver::output::history::{COLUMNS, History};
 use billow_solver::output::outcome::{AuditKind, Deployment, Failure, FailureKind, Stop};
 
 use super::*;
@@ -113,27 +113,4 @@ fn truncated_newer_incomplete_and_other_files_are_refused() {
     assert!(other.contains("not a billow history"), "{other}");
     let missing = edited(&|file| file.group("history").unwrap().unlink("volume").unwrap());
     assert!(missing.contains("damaged"), "{missing}");
-}
-
-#[test]
-fn a_renamed_column_is_read_under_its_current_name_and_keeps_the_content_hash() {
-    let job = fixture::job(3);
-    let with_track = |name: &str| {
-        let mut deployment = fixture::deployment(3, 2);
-        let track = |name: &str| Track {
-            name: name.to_owned(),
-            unit: "1",
-            meaning: "rebuilds of the broad phase",
-            values: vec![1.0, 2.0],
-        };
-        deployment.tracks = vec![track(name)];
-        deployment
-    };
-    let (old, current) = (with_track("contact_searches"), with_track("broad_phase_rebuilds"));
-    assert_eq!(content_hash(&old), content_hash(&current));
-    let (_folder, path) = path_with(&encode(&job, &old, "").unwrap());
-    let stored = read(&path).unwrap();
-    assert_eq!(stored.tracks["broad_phase_rebuilds"], [1.0, 2.0]);
-    assert!(!stored.tracks.contains_key("contact_searches"));
-    assert_eq!(stored.labels["broad_phase_rebuilds"].0, "1");
 }

@@ -54,7 +54,7 @@ impl<'a> Follower<'a> {
             let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
             for line in bytes[..complete].split_inclusive(|byte| *byte == b'\n') {
                 // The reader of the whole journal names its header and damaged lines.
-                match line::parse(line, true) {
+                match line::parse(line) {
                     Ok(Entry::Ended(record)) => {
                         self.ended.insert(record.job.clone(), *record);
                     }

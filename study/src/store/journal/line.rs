@@ -1,36 +1,29 @@
-//! The lines of a journal: header, ended job, invalidated job, what is known of attempts, study, remedy.
+//! The lines of a journal: header, ended job, invalidated job, what is known of attempts, study.
 
 use billow_solver::platform::seal;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 
-use super::{Death, Record, RemedyLink};
+use super::{Death, Record};
 use crate::input::value::Value;
-use crate::job::remedy::Change;
-use crate::job::row::{CellType, Cells, ColumnId, current_column_name};
+use crate::job::row::{CellType, Cells, ColumnId};
 use crate::job::{JobId, Status};
 use crate::platform::files::Stamp;
 use crate::platform::provenance;
 
 /// Name of the format, in the header.
 pub const FORMAT: &str = "billow-journal";
-/// Version of the format that this program writes, and the newest that it reads.
-pub const VERSION: u64 = 5;
-/// First version whose lines have checksums.
-const FIRST_SEALED_VERSION: u64 = 4;
+/// Version of the format. Others are refused.
+pub const VERSION: u64 = 6;
 
 /// [`Line::kind`] of a job to run again. The line of an ended job has no kind.
 const INVALIDATED: &str = "invalidated";
-/// The same in version 2.
-const OLD_INVALIDATED: &str = "withdrawn";
 /// The process died while a job ran.
 const DIED: &str = "died";
 /// A job stored a checkpoint: its earlier deaths do not count.
 const PROGRESSED: &str = "progressed";
 /// The text of study.json.
 const STUDY: &str = "study";
-/// A job ran for another one that had failed.
-const REMEDY: &str = "remedy";
 
 /// One line after the header.
 pub enum Entry {
@@ -44,16 +37,14 @@ pub enum Entry {
     Progressed(JobId),
     /// The study of the folder: the text of study.json.
     Study(String),
-    /// A job ran for another one that had failed.
-    Remedy(RemedyLink),
 }
 
 /// Why a header is refused.
 pub enum HeaderError {
     /// It is not the header of a journal.
     Invalid(String),
-    /// A newer program wrote the journal. The text has the next step.
-    Newer(String),
+    /// It has another version. The text has the next step.
+    Version(String),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -87,10 +78,6 @@ struct Line {
     alone: bool,
     #[serde(default)]
     text: String,
-    #[serde(default)]
-    by: String,
-    #[serde(default)]
-    changes: Vec<Change>,
 }
 
 /// A value as the text of a line, sealed.
@@ -108,47 +95,32 @@ pub fn header_text() -> serde_json::Result<String> {
     })
 }
 
-/// Text of the header of a journal whose lines have no checksums.
-pub fn unsealed_header_text() -> serde_json::Result<String> {
-    serde_json::to_string(&json!({ "format": FORMAT, "version": FIRST_SEALED_VERSION - 1 }))
-}
-
-/// Whether a line has a checksum, valid or not.
-pub fn is_sealed(line: &[u8]) -> bool {
-    line.starts_with(b"{\"checksum\"")
-}
-
-/// The object of a line, without its checksum if it has one.
-fn object(line: &[u8], must_be_sealed: bool) -> Result<String, String> {
+/// The object of a line, without its checksum.
+fn object(line: &[u8]) -> Result<String, String> {
     let text = std::str::from_utf8(line).map_err(|_| "not UTF-8 text".to_owned())?;
     let text = text.strip_suffix('\n').unwrap_or(text);
-    if !must_be_sealed && !is_sealed(line) {
-        return Ok(text.to_owned());
-    }
     seal::open(text).map_err(|error| error.to_string())
 }
 
-/// Checks the header line. Returns whether the lines after it must have checksums.
-pub fn parse_header(line: &[u8]) -> Result<bool, HeaderError> {
-    let object = object(line, false).map_err(HeaderError::Invalid)?;
-    let header: Header = serde_json::from_str(&object)
-        .map_err(|_| HeaderError::Invalid("not the header of a billow journal".to_owned()))?;
+/// Checks the header line.
+pub fn check_header(line: &[u8]) -> Result<(), HeaderError> {
+    let invalid = |problem: String| Err(HeaderError::Invalid(problem));
+    let header = match object(line).map(|text| serde_json::from_str::<Header>(&text)) {
+        Ok(Ok(header)) => header,
+        Ok(Err(_)) => return invalid("not the header of a billow journal".to_owned()),
+        Err(problem) => return invalid(problem),
+    };
     if header.format != FORMAT {
-        let problem = format!("format {:?} is not {FORMAT:?}", header.format);
-        return Err(HeaderError::Invalid(problem));
+        return invalid(format!("format {:?} is not {FORMAT:?}", header.format));
     }
-    if header.version > VERSION {
-        return Err(HeaderError::Newer(format!(
-            "journal of version {}, this program reads up to {VERSION}\n  next: use the newer billow \
-             that wrote it ({})",
+    if header.version != VERSION {
+        return Err(HeaderError::Version(format!(
+            "journal of version {}, this program reads version {VERSION}\n  next: use the billow that wrote it \
+             ({}), or run the study into another folder (--results)",
             header.version, header.program_version
         )));
     }
-    let sealed = header.version >= FIRST_SEALED_VERSION;
-    if sealed && !is_sealed(line) {
-        return Err(HeaderError::Invalid(seal::SealError::Missing.to_string()));
-    }
-    Ok(sealed)
+    Ok(())
 }
 
 /// Text of the line of an ended job.
@@ -188,41 +160,29 @@ pub fn study_text(text: &str) -> serde_json::Result<String> {
     line_text(&json!({ "kind": STUDY, "text": text }))
 }
 
-/// Text of the line of a job that ran for another one.
-pub fn remedy_text(link: &RemedyLink) -> serde_json::Result<String> {
-    let RemedyLink { planned, by, changes } = link;
-    let (planned, by) = (planned.as_str(), by.as_str());
-    line_text(&json!({ "kind": REMEDY, "job": planned, "by": by, "changes": changes }))
-}
-
 /// Reads a line after the header.
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn parse(line: &[u8], must_be_sealed: bool) -> Result<Entry, String> {
-    let line: Line = serde_json::from_str(&object(line, must_be_sealed)?).map_err(|error| {
+pub fn parse(line: &[u8]) -> Result<Entry, String> {
+    let line: Line = serde_json::from_str(&object(line)?).map_err(|error| {
         // The line number of serde is always 1 here: it would look like the line of the file.
         let error = error.to_string();
         format!("not a journal record: {}", error.split(" at line ").next().unwrap_or_default())
     })?;
-    let id = |digits: &str| {
-        JobId::from_digits(digits)
-            .ok_or_else(|| format!("{digits:?} is not a job id (32 hexadecimal digits)"))
+    let job = || {
+        JobId::from_digits(&line.job)
+            .ok_or_else(|| format!("{:?} is not a job id (32 hexadecimal digits)", line.job))
     };
-    let job = || id(&line.job);
     match line.kind.as_deref() {
         None => {}
-        Some(INVALIDATED | OLD_INVALIDATED) => return Ok(Entry::Invalidated(job()?)),
+        Some(INVALIDATED) => return Ok(Entry::Invalidated(job()?)),
         Some(PROGRESSED) => return Ok(Entry::Progressed(job()?)),
         Some(DIED) => {
             let death = Death { job: job()?, process: line.process, alone: line.alone };
             return Ok(Entry::Died(death));
         }
         Some(STUDY) => return Ok(Entry::Study(line.text)),
-        Some(REMEDY) => {
-            let link = RemedyLink { planned: job()?, by: id(&line.by)?, changes: line.changes };
-            return Ok(Entry::Remedy(link));
-        }
         Some(other) => return Err(format!("not a journal record: unknown kind {other:?}")),
     }
     let cells = parse_cells(&line.cells)?;
@@ -235,7 +195,7 @@ pub fn parse(line: &[u8], must_be_sealed: bool) -> Result<Entry, String> {
     })))
 }
 
-/// Reads the cells of an ended job. Old names of columns and of the status are read.
+/// Reads the cells of an ended job.
 fn parse_cells(members: &Map<String, serde_json::Value>) -> Result<Cells, String> {
     let status = ColumnId::Status.name();
     let status = match members.get(status).and_then(serde_json::Value::as_str) {
@@ -244,8 +204,7 @@ fn parse_cells(members: &Map<String, serde_json::Value>) -> Result<Cells, String
     };
     let mut cells = Cells::new(status);
     for (name, value) in members {
-        let id = ColumnId::from_name(current_column_name(name).0)
-            .ok_or_else(|| format!("unknown column {name:?}"))?;
+        let id = ColumnId::from_name(name).ok_or_else(|| format!("unknown column {name:?}"))?;
         if id == ColumnId::Status {
             continue;
         }

@@ -24,13 +24,8 @@ pub fn mend(files: &dyn Files, faults: &[Fault], damaged_folder: &Path) -> Resul
         let lines = scan(path, &bytes)?;
         let mut valid = Vec::with_capacity(bytes.len());
         if lines.first().is_none_or(|header| header.entry.is_err()) {
-            let mut records = lines.iter().filter(|line| line.entry.is_ok());
-            let header = if records.any(|record| !line::is_sealed(record.bytes)) {
-                line::unsealed_header_text()
-            } else {
-                line::header_text()
-            };
-            valid.extend(header.map_err(|error| at(io::Error::other(error)))?.into_bytes());
+            let header = line::header_text().map_err(|error| at(io::Error::other(error)))?;
+            valid.extend(header.into_bytes());
             valid.push(b'\n');
         }
         for line in lines.iter().filter(|line| line.entry.is_ok()) {

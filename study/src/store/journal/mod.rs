@@ -6,30 +6,24 @@
 //! When a job has several lines, the last line of the last file counts.
 //!
 //! ```text
-//! {"checksum":"…","format":"billow-journal","version":5,…}
+//! {"checksum":"…","format":"billow-journal","version":6,…}
 //! {"checksum":"…","job":"<id>","cells":{…},                       a job that ended
 //!     "file_hash":"<SHA-256 of its history file>","file_size":…,"file_time":"…"}
 //! {"checksum":"…","kind":"invalidated","job":"<id>"}              a job to run again
 //! {"checksum":"…","kind":"died","job":"<id>",…}                   its process died while it ran
 //! {"checksum":"…","kind":"progressed","job":"<id>"}               it stored a checkpoint
 //! {"checksum":"…","kind":"study","text":"…"}                      study.json, to restore it
-//! {"checksum":"…","kind":"remedy","job":"<id>","by":"<id>",       the job `by` ran for this planned job, which
-//!     "changes":[{"solver.cfl":0.225}]}                           failed: its scene with these changes
 //! ```
 //!
 //! `checksum` is that of [`billow_solver::platform::seal`]. A line that is not valid costs its own record
-//! only. Older versions are read: version 4 has no remedies, version 3 has no checksums, version 2 says `withdrawn` for `invalidated`
-//! and has old names of columns and statuses, version 1 has no `kind`.
+//! only.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-
 use crate::job::JobId;
 use crate::job::point::Point;
-use crate::job::remedy::Change;
-use crate::job::row::{Cells, ColumnId};
+use crate::job::row::Cells;
 use crate::platform::error::{Error, Result};
 use crate::platform::files::{Files, Stamp, disk_error};
 
@@ -53,7 +47,7 @@ pub struct Record {
     pub cells: Cells,
     /// SHA-256 of the bytes of its history file; `None` for a job without one.
     pub file_hash: Option<String>,
-    /// Size and time of that file when it was written; `None` in older journals.
+    /// Size and time of that file when it was written; `None` for a job without one.
     pub file_stamp: Option<Stamp>,
 }
 
@@ -63,28 +57,6 @@ impl Record {
         // A run that used up solver.step_limit has a history.
         self.file_hash.is_none() && self.cells.status().is_limit()
     }
-}
-
-/// Where the line of a record is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Place {
-    /// Position of its file among the journals of the folder, in the order of their names.
-    pub journal: usize,
-    /// Position of its first byte in that file.
-    pub offset: u64,
-    /// Number of its bytes, with the end of the line.
-    pub length: usize,
-}
-
-/// A job that ran for another one, which had failed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RemedyLink {
-    /// Id of the planned job.
-    pub planned: JobId,
-    /// Id of the job that ran.
-    pub by: JobId,
-    /// In what its scene differs.
-    pub changes: Vec<Change>,
 }
 
 /// The death of a process while a job ran.
@@ -124,12 +96,7 @@ pub fn cells_of(point: &Point, records: &BTreeMap<JobId, Record>) -> Option<Cell
     if let Some(infeasible) = &point.infeasible {
         return Some(Cells::infeasible(infeasible));
     }
-    let mut cells = records.get(&point.job.id)?.cells.clone();
-    if let Some(remedied) = &point.remedied {
-        cells.set(ColumnId::Remedy, remedied.remedy());
-        cells.set(ColumnId::FailedRemedies, remedied.failed());
-    }
-    Some(cells)
+    Some(records.get(&point.job.id)?.cells.clone())
 }
 
 /// What the journals of a study hold.
@@ -143,14 +110,8 @@ pub struct Journal {
     pub deaths: BTreeMap<JobId, Vec<Death>>,
     /// The text of study.json at the start of the last run.
     pub study: Option<String>,
-    /// The jobs that ran with a remedy, by the planned job that failed, in the order in which they were tried.
-    pub remedies: BTreeMap<JobId, Vec<RemedyLink>>,
-    /// Number of the records without checksum, from journals of older versions.
-    pub unsealed: usize,
     /// Lines that are not valid, in the order of the files.
     pub faults: Vec<Fault>,
-    /// Where the last record of every job is.
-    pub places: BTreeMap<JobId, Place>,
 }
 
 impl Journal {
@@ -167,19 +128,16 @@ impl Journal {
                 self.deaths.remove(&job);
             }
             Entry::Study(text) => self.study = Some(text),
-            Entry::Remedy(link) => add_link(&mut self.remedies, link),
         }
     }
 
     /// Whether there is no line at all.
     pub fn is_empty(&self) -> bool {
-        let Self { records, invalidated, deaths, study, remedies, faults, unsealed: _, places: _ } =
-            self;
+        let Self { records, invalidated, deaths, study, faults } = self;
         records.is_empty()
             && invalidated.is_empty()
             && deaths.is_empty()
             && study.is_none()
-            && remedies.is_empty()
             && faults.is_empty()
     }
 
@@ -205,38 +163,19 @@ impl Journal {
     }
 }
 
-/// Adds the link of a remedy. The same job counts once.
-pub fn add_link(remedies: &mut BTreeMap<JobId, Vec<RemedyLink>>, link: RemedyLink) {
-    let links = remedies.entry(link.planned.clone()).or_default();
-    if links.iter().all(|known| known.by != link.by) {
-        links.push(link);
-    }
-}
-
 /// Reads every journal in a folder. A missing folder is an empty journal. Lines that are not valid are
 /// skipped; they are in [`Journal::faults`].
 ///
 /// # Errors
-/// [`Error::Disk`] when the folder or a journal cannot be read, and for a journal of a newer version.
+/// [`Error::Disk`] when the folder or a journal cannot be read, and for a journal of another version.
 pub fn read(files: &dyn Files, folder: &Path) -> Result<Journal> {
     let mut journal = Journal::default();
-    for (number, path) in paths(files, folder)?.iter().enumerate() {
+    for path in &paths(files, folder)? {
         let bytes = files.read(path).map_err(|error| disk_error(path, &error))?;
         let lines = scan(path, &bytes)?;
-        let sealed = lines.iter().filter(|line| line::is_sealed(line.bytes)).count();
-        let mut offset = 0;
         for line in lines {
-            let length = line.bytes.len();
-            let place = Place { journal: number, offset, length };
-            offset += length as u64;
             match line.entry {
-                Ok(Some(entry)) => {
-                    if let Entry::Ended(record) = &entry {
-                        journal.unsealed += usize::from(sealed == 0);
-                        journal.places.insert(record.job.clone(), place);
-                    }
-                    journal.take(entry);
-                }
+                Ok(Some(entry)) => journal.take(entry),
                 Ok(None) => {}
                 Err(fault) => journal.faults.push(fault),
             }
@@ -253,14 +192,6 @@ pub fn paths(files: &dyn Files, folder: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = files.list(folder).map_err(|error| disk_error(folder, &error))?;
     paths.retain(|path| is_journal(path));
     Ok(paths)
-}
-
-/// The record in one line of a sealed journal; `None` for any other line.
-pub fn record_in(line: &[u8]) -> Option<Record> {
-    match line::parse(line, true) {
-        Ok(Entry::Ended(record)) => Some(*record),
-        _ => None,
-    }
 }
 
 /// Whether a file has the name of a journal.
@@ -286,25 +217,17 @@ fn scan<'a>(path: &Path, bytes: &'a [u8]) -> Result<Vec<ScannedLine<'a>>> {
     };
     let complete = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
     let mut lines = Vec::new();
-    let mut must_be_sealed = false;
     for (number, bytes) in (1..).zip(bytes[..complete].split_inclusive(|byte| *byte == b'\n')) {
         let entry = if number == 1 {
-            match line::parse_header(bytes) {
-                Ok(sealed) => {
-                    must_be_sealed = sealed;
-                    Ok(None)
-                }
-                Err(line::HeaderError::Newer(problem)) => {
+            match line::check_header(bytes) {
+                Ok(()) => Ok(None),
+                Err(line::HeaderError::Version(problem)) => {
                     return Err(Error::Disk { path: path.to_owned(), problem });
                 }
                 Err(line::HeaderError::Invalid(problem)) => Err(fault(number, problem, false)),
             }
         } else {
-            // Where the header is damaged, the first checksum shows the version.
-            must_be_sealed |= line::is_sealed(bytes);
-            line::parse(bytes, must_be_sealed)
-                .map(Some)
-                .map_err(|problem| fault(number, problem, false))
+            line::parse(bytes).map(Some).map_err(|problem| fault(number, problem, false))
         };
         lines.push(ScannedLine { bytes, entry });
     }

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{Death, Record, RemedyLink, line};
+use super::{Death, Record, line};
 use crate::job::JobId;
 use crate::platform::error::Result;
 use crate::platform::files::{Append, Files, disk_error};
@@ -27,16 +27,7 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`crate::platform::error::Error::Disk`]; none of these records then counts as written.
     pub fn append(&mut self, records: &[Record]) -> Result<()> {
-        self.append_remedies(records, &[])
-    }
-
-    /// Appends records, then the links of those that ran with a remedy, and syncs once.
-    ///
-    /// # Errors
-    /// As [`Self::append`].
-    pub fn append_remedies(&mut self, records: &[Record], links: &[RemedyLink]) -> Result<()> {
-        let ended = records.iter().map(line::ended_text);
-        self.write(ended.chain(links.iter().map(line::remedy_text)))
+        self.write(records.iter().map(line::ended_text))
     }
 
     /// Records that these jobs must run again, and syncs once.

@@ -36,19 +36,16 @@ mod study_json;
 
 /// Name of the file of a run's attempts.
 const ATTEMPTS: &str = "attempts.jsonl";
-/// Name of the file of the index.
-const INDEX: &str = "index.json";
 /// Name of the folder of what was given to a scheduler.
 const SUBMISSIONS: &str = "submissions";
 /// Names that a run writes into a results folder.
-pub const RESULT_NAMES: [&str; 13] = [
+pub const RESULT_NAMES: [&str; 12] = [
     "study.json",
     "journal",
     "jobs",
     "references",
     "checkpoints",
     "summary.parquet",
-    INDEX,
     "charts",
     ATTEMPTS,
     "claims",
@@ -117,11 +114,6 @@ impl<'a> Results<'a> {
     /// Path of the summary table.
     pub fn table_path(&self) -> PathBuf {
         self.root.join("summary.parquet")
-    }
-
-    /// Path of the index.
-    pub fn index_path(&self) -> PathBuf {
-        self.root.join(INDEX)
     }
 
     /// Path of the attempts of a running process.

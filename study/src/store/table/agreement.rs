@@ -23,11 +23,7 @@ pub fn agrees(table: &Table, records: &BTreeMap<JobId, Record>) -> bool {
         match (table.status(row), record) {
             (Some(Status::Infeasible | Status::Pending), None) => true,
             (Some(_), Some(record)) => {
-                let of_record = |column: &&RowColumn| {
-                    let of_point =
-                        [ColumnId::Remedy, ColumnId::FailedRemedies].contains(&column.id);
-                    !of_point && !is_corrected(table, column.name)
-                };
+                let of_record = |column: &&RowColumn| !is_corrected(table, column.name);
                 COLUMNS.iter().filter(of_record).all(|column| {
                     let stored = table.value(column.id, row);
                     stored.is_none_or(|stored| same(stored, record.cells.get(column.id)))

@@ -19,7 +19,6 @@ use crate::job::point::Point;
 use crate::job::row::{CellType, SAME_JOB_AS};
 use crate::store::finished;
 use crate::store::journal::Record;
-use crate::store::remedied;
 use crate::study::auto::{Auto, Decision, Outcome};
 use crate::study::finished::FinishedRow;
 use crate::study::{Study, plan};
@@ -35,8 +34,7 @@ impl Table {
     pub fn of_study(study: &Study, points: &[Point], records: &BTreeMap<JobId, Record>) -> Self {
         let finished = || finished::rows(points, records, study.result_limits());
         match study.auto().zip(study.auto().and_then(|_| plan::shown(study, &finished()))) {
-            Some((auto, (mut shown, outcome))) => {
-                remedied::copy(&mut shown, points);
+            Some((auto, (shown, outcome))) => {
                 let unit = |name: &str| study.unit(name).to_owned();
                 let mut table = Self::build(&shown, records, &unit);
                 table.add_corrected(study, auto, &outcome, &shown, records);

@@ -19,11 +19,10 @@ use polars::prelude::{
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::{Column, Table, row_column_name};
+use super::{Column, Table};
 use crate::input::units::DisplayUnit;
 use crate::input::value::Value;
-use crate::job::Status;
-use crate::job::row::{CellType, ColumnId, current_column_name};
+use crate::job::row::CellType;
 use crate::platform::error::{Error, Result};
 
 /// Key of the file-level metadata.
@@ -168,34 +167,6 @@ fn metadata(reader: &mut ParquetReader<Cursor<&[u8]>>) -> std::result::Result<Me
     Ok(metadata)
 }
 
-/// Some columns of a table from the bytes of its file: those of which `wanted` holds for the name, given all names, and all before
-/// the status, which are the job and the parameters. Their cells are not checked against the checksum of the table: the
-/// caller knows that the file is as it was written. The number is that of all columns. `None` for anything but a table of
-/// this version.
-pub fn decode_columns(
-    bytes: &[u8],
-    wanted: &dyn Fn(&str, &[&str]) -> bool,
-) -> Option<(Table, usize)> {
-    let mut reader = ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None);
-    let metadata = metadata(&mut reader).ok().filter(|metadata| metadata.version == VERSION)?;
-    let labels = &metadata.columns;
-    let status = labels.iter().position(|label| label.name == ColumnId::Status.name())?;
-    let names: Vec<&str> = labels.iter().map(|label| label.name.as_str()).collect();
-    let chosen = labels.iter().enumerate().filter(|(index, label)| {
-        *index <= status
-            || wanted(row_column_name(&label.name), &names)
-            || wanted(&label.name, &names)
-    });
-    let chosen = chosen.map(|(_, label)| label.name.clone()).collect();
-    let frame = reader.with_columns(Some(chosen)).finish().ok()?;
-    let column = |column: &PolarsColumn| {
-        let label = labels.iter().find(|label| label.name == column.name().as_str());
-        from_polars(column, label).ok()
-    };
-    let columns = frame.columns().iter().map(column).collect::<Option<_>>()?;
-    Some((Table { columns }, labels.len()))
-}
-
 /// Reads a table from the bytes of its file; `path` names it in errors.
 ///
 /// # Errors
@@ -209,11 +180,11 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
     };
     let mut reader = ParquetReader::new(Cursor::new(bytes)).read_parallel(ParallelStrategy::None);
     let metadata = metadata(&mut reader).map_err(broken)?;
-    if metadata.version > VERSION {
+    if metadata.version != VERSION {
         return Err(Error::Disk {
             path: path.to_owned(),
             problem: format!(
-                "table of version {}, this program reads up to {VERSION}\n  next: use the newer \
+                "table of version {}, this program reads version {VERSION}\n  next: use the \
                  billow that wrote it",
                 metadata.version
             ),
@@ -228,36 +199,11 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Table> {
                 .map_err(|error| broken(format!("column {:?}: {error}", column.name())))?,
         );
     }
-    let mut table = Table { columns };
+    let table = Table { columns };
     if metadata.checksum.is_some_and(|stored| stored != checksum(&table)) {
         return Err(broken("it does not have the contents of its checksum".to_owned()));
     }
-    use_current_names(&mut table);
     Ok(table)
-}
-
-/// Gives renamed columns and statuses their current names. Parameters of the study keep theirs.
-fn use_current_names(table: &mut Table) {
-    let is_parameter = |column: &&mut Column| column.name != ColumnId::Status.name();
-    for column in table.columns.iter_mut().skip_while(is_parameter) {
-        let old = row_column_name(&column.name).to_owned();
-        let current = current_column_name(&old).0;
-        if current != old {
-            column.name = column.name.replacen(&old, current, 1);
-            if let Some(id) = ColumnId::from_name(current) {
-                id.column().meaning.clone_into(&mut column.meaning);
-            }
-        }
-        if column.name == ColumnId::Status.name() {
-            for cell in &mut column.cells {
-                if let Value::Text(name) = cell
-                    && let Some(status) = Status::from_name(name)
-                {
-                    status.name().clone_into(name);
-                }
-            }
-        }
-    }
 }
 
 fn from_polars(

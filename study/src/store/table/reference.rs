@@ -9,10 +9,9 @@ use super::corrected::{RUN_MESH, RUN_MESH_MEANING};
 use super::extrapolated::{EXTRAPOLATED, EXTRAPOLATED_ERROR, EXTRAPOLATED_ERROR_MEANING};
 use crate::accuracy::{NO_ERROR_REASON, NO_ERROR_REASON_MEANING, PROMISED};
 use crate::job::row::{
-    BetterSide, COLUMNS, CellType, DERIVED_COLUMNS, RENAMED_COLUMNS, RENAMED_TABLE_COLUMNS,
-    RowColumn, SAME_JOB_AS, SAME_JOB_AS_MEANING,
+    BetterSide, COLUMNS, CellType, DERIVED_COLUMNS, RowColumn, SAME_JOB_AS, SAME_JOB_AS_MEANING,
 };
-use crate::job::status::{RENAMED_STATUSES, Status};
+use crate::job::status::Status;
 
 /// The text of the page, Markdown.
 pub fn page() -> String {
@@ -24,7 +23,6 @@ pub fn page() -> String {
     table_columns(&mut page);
     statuses(&mut page);
     history_columns(&mut page);
-    renamed(&mut page);
     page
 }
 
@@ -159,24 +157,4 @@ fn history_columns(page: &mut String) {
          | `element_NAME_N1`, `_N2` | N/m | each followed element of a scene | principal membrane \
          force per reference width |\n",
     );
-}
-
-fn renamed(page: &mut String) {
-    page.push_str(
-        "\n## Old names\n\n\
-         Stored files with old names are read. In options of commands, old names work for one version,\n\
-         with a note.\n\n\
-         | where | old name | current name |\n\
-         |---|---|---|\n",
-    );
-    let places: [(&str, &[(&str, &str)]); 3] = [
-        ("summary table", &RENAMED_TABLE_COLUMNS),
-        ("history", RENAMED_COLUMNS),
-        ("value of `status`", &RENAMED_STATUSES),
-    ];
-    for (place, names) in places {
-        for (old, current) in names {
-            let _ = writeln!(page, "| {place} | `{old}` | `{current}` |");
-        }
-    }
 }

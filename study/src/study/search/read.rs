@@ -9,7 +9,7 @@ use crate::input::units::{self, Dimension};
 use crate::input::value::Value;
 use crate::job::proportion::Proportion;
 use crate::job::result_limit::ResultLimit;
-use crate::job::row::{ColumnId, current_column_name};
+use crate::job::row::ColumnId;
 use crate::platform::error::InputError;
 use crate::platform::nearest::nearest;
 use crate::study::grid::{Axis, AxisKind, Context, Grid};
@@ -175,7 +175,7 @@ impl SearchFile<'_> {
             }
             return Ok(Criterion::Safe);
         }
-        let current = current_column_name(name).0;
+        let current = name;
         if let Some(index) = names().position(|known| known == current) {
             return Ok(Criterion::Limit(index));
         }

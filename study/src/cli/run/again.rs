@@ -1,0 +1,179 @@
+//! `billow run --again`: runs finished jobs again and checks that they give the same bits; with `--set`, tries them
+//! with other settings beside the study.
+
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::{Args, Scope, run_study};
+use crate::cli::print::{count, print_rows};
+use crate::input::value::Value;
+use crate::job::point::Point;
+use crate::job::row::{Cells, ColumnId};
+use crate::job::{JobId, Status};
+use crate::platform::error::{Error, Result};
+use crate::platform::files::Disk;
+use crate::store::results::Results;
+use crate::store::stored::Stored;
+use crate::study::{Study, plan};
+
+/// What is shown of a job and of its run with other settings.
+const COMPARED: [ColumnId; 8] = [
+    ColumnId::Status,
+    ColumnId::Verdict,
+    ColumnId::StopTime,
+    ColumnId::LedgerResidual,
+    ColumnId::T50ZRim,
+    ColumnId::PeakVz,
+    ColumnId::FinalVolume,
+    ColumnId::Steps,
+];
+
+/// Runs the jobs that `--again` names, each by the first digits of its id or all of a status.
+///
+/// # Errors
+/// As [`super::run`]; unknown jobs; [`Error::JobsFailed`] when bits differ.
+pub(super) fn run(args: &Args, root: &Path, out: &mut dyn Write) -> Result<()> {
+    let stored = crate::cli::stored::read(root)?;
+    let jobs = chosen(&stored, &args.again)?;
+    if !args.set.set.is_empty() {
+        return run_changed(args, &stored, &jobs, out);
+    }
+    if !args.options.progress.quiet {
+        eprintln!("{} to run again", count(jobs.len(), "job"));
+    }
+    run_study(&stored.study, root, Some(&jobs), Scope::default(), &args.options, out)
+}
+
+/// The jobs with these ids or statuses.
+fn chosen(stored: &Stored<'_>, names: &[String]) -> Result<BTreeSet<JobId>> {
+    let mut jobs = BTreeSet::new();
+    for name in names.iter().map(|name| name.trim()) {
+        if let Some(status) = Status::from_name(name).filter(|status| status.has_job()) {
+            let points = stored.points.iter().filter(|point| point.infeasible.is_none());
+            let found = points.filter(|point| stored.cells(point).status() == status);
+            jobs.extend(found.map(|point| point.job.id.clone()));
+            continue;
+        }
+        let id = stored.job(name)?;
+        match stored.point(&id) {
+            None => return Err(refused(name, "this job is no longer in the study (study.json)")),
+            Some(point) if point.infeasible.is_some() => {
+                return Err(refused(name, "this point is infeasible: it has no job to run"));
+            }
+            Some(_) => jobs.insert(id),
+        };
+    }
+    if jobs.is_empty() {
+        return Err(refused(&names.join(","), "no job of the study has this status"));
+    }
+    Ok(jobs)
+}
+
+fn refused(value: &str, problem: &str) -> Error {
+    let allowed = "the first digits of job ids, or a status as in --again timeout; comma-separated";
+    Error::invalid_option(
+        "--again",
+        value,
+        problem,
+        allowed,
+        "billow status; billow table --columns job,status",
+    )
+}
+
+/// Runs jobs with other settings. They are stored in a folder of their own beside the results, whose table stays.
+fn run_changed(
+    args: &Args,
+    stored: &Stored<'_>,
+    jobs: &BTreeSet<JobId>,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let mut sets = args.set.set.clone();
+    let searched = stored.study.searched().map(|(name, _)| name.to_owned());
+    let mut changed = Vec::new();
+    for id in jobs {
+        let Some(point) = stored.point(id) else { continue };
+        // A searched value is in no plan from the start.
+        let value = searched.as_ref().and_then(|name| parameter(point, name));
+        if let (Some(name), Some(value)) = (&searched, value) {
+            sets.truncate(args.set.set.len());
+            sets.push(format!("{name}={value}"));
+        }
+        let study = Study::load(&stored.results.study_path(), &sets)?;
+        let planned = plan::next_jobs(&study, &[]).map(|generation| generation.points);
+        let found =
+            planned.unwrap_or_default().into_iter().find(|other| is_same_point(other, point));
+        let found = found.filter(|other| other.infeasible.is_none()).ok_or_else(|| {
+            let problem = format!("leaves the study without the point of job {}", id.short());
+            let next = "change a key that the grid does not vary";
+            Error::invalid_option("--set", &args.set.set.join(" "), problem, "", next)
+        })?;
+        let root = beside(stored.results.root());
+        let only = BTreeSet::from([found.job.id.clone()]);
+        run_study(
+            &study,
+            &root,
+            Some(&only),
+            Scope::default(),
+            &args.options,
+            &mut std::io::sink(),
+        )
+        .or_else(|error| if matches!(error, Error::JobsFailed(_)) { Ok(()) } else { Err(error) })?;
+        let again = Stored::read(Results::new(&Disk, &root))?;
+        changed.push((id, found.job.id.clone(), again.cells_of_job(&found.job.id)));
+    }
+    print(stored, &changed, args, out)?;
+    if !args.options.progress.quiet {
+        let root = beside(stored.results.root());
+        eprintln!(
+            "the table of the study is as it was; billow job JOB {} shows a changed run",
+            root.display()
+        );
+    }
+    Ok(())
+}
+
+/// The folder of changed runs: `results/STUDY-again`.
+fn beside(root: &Path) -> PathBuf {
+    let mut name = root.file_name().unwrap_or_default().to_owned();
+    name.push("-again");
+    root.with_file_name(name)
+}
+
+fn parameter<'a>(point: &'a Point, name: &str) -> Option<&'a Value> {
+    point.job.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| value)
+}
+
+/// Whether a point of a changed study has the values of this one, in the parameters that both vary.
+fn is_same_point(other: &Point, point: &Point) -> bool {
+    other
+        .job
+        .parameters
+        .iter()
+        .all(|(name, value)| parameter(point, name).is_none_or(|known| known == value))
+}
+
+/// Prints each job and its changed run.
+fn print(
+    stored: &Stored<'_>,
+    changed: &[(&JobId, JobId, Cells)],
+    args: &Args,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let mut columns = vec!["job".to_owned(), "set".to_owned()];
+    columns.extend(COMPARED.map(|column| column.name().to_owned()));
+    let row = |id: &JobId, set: Value, cells: &Cells| {
+        let mut row = vec![Value::Text(id.short().to_owned()), set];
+        row.extend(COMPARED.iter().map(|column| match column {
+            ColumnId::Status => Value::Text(cells.status().name().to_owned()),
+            column => cells.get(*column).clone(),
+        }));
+        row
+    };
+    let mut rows = Vec::new();
+    for (id, other, cells) in changed {
+        rows.push(row(id, Value::Null, &stored.cells_of_job(id)));
+        rows.push(row(other, Value::Text(args.set.set.join(" ")), cells));
+    }
+    print_rows(&columns, &rows, args.options.output.format(), out)
+}
