@@ -163,7 +163,11 @@ fn two_deaths_alone_at_last_put_a_job_in_quarantine_until_it_is_asked_for() {
     let table = Results::new(&Disk, folder.path()).read_table().unwrap();
     let cell = |name: &str| table.column(name).unwrap().cells[3].to_string();
     assert_eq!(cell("status"), "crashed");
-    assert!(cell("reason").contains("next: billow run STUDY --again crashed"), "{}", cell("reason"));
+    assert!(
+        cell("reason").contains("next: billow run STUDY --again crashed"),
+        "{}",
+        cell("reason")
+    );
 
     // Another run leaves it alone; a rerun computes it, and there are no old bits to compare.
     let executor = Tasks::new(done);

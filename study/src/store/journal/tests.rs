@@ -136,7 +136,8 @@ fn a_mended_journal_has_its_valid_lines_and_the_damaged_file_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let (journal, kept) = (folder.path().join("journal"), folder.path().join("damaged"));
     let (path, lines) = lines_of_two(&journal);
-    let damaged = format!("{}{}{}", lines[0].replacen("billow", "bellow", 1), &lines[1][1..], lines[2]);
+    let damaged =
+        format!("{}{}{}", lines[0].replacen("billow", "bellow", 1), &lines[1][1..], lines[2]);
     for (text, copies) in [(damaged.clone(), 1), (lines.concat() + "{\"che", 1), (damaged, 2)] {
         std::fs::write(&path, &text).unwrap();
         let found = read_back(&journal);
